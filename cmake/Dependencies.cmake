@@ -1,0 +1,53 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+
+find_package(TBB REQUIRED)
+find_package(Threads REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(tomlplusplus QUIET)
+if(NOT tomlplusplus_FOUND)
+  find_path(ADASPLATS_TOML_INCLUDE toml++/toml.h REQUIRED)
+  add_library(tomlplusplus::tomlplusplus INTERFACE IMPORTED)
+  set_target_properties(tomlplusplus::tomlplusplus PROPERTIES INTERFACE_INCLUDE_DIRECTORIES
+                                                              ${ADASPLATS_TOML_INCLUDE})
+endif()
+find_package(PNG REQUIRED)
+
+# LAZ: LASzip is not in Debian 12; where it is missing the reader says what to install.
+find_path(ADASPLATS_LASZIP_INCLUDE laszip/laszip_api.h)
+find_library(ADASPLATS_LASZIP_LIBRARY NAMES laszip)
+if(ADASPLATS_LASZIP_INCLUDE AND ADASPLATS_LASZIP_LIBRARY)
+  add_library(adasplats_laszip INTERFACE IMPORTED)
+  set_target_properties(
+    adasplats_laszip PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${ADASPLATS_LASZIP_INCLUDE}
+                                INTERFACE_LINK_LIBRARIES ${ADASPLATS_LASZIP_LIBRARY}
+                                INTERFACE_COMPILE_DEFINITIONS ADASPLATS_HAVE_LASZIP)
+  set(ADASPLATS_LASZIP_TARGET adasplats_laszip)
+endif()
+
+# Embree 4 where it is, else 3. trace/embree.h hides the difference.
+find_package(embree 4 QUIET CONFIG)
+if(NOT embree_FOUND)
+  find_package(embree 3 QUIET CONFIG)
+endif()
+if(embree_FOUND)
+  add_library(adasplats_embree INTERFACE IMPORTED)
+  set_target_properties(
+    adasplats_embree PROPERTIES INTERFACE_LINK_LIBRARIES embree
+                                INTERFACE_COMPILE_DEFINITIONS
+                                "ADASPLATS_EMBREE_MAJOR=${embree_VERSION_MAJOR}")
+  set(ADASPLATS_EMBREE_TARGET adasplats_embree)
+else()
+  message(FATAL_ERROR "Embree 3 or 4 is needed: apt-get install libembree-dev")
+endif()
+
+function(adasplats_print_summary)
+  set(found_lines "TBB ${TBB_VERSION}" "Embree ${embree_VERSION}" "PNG ${PNG_VERSION_STRING}")
+  if(ADASPLATS_LASZIP_TARGET)
+    list(APPEND found_lines "LASzip")
+  else()
+    list(APPEND found_lines "no LASzip (LAZ files are refused)")
+  endif()
+  string(JOIN ", " found_text ${found_lines})
+  message(STATUS "adasplats ${PROJECT_VERSION}: ${found_text}")
+endfunction()

@@ -1,0 +1,15 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+include(CMakePackageConfigHelpers)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/adasplats DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+        FILES_MATCHING PATTERN "*.h")
+install(EXPORT adasplatsTargets NAMESPACE adasplats::
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adasplats)
+configure_package_config_file(
+  ${CMAKE_CURRENT_LIST_DIR}/adasplatsConfig.cmake.in ${CMAKE_BINARY_DIR}/adasplatsConfig.cmake
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adasplats)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/adasplatsConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/adasplatsConfig.cmake
+              ${CMAKE_BINARY_DIR}/adasplatsConfigVersion.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adasplats)

@@ -1,0 +1,97 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+
+# What every target of ours is compiled with.
+add_library(adasplats_options INTERFACE)
+target_compile_options(
+  adasplats_options
+  INTERFACE # The same bits on every machine and backend: no fused multiply-add behind our back.
+            -ffp-contract=off
+            # Neither changes a value; both let loops with sqrt and divisions be vectorised.
+            -fno-math-errno -fno-trapping-math
+            -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
+            -Wold-style-cast -Woverloaded-virtual -Wno-missing-field-initializers)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(adasplats_options INTERFACE -Wno-psabi)
+endif()
+if(CMAKE_BUILD_TYPE STREQUAL "Release")
+  target_compile_options(adasplats_options INTERFACE -O3)
+endif()
+if(ADASPLATS_WERROR)
+  target_compile_options(adasplats_options INTERFACE -Werror)
+endif()
+if(ADASPLATS_SANITIZE)
+  target_compile_options(adasplats_options INTERFACE -fsanitize=${ADASPLATS_SANITIZE}
+                                                     -fno-sanitize-recover=all
+                                                     -fno-omit-frame-pointer)
+  target_link_options(adasplats_options INTERFACE -fsanitize=${ADASPLATS_SANITIZE})
+  target_compile_definitions(adasplats_options INTERFACE ADASPLATS_SANITIZED)
+endif()
+
+set(ADASPLATS_STAGES "")
+
+# adasplats_stage(NAME [DEPENDS stages...] [LINK PRIVATE|PUBLIC libs...])
+# The library of src/adasplats/NAME: its *.cpp but *_test.cpp, which become NAME's test program.
+function(adasplats_stage name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;LINK" ${ARGN})
+  set(folder ${PROJECT_SOURCE_DIR}/src/adasplats/${name})
+  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
+  file(GLOB tests CONFIGURE_DEPENDS ${folder}/*_test.cpp)
+  if(tests)
+    list(REMOVE_ITEM sources ${tests})
+  endif()
+  set(target adasplats_${name})
+  set(dependencies ${ARG_DEPENDS})
+  list(TRANSFORM dependencies PREPEND adasplats_)
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    target_include_directories(
+      ${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+                       $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:adasplats_options>
+                                            $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>
+                                            $<BUILD_INTERFACE:tomlplusplus::tomlplusplus>)
+    if(ARG_LINK)
+      target_link_libraries(${target} ${ARG_LINK})
+    endif()
+    target_link_libraries(${target} PUBLIC ${dependencies})
+  else()
+    add_library(${target} INTERFACE)
+    target_include_directories(
+      ${target} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    target_link_libraries(${target} INTERFACE ${dependencies})
+  endif()
+  add_library(adasplats::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  install(TARGETS ${target} EXPORT adasplatsTargets)
+  set(ADASPLATS_STAGES ${ADASPLATS_STAGES} ${target} PARENT_SCOPE)
+  if(tests AND ADASPLATS_BUILD_TESTS)
+    adasplats_test(${name} ${tests})
+  endif()
+endfunction()
+
+if(ADASPLATS_BUILD_TESTS)
+  enable_testing()
+  find_package(GTest REQUIRED)
+endif()
+
+# adasplats_test(NAME sources...): a GoogleTest program over the whole library.
+function(adasplats_test name)
+  set(target adasplats_${name}_test)
+  add_executable(${target} ${ARGN})
+  target_link_libraries(${target} PRIVATE adasplats_options GTest::gtest_main
+                                          nlohmann_json::nlohmann_json
+                                          tomlplusplus::tomlplusplus Threads::Threads)
+  if(TARGET adasplats_${name})
+    target_link_libraries(${target} PRIVATE adasplats_${name})
+  else()
+    target_link_libraries(${target} PRIVATE adasplats)
+  endif()
+  # Real files for the tests that take them; tests skip with a message where there are none.
+  target_compile_definitions(
+    ${target} PRIVATE ADASPLATS_TEST_DATA="${PROJECT_SOURCE_DIR}/../shared/data")
+  add_test(NAME ${name} COMMAND ${target})
+  set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+endfunction()

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/core/progress.h"
+
+namespace adasplats {
+
+/// How files become a point cloud.
+struct LoadOptions {
+  /// Column of the semantic class; empty: the first of label, class, classification, semantic,
+  /// scalar_label, scalar_Classification, sem_class that is there.
+  std::string label_field;
+  /// Columns of the sensor position; empty: the first triple found of x_lidar_position..,
+  /// sensor_x.., x_origin.., scalar_x_lidar_position... (y and z likewise).
+  std::string sensor_x_field, sensor_y_field, sensor_z_field;
+  /// One sensor position for every point that has none, world coordinates.
+  std::optional<Vec3d> viewpoint;
+  /// A trajectory whose nearest position (in the plane) becomes the sensor position of points that
+  /// have none.
+  std::filesystem::path trajectory;
+  /// Of a sequence: scans [first, first + count), every `stride`-th.
+  std::size_t first_scan = 0;
+  std::size_t scan_count = static_cast<std::size_t>(-1);
+  std::size_t scan_stride = 1;
+  /// Points not finite are an error instead of being dropped and counted.
+  bool strict = false;
+  /// Read whole records of truncated LAS files.
+  bool salvage = false;
+  /// Points farther than this from the median of all points are dropped and counted, m.
+  double max_distance_m = 100e3;
+};
+
+/// What was dropped on the way.
+struct LoadReport {
+  std::size_t points_read = 0;
+  std::size_t dropped_not_finite = 0;
+  std::size_t dropped_far = 0;
+};
+
+/// Loads and accumulates point files and SemanticKITTI sequence folders (see read_points and
+/// open_kitti_sequence). World coordinates; the origin depends on the extents alone. A folder that
+/// holds no `velodyne` but files of points loads those by name. Inputs with and without an
+/// attribute together lose it, with a warning.
+/// Errors: those of the readers; usage for options that fit nothing.
+std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
+                                             const LoadOptions& options, ProgressSink& progress);
+
+/// Writes a cloud as PLY with the columns x, y, z, x_lidar_position, y_lidar_position,
+/// z_lidar_position, intensity, label, instance, scan_index, as far as it has them (the layout of
+/// Paris-CARLA-3D). Doubles where the origin is not zero.
+void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud);
+
+}  // namespace adasplats

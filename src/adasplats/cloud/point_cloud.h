@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/vec3.h"
+
+namespace adasplats {
+
+/// Points of one or many scans, as a structure of arrays. World coordinates are origin +
+/// position: double at the border, float inside. An attribute is empty or as long as `positions`.
+struct PointCloud {
+  Vec3d origin;                           ///< world coordinates of the local origin, m
+  std::vector<Vec3f> positions;           ///< relative to `origin`, m; finite
+  std::vector<Vec3f> sensor_positions;    ///< of the LiDAR when it measured the point, as positions
+  std::vector<float> intensities;         ///< as measured, in the unit of the file
+  std::vector<std::uint16_t> classes;     ///< semantic class ids of the label scheme
+  std::vector<std::uint16_t> instances;   ///< instance ids, 0 = none
+  std::vector<std::uint32_t> scan_indices;///< number of the scan the point is from
+
+  std::size_t size() const { return positions.size(); }
+  bool empty() const { return positions.empty(); }
+  Vec3d world(std::size_t i) const { return origin + vec_cast<double>(positions[i]); }
+};
+
+/// The points of `cloud` in the order of `indices`, every attribute along.
+PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices);
+
+/// Adds `other` behind `cloud`. Both need the same origin and the same set of attributes
+/// (std::logic_error otherwise; an empty `cloud` takes all from `other`).
+void append(PointCloud& cloud, PointCloud&& other);
+
+/// The origin for coordinates within [low, high]: zero where floats hold them to 0.1 mm (1 km
+/// around zero), else the middle rounded to a whole kilometre. Depends on the box alone, so the
+/// order of points does not matter.
+Vec3d choose_origin(Vec3d low, Vec3d high);
+
+}  // namespace adasplats

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "adasplats/core/rigid_transform.h"
+
+namespace adasplats {
+
+/// Where a sensor was at one time.
+struct TimedPose {
+  double time_s = 0;
+  RigidTransform world_from_sensor;
+};
+
+/// Poses by ascending time.
+using Trajectory = std::vector<TimedPose>;
+
+/// Reads a pose file.
+/// - KITTI `poses.txt`: 12 numbers a line, the upper 3x4 of a matrix by rows. In a folder with a
+///   KITTI `calib.txt` with a `Tr:` line the poses are of the camera and are brought to the LiDAR:
+///   world_from_velodyne = inv(Tr) * pose * Tr. Without one they are world_from_sensor. Times from
+///   `times.txt` beside it, else 0.1 s apart.
+/// - CSV: time,x,y,z,qw,qx,qy,qz with or without that header line.
+/// Errors (ErrorKind::data with the line): wrong number of values, not finite, rotation not
+/// orthonormal to 1e-3, quaternion norm off by more than 1e-3, time that does not ascend.
+Trajectory read_trajectory(const std::filesystem::path& path);
+
+/// Writes a CSV as read_trajectory reads it, 9 digits behind the point.
+void write_trajectory_csv(const std::filesystem::path& path, const Trajectory& trajectory);
+
+/// Pose at a time between two poses: translation linear, rotation by the shortest arc (slerp);
+/// before the first and after the last pose, those.
+RigidTransform interpolate(const Trajectory& trajectory, double time_s);
+
+/// Every pose shifted by `offset` in world axes (paper section "New Trajectory Simulation").
+Trajectory shifted(Trajectory trajectory, Vec3d offset_m);
+
+}  // namespace adasplats

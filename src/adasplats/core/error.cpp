@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/core/error.h"
+
+#include <algorithm>
+#include <numeric>
+#include <system_error>
+
+namespace adasplats {
+
+int exit_code(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::usage: return 64;
+    case ErrorKind::data: return 65;
+    case ErrorKind::no_input: return 66;
+    case ErrorKind::software: return 70;
+    case ErrorKind::cannot_create: return 73;
+    case ErrorKind::io: return 74;
+    case ErrorKind::config: return 78;
+  }
+  return 70;
+}
+
+Error data_error(const FilePlace& place, const std::string& message) {
+  std::string text = place.file.string() + ":";
+  if (place.line) text += std::to_string(*place.line) + ":";
+  if (place.byte_offset) text += " byte " + std::to_string(*place.byte_offset) + ":";
+  return Error(ErrorKind::data, text + " " + message);
+}
+
+Error system_error(ErrorKind kind, const std::filesystem::path& file, const std::string& message,
+                   int errno_value) {
+  return Error(kind, file.string() + ": " + message + ": " +
+                         std::generic_category().message(errno_value));
+}
+
+namespace {
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::optional<std::string> nearest_word(const std::string& word,
+                                        const std::vector<std::string>& candidates) {
+  std::optional<std::string> best;
+  // More edits than half the word's letters is another word, not a slip.
+  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 2) + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/core/executor.h"
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <array>
+
+namespace adasplats {
+
+struct Executor::Impl {
+  // TBB starts no more workers than cores unless told so: 3 threads on 2 cores must be 3.
+  oneapi::tbb::global_control limit;
+  mutable oneapi::tbb::task_arena arena;
+  explicit Impl(int threads)
+      : limit(oneapi::tbb::global_control::max_allowed_parallelism,
+              static_cast<std::size_t>(std::max(threads, oneapi::tbb::info::default_concurrency()))),
+        arena(threads) {}
+};
+
+Executor::Executor(int threads)
+    : impl_(std::make_unique<Impl>(threads > 0 ? threads
+                                               : oneapi::tbb::info::default_concurrency())) {}
+
+Executor::~Executor() = default;
+
+int Executor::threads() const { return impl_->arena.max_concurrency(); }
+
+void Executor::for_chunks(std::size_t count, std::size_t grain,
+                          FunctionRef<void(std::size_t, std::size_t)> body) const {
+  if (count == 0) return;
+  const std::size_t chunks = (count + grain - 1) / grain;
+  const auto run_chunk = [&](std::size_t chunk) {
+    body(chunk * grain, std::min(count, (chunk + 1) * grain));
+  };
+  if (chunks == 1) {
+    run_chunk(0);
+    return;
+  }
+  impl_->arena.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, chunks, run_chunk); });
+}
+
+void Executor::sort_keys(std::vector<std::uint64_t>& keys,
+                         std::vector<std::uint32_t>& order) const {
+  constexpr int kDigitBits = 11;
+  constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+  const std::size_t n = keys.size();
+  order.resize(n);
+  const std::size_t grain = std::max<std::size_t>(1 << 16, n / 64 + 1);
+  const std::size_t blocks = n == 0 ? 0 : (n + grain - 1) / grain;
+  for_chunks(n, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) order[i] = static_cast<std::uint32_t>(i);
+  });
+  std::vector<std::uint64_t> keys_out(n);
+  std::vector<std::uint32_t> order_out(n);
+  std::vector<std::array<std::uint32_t, kDigits>> counts(blocks);
+  for (int shift = 0; shift < 64; shift += kDigitBits) {
+    const auto digit = [shift](std::uint64_t key) { return (key >> shift) & (kDigits - 1); };
+    for_chunks(n, grain, [&](std::size_t begin, std::size_t end) {
+      auto& count = counts[begin / grain];
+      count.fill(0);
+      for (std::size_t i = begin; i < end; ++i) ++count[digit(keys[i])];
+    });
+    // Where each block's run of each digit starts; a pass in which all digits agree moves nothing.
+    std::uint32_t start = 0;
+    bool all_equal = false;
+    for (std::size_t d = 0; d < kDigits; ++d) {
+      const std::uint32_t before = start;
+      for (auto& count : counts) {
+        const std::uint32_t c = count[d];
+        count[d] = start;
+        start += c;
+      }
+      all_equal = all_equal || start - before == n;
+    }
+    if (all_equal) continue;
+    for_chunks(n, grain, [&](std::size_t begin, std::size_t end) {
+      auto& next = counts[begin / grain];
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::uint32_t to = next[digit(keys[i])]++;
+        keys_out[to] = keys[i];
+        order_out[to] = order[i];
+      }
+    });
+    keys.swap(keys_out);
+    order.swap(order_out);
+  }
+}
+
+}  // namespace adasplats

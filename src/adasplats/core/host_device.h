@@ -1,0 +1,11 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// Functions marked ADASPLATS_HD are compiled for the host and, under nvcc, for the device: the
+// maths of one element is written once and every backend runs the same text.
+#if defined(__CUDACC__)
+#define ADASPLATS_HD __host__ __device__
+#else
+#define ADASPLATS_HD
+#endif

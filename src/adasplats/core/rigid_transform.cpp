@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/core/rigid_transform.h"
+
+namespace adasplats {
+
+Mat3d rotation_from_yaw_pitch_roll(double yaw_rad, double pitch_rad, double roll_rad) {
+  const double cy = std::cos(yaw_rad), sy = std::sin(yaw_rad);
+  const double cp = std::cos(pitch_rad), sp = std::sin(pitch_rad);
+  const double cr = std::cos(roll_rad), sr = std::sin(roll_rad);
+  const Mat3d rz{{{cy, -sy, 0}, {sy, cy, 0}, {0, 0, 1}}};
+  const Mat3d ry{{{cp, 0, sp}, {0, 1, 0}, {-sp, 0, cp}}};
+  const Mat3d rx{{{1, 0, 0}, {0, cr, -sr}, {0, sr, cr}}};
+  return rz * ry * rx;
+}
+
+}  // namespace adasplats

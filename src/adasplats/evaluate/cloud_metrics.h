@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/core/executor.h"
+
+namespace adasplats {
+
+/// Distances between two clouds; metres unless said otherwise.
+struct CloudDistance {
+  double c2c_m = 0;           ///< paper eq. "C2C": mean distance simulated -> nearest original
+  double completeness_m = 0;  ///< the other direction: original -> nearest simulated
+  double chamfer_m = 0;       ///< mean of the two means
+  double chamfer_m2 = 0;      ///< sum of the means of squared distances (lidar-nerf, LiDAR4D)
+  std::map<double, double> f_score;  ///< by threshold in m: 0.05, 0.10, sqrt(0.05)
+  std::size_t simulated_points = 0;
+  std::size_t original_points = 0;
+};
+
+/// C2C of one class: simulated points of the class against original points of the same class, and
+/// against all original points.
+struct ClassDistance {
+  std::uint16_t class_id = 0;
+  double c2c_m = 0;
+  double c2c_to_all_m = 0;
+  std::size_t simulated_points = 0;
+  std::size_t original_points = 0;   ///< of the class; 0: c2c_m is NaN
+};
+
+/// Paper section "Evaluation Metric for LiDAR Simulation". The clouds may have different origins.
+/// Errors: data where either is empty ("no points").
+CloudDistance cloud_distance(const PointCloud& simulated, const PointCloud& original,
+                             const Executor& executor);
+
+/// By class, ascending id; both clouds need classes (ErrorKind::data otherwise).
+std::vector<ClassDistance> cloud_distance_by_class(const PointCloud& simulated,
+                                                   const PointCloud& original,
+                                                   const Executor& executor);
+
+}  // namespace adasplats

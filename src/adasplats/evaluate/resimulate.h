@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/core/progress.h"
+#include "adasplats/evaluate/cloud_metrics.h"
+#include "adasplats/scene/scene.h"
+#include "adasplats/trace/tracer.h"
+
+namespace adasplats {
+
+struct ResimulateOptions {
+  double min_range_m = 2.5;    ///< measured beams nearer or farther than these are left out
+  double max_range_m = 50.0;
+  bool drop_moving = true;     ///< leave out beams whose label is of a moving class
+  bool drop_movable = false;   ///< leave out beams on movable classes (parked cars) as well
+};
+
+/// Accuracy of predicted ranges over a set of beams. Shares are 0..1 of all rays; range errors are
+/// predicted - measured over the rays that hit, in m.
+struct BeamAccuracy {
+  std::size_t rays = 0;
+  double no_hit = 0;
+  double early_50cm = 0;
+  double late_50cm = 0;
+  std::map<double, double> within;   ///< by bound in m: 0.02, 0.05, 0.10, 0.50
+  double median_m = 0;               ///< of |error|
+  double mae_m = 0;
+  double rmse_m = 0;
+  double p90_m = 0;                  ///< of |error|
+};
+
+struct ResimulateResult {
+  BeamAccuracy all;
+  CloudDistance clouds;                          ///< predicted against measured points
+  std::vector<std::pair<std::string, BeamAccuracy>> by_range;      ///< "2.5-10 m", ...
+  std::vector<std::pair<std::string, BeamAccuracy>> by_incidence;  ///< "0-30 deg" ... to the normal
+  std::vector<std::pair<std::string, BeamAccuracy>> by_class;      ///< names of the label scheme
+};
+
+/// Casts each measured beam of a held-out sequence again, from the sensor's origin through the
+/// measured point, and compares ranges. Incidence is against the hit surface's normal.
+ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
+                            const KittiSequence& sequence, const LabelScheme& labels,
+                            const ResimulateOptions& options, const Executor& executor,
+                            ProgressSink& progress);
+
+}  // namespace adasplats

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adasplats/io/table.h"
+
+namespace adasplats {
+
+/// Reads the `vertex` element of a PLY file: ASCII or binary, either byte order, any scalar
+/// properties, other elements before and after skipped by their layout.
+/// Memory: at most 3x the file's size. Errors: no_input, io, data (with line or byte offset).
+Table read_ply(const std::filesystem::path& path);
+
+/// Reads `vertex` and `face` (`vertex_indices` or `vertex_index` lists) of a PLY file.
+MeshTable read_ply_mesh(const std::filesystem::path& path);
+
+/// True where the file's header declares a `face` element with records.
+bool ply_has_faces(const std::filesystem::path& path);
+
+/// Writes one `vertex` element, binary little-endian, `rows` records. Atomic (see AtomicFile).
+/// Columns may be i8..i32, u8..u32, f32, f64 (PLY has no 64-bit integers: std::logic_error).
+void write_ply(const std::filesystem::path& path, std::size_t rows,
+               std::span<const ColumnView> columns, std::span<const std::string> comments = {});
+
+/// Writes `vertex` and `face` elements; `triangle_vertices` has three indices a face.
+void write_ply_mesh(const std::filesystem::path& path, std::size_t vertices,
+                    std::span<const ColumnView> vertex_columns,
+                    std::span<const std::uint32_t> triangle_vertices,
+                    std::span<const ColumnView> face_columns,
+                    std::span<const std::string> comments = {});
+
+}  // namespace adasplats

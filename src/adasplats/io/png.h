@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+namespace adasplats {
+
+/// Writes an 8-bit RGB image, rows from the top, `pixels` of width * height * 3 bytes.
+void write_png(const std::filesystem::path& path, int width, int height,
+               std::span<const std::uint8_t> pixels);
+
+}  // namespace adasplats

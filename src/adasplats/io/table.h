@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace adasplats {
+
+/// One named field of all records of a file, in the type the file has it.
+struct Column {
+  using Values = std::variant<std::vector<std::int8_t>, std::vector<std::uint8_t>,
+                              std::vector<std::int16_t>, std::vector<std::uint16_t>,
+                              std::vector<std::int32_t>, std::vector<std::uint32_t>,
+                              std::vector<std::int64_t>, std::vector<std::uint64_t>,
+                              std::vector<float>, std::vector<double>>;
+  std::string name;
+  Values values;
+
+  std::size_t size() const;
+  /// Value of one record as a double (64-bit integers beyond 2^53 are rounded).
+  double as_double(std::size_t row) const;
+};
+
+/// What a file of points holds: named columns of equal length, and its comments.
+struct Table {
+  std::size_t rows = 0;
+  std::vector<Column> columns;
+  std::vector<std::string> comments;
+
+  const Column* find(std::string_view name) const;  ///< nullptr where there is none
+};
+
+/// Triangles as a file holds them: `vertices` (x, y, z, ...) and three vertex indices a triangle;
+/// `faces` has the properties of each triangle (e.g. class); polygons are fanned.
+struct MeshTable {
+  Table vertices;
+  std::vector<std::uint32_t> triangle_vertices;  ///< 3 a triangle
+  Table faces;                                   ///< rows = triangles
+};
+
+enum class ColumnType : std::uint8_t { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
+
+/// A column to be written: values of one type at a fixed stride, wherever they are.
+struct ColumnView {
+  std::string_view name;
+  ColumnType type;
+  const void* data;
+  std::size_t stride_bytes;
+};
+
+}  // namespace adasplats

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "adasplats/core/vec3.h"
+#include "adasplats/scene/intersect.h"
+
+namespace adasplats {
+
+/// Triangles with one semantic class each.
+struct TriangleMesh {
+  std::vector<Vec3f> vertices;                          ///< relative to the scene's origin, m
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< vertex indices
+  std::vector<std::uint16_t> classes;                   ///< one a triangle, or empty
+
+  Triangle triangle(std::size_t i) const {
+    const auto& t = triangles[i];
+    return {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+  }
+};
+
+/// The geometry that backends build their structures from; views only, the owner outlives them.
+/// Primitive index: splats first, then triangles.
+struct SceneView {
+  std::span<const Disk> disks;
+  const TriangleMesh* mesh = nullptr;
+
+  std::size_t disk_count() const { return disks.size(); }
+  std::size_t triangle_count() const { return mesh == nullptr ? 0 : mesh->triangles.size(); }
+  std::size_t primitive_count() const { return disk_count() + triangle_count(); }
+};
+
+}  // namespace adasplats

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/scene/scene.h"
+
+namespace adasplats {
+
+/// Finds what rays hit in a scene. One interface for all backends; a tracer keeps views of the
+/// scene it was made from. Calls are const and may come from several threads.
+class Tracer {
+ public:
+  virtual ~Tracer() = default;
+
+  virtual std::string_view name() const = 0;
+
+  /// Nearest hit of every ray: hits[i] of rays[i]. Rays that are near each other in direction and
+  /// stand side by side in the span (a laser row) are faster. A ray with a component that is not
+  /// finite hits nothing. Equal distances go to the smaller primitive index.
+  virtual void nearest(std::span<const Ray> rays, std::span<Hit> hits,
+                       const Executor& executor) const = 0;
+
+  /// The nearest `depth` hits of every ray in ascending order: hits[i * depth + k]; entries behind
+  /// the last hit are Hit{} (not valid()).
+  virtual void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
+                            const Executor& executor) const = 0;
+};
+
+/// Tests every primitive for every ray: the oracle of the tests. The scene's data must outlive it.
+std::unique_ptr<Tracer> make_brute_force_tracer(const SceneView& scene);
+
+/// Embree 3 or 4 with user geometry and exact disk bounds.
+std::unique_ptr<Tracer> make_embree_tracer(const SceneView& scene, const Executor& executor);
+
+/// The fastest tracer on this machine's CPU.
+std::unique_ptr<Tracer> make_cpu_tracer(const SceneView& scene, const Executor& executor);
+
+}  // namespace adasplats
