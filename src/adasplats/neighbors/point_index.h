@@ -2,41 +2,106 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/core/function_ref.h"
 #include "adasplats/core/vec3.h"
+#include "adasplats/neighbors/hilbert.h"
 
 namespace adasplats {
 
 /// A point near a query. `index` is the index of the point in the order it was given in.
 struct Neighbor {
-  float squared_distance;
-  std::uint32_t index;
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+  float squared_distance = std::numeric_limits<float>::infinity();
+  std::uint32_t index = kNone;
 };
 
-/// The order of points along a Hilbert curve over their bounding cube: `order[i]` is the index of
-/// the i-th point. Points in the same cell of the curve (2^-21 of the cube's side) are ordered by
-/// x, y, z and then by index.
-std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const Executor& executor);
+/// The neighbours of one point: squared distances and ranks side by side, in no order. The rank is
+/// the position in Hilbert order, which depends on the data alone.
+struct NeighborList {
+  const float* squared_distances;
+  const std::uint32_t* ranks;
+  std::uint32_t size;
 
-/// Points in Hilbert order under an implicit 8-ary tree of bounding boxes. Immutable; searches may
-/// run on several threads. Needs 20 bytes a point. Points are finite (the caller's business).
+  bool empty() const { return size == 0; }
+  /// A neighbour as one number that sorts by (squared distance, rank): the bits of non-negative
+  /// floats sort as they do.
+  ADASPLATS_HD std::uint64_t key(std::uint32_t k) const {
+    return std::uint64_t{std::bit_cast<std::uint32_t>(squared_distances[k])} << 32 | ranks[k];
+  }
+};
+
+/// Which points are neighbours: the `count` nearest that also lie within the radius.
+struct NeighborLimit {
+  std::uint32_t count;
+  float squared_radius = std::numeric_limits<float>::max();
+};
+
+/// Points in Hilbert order under an implicit 8-ary tree of bounding boxes: a leaf holds 16
+/// consecutive points, a node 8 consecutive nodes of the level below. Immutable; searches may run
+/// on several threads. Needs 22 bytes a point. Points are finite (the caller's business).
+///
+/// Sixteen queries that stand side by side on the curve are searched together: one traversal
+/// serves them all. Squared distances are (dx*dx + dy*dy) + dz*dz in float on every machine.
 class PointIndex {
  public:
   PointIndex(std::span<const Vec3f> points, const Executor& executor);
+  /// For points that are in the wanted order already (a rank is then the index).
+  static PointIndex from_sorted(std::span<const Vec3f> points, const Executor& executor);
 
-  std::size_t size() const { return order_.size(); }
+  std::size_t size() const { return size_; }
 
   /// Nearest indexed point of every query: result[i] belongs to queries[i]. Equal distances go to
-  /// the point that is first in Hilbert order. An empty index gives infinite distances and index
-  /// 0xffffffff.
+  /// the point of lower rank. An empty index gives Neighbor{}.
   std::vector<Neighbor> nearest(std::span<const Vec3f> queries, const Executor& executor) const;
 
+  /// Calls body(rank, neighbours) for every indexed point, on any thread: runs of kQueriesPerTask
+  /// consecutive ranks belong to one thread and come in ascending order, runs in any order.
+  /// `neighbours` holds the point itself too, is in no particular order, and is the same set for
+  /// every number of threads. limit(rank) says which; it must be cheap and pure.
+  void for_each_neighborhood(
+      const Executor& executor, FunctionRef<NeighborLimit(std::uint32_t rank)> limit,
+      FunctionRef<void(std::uint32_t rank, const NeighborList& neighbors)> body) const;
+
+  /// Number of indexed points within the radius of every indexed point, by rank, itself included.
+  std::vector<std::uint32_t> count_within(float radius, const Executor& executor) const;
+
+  /// Index, in the order given, of the point of a rank.
+  std::uint32_t index_of(std::uint32_t rank) const { return order_.empty() ? rank : order_[rank]; }
+
+  static constexpr std::uint32_t kQueriesPerTask = 4096;
+  static constexpr std::uint32_t kLeafPoints = 16;
+  static constexpr std::uint32_t kChildren = 8;
+  /// Boxes of the 8 children of a node; absent ones are inverted and infinitely far.
+  struct alignas(32) Node {
+    std::array<float, kChildren> low[3];
+    std::array<float, kChildren> high[3];
+  };
+  /// What searches read.
+  struct Tree {
+    std::array<std::span<const float>, 3> coordinates;  ///< by rank, padded to whole leaves
+    std::span<const std::vector<Node>> levels;          ///< levels[0] are the parents of leaves
+    std::size_t leaves;
+  };
+  Tree tree() const;
+
  private:
-  std::vector<std::uint32_t> order_;
+  struct Sorted {};
+  PointIndex(Sorted, std::span<const Vec3f> points, std::span<const std::uint32_t> order,
+             const Executor& executor);
+  void build_levels(const Executor& executor);
+
+  std::size_t size_ = 0;
+  std::vector<std::uint32_t> order_;  ///< empty: identity
+  std::array<std::vector<float>, 3> coordinates_;
+  std::vector<std::vector<Node>> levels_;
 };
 
 }  // namespace adasplats

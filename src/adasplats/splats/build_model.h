@@ -13,6 +13,7 @@
 #include "adasplats/cloud/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
+#include "adasplats/splats/select.h"
 #include "adasplats/splats/splat_model.h"
 
 namespace adasplats {
@@ -29,19 +30,19 @@ enum class DynamicRemoval : std::uint8_t { none, moving, movable };
 
 /// Factors on K, R and E for one group of points.
 struct GroupScale {
-  double neighbors = 1;   ///< times K
-  double radius = 1;      ///< times R
-  double error = 1;       ///< times E
+  double neighbors = 1;  ///< times K
+  double radius = 1;     ///< times R
+  double error = 1;      ///< times E
 };
 
 struct BuildOptions {
   SplatMethod method = SplatMethod::descriptors;
 
-  int neighbors = 40;                 ///< K, section "Basic Splatting"
-  double alpha = 0.2;                 ///< share of a splat's radius within which seeds are discarded
-  double smoothness = 0.6;            ///< beta: least dot product of normals, section "Adaptive Splatting"
-  std::optional<double> radius_m;     ///< R instead of the mean distance to the K-th neighbour
-  std::optional<double> error_m;      ///< E instead of the mean point-to-plane distance
+  int neighbors = 40;       ///< K, section "Basic Splatting"
+  double alpha = 0.2;       ///< share of a splat's radius within which seeds are discarded
+  double smoothness = 0.6;  ///< beta: least dot product of normals, section "Adaptive Splatting"
+  std::optional<double> radius_m;  ///< R instead of the mean distance to the K-th neighbour
+  std::optional<double> error_m;   ///< E instead of the mean point-to-plane distance
 
   /// Section "Adaptive Splatting": ground, surface, linear, non-surface.
   std::array<GroupScale, kSemanticGroups> semantic_scales = {
@@ -50,14 +51,16 @@ struct BuildOptions {
   GroupScale planar_scale = {2, 2, 2};
   /// Normals from the group's own neighbourhood (else from the base neighbourhood).
   bool group_normals = true;
+  /// The order of the greedy selection.
+  SelectionOrder selection = SelectionOrder::largest_first;
 
   DynamicRemoval remove = DynamicRemoval::movable;
-  bool denoise = true;                ///< section "Splat-Based Resampling and Denoising"
-  double denoise_sigmas = 3;          ///< a neighbourhood votes against points farther than this
-  double denoise_votes = 0.5;         ///< share of its neighbourhoods that removes a point
-  bool resample = true;               ///< resampling and second generation
+  bool denoise = true;         ///< section "Splat-Based Resampling and Denoising"
+  double denoise_sigmas = 3;   ///< a neighbourhood votes against points farther than this
+  double denoise_votes = 0.5;  ///< share of its neighbourhoods that removes a point
+  bool resample = true;        ///< resampling and second generation
   /// What the second generation starts from: the text's P with the new points, or the centres of
-  /// the first generation's splats with the new points (algorithm.md, point 8).
+  /// the first generation's splats with the new points, as its figures suggest.
   enum class ResampleBase : std::uint8_t { points, centers } resample_base = ResampleBase::centers;
 };
 
@@ -69,14 +72,14 @@ struct StepTime {
 
 struct BuildReport {
   std::size_t points_in = 0;
-  std::size_t points_dynamic = 0;     ///< removed by label
-  std::size_t points_noise = 0;       ///< removed by denoising
-  std::size_t points_used = 0;        ///< that the (last) generation started from
-  std::size_t points_resampled = 0;   ///< new points from resampling
+  std::size_t points_dynamic = 0;    ///< removed by label
+  std::size_t points_noise = 0;      ///< removed by denoising
+  std::size_t points_used = 0;       ///< that the (last) generation started from
+  std::size_t points_resampled = 0;  ///< new points from resampling
   std::size_t primitives = 0;
-  double radius_m = 0;                ///< R of the last generation
-  double error_m = 0;                 ///< E of the last generation
-  bool oriented = true;               ///< false: no sensor positions, normals as PCA gives them
+  double radius_m = 0;   ///< R of the last generation
+  double error_m = 0;    ///< E of the last generation
+  bool oriented = true;  ///< false: no sensor positions, normals as PCA gives them
   std::vector<StepTime> steps;
 };
 

@@ -16,13 +16,13 @@ namespace adasplats {
 
 /// A place as oriented disks: what the paper calls the splatted environment.
 struct SplatModel {
-  Vec3d origin;                         ///< world coordinates of the local origin, m
-  std::vector<Disk> disks;              ///< relative to `origin`
-  std::vector<std::uint16_t> classes;   ///< semantic class of the seed point; empty without labels
-  std::vector<SemanticGroup> groups;    ///< one a splat; empty for basic splats
-  std::vector<float> intensities;       ///< of the seed point; empty without
-  std::string label_scheme;             ///< name or path as load_label_scheme takes it; may be empty
-  std::string method;                   ///< how it was made
+  Vec3d origin;                        ///< world coordinates of the local origin, m
+  std::vector<Disk> disks;             ///< relative to `origin`
+  std::vector<std::uint16_t> classes;  ///< semantic class of the seed point; empty without labels
+  std::vector<SemanticGroup> groups;   ///< one a splat; empty for basic splats
+  std::vector<float> intensities;      ///< of the seed point; empty without
+  std::string label_scheme;            ///< name or path as load_label_scheme takes it; may be empty
+  std::string method;                  ///< how it was made
 
   std::size_t size() const { return disks.size(); }
   SceneView view() const { return {disks, nullptr}; }

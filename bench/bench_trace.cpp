@@ -1,0 +1,311 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Scans per second of the paper's HDL-64: our tracer against one ray at a time and against
+// Embree's own oriented discs, all in one run on the same disks and rays.
+//
+//   bench_trace [MODEL.ply] [--disks N] [--threads N] [--json FILE]
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/core/random.h"
+#include "adasplats/io/atomic_file.h"
+#include "adasplats/sensors/lidar_model.h"
+#include "adasplats/splats/splat_model.h"
+#include "adasplats/trace/embree.h"
+#include "adasplats/trace/tracer.h"
+
+namespace adasplats {
+
+namespace {
+
+constexpr int kScans = 10;   // sensor positions along the street
+constexpr int kRepeats = 5;  // the median is printed
+constexpr double kSensorHeight_m = 1.73;
+constexpr float kMaxRange_m = 120.0F;
+
+struct Options {
+  std::string model;
+  std::string json;
+  std::size_t disks = 1'700'000;
+  int threads = 0;
+};
+
+// ---- the scene -----------------------------------------------------------------------------
+
+/// Disks in Morton order: models come in a space-filling order too.
+std::vector<Disk> in_morton_order(const std::vector<Disk>& disks, const Executor& executor) {
+  const auto spread = [](std::uint64_t v) {
+    std::uint64_t bits = 0;
+    for (int i = 0; i < 16; ++i) bits |= ((v >> i) & 1U) << (3 * i);
+    return bits;
+  };
+  const auto cell = [](float v) { return static_cast<std::uint64_t>((v + 1000.0F) * 32.0F); };
+  std::vector<std::uint64_t> keys;
+  for (const Disk& disk : disks)
+    keys.push_back(spread(cell(disk.center.x)) | (spread(cell(disk.center.y)) << 1) |
+                   (spread(cell(disk.center.z)) << 2));
+  std::vector<std::uint32_t> order;
+  executor.sort_keys(keys, order);
+  std::vector<Disk> sorted;
+  for (const std::uint32_t i : order) sorted.push_back(disks[i]);
+  return sorted;
+}
+
+Vec3f random_direction(Random& random) {
+  const double z = random.uniform(-1, 1);
+  const double angle = random.uniform(0, 6.283185307179586);
+  const double flat = std::sqrt(1 - z * z);
+  return vec_cast<float>(Vec3d{flat * std::cos(angle), flat * std::sin(angle), z});
+}
+
+/// `normal` turned by a few degrees, as normals of real clouds are.
+Vec3f shaken(Vec3f normal, Random& random) {
+  return normalized(normal +
+                    static_cast<float>(random.uniform(0, 0.06)) * random_direction(random));
+}
+
+/// A street of 240 m: ground, two rows of facades, trees; each part covered several times.
+std::vector<Disk> random_street(std::size_t count, const Executor& executor) {
+  constexpr double kHalfLength_m = 120, kHalfWidth_m = 12, kFacade_m = 12;
+  constexpr double kArea_m2 = 2 * kHalfLength_m * (2 * kHalfWidth_m + 2 * kFacade_m);
+  constexpr double kCover = 4;  // disks over a point of the ground or a facade
+  const double mean_radius_m =
+      std::sqrt(kCover * kArea_m2 / (0.8 * static_cast<double>(count) * 3.14159265358979));
+  std::vector<Disk> disks;
+  for (std::size_t i = 0; i < count; ++i) {
+    Random random(1, 0, i);
+    const double part = random.uniform();
+    const double x = random.uniform(-kHalfLength_m, kHalfLength_m);
+    const float radius = static_cast<float>(mean_radius_m * random.uniform(0.5, 1.4));
+    const double shift = 0.01 * random.normal();
+    if (part < 0.4) {
+      const double y = random.uniform(-kHalfWidth_m, kHalfWidth_m);
+      disks.push_back({vec_cast<float>(Vec3d{x, y, shift}), radius, shaken({0, 0, 1}, random)});
+    } else if (part < 0.8) {
+      const double side = random.uniform() < 0.5 ? -1 : 1;
+      const Vec3d center = {x, side * (kHalfWidth_m + shift), random.uniform(0, kFacade_m)};
+      disks.push_back({vec_cast<float>(center), radius, shaken({0, 1, 0}, random)});
+    } else {
+      const double tree_x = std::round(x / 12) * 12 + 6;
+      const double side = random.uniform() < 0.5 ? -1 : 1;
+      const Vec3f out = random_direction(random);
+      const float reach = static_cast<float>(2.0 * std::cbrt(random.uniform()));
+      const Vec3f crown = vec_cast<float>(Vec3d{tree_x, side * 8, 5});
+      disks.push_back({crown + reach * out, radius, random_direction(random)});
+    }
+  }
+  return in_morton_order(disks, executor);
+}
+
+/// Rays of `kScans` scans: along the middle of the scene's box, above the ground (the median height
+/// of the disks' lower half stands for it).
+std::vector<std::vector<Ray>> make_scans(const std::vector<Disk>& disks) {
+  std::vector<float> xs, ys, zs;
+  for (std::size_t i = 0; i < disks.size(); i += 1 + disks.size() / 100'000) {
+    xs.push_back(disks[i].center.x);
+    ys.push_back(disks[i].center.y);
+    zs.push_back(disks[i].center.z);
+  }
+  for (auto* values : {&xs, &ys, &zs}) std::ranges::sort(*values);
+  const auto quantile = [](const std::vector<float>& values, double q) {
+    return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
+  };
+  const LidarModel sensor = hdl_64_paper();
+  const std::vector<Firing> firings = firings_of(sensor);
+  std::vector<std::vector<Ray>> scans;
+  for (int scan = 0; scan < kScans; ++scan) {
+    const double share = 0.1 + 0.8 * scan / (kScans - 1);
+    const Vec3f eye = {quantile(xs, share), quantile(ys, 0.5),
+                       quantile(zs, 0.25) + static_cast<float>(kSensorHeight_m)};
+    std::vector<Ray> rays;
+    for (const Firing& firing : firings) rays.push_back({eye, 0.0F, firing.direction, kMaxRange_m});
+    scans.push_back(std::move(rays));
+  }
+  return scans;
+}
+
+// ---- Embree's own oriented discs -----------------------------------------------------------
+
+class EmbreeDiscs {
+ public:
+  EmbreeDiscs(const std::vector<Disk>& disks, int threads) {
+    for (const Disk& disk : disks) {
+      points_.insert(points_.end(), {disk.center.x, disk.center.y, disk.center.z, disk.radius});
+      normals_.push_back(disk.normal);
+    }
+    normals_.push_back({});  // Embree reads 16 bytes of the last normal
+    device_ = rtcNewDevice(("threads=" + std::to_string(threads)).c_str());
+    scene_ = rtcNewScene(device_);
+    const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                               points_.data(), 0, 4 * sizeof(float), disks.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3,
+                               normals_.data(), 0, sizeof(Vec3f), disks.size());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+  }
+  ~EmbreeDiscs() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+  EmbreeDiscs(const EmbreeDiscs&) = delete;
+  EmbreeDiscs& operator=(const EmbreeDiscs&) = delete;
+
+  void nearest(std::span<const Ray> rays, std::span<Hit> hits, const Executor& executor) const {
+    executor.for_chunks(rays.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) hits[i] = cast(rays[i]);
+    });
+  }
+
+ private:
+  Hit cast(const Ray& ray) const {
+    RTCRayHit single{};
+    single.ray = {ray.origin.x,
+                  ray.origin.y,
+                  ray.origin.z,
+                  ray.t_min,
+                  ray.direction.x,
+                  ray.direction.y,
+                  ray.direction.z,
+                  0.0F,
+                  ray.t_max,
+                  ~0U,
+                  0,
+                  0};
+    single.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    single.hit.primID = Hit::kNone;
+    embree::QueryContext context;
+    embree::init(context);
+    embree::intersect(scene_, context, single);
+    return {single.hit.primID == Hit::kNone ? HUGE_VALF : single.ray.tfar, single.hit.primID};
+  }
+
+  std::vector<float> points_;
+  std::vector<Vec3f> normals_;
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+};
+
+// ---- measuring -----------------------------------------------------------------------------
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct Figure {
+  std::string name;
+  double scans_per_second = 0;
+  std::size_t hits = 0;
+};
+
+template <class Cast>
+Figure measure(const std::string& name, const std::vector<std::vector<Ray>>& scans, Cast&& cast) {
+  std::vector<std::vector<Hit>> hits(scans.size());
+  for (std::size_t i = 0; i < scans.size(); ++i) hits[i].resize(scans[i].size());
+  std::vector<double> rates;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    const auto start = std::chrono::steady_clock::now();
+    for (std::size_t i = 0; i < scans.size(); ++i) cast(scans[i], hits[i]);
+    rates.push_back(static_cast<double>(scans.size()) / seconds_since(start));
+  }
+  std::ranges::sort(rates);
+  Figure figure{name, rates[rates.size() / 2], 0};
+  for (const auto& scan : hits)
+    figure.hits += static_cast<std::size_t>(std::ranges::count_if(scan, &Hit::valid));
+  return figure;
+}
+
+Options parse(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto value = [&] {
+      if (i + 1 >= argc) throw std::runtime_error(word + " needs a value");
+      return std::string(argv[++i]);
+    };
+    if (word == "--json") {
+      options.json = value();
+    } else if (word == "--disks") {
+      options.disks = std::stoul(value());
+    } else if (word == "--threads") {
+      options.threads = std::stoi(value());
+    } else if (word.starts_with("--")) {
+      throw std::runtime_error("unknown option " + word);
+    } else {
+      options.model = word;
+    }
+  }
+  return options;
+}
+
+void report(const std::vector<Figure>& figures, const Options& options, const Executor& executor,
+            std::size_t disks, double build_s, std::size_t rays) {
+  std::printf("%zu disks, %d threads, %zu rays a scan, built in %.2f s\n", disks,
+              executor.threads(), rays, build_s);
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Figure& figure : figures) {
+    const double ratio = figures.front().scans_per_second / figure.scans_per_second;
+    std::printf("%-34s %8.1f scans/s   ours is %.2fx   %zu hits\n", figure.name.c_str(),
+                figure.scans_per_second, ratio, figure.hits);
+    rows.push_back({{"name", figure.name},
+                    {"scans_per_second", figure.scans_per_second},
+                    {"ratio_of_ours", ratio},
+                    {"hits", figure.hits}});
+  }
+  if (options.json.empty()) return;
+  const nlohmann::json result = {{"disks", disks},         {"threads", executor.threads()},
+                                 {"rays_per_scan", rays},  {"build_seconds", build_s},
+                                 {"model", options.model}, {"figures", rows}};
+  write_file(options.json, result.dump(2) + "\n");
+}
+
+void run(const Options& options) {
+  const Executor executor(options.threads);
+  const std::vector<Disk> disks = options.model.empty() ? random_street(options.disks, executor)
+                                                        : load_model(options.model).disks;
+  if (disks.empty()) throw std::runtime_error("a model with no disks");
+  const auto scans = make_scans(disks);
+
+  const auto start = std::chrono::steady_clock::now();
+  const auto ours = make_embree_tracer({disks, nullptr}, executor);
+  const double build_s = seconds_since(start);
+  const EmbreeDiscs discs(disks, executor.threads());
+
+  const auto packets = [&](const auto& rays, auto& hits) { ours->nearest(rays, hits, executor); };
+  const auto singles = [&](const auto& rays, auto& hits) {
+    ours->nearest_hits(rays, 1, hits, executor);
+  };
+  const auto embree_discs = [&](const auto& rays, auto& hits) {
+    discs.nearest(rays, hits, executor);
+  };
+  report({measure("ours: exact bounds, packets", scans, packets),
+          measure("ours: exact bounds, single rays", scans, singles),
+          measure("Embree's oriented discs, single", scans, embree_discs)},
+         options, executor, disks.size(), build_s, scans.front().size());
+}
+
+}  // namespace
+
+}  // namespace adasplats
+
+int main(int argc, char** argv) {
+  try {
+    adasplats::run(adasplats::parse(argc, argv));
+    return EXIT_SUCCESS;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_trace: %s\n", error.what());
+    return EXIT_FAILURE;
+  }
+}

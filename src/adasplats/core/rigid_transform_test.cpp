@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/core/rigid_transform.h"
+
+#include <gtest/gtest.h>
+
+#include <eigen3/Eigen/Dense>
+#include <numbers>
+
+#include "adasplats/core/random.h"
+
+namespace adasplats {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+void expect_near(Vec3d a, Vec3d b, double tolerance = 1e-15) {
+  EXPECT_LE(length(a - b), tolerance)
+      << a.x << " " << a.y << " " << a.z << " against " << b.x << " " << b.y << " " << b.z;
+}
+
+// Oracle: analytic, quarter turns.
+TEST(Rotation, YawTurnsLeftPitchTurnsDownRollTurnsLeftSideUp) {
+  expect_near(rotation_from_yaw_pitch_roll(kPi / 2, 0, 0) * Vec3d{1, 0, 0}, {0, 1, 0});
+  expect_near(rotation_from_yaw_pitch_roll(0, kPi / 2, 0) * Vec3d{1, 0, 0}, {0, 0, -1});
+  expect_near(rotation_from_yaw_pitch_roll(0, 0, kPi / 2) * Vec3d{0, 1, 0}, {0, 0, 1});
+  // Roll first, yaw last.
+  expect_near(rotation_from_yaw_pitch_roll(kPi / 2, 0, kPi / 2) * Vec3d{0, 1, 0}, {0, 0, 1});
+  expect_near(rotation_from_yaw_pitch_roll(kPi / 2, 0, kPi / 2) * Vec3d{1, 0, 0}, {0, 1, 0});
+}
+
+// Oracle: Eigen.
+TEST(Rotation, AsEigen) {
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    Random random(3, 0, i);
+    const double yaw = random.uniform(-4, 4), pitch = random.uniform(-2, 2),
+                 roll = random.uniform(-4, 4);
+    const Eigen::Quaterniond q = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+                                 Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
+                                 Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX());
+    const Eigen::Matrix3d expected = q.toRotationMatrix();
+    const Mat3d by_angles = rotation_from_yaw_pitch_roll(yaw, pitch, roll);
+    const Mat3d by_quaternion = rotation_from_quaternion(q.w(), q.x(), q.y(), q.z());
+    for (int r = 0; r < 3; ++r) {
+      const Vec3d row{expected(r, 0), expected(r, 1), expected(r, 2)};
+      expect_near(by_angles.rows[r], row, 1e-14);
+      expect_near(by_quaternion.rows[r], row, 1e-14);
+    }
+  }
+}
+
+TEST(Mat3d, ProductsAndTranspose) {
+  const Mat3d a{{{1, 2, 3}, {4, 5, 6}, {7, 8, 10}}}, b{{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}};
+  const Vec3d v{1, -1, 2};
+  expect_near((a * b) * v, a * (b * v), 0);
+  EXPECT_TRUE((a.transposed().rows[0] == Vec3d{1, 4, 7}));
+  EXPECT_TRUE((Mat3d{} * v == v));
+}
+
+TEST(RigidTransform, CompositionAndInverse) {
+  const RigidTransform world_from_car{rotation_from_yaw_pitch_roll(0.3, -0.1, 0.7), {10, -20, 3}};
+  const RigidTransform car_from_sensor{rotation_from_yaw_pitch_roll(-2, 0.4, 0), {1, 0, 1.7}};
+  const Vec3d p{5, 6, 7};
+  expect_near((world_from_car * car_from_sensor) * p, world_from_car * (car_from_sensor * p),
+              1e-14);
+  expect_near(world_from_car.inverse() * (world_from_car * p), p, 1e-14);
+  expect_near(RigidTransform{} * p, p, 0);
+}
+
+}  // namespace
+}  // namespace adasplats

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/core/executor.h"
+
+namespace adasplats {
+
+/// An order of the points that depends on the set of points alone: along a Hilbert curve, equal
+/// positions by every attribute in turn. Points that are equal in all are interchangeable.
+std::vector<std::uint32_t> canonical_order(const PointCloud& cloud, const Executor& executor);
+
+}  // namespace adasplats

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "adasplats/core/vec3.h"
+#include "adasplats/neighbors/point_index.h"
+
+namespace adasplats {
+
+/// A point as growing needs it: one cache line holds two.
+struct SurfacePoint {
+  Vec3f position;
+  std::uint32_t label;  ///< what must be equal within a splat
+  Vec3f normal;         ///< unit, towards the sensor where that is known
+  std::uint32_t group;
+};
+static_assert(sizeof(SurfacePoint) == 32);
+
+/// When a splat stops growing (paper sections "Basic Splatting" and "Adaptive Splatting").
+struct GrowRules {
+  float error_m;     ///< E: largest point-to-plane distance
+  float smoothness;  ///< beta: normals with a smaller dot product stop it; -2 never
+  bool same_label;   ///< points of another label stop it
+  bool oriented;     ///< false: signs of normals say nothing, so |dot| is compared
+};
+
+/// A grown splat in terms of its seed: center = seed + shift * normal.
+struct GrownSplat {
+  float radius_m = 0;  ///< 0: no point but the seed was included, no splat
+  float shift_m = 0;   ///< mean signed point-to-plane distance of the points included
+};
+
+/// True where a neighbour stops the growing.
+ADASPLATS_HD inline bool stops(const SurfacePoint& seed, const SurfacePoint& other,
+                               const GrowRules& rules) {
+  const float error = dot(seed.normal, other.position - seed.position);  // eq. point-to-plane
+  if (std::fabs(error) > rules.error_m) return true;
+  if (rules.same_label && other.label != seed.label) return true;
+  const float smooth = dot(seed.normal, other.normal);
+  return !((rules.oriented ? smooth : std::fabs(smooth)) > rules.smoothness);
+}
+
+/// THE growing of one splat, for every backend. Neighbours need no order: growing in ascending
+/// order up to the first that stops includes exactly those before the smallest stopping key.
+ADASPLATS_HD inline GrownSplat grow_splat(const SurfacePoint& seed, const NeighborList& neighbors,
+                                          const SurfacePoint* points, const GrowRules& rules) {
+  std::uint64_t stop = std::numeric_limits<std::uint64_t>::max();
+  for (std::uint32_t k = 0; k < neighbors.size; ++k) {
+    const std::uint64_t key = neighbors.key(k);
+    if (key < stop && stops(seed, points[neighbors.ranks[k]], rules)) stop = key;
+  }
+  double sum = 0;
+  std::uint32_t included = 0;
+  std::uint64_t last = 0;
+  for (std::uint32_t k = 0; k < neighbors.size; ++k) {
+    const std::uint64_t key = neighbors.key(k);
+    if (key >= stop) continue;
+    sum +=
+        static_cast<double>(dot(seed.normal, points[neighbors.ranks[k]].position - seed.position));
+    ++included;
+    last = key > last ? key : last;
+  }
+  if (included == 0) return {};
+  const Vec3f to_last = points[static_cast<std::uint32_t>(last)].position - seed.position;
+  const float along = dot(seed.normal, to_last);
+  // eq. splat radius: the center is on the normal through the seed, so both project alike.
+  const float radius = length(to_last - along * seed.normal);
+  return {radius, static_cast<float>(sum / included)};
+}
+
+}  // namespace adasplats

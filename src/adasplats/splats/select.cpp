@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/splats/select.h"
+
+#include <bit>
+
+#include "adasplats/core/random.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kGrain = 1 << 16;
+
+std::vector<std::uint32_t> visiting_order(std::span<const float> radii, SelectionOrder order,
+                                          const Executor& executor) {
+  std::vector<std::uint64_t> keys(radii.size());
+  executor.for_chunks(radii.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      switch (order) {
+        // Radii are not negative, so their bits sort as they do.
+        case SelectionOrder::largest_first:
+          keys[i] = ~std::bit_cast<std::uint32_t>(radii[i]);
+          break;
+        case SelectionOrder::curve: keys[i] = i; break;
+        case SelectionOrder::scattered: keys[i] = Random::mix(i + 1) >> 32; break;
+      }
+      keys[i] &= 0xffffffffU;
+    }
+  });
+  std::vector<std::uint32_t> visiting;
+  executor.sort_keys(keys, visiting);
+  return visiting;
+}
+
+}  // namespace
+
+std::span<const std::uint32_t> DiscardLists::of(std::uint32_t rank) const {
+  const std::vector<std::uint32_t>& chunk = chunks[rank / chunk_size];
+  const std::uint32_t begin = begins[rank];
+  const bool last_of_chunk = rank + 1 == begins.size() || (rank + 1) % chunk_size == 0;
+  const std::size_t end = last_of_chunk ? chunk.size() : begins[rank + 1];
+  return std::span(chunk).subspan(begin, end - begin);
+}
+
+std::vector<std::uint32_t> select_greedily(std::span<const float> radii,
+                                           const DiscardLists& discards, SelectionOrder order,
+                                           const Executor& executor) {
+  enum State : std::uint8_t { kOpen, kDiscarded, kSelected };
+  std::vector<std::uint8_t> states(radii.size(), kOpen);
+  for (const std::uint32_t rank : visiting_order(radii, order, executor)) {
+    if (states[rank] != kOpen || !(radii[rank] > 0.0F)) continue;
+    states[rank] = kSelected;
+    for (const std::uint32_t other : discards.of(rank))
+      if (states[other] == kOpen) states[other] = kDiscarded;
+  }
+  std::vector<std::uint32_t> selected;
+  for (std::uint32_t rank = 0; rank < states.size(); ++rank)
+    if (states[rank] == kSelected) selected.push_back(rank);
+  return selected;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "adasplats/core/symmetric_eigen.h"
+#include "adasplats/core/vec3.h"
+
+namespace adasplats {
+
+/// Sums over the offsets of a neighbourhood's points from one of them. Offsets are exact enough in
+/// float; their products and sums are kept in double, so the order of the points changes the
+/// result by some 1e-15 of its size at most.
+struct Moments {
+  double count = 0;
+  Vec3d sum;
+  SymmetricMat3d squares;
+
+  ADASPLATS_HD void add(Vec3f offset) {
+    const Vec3d d = vec_cast<double>(offset);
+    count += 1.0;
+    sum = sum + d;
+    squares.xx += d.x * d.x;
+    squares.xy += d.x * d.y;
+    squares.xz += d.x * d.z;
+    squares.yy += d.y * d.y;
+    squares.yz += d.y * d.z;
+    squares.zz += d.z * d.z;
+  }
+};
+
+/// What the principal components of a neighbourhood say (paper section "Adaptive Splatting Using
+/// Local Descriptors").
+struct LocalShape {
+  Vec3f normal;      ///< unit, e_3; its sign says nothing
+  double lambda[3];  ///< variances along e_1, e_2, e_3 in m^2, descending, not negative
+
+  /// (lambda_1 - lambda_2) / lambda_1; 0 for a single point. Likewise the other two.
+  ADASPLATS_HD double linearity() const { return share(lambda[0] - lambda[1]); }
+  ADASPLATS_HD double planarity() const { return share(lambda[1] - lambda[2]); }
+  ADASPLATS_HD double sphericity() const { return share(lambda[2]); }
+
+ private:
+  ADASPLATS_HD double share(double v) const { return lambda[0] > 0.0 ? v / lambda[0] : 0.0; }
+};
+
+/// PCA of a neighbourhood. Fewer than three points give a unit normal all the same, but one that
+/// no data supports.
+ADASPLATS_HD inline LocalShape local_shape(const Moments& m) {
+  const double n = m.count > 0.0 ? m.count : 1.0;
+  const Vec3d mean = m.sum / n;
+  const SymmetricEigen eigen =
+      symmetric_eigen({m.squares.xx / n - mean.x * mean.x, m.squares.xy / n - mean.x * mean.y,
+                       m.squares.xz / n - mean.x * mean.z, m.squares.yy / n - mean.y * mean.y,
+                       m.squares.yz / n - mean.y * mean.z, m.squares.zz / n - mean.z * mean.z});
+  LocalShape shape;
+  shape.normal = vec_cast<float>(eigen.vectors[2]);
+  // Rounding may leave a variance of zero slightly below it.
+  for (int k = 0; k < 3; ++k) shape.lambda[k] = eigen.values[k] > 0.0 ? eigen.values[k] : 0.0;
+  return shape;
+}
+
+/// The normal turned to the side of `to_sensor` (a vector from the point to the sensor).
+ADASPLATS_HD inline Vec3f oriented(Vec3f normal, Vec3f to_sensor) {
+  return dot(normal, to_sensor) < 0.0F ? -normal : normal;
+}
+
+/// A sign for normals where nothing is known: the largest component is positive, so that the
+/// result does not depend on how the eigenvectors were found.
+ADASPLATS_HD inline Vec3f with_canonical_sign(Vec3f normal) {
+  const float ax = std::fabs(normal.x), ay = std::fabs(normal.y), az = std::fabs(normal.z);
+  const float largest = az >= ax && az >= ay ? normal.z : (ax >= ay ? normal.x : normal.y);
+  return largest < 0.0F ? -normal : normal;
+}
+
+}  // namespace adasplats
