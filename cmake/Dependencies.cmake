@@ -14,15 +14,11 @@ endif()
 find_package(PNG REQUIRED)
 
 # LAZ: LASzip is not in Debian 12; where it is missing the reader says what to install.
-find_path(ADASPLATS_LASZIP_INCLUDE laszip/laszip_api.h)
-find_library(ADASPLATS_LASZIP_LIBRARY NAMES laszip)
-if(ADASPLATS_LASZIP_INCLUDE AND ADASPLATS_LASZIP_LIBRARY)
-  add_library(adasplats_laszip INTERFACE IMPORTED)
-  set_target_properties(
-    adasplats_laszip PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${ADASPLATS_LASZIP_INCLUDE}
-                                INTERFACE_LINK_LIBRARIES ${ADASPLATS_LASZIP_LIBRARY}
-                                INTERFACE_COMPILE_DEFINITIONS ADASPLATS_HAVE_LASZIP)
-  set(ADASPLATS_LASZIP_TARGET adasplats_laszip)
+list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
+find_package(LASzip QUIET)
+if(LASzip_FOUND)
+  set(ADASPLATS_LASZIP_TARGET LASzip::LASzip)
+  set(ADASPLATS_LASZIP_DEFINE ADASPLATS_HAVE_LASZIP)
 endif()
 
 # Embree 4 where it is, else 3. trace/embree.h hides the difference.
@@ -30,14 +26,7 @@ find_package(embree 4 QUIET CONFIG)
 if(NOT embree_FOUND)
   find_package(embree 3 QUIET CONFIG)
 endif()
-if(embree_FOUND)
-  add_library(adasplats_embree INTERFACE IMPORTED)
-  set_target_properties(
-    adasplats_embree PROPERTIES INTERFACE_LINK_LIBRARIES embree
-                                INTERFACE_COMPILE_DEFINITIONS
-                                "ADASPLATS_EMBREE_MAJOR=${embree_VERSION_MAJOR}")
-  set(ADASPLATS_EMBREE_TARGET adasplats_embree)
-else()
+if(NOT embree_FOUND)
   message(FATAL_ERROR "Embree 3 or 4 is needed: apt-get install libembree-dev")
 endif()
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 include(CMakePackageConfigHelpers)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/adasplats DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-        FILES_MATCHING PATTERN "*.h")
+        FILES_MATCHING PATTERN "*.h" PATTERN "*_test.h" EXCLUDE)
 install(EXPORT adasplatsTargets NAMESPACE adasplats::
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adasplats)
 configure_package_config_file(
@@ -12,4 +12,6 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/adasplatsConfigVersion.cmak
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/adasplatsConfig.cmake
               ${CMAKE_BINARY_DIR}/adasplatsConfigVersion.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/FindLASzip.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adasplats)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

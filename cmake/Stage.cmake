@@ -30,10 +30,12 @@ endif()
 
 set(ADASPLATS_STAGES "")
 
-# adasplats_stage(NAME [DEPENDS stages...] [LINK PRIVATE|PUBLIC libs...])
+# adasplats_stage(NAME [DEPENDS stages...] [LINK PRIVATE|PUBLIC libs...] [DEFINE macros...])
+# LINK takes imported targets of packages only, which adasplatsConfig.cmake finds again for a
+# consumer; DEFINE is seen by NAME's own sources alone.
 # The library of src/adasplats/NAME: its *.cpp but *_test.cpp, which become NAME's test program.
 function(adasplats_stage name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPENDS;LINK;DEFINE" ${ARGN})
   set(folder ${PROJECT_SOURCE_DIR}/src/adasplats/${name})
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   file(GLOB tests CONFIGURE_DEPENDS ${folder}/*_test.cpp)
@@ -49,6 +51,7 @@ function(adasplats_stage name)
       ${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
                        $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     target_compile_features(${target} PUBLIC cxx_std_20)
+    target_compile_definitions(${target} PRIVATE ${ARG_DEFINE})
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:adasplats_options>
                                             $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>
                                             $<BUILD_INTERFACE:tomlplusplus::tomlplusplus>)

@@ -30,10 +30,10 @@ KittiSequence open_kitti_sequence(const std::filesystem::path& folder);
 
 /// One scan in the sensor frame.
 struct KittiScan {
-  std::vector<Vec3f> positions;           ///< sensor frame, m
+  std::vector<Vec3f> positions;  ///< sensor frame, m
   std::vector<float> intensities;
-  std::vector<std::uint16_t> classes;     ///< low 16 bits of the label; empty without labels
-  std::vector<std::uint16_t> instances;   ///< high 16 bits
+  std::vector<std::uint16_t> classes;    ///< low 16 bits of the label; empty without labels
+  std::vector<std::uint16_t> instances;  ///< high 16 bits
 };
 
 /// Reads scan number `index`. Points that are not finite are kept here (the caller counts them).

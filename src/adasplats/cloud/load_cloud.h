@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adasplats/cloud/point_cloud.h"
+#include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 
 namespace adasplats {
@@ -42,17 +43,26 @@ struct LoadOptions {
 /// What was dropped on the way.
 struct LoadReport {
   std::size_t points_read = 0;
+  /// Position, sensor position or intensity not finite (sensor positions: or beyond 1e12 m).
   std::size_t dropped_not_finite = 0;
+  /// Farther than max_distance_m from the componentwise median, or beyond 1e12 m, where doubles no
+  /// longer hold 0.1 mm.
   std::size_t dropped_far = 0;
 };
 
 /// Loads and accumulates point files and SemanticKITTI sequence folders (see read_points and
 /// open_kitti_sequence). World coordinates; the origin depends on the extents alone. A folder that
 /// holds no `velodyne` but files of points loads those by name. Inputs with and without an
-/// attribute together lose it, with a warning.
-/// Errors: those of the readers; usage for options that fit nothing.
+/// attribute together lose it, with a warning. Scans are numbered from 0 over all sequences.
+/// Files (names in any case): intensity from the first of intensity, reflectance, remission,
+/// reflectivity, luma and their scalar_ twins; classes are the low 16 bits of the label column,
+/// instances its high 16 bits or the column `instance`; `scan_index` as save_cloud_ply writes it.
+/// Memory: sequences 1.1x the cloud; files the reader's plus 24 bytes a point.
+/// Errors: those of the readers; usage for options that fit nothing and for named columns that
+/// are not there; data for labels that are no whole numbers from 0 to 2^32 - 1.
 std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
-                                             const LoadOptions& options, ProgressSink& progress);
+                                             const LoadOptions& options, const Executor& executor,
+                                             ProgressSink& progress);
 
 /// Writes a cloud as PLY with the columns x, y, z, x_lidar_position, y_lidar_position,
 /// z_lidar_position, intensity, label, instance, scan_index, as far as it has them (the layout of

@@ -15,13 +15,13 @@ namespace adasplats {
 /// Points of one or many scans, as a structure of arrays. World coordinates are origin +
 /// position: double at the border, float inside. An attribute is empty or as long as `positions`.
 struct PointCloud {
-  Vec3d origin;                           ///< world coordinates of the local origin, m
-  std::vector<Vec3f> positions;           ///< relative to `origin`, m; finite
-  std::vector<Vec3f> sensor_positions;    ///< of the LiDAR when it measured the point, as positions
-  std::vector<float> intensities;         ///< as measured, in the unit of the file
-  std::vector<std::uint16_t> classes;     ///< semantic class ids of the label scheme
-  std::vector<std::uint16_t> instances;   ///< instance ids, 0 = none
-  std::vector<std::uint32_t> scan_indices;///< number of the scan the point is from
+  Vec3d origin;                          ///< world coordinates of the local origin, m
+  std::vector<Vec3f> positions;          ///< relative to `origin`, m; finite
+  std::vector<Vec3f> sensor_positions;   ///< of the LiDAR when it measured the point, as positions
+  std::vector<float> intensities;        ///< as measured, in the unit of the file
+  std::vector<std::uint16_t> classes;    ///< semantic class ids of the label scheme
+  std::vector<std::uint16_t> instances;  ///< instance ids, 0 = none
+  std::vector<std::uint32_t> scan_indices;  ///< number of the scan the point is from
 
   std::size_t size() const { return positions.size(); }
   bool empty() const { return positions.empty(); }

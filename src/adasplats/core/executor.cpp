@@ -11,14 +11,23 @@
 
 namespace adasplats {
 
+namespace {
+
+using oneapi::tbb::global_control;
+
+/// TBB runs no more threads than cores unless told so: 3 threads on 2 cores are to be 3.
+std::unique_ptr<global_control> allow(int threads) {
+  if (threads <= oneapi::tbb::info::default_concurrency()) return nullptr;
+  return std::make_unique<global_control>(global_control::max_allowed_parallelism,
+                                          static_cast<std::size_t>(threads));
+}
+
+}  // namespace
+
 struct Executor::Impl {
-  // TBB starts no more workers than cores unless told so: 3 threads on 2 cores must be 3.
-  oneapi::tbb::global_control limit;
+  std::unique_ptr<global_control> limit;
   mutable oneapi::tbb::task_arena arena;
-  explicit Impl(int threads)
-      : limit(oneapi::tbb::global_control::max_allowed_parallelism,
-              static_cast<std::size_t>(std::max(threads, oneapi::tbb::info::default_concurrency()))),
-        arena(threads) {}
+  explicit Impl(int threads) : limit(allow(threads)), arena(threads) {}
 };
 
 Executor::Executor(int threads)

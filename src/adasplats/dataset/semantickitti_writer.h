@@ -4,34 +4,43 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
+#include <vector>
 
 #include "adasplats/cloud/trajectory.h"
 #include "adasplats/simulate/scan.h"
 
 namespace adasplats {
 
-/// Writes scans as a SemanticKITTI sequence folder: velodyne/NNNNNN.bin, labels/NNNNNN.label,
-/// poses.txt (camera frame), calib.txt (with a Tr), times.txt. Every file is atomic; poses come
-/// last, in finish(), so a folder with poses is whole.
+/// Writes scans as a SemanticKITTI sequence folder: velodyne/NNNNNN.bin, labels/NNNNNN.label (where
+/// the scans have classes), poses.txt (camera frame), calib.txt (with a Tr), times.txt (where the
+/// times ascend). Every file is atomic; poses come last, in finish(), so a folder with poses is
+/// whole, and the same scans written again after an interruption give the same bytes.
 class SemanticKittiWriter {
  public:
   /// `sequence_folder` is created; the parent must exist or be creatable.
+  /// Errors: cannot_create (also where the folder already holds a whole sequence).
   explicit SemanticKittiWriter(std::filesystem::path sequence_folder);
 
-  /// Writes scan number `index`; the pose is kept for finish().
+  /// Writes scan number `index`; the pose is kept for finish(). One call at a time. Scans have
+  /// classes all or none (std::logic_error otherwise; empty ones fit both).
   void write_scan(std::size_t index, const Scan& scan);
+  /// Every index from 0 to the largest must have been written (std::logic_error otherwise).
   void finish();
 
  private:
   std::filesystem::path folder_;
-  Trajectory trajectory_;  ///< by index
+  Trajectory trajectory_;                                 ///< by index
+  std::vector<std::optional<std::size_t>> point_counts_;  ///< by index; nothing: not written yet
+  bool has_labels_ = false;
+  bool has_unlabelled_ = false;
 };
 
 /// One scan as a PLY in the sensor frame: x y z [intensity] [label] [instance] ring time range.
 void write_scan_ply(const std::filesystem::path& path, const Scan& scan);
 
 /// One scan as .npy: PATH (float32, N x 4: x y z intensity) and PATH with "_label" before the
-/// extension (uint32, N: instance << 16 | class).
+/// extension (uint32, N: instance << 16 | class). Zeros for what the scan does not have.
 void write_scan_npy(const std::filesystem::path& path, const Scan& scan);
 
 }  // namespace adasplats

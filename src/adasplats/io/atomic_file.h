@@ -11,7 +11,8 @@ namespace adasplats {
 
 /// An output file that appears whole or not at all: written beside its place under a temporary
 /// name, then fsync, rename, fsync of the folder. Without commit() (an exception, say) the
-/// temporary is removed and an older file of that name stays as it was.
+/// temporary is removed and an older file of that name stays as it was. Small writes are buffered.
+/// A symbolic link is followed; anything else that is not a regular file is refused.
 /// Errors: ErrorKind::cannot_create (no such folder, no permission), ErrorKind::io (disk full).
 class AtomicFile {
  public:
@@ -26,8 +27,11 @@ class AtomicFile {
   void commit();
 
  private:
+  void write_through(const char* data, std::size_t bytes);
+
   std::filesystem::path path_;
-  std::filesystem::path temporary_;
+  std::filesystem::path temporary_;  ///< empty once it is renamed
+  std::string buffer_;
   int descriptor_ = -1;
 };
 

@@ -9,7 +9,9 @@
 namespace adasplats {
 
 /// PCD 0.5-0.7: ascii, binary, binary_compressed. COUNT > 1 gives columns name_0, name_1, ...;
-/// padding fields `_` are skipped. NaN points are kept (the caller drops and counts them).
+/// padding fields `_` are skipped. NaN points are kept (the caller drops and counts them). The
+/// comments hold the `#` lines and "VIEWPOINT ...". Memory: 1x the unpacked size; packed twice
+/// that, and a packed byte unpacks to at most 88.
 Table read_pcd(const std::filesystem::path& path);
 
 struct LasReadOptions {
@@ -22,17 +24,25 @@ struct LasReadOptions {
 /// classification (u8), return_number, number_of_returns (u8), and where the format has them
 /// gps_time (f64), red, green, blue (u16), point_source_id (u16), user_data (u8). LAZ through
 /// LASzip where it was found at build time, else an error that says what to install.
+/// Memory: at most 2x the file's size (LAS), what the points take (LAZ). Errors: no_input, io,
+/// data.
 Table read_las(const std::filesystem::path& path, const LasReadOptions& options = {});
 
-/// Text: XYZ, PTS (first line a count), CSV (comma, semicolon, tab or blank; a header line of
-/// names is understood; `#` and `//` start comments). Without names: x y z, then intensity where
-/// there is a 4th or 7th column (PTS: x y z intensity r g b). Locale-independent.
+/// Text: XYZ, PTS (a line with a count of points alone), CSV (comma, semicolon, tab or blank; a
+/// header line of names is understood, also as a comment; names are in lower case; an empty cell is
+/// NaN; `#` and `//` start comments). Without names: x y z; a 4th of 4 or 5 columns is intensity; 7
+/// columns are x y z intensity red green blue; 6 of PTS x y z red green blue; others are column_4,
+/// ... (from 1). Fewer points than a count says are an error, more are kept with a comment.
+/// PTX (by its extension): several scans, brought into world coordinates, with the further columns
+/// sensor_x, sensor_y, sensor_z, the scanner's position in the world; points 0 0 0 (no return) are
+/// left out, a comment says how many. All columns are f64. Locale-independent.
 Table read_text_points(const std::filesystem::path& path);
 
 /// KITTI / SemanticKITTI scan: float32 x, y, z, intensity ("remission"), little-endian.
 Table read_kitti_bin(const std::filesystem::path& path);
 
-/// Any of the formats above and PLY, by the file's extension and first bytes.
+/// Any of the formats above and PLY, by the file's extension (any case) and first bytes, which must
+/// not contradict each other.
 /// Errors: as theirs; an unknown format is ErrorKind::data naming what is understood.
 Table read_points(const std::filesystem::path& path, const LasReadOptions& options = {});
 

@@ -14,11 +14,11 @@ namespace adasplats {
 
 /// One named field of all records of a file, in the type the file has it.
 struct Column {
-  using Values = std::variant<std::vector<std::int8_t>, std::vector<std::uint8_t>,
-                              std::vector<std::int16_t>, std::vector<std::uint16_t>,
-                              std::vector<std::int32_t>, std::vector<std::uint32_t>,
-                              std::vector<std::int64_t>, std::vector<std::uint64_t>,
-                              std::vector<float>, std::vector<double>>;
+  using Values =
+      std::variant<std::vector<std::int8_t>, std::vector<std::uint8_t>, std::vector<std::int16_t>,
+                   std::vector<std::uint16_t>, std::vector<std::int32_t>,
+                   std::vector<std::uint32_t>, std::vector<std::int64_t>,
+                   std::vector<std::uint64_t>, std::vector<float>, std::vector<double>>;
   std::string name;
   Values values;
 

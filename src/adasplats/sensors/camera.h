@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "adasplats/core/rigid_transform.h"
 #include "adasplats/core/ray.h"
+#include "adasplats/core/rigid_transform.h"
 
 namespace adasplats {
 
@@ -12,8 +12,8 @@ struct Camera {
   RigidTransform world_from_camera;
   int width = 2560;
   int height = 1440;
-  double horizontal_fov_rad = 1.2;   ///< pinhole
-  double orthographic_width_m = 0;   ///< > 0: parallel rays over that width instead
+  double horizontal_fov_rad = 1.2;  ///< pinhole
+  double orthographic_width_m = 0;  ///< > 0: parallel rays over that width instead
 
   /// Ray through the point (u, v) of the image, in pixels from the top left corner; relative to
   /// `origin` (the scene's). Pixel (i, j) has its centre at (i + 0.5, j + 0.5).

@@ -12,25 +12,25 @@ namespace adasplats {
 
 /// One emitted ray of one revolution, in the sensor frame.
 struct Firing {
-  Vec3f direction;        ///< unit length
-  std::uint16_t ring;     ///< beam number, 0 = topmost
-  std::uint32_t column;   ///< azimuth step
-  float time_s;           ///< since the start of the revolution
+  Vec3f direction;       ///< unit length
+  std::uint16_t ring;    ///< beam number, 0 = topmost
+  std::uint32_t column;  ///< azimuth step
+  float time_s;          ///< since the start of the revolution
 };
 
 /// A rotating LiDAR: which rays one revolution holds. Never sees a scene.
 /// Azimuth counter-clockwise from +x, elevation up from the xy-plane.
 struct LidarModel {
   std::string name;
-  std::vector<double> elevations_rad;  ///< one a beam, topmost first
+  std::vector<double> elevations_rad;       ///< one a beam, topmost first
   std::vector<double> azimuth_offsets_rad;  ///< one a beam, or empty for zero
-  std::uint32_t columns = 0;           ///< azimuth steps a revolution
+  std::uint32_t columns = 0;                ///< azimuth steps a revolution
   double rotation_hz = 10.0;
   double min_range_m = 0.0;
   double max_range_m = 120.0;
-  double range_noise_m = 0.0;          ///< standard deviation of white noise on the range
-  bool clockwise = false;              ///< seen from above
-  std::vector<Firing> free_pattern;    ///< used instead of beams x columns where not empty
+  double range_noise_m = 0.0;        ///< standard deviation of white noise on the range
+  bool clockwise = false;            ///< seen from above
+  std::vector<Firing> free_pattern;  ///< used instead of beams x columns where not empty
 
   std::size_t rays_per_scan() const;
   std::size_t rings() const;

@@ -19,10 +19,10 @@ namespace adasplats {
 /// What colours a picture shows.
 enum class ImageColor : std::uint8_t {
   shading,    ///< grey by the angle between view and surface
-  semantic,   ///< colour of the class (by group where there are no classes), shaded
+  semantic,   ///< colour of the class (group where there are no classes, else grey), shaded
   normal,     ///< surface normal turned to the camera as RGB
-  intensity,  ///< measured intensity, 2nd to 98th percentile
-  range,      ///< distance
+  intensity,  ///< measured intensity, 2nd to 98th percentile; grey where there is none
+  range,      ///< distance, on a logarithmic scale from 1 m to 100 m
 };
 
 /// 8-bit RGB, rows from the top.
@@ -34,20 +34,22 @@ struct Image {
 
 struct ImageOptions {
   ImageColor color = ImageColor::semantic;
-  int samples_per_axis = 1;                        ///< rays a pixel: the square of this
+  int samples_per_axis = 1;  ///< rays a pixel: the square of this
   std::array<std::uint8_t, 3> background = {255, 255, 255};
+  bool sky = true;  ///< above the horizon the background turns into a light blue
 };
 
 /// What a picture needs to know of the scene besides the tracer.
 struct ImageScene {
   SceneView view;
   PrimitiveAttributes attributes;
-  std::span<const SemanticGroup> groups;           ///< one a primitive, or empty
+  std::span<const SemanticGroup> groups;  ///< one a primitive, or empty
   const LabelScheme* labels = nullptr;
   Vec3d origin;
 };
 
-/// Casts a ray through every pixel. Both sides of a surface are lit.
+/// Casts rays through every pixel. Both sides of a surface are lit. The same bytes for any number
+/// of threads. Errors: usage (width, height or samples below 1, a field of view outside (0, pi)).
 Image render_image(const Tracer& tracer, const ImageScene& scene, const Camera& camera,
                    const ImageOptions& options, const Executor& executor);
 

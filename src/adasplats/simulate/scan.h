@@ -25,28 +25,28 @@ struct PrimitiveAttributes {
 struct Scan {
   RigidTransform world_from_sensor;
   double time_s = 0;
-  std::size_t rays = 0;                   ///< cast; size() of them returned
-  std::vector<Vec3f> positions;           ///< sensor frame, m
+  std::size_t rays = 0;          ///< cast; size() of them returned
+  std::vector<Vec3f> positions;  ///< sensor frame, m
   std::vector<float> ranges_m;
-  std::vector<float> intensities;         ///< empty where the scene has none
-  std::vector<std::uint16_t> classes;     ///< empty where the scene has none
-  std::vector<std::uint16_t> instances;   ///< empty where the scene has none
+  std::vector<float> intensities;        ///< empty where the scene has none
+  std::vector<std::uint16_t> classes;    ///< empty where the scene has none
+  std::vector<std::uint16_t> instances;  ///< empty where the scene has none
   std::vector<std::uint16_t> rings;
-  std::vector<float> times_s;             ///< since the start of the revolution
+  std::vector<float> times_s;  ///< since the start of the revolution
 
   std::size_t size() const { return positions.size(); }
 };
 
 struct SimulateOptions {
-  std::uint64_t seed = 0;      ///< of the range noise; drawn by (seed, scan index, ray index)
-  bool range_noise = true;     ///< apply the sensor's range_noise_m
+  std::uint64_t seed = 0;   ///< of the range noise; drawn by (seed, scan index, ray index)
+  bool range_noise = true;  ///< apply the sensor's range_noise_m
 };
 
 /// Casts one revolution in a scene whose local origin is `scene_origin`. Paper section "Firing
 /// Sequence Simulation": all rays leave from the pose.
 Scan simulate_scan(const Tracer& tracer, const PrimitiveAttributes& attributes, Vec3d scene_origin,
-                   const LidarModel& sensor, std::span<const Firing> firings,
-                   const TimedPose& pose, std::uint64_t scan_index, const SimulateOptions& options,
+                   const LidarModel& sensor, std::span<const Firing> firings, const TimedPose& pose,
+                   std::uint64_t scan_index, const SimulateOptions& options,
                    const Executor& executor);
 
 }  // namespace adasplats

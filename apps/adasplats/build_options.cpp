@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "build_options.h"
+
+#include "option_types.h"
+
+namespace adasplats::app {
+namespace {
+
+void add_scales(CLI::App& app, BuildOptions& options) {
+  constexpr const char* kGroup = "Scales of neighbours K, radius R and error bound E by group";
+  for (int i = 0; i < kSemanticGroups; ++i) {
+    const std::string name(name_of(static_cast<SemanticGroup>(i)));
+    std::string flag = "--" + name + "-scale";
+    std::replace(flag.begin(), flag.end(), '_', '-');
+    add_scale(app, flag, options.semantic_scales[static_cast<std::size_t>(i)],
+              "Of the group " + name)
+        ->group(kGroup);
+  }
+  add_scale(app, "--planar-scale", options.planar_scale,
+            "Of planar points in the method descriptors")
+      ->group(kGroup);
+  add_switch(app, "--group-normals,!--base-normals", options.group_normals,
+             "Normals from the group's own neighbourhood, or from the base one")
+      ->group(kGroup);
+}
+
+void add_cleaning(CLI::App& app, BuildOptions& options) {
+  constexpr const char* kGroup = "Denoising and resampling";
+  add_switch(app, "--denoise,!--no-denoise", options.denoise, "Remove noise")->group(kGroup);
+  app.add_option("--denoise-sigmas", options.denoise_sigmas,
+                 "A neighbourhood votes against points farther than this from its plane")
+      ->capture_default_str()
+      ->group(kGroup);
+  app.add_option("--denoise-votes", options.denoise_votes,
+                 "Share of its neighbourhoods that removes a point")
+      ->capture_default_str()
+      ->group(kGroup);
+  add_switch(app, "--resample,!--no-resample", options.resample,
+             "Fill in points on splats and generate again")
+      ->group(kGroup);
+  add_choice<BuildOptions::ResampleBase>(
+      app, "--resample-base", options.resample_base,
+      {{"points", BuildOptions::ResampleBase::points},
+       {"centers", BuildOptions::ResampleBase::centers}},
+      "What the second generation starts from, with the new points")
+      ->group(kGroup);
+}
+
+}  // namespace
+
+const std::vector<std::pair<std::string, SplatMethod>>& method_names() {
+  static const std::vector<std::pair<std::string, SplatMethod>> names = {
+      {"basic", SplatMethod::basic},
+      {"descriptors", SplatMethod::descriptors},
+      {"semantic", SplatMethod::semantic}};
+  return names;
+}
+
+void add_build_options(CLI::App& app, BuildOptions& options) {
+  add_choice<SplatMethod>(app, "--method", options.method, method_names(),
+                          "Variant of the paper; semantic needs labels");
+  app.add_option("--neighbors", options.neighbors, "K, neighbours of a point")
+      ->capture_default_str();
+  app.add_option("--alpha", options.alpha,
+                 "Share of a splat's radius within which other seeds are discarded")
+      ->capture_default_str();
+  app.add_option("--smoothness", options.smoothness, "Least dot product of normals in a splat")
+      ->capture_default_str();
+  app.add_option("--radius", options.radius_m,
+                 "R, m; without it the mean distance to the K-th neighbour");
+  app.add_option("--error-bound", options.error_m,
+                 "E, m; without it the mean distance of neighbours from their plane");
+  add_choice<DynamicRemoval>(app, "--remove", options.remove,
+                             {{"none", DynamicRemoval::none},
+                              {"moving", DynamicRemoval::moving},
+                              {"movable", DynamicRemoval::movable}},
+                             "Objects to leave out by their labels; movable: parked cars too");
+  add_cleaning(app, options);
+  add_scales(app, options);
+}
+
+}  // namespace adasplats::app

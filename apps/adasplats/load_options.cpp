@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "load_options.h"
+
+#include "option_types.h"
+
+namespace adasplats::app {
+
+void add_load_options(CLI::App& app, LoadOptions& options) {
+  constexpr const char* kGroup = "Input";
+  app.add_option("--label-field", options.label_field, "Column of the semantic class")
+      ->type_name("NAME")
+      ->group(kGroup);
+  const auto set_sensor_fields = [&options](const std::string& text) {
+    const std::size_t first = text.find(',');
+    const std::size_t second = text.find(',', first + 1);
+    if (first == std::string::npos || second == std::string::npos ||
+        text.find(',', second + 1) != std::string::npos) {
+      throw CLI::ValidationError("expected three names of columns, found '" + text + "'");
+    }
+    options.sensor_x_field = text.substr(0, first);
+    options.sensor_y_field = text.substr(first + 1, second - first - 1);
+    options.sensor_z_field = text.substr(second + 1);
+  };
+  app.add_option_function<std::string>("--sensor-fields", set_sensor_fields,
+                                       "Columns of the sensor's position")
+      ->type_name("X,Y,Z")
+      ->group(kGroup);
+  add_vector(app, "--viewpoint", options.viewpoint,
+             "Sensor position of points that have none, world coordinates")
+      ->group(kGroup);
+  add_path(app, "--trajectory", options.trajectory,
+           "Poses whose nearest one is the sensor position of points that have none")
+      ->group(kGroup);
+  const auto set_scans = [&options](const std::string& text) {
+    const ScanRange range = parse_scan_range(text);
+    options.first_scan = range.first;
+    options.scan_count = range.count;
+    options.scan_stride = range.stride;
+  };
+  app.add_option_function<std::string>("--scans", set_scans, "Which scans of a sequence")
+      ->type_name("FIRST:COUNT[:STRIDE]")
+      ->group(kGroup);
+  app.add_option("--max-distance", options.max_distance_m,
+                 "Points farther than this from the median of all are dropped, m")
+      ->capture_default_str()
+      ->group(kGroup);
+  app.add_flag("--strict", options.strict, "Points that are not finite are an error")
+      ->group(kGroup);
+  app.add_flag("--salvage", options.salvage, "Read the whole records of truncated LAS files")
+      ->group(kGroup);
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "commands.h"
+#include "config_file.h"
+#include "help_text.h"
+#include "interrupt.h"
+#include "option_types.h"
+#include "output_path.h"
+#include "report.h"
+#include "terminal.h"
+
+namespace adasplats::app {
+namespace {
+
+constexpr int kExitNoMemory = 71;  // EX_OSERR
+constexpr int kExitSignal = 128;   // plus the signal's number, as shells have it
+constexpr int kSigPipe = 13;
+
+constexpr const char* kProgramExamples =
+    "Examples:\n"
+    "  adasplats demo\n"
+    "  adasplats model scans/sequences/00 -o place.ply\n"
+    "  adasplats simulate place.ply --trajectory scans/sequences/00 --offset 1,1,-0.5 -o new\n"
+    "  adasplats evaluate c2c new scans/sequences/00\n"
+    "adasplats SUBCOMMAND --help tells more. Exit codes are those of sysexits(3).";
+
+/// The program's command line and everything it can do.
+struct Program {
+  CLI::App app{"Real LiDAR point clouds in, splat models and simulated scans out", "adasplats"};
+  std::vector<std::unique_ptr<Command>> commands;
+
+  Program() {
+    app.formatter(std::make_shared<HelpFormatter>());  // subcommands inherit it
+    app.footer(kProgramExamples);
+    app.set_version_flag("--version", std::string("adasplats ") + ADASPLATS_VERSION,
+                         "Print the version and exit");
+    app.allow_extras();
+    app.require_subcommand(0, 1);
+    CLI::App& synth = group("synth", "Make synthetic data with exact ground truth",
+                            "  adasplats synth street -o street\n");
+    commands.push_back(make_synth_street_command(synth));
+    commands.push_back(make_info_command(app));
+    commands.push_back(make_model_command(app));
+    commands.push_back(make_simulate_command(app));
+    commands.push_back(make_render_command(app));
+    CLI::App& evaluate = group("evaluate", "Measure simulations and models",
+                               "  adasplats evaluate c2c scans street/mapping.ply\n"
+                               "  adasplats evaluate resimulate place.ply sequences/01\n");
+    commands.push_back(make_evaluate_c2c_command(evaluate));
+    commands.push_back(make_evaluate_resimulate_command(evaluate));
+    commands.push_back(make_demo_command(app));
+    for (const auto& command : commands) command->add_common_options();  // last in the help
+  }
+
+  /// A subcommand that only has subcommands.
+  CLI::App& group(const std::string& name, const std::string& description,
+                  const std::string& examples) {
+    CLI::App& parent = *app.add_subcommand(name, description);
+    parent.allow_extras();
+    parent.require_subcommand(0, 1);
+    parent.footer("Examples:\n" + examples);
+    return parent;
+  }
+};
+
+/// The innermost subcommand that the command line names, or the program itself.
+CLI::App& chosen_app(CLI::App& app) {
+  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  return parsed.empty() ? app : chosen_app(*parsed.front());
+}
+
+std::vector<std::string> option_names(CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+/// Refuses what no option or subcommand took.
+void check_extras(CLI::App& program, CLI::App& chosen) {
+  std::vector<std::string> extras = program.remaining(true);
+  if (extras.empty()) return;
+  const auto is_option = [](const std::string& word) { return word.size() > 1 && word[0] == '-'; };
+  const auto option = std::find_if(extras.begin(), extras.end(), is_option);
+  if (option != extras.end()) {
+    const std::string name = option->substr(0, option->find('='));
+    throw Error(ErrorKind::usage, unknown_word("option", name, option_names(chosen)));
+  }
+  std::vector<std::string> subcommands;
+  for (const CLI::App* subcommand : chosen.get_subcommands({})) {
+    subcommands.push_back(subcommand->get_name());
+  }
+  throw Error(ErrorKind::usage, subcommands.empty()
+                                    ? "unexpected argument '" + extras.front() + "'"
+                                    : unknown_word("subcommand", extras.front(), subcommands));
+}
+
+Command& find_command(Program& program, CLI::App& chosen) {
+  for (const auto& command : program.commands) {
+    if (&command->options() == &chosen) return *command;
+  }
+  const std::string name = chosen.get_parent() == nullptr ? "" : chosen.get_name() + " ";
+  throw Error(ErrorKind::usage, "a subcommand is missing; see adasplats " + name + "--help");
+}
+
+void run_command(Program& program, Command& command) {
+  const CommonOptions& common = command.common();
+  if (!common.config.empty()) apply_config(common.config, program.app, command.options());
+  command.check_required();
+  if (!common.report.empty()) check_output_file(common.report);
+  const Executor executor(common.threads);
+  ProgressBar progress;
+  nlohmann::ordered_json report;
+  Session session{executor, progress, common.seed, report};
+  command.run(session);
+  if (!common.report.empty()) write_report(command, session);
+}
+
+int run(int argc, char** argv) {
+  install_signal_handlers();
+  Program program;
+  try {
+    program.app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    for (const auto& command : program.commands) command->mark_required();
+    print(help_text(chosen_app(program.app)));
+    return 0;
+  } catch (const CLI::CallForVersion& version) {
+    print(std::string(version.what()) + "\n");
+    return 0;
+  }
+  CLI::App& chosen = chosen_app(program.app);
+  check_extras(program.app, chosen);
+  run_command(program, find_command(program, chosen));
+  return 0;
+}
+
+int failed(int code, const std::string& message) {
+  print_message("error: " + message);
+  return code;
+}
+
+/// Every way in which a run can end.
+int guarded_run(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const Interrupted& interrupted) {
+    print_message("interrupted");
+    return kExitSignal + interrupted.signal;
+  } catch (const ClosedStdout&) {
+    return kExitSignal + kSigPipe;
+  } catch (const Error& error) {
+    return failed(exit_code(error.kind()), error.what());
+  } catch (const CLI::ParseError& error) {
+    return failed(exit_code(ErrorKind::usage), error.what());
+  } catch (const std::bad_alloc&) {
+    return failed(kExitNoMemory, "not enough memory");
+  } catch (const std::filesystem::filesystem_error& error) {
+    return failed(exit_code(ErrorKind::io), error.what());
+  } catch (const std::exception& error) {
+    return failed(exit_code(ErrorKind::software),
+                  std::string(error.what()) + " (a bug of adasplats; please report it)");
+  }
+}
+
+}  // namespace
+}  // namespace adasplats::app
+
+int main(int argc, char** argv) { return adasplats::app::guarded_run(argc, argv); }

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "build_options.h"
+#include "commands.h"
+#include "load_options.h"
+#include "model_job.h"
+#include "option_types.h"
+#include "terminal.h"
+#include "text_table.h"
+
+namespace adasplats::app {
+namespace {
+
+constexpr const char* kExamples =
+    "  adasplats model street/mapping.ply -o street.ply --method semantic --labels semantickitti\n"
+    "  adasplats model sequences/00 -o place.ply --scans 0:100:2 --remove moving\n"
+    "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n";
+
+class ModelCommand final : public Command {
+ public:
+  explicit ModelCommand(CLI::App& program)
+      : Command(program, "model", "Turn point clouds into a splat model", kExamples) {
+    CLI::App& app = options();
+    require(app.add_option_function<std::vector<std::string>>(
+                   "INPUT",
+                   [this](const std::vector<std::string>& names) {
+                     job_.inputs.assign(names.begin(), names.end());
+                   },
+                   "Point files (PLY, PCD, LAS, LAZ, text, KITTI bin) and SemanticKITTI sequence "
+                   "folders")
+                ->type_name("PATH"));
+    require(add_path(app, "-o,--output", job_.output, "Model to write, PLY"));
+    app.add_option("--labels", job_.labels,
+                   "What labels mean: semantickitti, paris-carla-3d or a TOML file; the default is "
+                   "semantickitti for sequence folders, else none")
+        ->type_name("SCHEME");
+    add_build_options(app, job_.build);
+    add_load_options(app, job_.load);
+  }
+
+  void run(Session& session) override {
+    const ModelResult result = run_model(job_, session);
+    session.report.update(to_json(result));
+    TextTable table({"step", "seconds"});
+    for (const StepTime& step : result.steps) table.add_row({step.name, fixed(step.seconds, 2)});
+    table.add_row({"total", fixed(result.seconds, 2)});
+    const BuildReport& built = result.built;
+    print(table.text() + "\n" + job_.output.string() + ": " + grouped(built.primitives) +
+          " splats from " + grouped(built.points_in) + " points (" + grouped(built.points_dynamic) +
+          " dynamic and " + grouped(built.points_noise) + " noisy removed, " +
+          grouped(built.points_resampled) + " resampled), R " + centimetres(built.radius_m) +
+          ", E " + centimetres(built.error_m) + "\n");
+  }
+
+ private:
+  ModelJob job_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_model_command(CLI::App& program) {
+  return std::make_unique<ModelCommand>(program);
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "option_types.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace adasplats::app {
+namespace {
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+template <class T>
+bool parse_whole(const std::string& text, T& number) {
+  const char* end = text.data() + text.size();
+  const auto [stop, failure] = std::from_chars(text.data(), end, number);
+  return failure == std::errc() && stop == end;
+}
+
+std::string short_number(double number) {
+  std::array<char, 32> text{};
+  const auto [end, failure] = std::to_chars(text.data(), text.data() + text.size(), number);
+  return {text.data(), end};
+}
+
+}  // namespace
+
+std::vector<double> parse_numbers(const std::string& text, std::size_t count) {
+  const std::vector<std::string> parts = split(text, ',');
+  std::vector<double> numbers(parts.size());
+  bool good = parts.size() == count;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    good = good && parse_whole(parts[i], numbers[i]) && std::isfinite(numbers[i]);
+  }
+  if (!good) {
+    throw CLI::ValidationError("expected " + std::to_string(count) +
+                               " numbers with commas between them, found '" + text + "'");
+  }
+  return numbers;
+}
+
+ScanRange parse_scan_range(const std::string& text) {
+  const std::vector<std::string> parts = split(text, ':');
+  ScanRange range;
+  bool good = parts.size() == 2 || parts.size() == 3;
+  good = good && parse_whole(parts[0], range.first) && parse_whole(parts[1], range.count);
+  if (good && parts.size() == 3) good = parse_whole(parts[2], range.stride);
+  if (!good || range.count == 0 || range.stride == 0) {
+    throw CLI::ValidationError("expected FIRST:COUNT[:STRIDE], found '" + text + "'");
+  }
+  return range;
+}
+
+CLI::Option* add_path(CLI::App& app, const std::string& name, std::filesystem::path& target,
+                      const std::string& help) {
+  return app
+      .add_option_function<std::string>(
+          name, [&target](const std::string& text) { target = text; }, help)
+      ->type_name("PATH")
+      ->default_str(target.string());
+}
+
+CLI::Option* add_vector(CLI::App& app, const std::string& name, std::optional<Vec3d>& target,
+                        const std::string& help) {
+  return app
+      .add_option_function<std::string>(
+          name,
+          [&target](const std::string& text) {
+            const std::vector<double> v = parse_numbers(text, 3);
+            target = Vec3d{v[0], v[1], v[2]};
+          },
+          help)
+      ->type_name("X,Y,Z");
+}
+
+CLI::Option* add_scale(CLI::App& app, const std::string& name, GroupScale& target,
+                       const std::string& help) {
+  return app
+      .add_option_function<std::string>(
+          name,
+          [&target](const std::string& text) {
+            const std::vector<double> v = parse_numbers(text, 3);
+            target = {v[0], v[1], v[2]};
+          },
+          help)
+      ->type_name("K,R,E")
+      ->default_str(short_number(target.neighbors) + "," + short_number(target.radius) + "," +
+                    short_number(target.error));
+}
+
+CLI::Option* add_switch(CLI::App& app, const std::string& names, bool& target,
+                        const std::string& help) {
+  return app.add_flag(names, target, help)->default_str(target ? "true" : "false");
+}
+
+std::string unknown_word(const std::string& what, const std::string& word,
+                         const std::vector<std::string>& known) {
+  const std::string found = what + " '" + word + "' is not known";
+  if (const auto nearest = nearest_word(word, known)) {
+    return found + ", did you mean '" + *nearest + "'?";
+  }
+  std::string all;
+  for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
+  return found + (known.empty() ? "" : "; known are " + all);
+}
+
+}  // namespace adasplats::app

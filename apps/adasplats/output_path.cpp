@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "output_path.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/atomic_file.h"
+
+namespace adasplats::app {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr const char* kContentFile = "adasplats.json";
+
+Error cannot_create(const fs::path& path, const std::string& reason) {
+  return Error(ErrorKind::cannot_create, path.string() + ": " + reason);
+}
+
+fs::path parent_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+void check_parent(const fs::path& path) {
+  const fs::path parent = parent_of(path);
+  std::error_code failure;
+  if (!fs::is_directory(parent, failure)) {
+    throw cannot_create(path, "cannot create: there is no folder " + parent.string());
+  }
+  if (access(parent.c_str(), W_OK | X_OK) != 0) {
+    throw system_error(ErrorKind::cannot_create, path, "cannot create", errno);
+  }
+}
+
+/// The folder's name without a trailing slash, so that it has a parent and a name.
+fs::path without_slash(const fs::path& folder) {
+  const fs::path normal = folder.lexically_normal();
+  return normal.has_filename() ? normal : normal.parent_path();
+}
+
+void check_replaceable(const fs::path& folder, bool overwrite) {
+  std::error_code failure;
+  const fs::file_status status = fs::status(folder, failure);
+  if (!fs::exists(status)) return;
+  if (!fs::is_directory(status)) throw cannot_create(folder, "exists and is not a folder");
+  if (fs::is_empty(folder, failure)) return;
+  if (!overwrite) {
+    throw cannot_create(folder, "the folder is not empty; --overwrite replaces earlier output");
+  }
+  if (!fs::exists(folder / kContentFile)) {
+    throw cannot_create(folder, std::string("not replaced: there is no ") + kContentFile +
+                                    " in it, so it is not output of adasplats alone");
+  }
+}
+
+}  // namespace
+
+void check_output_file(const fs::path& file) {
+  check_parent(file);
+  std::error_code failure;
+  const fs::file_status status = fs::status(file, failure);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw cannot_create(file, fs::is_directory(status) ? "is a folder" : "is not a regular file");
+  }
+}
+
+OutputFolder::OutputFolder(fs::path folder, bool overwrite, const std::string& content)
+    : folder_(without_slash(folder)) {
+  if (folder_.empty() || folder_.filename() == "." || folder_.filename() == "..") {
+    throw cannot_create(folder, "give the folder a name of its own");
+  }
+  check_parent(folder_);
+  check_replaceable(folder_, overwrite);
+  partial_ = parent_of(folder_) / ("." + folder_.filename().string() + ".partial");
+  std::error_code failure;
+  fs::create_directory(partial_, failure);
+  lock_ = open(partial_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ < 0) throw system_error(ErrorKind::cannot_create, partial_, "cannot create", errno);
+  if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    close(lock_);
+    throw cannot_create(folder_, "another process is writing it (" + partial_.string() + ")");
+  }
+  try {
+    for (const fs::directory_entry& left_over : fs::directory_iterator(partial_)) {
+      fs::remove_all(left_over.path());
+    }
+    write_file(partial_ / kContentFile, content);
+  } catch (...) {
+    fs::remove_all(partial_, failure);
+    close(lock_);
+    throw;
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  if (lock_ < 0) return;
+  std::error_code ignored;  // a destructor must not throw
+  fs::remove_all(partial_, ignored);
+  close(lock_);
+}
+
+void OutputFolder::commit() {
+  const fs::path old = parent_of(folder_) / ("." + folder_.filename().string() + ".replaced");
+  std::error_code failure;
+  fs::remove_all(old, failure);
+  fs::rename(folder_, old, failure);  // fails where there is no older folder
+  fs::rename(partial_, folder_, failure);
+  if (failure) {
+    const int reason = failure.value();
+    fs::rename(old, folder_, failure);
+    throw system_error(ErrorKind::cannot_create, folder_, "cannot create", reason);
+  }
+  fs::remove_all(old, failure);
+  close(lock_);
+  lock_ = -1;
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace adasplats::app {
+
+/// Throws cannot_create where a file of that name could not be written: no such folder, no
+/// permission, a folder or a device in its place. To be called before long work.
+void check_output_file(const std::filesystem::path& file);
+
+/// An output folder that appears whole or not at all: filled beside its place under the name
+/// ".NAME.partial" and renamed by commit(). Without commit() what was written is removed.
+class OutputFolder {
+ public:
+  /// `content` (JSON) goes into the file adasplats.json of the folder, which tells a folder of ours
+  /// from others. A folder that is not empty is refused; with `overwrite` one with an
+  /// adasplats.json in it is replaced. A folder that another process fills now is refused; what a
+  /// killed process left is removed.
+  /// Errors: cannot_create.
+  OutputFolder(std::filesystem::path folder, bool overwrite, const std::string& content);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  /// Where to write to.
+  const std::filesystem::path& path() const { return partial_; }
+  void commit();
+
+ private:
+  std::filesystem::path folder_;
+  std::filesystem::path partial_;
+  int lock_ = -1;  ///< descriptor of the partial folder, locked
+};
+
+}  // namespace adasplats::app

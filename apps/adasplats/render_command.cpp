@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "commands.h"
+#include "option_types.h"
+#include "render_job.h"
+#include "terminal.h"
+#include "text_table.h"
+
+namespace adasplats::app {
+namespace {
+
+constexpr const char* kExamples =
+    "  adasplats render street.ply -o street.png\n"
+    "  adasplats render street.ply -o above.png --birds-eye --color semantic\n"
+    "  adasplats render basic.ply adaptive.ply -o both.png --trajectory poses.txt --pose 12\n"
+    "  adasplats render street.ply -o pole.png --eye 3,-2,1.7 --target 8,4,2 --color normal\n";
+
+class RenderCommand final : public Command {
+ public:
+  explicit RenderCommand(CLI::App& program)
+      : Command(program, "render",
+                "Draw splat models, side by side, from above a corner or as told", kExamples) {
+    CLI::App& app = options();
+    require(app.add_option_function<std::vector<std::string>>(
+                   "MODEL",
+                   [this](const std::vector<std::string>& names) {
+                     job_.models.assign(names.begin(), names.end());
+                   },
+                   "Splat models")
+                ->type_name("PATH"));
+    require(add_path(app, "-o,--output", job_.output, "Picture to write, PNG"));
+    add_choice<std::optional<ImageColor>>(app, "--color", job_.color,
+                                          {{"shading", ImageColor::shading},
+                                           {"semantic", ImageColor::semantic},
+                                           {"normal", ImageColor::normal},
+                                           {"intensity", ImageColor::intensity},
+                                           {"range", ImageColor::range}},
+                                          "What colours show; semantic where the model has it");
+    app.add_option("--width", job_.width, "Pixels, of one model's part")->capture_default_str();
+    app.add_option("--height", job_.height, "Pixels")->capture_default_str();
+    app.add_option("--samples", job_.samples_per_axis, "Rays a pixel: the square of this")
+        ->capture_default_str();
+    app.add_option("--fov", job_.horizontal_fov_deg, "Horizontal field of view, degrees")
+        ->capture_default_str();
+    add_vector(app, "--eye", job_.eye, "Where the camera is, world coordinates");
+    add_vector(app, "--target", job_.target, "What it looks at; the middle of the model");
+    app.add_flag("--birds-eye", job_.birds_eye, "From straight above, north up");
+    add_path(app, "--trajectory", job_.trajectory,
+             "Look ahead from a pose: a pose file or a sequence folder");
+    app.add_option("--pose", job_.pose, "Number of that pose, from 0")->capture_default_str();
+  }
+
+  void run(Session& session) override {
+    const double seconds = run_render(job_, session);
+    session.report["seconds"]["render"] = seconds;
+    session.report["images_per_second"] = static_cast<double>(job_.models.size()) / seconds;
+    print(job_.output.string() + ": " + fixed(seconds, 2) + " s\n");
+  }
+
+ private:
+  RenderJob job_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_render_command(CLI::App& program) {
+  return std::make_unique<RenderCommand>(program);
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "simulate_job.h"
+
+#include <array>
+#include <cstdio>
+#include <optional>
+
+#include "adasplats/core/error.h"
+#include "adasplats/dataset/semantickitti_writer.h"
+#include "adasplats/simulate/scan.h"
+#include "inputs.h"
+#include "model_scene.h"
+#include "output_path.h"
+#include "stopwatch.h"
+
+namespace adasplats::app {
+namespace {
+
+/// Passes rays on and adds up the time that the tracer behind it takes.
+class TimedTracer final : public Tracer {
+ public:
+  explicit TimedTracer(const Tracer& tracer) : tracer_(tracer) {}
+
+  std::string_view name() const override { return tracer_.name(); }
+  void nearest(std::span<const Ray> rays, std::span<Hit> hits,
+               const Executor& executor) const override {
+    const Stopwatch watch;
+    tracer_.nearest(rays, hits, executor);
+    seconds_ += watch.seconds();
+  }
+  void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
+                    const Executor& executor) const override {
+    const Stopwatch watch;
+    tracer_.nearest_hits(rays, depth, hits, executor);
+    seconds_ += watch.seconds();
+  }
+  double seconds() const { return seconds_; }
+
+ private:
+  const Tracer& tracer_;
+  mutable double seconds_ = 0;  // simulate_scan calls from one thread
+};
+
+/// Writes scans in one of the formats.
+class ScanWriter {
+ public:
+  ScanWriter(const std::filesystem::path& folder, ScanFormat format)
+      : folder_(folder), format_(format) {
+    if (format == ScanFormat::semantickitti) semantickitti_.emplace(folder / "sequences" / "00");
+  }
+  void write(std::size_t index, const Scan& scan) {
+    if (semantickitti_) {
+      semantickitti_->write_scan(index, scan);
+      return;
+    }
+    trajectory_.push_back({scan.time_s, scan.world_from_sensor});
+    std::array<char, 32> name{};
+    const bool is_ply = format_ == ScanFormat::ply;
+    std::snprintf(name.data(), name.size(), is_ply ? "%06zu.ply" : "%06zu.npy", index);
+    is_ply ? write_scan_ply(folder_ / name.data(), scan)
+           : write_scan_npy(folder_ / name.data(), scan);
+  }
+  void finish() {
+    if (semantickitti_) {
+      semantickitti_->finish();
+    } else {
+      write_trajectory_csv(folder_ / "poses.csv", trajectory_);
+    }
+  }
+
+ private:
+  std::filesystem::path folder_;
+  ScanFormat format_;
+  std::optional<SemanticKittiWriter> semantickitti_;
+  Trajectory trajectory_;
+};
+
+Trajectory poses_of(const SimulateJob& job) {
+  const Trajectory all = shifted(load_trajectory(job.trajectory), job.offset_m);
+  Trajectory taken;
+  for (std::size_t i = 0; i < all.size(); i += job.every) taken.push_back(all[i]);
+  if (taken.empty()) throw Error(ErrorKind::data, job.trajectory.string() + ": no poses");
+  return taken;
+}
+
+/// What the folder's adasplats.json says; nothing that differs between two runs.
+std::string content_description(const SimulateJob& job, std::uint64_t seed) {
+  nlohmann::ordered_json json;
+  json["program"] = "adasplats";
+  json["version"] = ADASPLATS_VERSION;
+  json["command"] = "simulate";
+  json["model"] = job.model.filename().string();
+  json["sensor"] = job.sensor;
+  json["offset_m"] = {job.offset_m.x, job.offset_m.y, job.offset_m.z};
+  json["every"] = job.every;
+  json["seed"] = seed;
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+SimulateResult run_simulate(const SimulateJob& job, Session& session) {
+  if (job.every == 0) throw Error(ErrorKind::usage, "--every must be at least 1");
+  const Stopwatch total;
+  require_input(job.model);
+  const LidarModel sensor = load_lidar_model(job.sensor);
+  const Trajectory poses = poses_of(job);
+  OutputFolder folder(job.output, job.overwrite, content_description(job, session.seed));
+  const ModelScene scene(job.model, session);
+
+  const TimedTracer tracer(scene.tracer());
+  const std::vector<Firing> firings = firings_of(sensor);
+  const SimulateOptions options{session.seed, job.range_noise};
+  ScanWriter writer(folder.path(), job.format);
+  SimulateResult result;
+  session.progress.begin_step("simulate", poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Stopwatch returned;
+    const Scan scan = simulate_scan(tracer, scene.attributes(), scene.model().origin, sensor,
+                                    firings, poses[i], i, options, session.executor);
+    result.seconds_returned += returned.seconds();
+    writer.write(i, scan);
+    result.seconds_written += returned.seconds();
+    ++result.scans;
+    result.rays += scan.rays;
+    result.hits += scan.size();
+    session.progress.advance(i + 1);
+  }
+  const Stopwatch finishing;
+  writer.finish();
+  session.progress.end_step();
+  folder.commit();
+  result.seconds_written += finishing.seconds();
+  result.seconds_traced = tracer.seconds();
+  result.seconds = total.seconds();
+  return result;
+}
+
+nlohmann::ordered_json to_json(const SimulateResult& result) {
+  const double scans = static_cast<double>(result.scans);
+  nlohmann::ordered_json json;
+  json["scans"] = result.scans;
+  json["rays"] = result.rays;
+  json["hits"] = result.hits;
+  json["scans_per_second"] = {{"traced", scans / result.seconds_traced},
+                              {"returned", scans / result.seconds_returned},
+                              {"written", scans / result.seconds_written}};
+  json["seconds"] = {{"total", result.seconds},
+                     {"traced", result.seconds_traced},
+                     {"returned", result.seconds_returned},
+                     {"written", result.seconds_written}};
+  return json;
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+#include "adasplats/core/vec3.h"
+#include "session.h"
+
+namespace adasplats::app {
+
+enum class ScanFormat : std::uint8_t { semantickitti, ply, npy };
+
+/// Paper section "New Trajectory Simulation": a sensor along a shifted trajectory.
+struct SimulateJob {
+  std::filesystem::path model;
+  std::string sensor = "hdl-64-paper";
+  std::filesystem::path trajectory;  ///< pose file or sequence folder
+  Vec3d offset_m;
+  std::size_t every = 1;  ///< takes every n-th pose
+  bool range_noise = true;
+  std::filesystem::path output;
+  ScanFormat format = ScanFormat::semantickitti;
+  bool overwrite = false;
+};
+
+struct SimulateResult {
+  std::size_t scans = 0;
+  std::size_t rays = 0;
+  std::size_t hits = 0;
+  double seconds_traced = 0;    ///< in the tracer
+  double seconds_returned = 0;  ///< until the scans were in memory, tracing included
+  double seconds_written = 0;   ///< until the scans were on disk, all included
+  double seconds = 0;           ///< of everything, with loading the model
+};
+
+/// Simulates and writes.
+SimulateResult run_simulate(const SimulateJob& job, Session& session);
+
+/// The keys of a simulation's --report.
+nlohmann::ordered_json to_json(const SimulateResult& result);
+
+}  // namespace adasplats::app

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "synth_job.h"
+
+#include "output_path.h"
+
+namespace adasplats::app {
+
+StreetReport run_synth_street(const SynthJob& job, Session& session) {
+  StreetOptions street = job.street;
+  StreetScanOptions scan = job.scan;
+  street.seed = scan.seed = session.seed;
+  nlohmann::ordered_json content;
+  content["program"] = "adasplats";
+  content["version"] = ADASPLATS_VERSION;
+  content["command"] = "synth street";
+  content["seed"] = session.seed;
+  content["points"] = scan.points;
+  content["length_m"] = street.length_m;
+  OutputFolder folder(job.output, job.overwrite, content.dump(2) + "\n");
+  const StreetReport report =
+      write_street(folder.path(), street, scan, session.executor, session.progress);
+  folder.commit();
+  return report;
+}
+
+nlohmann::ordered_json to_json(const StreetReport& report) {
+  return {{"length_m", report.length_m},
+          {"mesh_triangles", report.mesh_triangles},
+          {"moving_objects", report.moving_objects},
+          {"mapping_points", report.mapping_points},
+          {"mapping_scans", report.mapping_scans},
+          {"driving_scans", report.driving_scans}};
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,128 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Installs what is missing to build adasplats, through apt: Debian 12 and 13, Ubuntu 24.04.
+# usage: scripts/setup.sh [--for demo|test] [--dry-run]
+#   --for demo   what the program needs
+#   --for test   also what the tests, benchmarks and checks need (default)
+#   --dry-run    say what is missing, install nothing; exit code 1 where something is
+set -euo pipefail
+
+readonly kCmakeLeast=3.24
+
+# One line a package: when, package, command that may serve instead (- for none), what it is for.
+# "maybe" packages are taken where the distribution has them: liblaszip-dev is not in Debian 12.
+packages() {
+  cat <<'LIST'
+demo  cmake                cmake         configures the build
+demo  ninja-build          ninja         builds
+demo  g++                  g++           compiles (C++20)
+demo  libtbb-dev           -             parallel loops
+demo  libembree-dev        -             ray tracing on the CPU
+demo  libcli11-dev         -             the command line
+demo  nlohmann-json3-dev   -             sensor and label files
+demo  libtomlplusplus-dev  -             configuration files
+demo  libpng-dev           -             images
+maybe liblaszip-dev        -             LAZ files
+test  git                  git           lists the files to check
+test  python3              python3       the layer check and clang-tidy's driver
+test  libgtest-dev         -             tests
+test  libeigen3-dev        -             oracle of the tests
+test  libnanoflann-dev     -             baseline of the benchmarks
+test  clang-format         clang-format  checks
+test  clang-tidy           clang-tidy    checks
+LIST
+}
+
+say() { echo "setup: $*"; }
+fail() {
+  echo "setup: error: $*" >&2
+  exit 1
+}
+
+installed() { [[ $(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null) == installed ]]; }
+
+# Runs apt-get as root, without questions, and again where the network or another apt fails it.
+apt_get() {
+  local -a as_root=()
+  if ((EUID != 0)); then
+    command -v sudo >/dev/null ||
+      fail "not root and no sudo; run as root: apt-get install --no-install-recommends ${missing[*]}"
+    as_root=(sudo)
+  fi
+  local attempt
+  for attempt in 1 2 3; do
+    if "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -y -q \
+      -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300 "$@" </dev/null; then
+      return 0
+    fi
+    say "apt-get $1 failed (attempt $attempt of 3)"
+    sleep $((attempt * 5))
+  done
+  return 1
+}
+
+purpose="test"
+dry_run=false
+while (($#)); do
+  case $1 in
+    --for)
+      purpose=${2:-}
+      [[ $purpose == demo || $purpose == test ]] || fail "--for takes demo or test, not '$purpose'"
+      shift 2
+      ;;
+    --dry-run)
+      dry_run=true
+      shift
+      ;;
+    -h | --help)
+      sed -n '5,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+      exit 0
+      ;;
+    *) fail "unknown argument '$1' (--help shows what there is)" ;;
+  esac
+done
+
+if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+  fail "no apt on this system. Install what these Debian packages hold, then call cmake and ninja
+yourself (CONTRIBUTING.md): $(packages | awk '{print $2}' | paste -sd' ')"
+fi
+
+# Whether the package lists that are here know a package: those of a new container are empty.
+offered() { [[ -n $(apt-cache madison "$1" 2>/dev/null) ]]; }
+
+missing=()
+not_offered_yet=()
+while read -r when package command reason; do
+  [[ $when == test && $purpose == demo ]] && continue
+  installed "$package" && continue
+  [[ $command != - ]] && command -v "$command" >/dev/null && continue
+  if [[ $when == maybe ]] && ! offered "$package"; then
+    not_offered_yet+=("$package")
+  else
+    say "missing: $package ($reason)"
+    missing+=("$package")
+  fi
+done < <(packages)
+
+if ((${#missing[@]})); then
+  $dry_run && exit 1
+  say "installing ${missing[*]}"
+  apt_get update || say "apt-get update failed; trying with the package lists that are there"
+  for package in "${not_offered_yet[@]}"; do
+    if offered "$package"; then
+      missing+=("$package")
+    else
+      say "this system has no $package; going on without"
+    fi
+  done
+  apt_get install --no-install-recommends "${missing[@]}" ||
+    fail "apt-get could not install ${missing[*]}"
+fi
+
+cmake_version=$(cmake --version | awk 'NR == 1 {print $3}')
+if [[ $(printf '%s\n' "$kCmakeLeast" "$cmake_version" | sort -V | head -n 1) != "$kCmakeLeast" ]]; then
+  fail "CMake $kCmakeLeast or newer is needed, found $cmake_version ($(command -v cmake))"
+fi
+say "everything for '$purpose' is here (CMake $cmake_version)"

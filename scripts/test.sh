@@ -1,0 +1,171 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Installs what is missing, then builds, tests and checks everything; ends with a line
+# "N passed, N failed", where each check and each test program counts once.
+# usage: scripts/test.sh [--help] [CHECK...]
+#   CHECK: names layers scripts format build tidy tests asan install (default: all, in this order)
+# The build folders are build/release and build/asan; logs of the checks are in build/test-logs.
+set -uo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root" || exit 70
+readonly kChecks="names layers scripts format build tidy tests asan install"
+# Programs that read what others wrote: these run under the address and undefined-behaviour
+# sanitizers as well.
+readonly kAsanStages="io cloud sensors splats dataset"
+readonly logs=$root/build/test-logs
+
+# git refuses a clone that another user owns, which is what a container sees of a mounted folder.
+export GIT_CONFIG_COUNT=1 GIT_CONFIG_KEY_0=safe.directory GIT_CONFIG_VALUE_0=$root
+
+passed=0
+failed=0
+failures=()
+
+only=" ${*:-$kChecks} "
+for word in $only; do
+  if [[ " $kChecks " != *" $word "* ]]; then
+    sed -n '5,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+    exit 64
+  fi
+done
+wanted() { [[ $only == *" $1 "* ]]; }
+
+count_pass() { passed=$((passed + 1)); }
+count_failure() {
+  failed=$((failed + 1))
+  failures+=("$1")
+}
+
+# check NAME COMMAND...: runs a command, counts it and shows the end of what it said if it failed.
+# Exit code 77 means that it could not judge here and is not counted. Returns 1 on failure.
+check() {
+  local name=$1 status=0 begin=$SECONDS log=$logs/$1.log
+  shift
+  # In the background, because bash ignores set -e in what it runs as a condition.
+  (
+    set -euo pipefail
+    "$@"
+  ) >"$log" 2>&1 </dev/null &
+  wait $! || status=$?
+  case $status in
+    0)
+      count_pass
+      echo "ok       $name ($((SECONDS - begin)) s)"
+      ;;
+    77) echo "skipped  $name: $(tail -n 1 "$log")" ;;
+    *)
+      count_failure "$name"
+      echo "FAILED   $name ($((SECONDS - begin)) s), the end of $log:"
+      tail -n 60 "$log" | sed 's/^/    /'
+      return 1
+      ;;
+  esac
+}
+
+check_scripts() {
+  local -a scripts=(.ci/run scripts/*.sh tools/*.sh)
+  local script
+  for script in "${scripts[@]}"; do bash -n "$script"; done
+  if command -v shellcheck >/dev/null; then
+    shellcheck "${scripts[@]}"
+  fi
+}
+
+build_release() {
+  cmake --preset release -DADASPLATS_BUILD_TESTS=ON -DADASPLATS_BUILD_BENCH=ON
+  cmake --build build/release
+}
+
+# Runs every test program and counts each by its verdict in ctest's JUnit file.
+run_tests() {
+  local junit=$logs/ctest.xml log=$logs/ctest.log name status begin=$SECONDS
+  rm -f "$junit"
+  ctest --test-dir build/release --output-on-failure --output-junit "$junit" -j "$(nproc)" \
+    >"$log" 2>&1 </dev/null
+  if [[ ! -s $junit ]]; then
+    count_failure tests
+    echo "FAILED   tests: ctest wrote no $junit"
+    return
+  fi
+  while read -r name status; do
+    case $status in
+      run) count_pass ;;
+      notrun | disabled) echo "skipped  test $name" ;;
+      *) count_failure "test $name" ;;
+    esac
+  done < <(sed -n 's/.*<testcase name="\([^"]*\)".*status="\([^"]*\)".*/\1 \2/p' "$junit")
+  sed -n '/^ *[0-9]*\/[0-9]* Test/s/^/    /p' "$log"
+  echo "         tests ($((SECONDS - begin)) s)," \
+    "$(grep -c '^\[  SKIPPED \] .* ms)' build/release/Testing/Temporary/LastTest.log)" \
+    "cases skipped themselves (real recordings or hardware that is not here)"
+  if grep -q 'Failed\|Timeout\|Exception' "$log"; then
+    grep -n -B 3 -A 12 ': Failure$\|ERROR:\|terminate called' "$log" | head -n 200 | sed 's/^/    /'
+  fi
+}
+
+asan_programs() {
+  local stage
+  for stage in $kAsanStages; do
+    if compgen -G "src/adasplats/$stage/*_test.cpp" >/dev/null; then
+      echo "adasplats_${stage}_test"
+    fi
+  done
+}
+
+build_asan() {
+  cmake --preset asan -DADASPLATS_BUILD_APP=OFF
+  local -a programs
+  mapfile -t programs < <(asan_programs)
+  cmake --build build/asan --target "${programs[@]}"
+}
+
+run_asan() {
+  local program
+  while read -r program; do
+    check "asan-$program" env UBSAN_OPTIONS=print_stacktrace=1 "build/asan/bin/$program"
+  done < <(asan_programs)
+}
+
+# Installs into a folder of its own and builds the example against that, as a stranger would.
+build_example() {
+  rm -rf build/install build/example
+  cmake --install build/release --prefix build/install >/dev/null
+  cmake -S examples/find_package -B build/example -G Ninja -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_PREFIX_PATH="$root/build/install"
+  cmake --build build/example
+  build/example/find_package_example
+}
+
+mkdir -p "$logs"
+built=true
+if ! scripts/setup.sh --for test; then
+  count_failure setup
+else
+  wanted names && check names tools/check_names.sh
+  if wanted layers; then
+    check layers-self-test tools/check_layers.py --self-test
+    check layers tools/check_layers.py
+  fi
+  wanted scripts && check scripts check_scripts
+  wanted format && check format tools/check_format.sh
+  if wanted build; then
+    check build build_release || built=false
+  fi
+  if $built; then
+    wanted tidy && check tidy tools/run_tidy.py build/release
+    wanted tests && run_tests
+    wanted install && check install build_example
+  fi
+  if wanted asan && check asan-build build_asan; then
+    run_asan
+  fi
+fi
+
+echo
+((failed == 0)) || printf 'failed: %s\n' "${failures[@]}"
+echo "took $((SECONDS / 60)) min $((SECONDS % 60)) s"
+echo "$passed passed, $failed failed"
+((failed == 0))

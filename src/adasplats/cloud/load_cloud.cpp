@@ -1,0 +1,353 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load_cloud.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "adasplats/cloud/cloud_part.h"
+#include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/nearest_pose.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/number_text.h"
+
+namespace adasplats {
+
+namespace {
+
+constexpr std::size_t kGrain = std::size_t{1} << 16;
+// Beyond it doubles do not hold 0.1 mm, and no place on Earth has such coordinates.
+constexpr double kLargestCoordinateM = 1e12;
+
+struct Input {
+  std::filesystem::path path;
+  bool is_sequence;
+};
+
+bool is_point_file_name(const std::filesystem::path& path) {
+  constexpr std::string_view kExtensions[] = {".ply", ".pcd", ".las", ".laz", ".xyz", ".pts",
+                                              ".csv", ".txt", ".asc", ".bin", ".ptx"};
+  return std::ranges::find(kExtensions, lower_case(path.extension().string())) !=
+         std::ranges::end(kExtensions);
+}
+
+std::vector<Input> inputs_of_folder(const std::filesystem::path& folder) {
+  std::vector<Input> inputs;
+  std::error_code problem;
+  std::filesystem::directory_iterator entry(folder, problem);
+  for (; !problem && entry != std::filesystem::directory_iterator(); entry.increment(problem)) {
+    const std::filesystem::path& path = entry->path();
+    std::error_code ignored;  // a broken link is no file
+    if (entry->is_regular_file(ignored) && path.filename().string().front() != '.' &&
+        is_point_file_name(path))
+      inputs.push_back({path, false});
+  }
+  if (problem) throw system_error(ErrorKind::no_input, folder, "cannot be listed", problem.value());
+  if (inputs.empty())
+    throw Error(ErrorKind::no_input,
+                folder.string() + ": holds neither a folder 'velodyne' nor files of points");
+  std::ranges::sort(inputs, {}, &Input::path);
+  return inputs;
+}
+
+std::vector<Input> list_inputs(std::span<const std::filesystem::path> paths) {
+  if (paths.empty()) throw Error(ErrorKind::usage, "no inputs to load");
+  std::vector<Input> inputs;
+  for (const std::filesystem::path& path : paths) {
+    std::error_code ignored;  // what cannot be looked into fails when it is opened as a file
+    if (!std::filesystem::is_directory(path, ignored)) {
+      inputs.push_back({path, false});
+    } else if (is_kitti_sequence(path)) {
+      inputs.push_back({path, true});
+    } else {
+      const std::vector<Input> files = inputs_of_folder(path);
+      inputs.insert(inputs.end(), files.begin(), files.end());
+    }
+  }
+  return inputs;
+}
+
+void require_options_that_fit(const LoadOptions& options, std::span<const Input> inputs) {
+  const auto usage = [](const std::string& message) { return Error(ErrorKind::usage, message); };
+  const bool any_sequence = std::ranges::any_of(inputs, &Input::is_sequence);
+  const bool any_file = !std::ranges::all_of(inputs, &Input::is_sequence);
+  const LoadOptions defaults;
+  const bool chooses_scans = options.first_scan != defaults.first_scan ||
+                             options.scan_count != defaults.scan_count ||
+                             options.scan_stride != defaults.scan_stride;
+  if (chooses_scans && !any_sequence)
+    throw usage("scans are chosen, but no input is a sequence folder");
+  if (options.scan_stride == 0) throw usage("a scan stride of 0");
+  if (options.scan_count == 0) throw usage("a scan count of 0");
+  const int sensor_fields = !options.sensor_x_field.empty() + !options.sensor_y_field.empty() +
+                            !options.sensor_z_field.empty();
+  if (sensor_fields != 0 && sensor_fields != 3)
+    throw usage("the columns of the sensor position are three or none");
+  if ((sensor_fields != 0 || !options.label_field.empty()) && !any_file)
+    throw usage("columns are named, but no input is a file of points");
+  if (options.viewpoint && !options.trajectory.empty())
+    throw usage("a viewpoint and a trajectory both give the sensor position");
+  if ((options.viewpoint || !options.trajectory.empty()) && !any_file)
+    throw usage("a sensor position is given, but every input has its own");
+  if (options.viewpoint && !is_finite(*options.viewpoint))
+    throw usage("the viewpoint is not finite");
+  if (!(options.max_distance_m > 0)) throw usage("a largest distance that is not positive");
+}
+
+std::vector<CloudPart> read_parts(std::span<const Input> inputs, const LoadOptions& options,
+                                  const Executor& executor, ProgressSink& progress) {
+  std::vector<CloudPart> parts;
+  std::size_t points = 0;
+  std::uint32_t scans = 0;
+  for (const Input& input : inputs) {
+    parts.push_back(input.is_sequence
+                        ? read_sequence_part(input.path, options, scans, executor, progress)
+                        : read_file_part(input.path, options, progress));
+    if (input.is_sequence) scans += static_cast<std::uint32_t>(parts.back().runs.size());
+    points += parts.back().size();
+    if (points > std::numeric_limits<std::uint32_t>::max())
+      throw Error(ErrorKind::data,
+                  input.path.string() + ": with it the cloud has more than 4294967295 points");
+  }
+  return parts;
+}
+
+/// Which points of a part stay, 1 or 0 each.
+using Kept = std::vector<std::uint8_t>;
+
+/// Whether these are coordinates of a place.
+bool is_place(Vec3d p) {
+  // False for NaN as well.
+  return std::fabs(p.x) <= kLargestCoordinateM && std::fabs(p.y) <= kLargestCoordinateM &&
+         std::fabs(p.z) <= kLargestCoordinateM;
+}
+
+Kept finite_points(const CloudPart& part, const Executor& executor) {
+  Kept kept(part.size());
+  executor.for_chunks(part.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
+      const bool finite =
+          is_finite(world) && (part.world_sensors.empty() || is_place(part.world_sensors[i])) &&
+          (part.cloud.intensities.empty() || std::isfinite(part.cloud.intensities[i]));
+      kept[i] = finite ? 1 : 0;
+    });
+  });
+  return kept;
+}
+
+std::size_t count_dropped(const Kept& kept) {
+  return static_cast<std::size_t>(std::ranges::count(kept, std::uint8_t{0}));
+}
+
+void require_all_finite(const CloudPart& part, const Kept& kept) {
+  const auto dropped = std::ranges::find(kept, std::uint8_t{0});
+  if (dropped == kept.end()) return;
+  const auto i = static_cast<std::size_t>(dropped - kept.begin());
+  const auto run = std::ranges::upper_bound(part.runs, i, {}, &PartRun::end);
+  throw Error(ErrorKind::data, run->file.string() + ": point " + std::to_string(i - run->begin) +
+                                   " (from 0) is not finite in position, sensor position or "
+                                   "intensity");
+}
+
+struct Extents {
+  Vec3d low{kNone, kNone, kNone};
+  Vec3d high{-kNone, -kNone, -kNone};
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  Extents& operator+=(const Extents& other) {
+    low = min(low, other.low);
+    high = max(high, other.high);
+    return *this;
+  }
+};
+
+Extents extents_of(const CloudPart& part, const Kept& kept, const Executor& executor) {
+  return executor.sum_chunks(
+      part.size(), kGrain, Extents{}, [&](std::size_t begin, std::size_t end) {
+        Extents extents;
+        part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
+          if (kept[i] != 0) extents += {world, world};
+        });
+        return extents;
+      });
+}
+
+/// The parts and what is known of their points on the way to one cloud.
+struct Gathered {
+  std::vector<CloudPart> parts;
+  std::vector<Kept> kept;  ///< one a part
+
+  Extents extents(const Executor& executor) const {
+    Extents all;
+    for (std::size_t p = 0; p < parts.size(); ++p) all += extents_of(parts[p], kept[p], executor);
+    return all;
+  }
+};
+
+/// The componentwise (lower) median. One axis at a time bounds the memory to 8 bytes a point.
+Vec3d median_of(const Gathered& gathered) {
+  Vec3d median;
+  std::vector<double> values;
+  for (int axis = 0; axis < 3; ++axis) {
+    values.clear();
+    for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
+      const CloudPart& part = gathered.parts[p];
+      part.for_each(0, part.size(), [&](std::size_t i, Vec3d world, const PartRun&) {
+        if (gathered.kept[p][i] != 0) values.push_back(world[axis]);
+      });
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    median[axis] = *middle;
+  }
+  return median;
+}
+
+/// Drops what is farther from the median than allowed; gives the extents of the rest.
+Extents drop_far(Gathered& gathered, double max_distance_m, const Executor& executor) {
+  const Extents all = gathered.extents(executor);
+  if (!(all.low.x <= all.high.x)) return all;  // no points
+  // Where the whole box is smaller than the distance no point is farther from any other.
+  if (is_place(all.low) && is_place(all.high) && length(all.high - all.low) <= max_distance_m)
+    return all;
+  const Vec3d median = median_of(gathered);
+  for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
+    const CloudPart& part = gathered.parts[p];
+    executor.for_chunks(part.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
+        if (!is_place(world) || !(length(world - median) <= max_distance_m))
+          gathered.kept[p][i] = 0;
+      });
+    });
+  }
+  return gathered.extents(executor);
+}
+
+template <class T>
+void keep_only(std::vector<T>& values, const Kept& kept) {
+  if (values.empty()) return;
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (kept[i] != 0) values[end++] = values[i];
+  values.resize(end);
+  values.shrink_to_fit();
+}
+
+/// Where the sensor was when it measured the points that do not say so themselves.
+struct SensorFallback {
+  std::optional<Vec3d> viewpoint;
+  Trajectory trajectory;
+  std::optional<NearestPose> nearest;
+
+  explicit SensorFallback(const LoadOptions& options) : viewpoint(options.viewpoint) {
+    if (options.trajectory.empty()) return;
+    trajectory = read_trajectory(options.trajectory);
+    nearest.emplace(trajectory);
+  }
+  bool given() const { return viewpoint || nearest; }
+  Vec3d at(Vec3d world) const {
+    if (viewpoint) return *viewpoint;
+    return trajectory[nearest->find(world.x, world.y)].world_from_sensor.translation;
+  }
+};
+
+/// The part's cloud relative to `origin`, without the points that are dropped.
+PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin,
+                     const SensorFallback& fallback, const Executor& executor) {
+  const std::size_t points = part.size();
+  const bool has_sensors = part.is_sequence || !part.world_sensors.empty() || fallback.given();
+  PointCloud cloud = std::move(part.cloud);
+  // The part keeps the positions, since for_each() reads them there; those of sequences are
+  // transformed in place, each read once, just before it is written.
+  std::vector<Vec3f>& positions = part.cloud.positions;
+  positions = std::move(cloud.positions);
+  positions.resize(points);
+  if (has_sensors) cloud.sensor_positions.resize(points);
+  executor.for_chunks(points, kGrain, [&](std::size_t begin, std::size_t end) {
+    part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun& run) {
+      if (kept[i] == 0) return;
+      positions[i] = vec_cast<float>(world - origin);
+      if (!has_sensors) return;
+      const Vec3d sensor = part.is_sequence             ? run.world_from_local.translation
+                           : part.world_sensors.empty() ? fallback.at(world)
+                                                        : part.world_sensors[i];
+      cloud.sensor_positions[i] = vec_cast<float>(sensor - origin);
+    });
+  });
+  cloud.origin = origin;
+  cloud.positions = std::move(positions);
+  part = {};
+  if (count_dropped(kept) == 0) return cloud;
+  keep_only(cloud.positions, kept);
+  keep_only(cloud.sensor_positions, kept);
+  keep_only(cloud.intensities, kept);
+  keep_only(cloud.classes, kept);
+  keep_only(cloud.instances, kept);
+  keep_only(cloud.scan_indices, kept);
+  return cloud;
+}
+
+/// Empties an attribute that some clouds have and others lack.
+template <class T>
+void unify_attribute(std::vector<PointCloud>& clouds, std::vector<T> PointCloud::*attribute,
+                     const std::string& name, ProgressSink& progress) {
+  std::size_t with = 0, filled = 0;
+  for (const PointCloud& cloud : clouds) {
+    if (cloud.empty()) continue;
+    ++filled;
+    if (!(cloud.*attribute).empty()) ++with;
+  }
+  if (with == filled) return;
+  for (PointCloud& cloud : clouds) (cloud.*attribute) = {};
+  if (with != 0)
+    progress.warn(name + " dropped: " + std::to_string(with) + " of " + std::to_string(filled) +
+                  " inputs have them");
+}
+
+PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, ProgressSink& progress) {
+  unify_attribute(clouds, &PointCloud::sensor_positions, "sensor positions", progress);
+  unify_attribute(clouds, &PointCloud::intensities, "intensities", progress);
+  unify_attribute(clouds, &PointCloud::classes, "classes", progress);
+  unify_attribute(clouds, &PointCloud::instances, "instances", progress);
+  unify_attribute(clouds, &PointCloud::scan_indices, "scan numbers", progress);
+  PointCloud all;
+  all.origin = origin;
+  for (PointCloud& cloud : clouds)
+    if (!cloud.empty()) append(all, std::move(cloud));
+  return all;
+}
+
+}  // namespace
+
+std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
+                                             const LoadOptions& options, const Executor& executor,
+                                             ProgressSink& progress) {
+  const std::vector<Input> listed = list_inputs(inputs);
+  require_options_that_fit(options, listed);
+  const SensorFallback fallback(options);
+  Gathered gathered{read_parts(listed, options, executor, progress), {}};
+
+  LoadReport report;
+  for (const CloudPart& part : gathered.parts) {
+    gathered.kept.push_back(finite_points(part, executor));
+    if (options.strict) require_all_finite(part, gathered.kept.back());
+    report.points_read += part.size();
+    report.dropped_not_finite += count_dropped(gathered.kept.back());
+  }
+  const Extents extents = drop_far(gathered, options.max_distance_m, executor);
+  const Vec3d origin = choose_origin(extents.low, extents.high);
+
+  std::vector<PointCloud> clouds;
+  std::size_t dropped = 0;
+  for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
+    dropped += count_dropped(gathered.kept[p]);
+    clouds.push_back(
+        localized(std::move(gathered.parts[p]), gathered.kept[p], origin, fallback, executor));
+  }
+  report.dropped_far = dropped - report.dropped_not_finite;
+  return {joined(std::move(clouds), origin, progress), report};
+}
+
+}  // namespace adasplats

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/point_cloud.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace adasplats {
+
+namespace {
+
+template <class T>
+std::vector<T> gathered(const std::vector<T>& values, std::span<const std::uint32_t> indices) {
+  std::vector<T> result;
+  if (values.empty()) return result;
+  result.reserve(indices.size());
+  for (const std::uint32_t i : indices) result.push_back(values[i]);
+  return result;
+}
+
+template <class T>
+void append_values(std::vector<T>& values, std::vector<T>&& more) {
+  if (values.empty()) {
+    values = std::move(more);
+  } else {
+    values.insert(values.end(), more.begin(), more.end());
+    std::vector<T>().swap(more);
+  }
+}
+
+bool same_attributes(const PointCloud& a, const PointCloud& b) {
+  return a.sensor_positions.empty() == b.sensor_positions.empty() &&
+         a.intensities.empty() == b.intensities.empty() && a.classes.empty() == b.classes.empty() &&
+         a.instances.empty() == b.instances.empty() &&
+         a.scan_indices.empty() == b.scan_indices.empty();
+}
+
+double choose_origin_along_axis(double low, double high) {
+  // At 1024 m the next float is 0.12 mm away, so rounding errs by at most 0.06 mm.
+  constexpr double kFloatRangeM = 1000.0;
+  if (!(low <= high)) return 0.0;
+  if (-kFloatRangeM <= low && high <= kFloatRangeM) return 0.0;
+  const double middle = low / 2 + high / 2;  // low + high may overflow
+  return std::round(middle / 1000.0) * 1000.0;
+}
+
+}  // namespace
+
+PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices) {
+  return {cloud.origin,
+          gathered(cloud.positions, indices),
+          gathered(cloud.sensor_positions, indices),
+          gathered(cloud.intensities, indices),
+          gathered(cloud.classes, indices),
+          gathered(cloud.instances, indices),
+          gathered(cloud.scan_indices, indices)};
+}
+
+void append(PointCloud& cloud, PointCloud&& other) {
+  if (cloud.empty()) {
+    cloud = std::move(other);
+    return;
+  }
+  if (other.empty()) return;
+  if (!(cloud.origin == other.origin)) throw std::logic_error("append: clouds of two origins");
+  if (!same_attributes(cloud, other))
+    throw std::logic_error("append: clouds of two attribute sets");
+  append_values(cloud.positions, std::move(other.positions));
+  append_values(cloud.sensor_positions, std::move(other.sensor_positions));
+  append_values(cloud.intensities, std::move(other.intensities));
+  append_values(cloud.classes, std::move(other.classes));
+  append_values(cloud.instances, std::move(other.instances));
+  append_values(cloud.scan_indices, std::move(other.scan_indices));
+}
+
+Vec3d choose_origin(Vec3d low, Vec3d high) {
+  return {choose_origin_along_axis(low.x, high.x), choose_origin_along_axis(low.y, high.y),
+          choose_origin_along_axis(low.z, high.z)};
+}
+
+}  // namespace adasplats

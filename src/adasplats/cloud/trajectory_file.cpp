@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Trajectories as files.
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string>
+
+#include "adasplats/cloud/rotation.h"
+#include "adasplats/cloud/trajectory.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/line_reader.h"
+#include "adasplats/io/number_text.h"
+
+namespace adasplats {
+
+namespace {
+
+constexpr double kTolerance = 1e-3;  // of rotation matrices and quaternion norms
+constexpr double kDefaultPeriodS = 0.1;
+constexpr std::string_view kCsvHeader = "time,x,y,z,qw,qx,qy,qz";
+
+/// Whether a file beside another is there. What is there and cannot be read is left to the reader.
+bool is_there(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::status(path, ignored).type() != std::filesystem::file_type::not_found;
+}
+
+/// A line that is not blank, by its number from 1.
+struct NumberedLine {
+  std::uint64_t number;
+  std::string text;
+};
+
+std::vector<NumberedLine> filled_lines(const std::filesystem::path& path) {
+  InputFile file(path);
+  LineReader reader(file);
+  std::vector<NumberedLine> lines;
+  while (const auto line = reader.next_filled())
+    lines.push_back({reader.line(), std::string(*line)});
+  return lines;
+}
+
+std::vector<std::string_view> split_commas(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (;;) {
+    const std::size_t end = line.find(',');
+    fields.push_back(BlankTokens(line.substr(0, end)).rest());
+    if (end == std::string_view::npos) return fields;
+    line.remove_prefix(end + 1);
+  }
+}
+
+std::string short_text(double value) {
+  std::array<char, 32> buffer;
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                    std::chars_format::general, 6);
+  return std::string(buffer.data(), result.ptr);
+}
+
+/// `N` finite numbers, or an error that names the line.
+template <std::size_t N>
+std::array<double, N> finite_numbers(const std::filesystem::path& path, std::uint64_t line,
+                                     const std::vector<std::string_view>& fields) {
+  const FilePlace place{path, {}, line};
+  if (fields.size() != N)
+    throw data_error(
+        place, "found " + std::to_string(fields.size()) + " values, expected " + std::to_string(N));
+  std::array<double, N> numbers;
+  for (std::size_t i = 0; i < N; ++i) {
+    const auto number = parse_number<double>(fields[i]);
+    if (!number || !std::isfinite(*number))
+      throw data_error(place, "value " + std::to_string(i + 1) + " " + shown(fields[i]) +
+                                  " is not a finite number");
+    numbers[i] = *number;
+  }
+  return numbers;
+}
+
+RigidTransform transform_from_rows(const std::filesystem::path& path, std::uint64_t line,
+                                   const std::vector<std::string_view>& fields) {
+  const auto v = finite_numbers<12>(path, line, fields);
+  const Mat3d matrix{{{v[0], v[1], v[2]}, {v[4], v[5], v[6]}, {v[8], v[9], v[10]}}};
+  const double error = orthonormality_error(matrix);
+  if (!(error <= kTolerance))
+    throw data_error({path, {}, line}, "the rotation is not orthonormal to " +
+                                           short_text(kTolerance) + " (off by " +
+                                           short_text(error) + ")");
+  return {orthonormalized(matrix), {v[3], v[7], v[11]}};
+}
+
+/// The `Tr:` line of a KITTI calib.txt: camera_from_velodyne.
+std::optional<RigidTransform> read_calibration(const std::filesystem::path& path) {
+  if (!is_there(path)) return std::nullopt;
+  for (const NumberedLine& line : filled_lines(path)) {
+    std::vector<std::string_view> fields = split_blanks(line.text);
+    if (fields.front() != "Tr:") continue;
+    fields.erase(fields.begin());
+    return transform_from_rows(path, line.number, fields);
+  }
+  return std::nullopt;
+}
+
+void require_ascending(const std::filesystem::path& path, std::uint64_t line, double before_s,
+                       double time_s) {
+  if (!(time_s > before_s))
+    throw data_error({path, {}, line}, "time " + short_text(time_s) +
+                                           " s does not come after the one before, " +
+                                           short_text(before_s) + " s");
+}
+
+/// Times of `count` poses from times.txt, else by a fixed period.
+std::vector<double> read_times(const std::filesystem::path& path, std::size_t count) {
+  std::vector<double> times_s;
+  if (!is_there(path)) {
+    for (std::size_t i = 0; i < count; ++i)
+      times_s.push_back(kDefaultPeriodS * static_cast<double>(i));
+    return times_s;
+  }
+  for (const NumberedLine& line : filled_lines(path)) {
+    const double time_s = finite_numbers<1>(path, line.number, split_blanks(line.text))[0];
+    if (!times_s.empty()) require_ascending(path, line.number, times_s.back(), time_s);
+    times_s.push_back(time_s);
+  }
+  if (times_s.size() != count)
+    throw Error(ErrorKind::data, path.string() + ": " + std::to_string(times_s.size()) +
+                                     " times, " + std::to_string(count) + " poses");
+  return times_s;
+}
+
+Trajectory read_kitti_poses(const std::filesystem::path& path,
+                            const std::vector<NumberedLine>& lines) {
+  const std::filesystem::path folder = path.parent_path();
+  const auto camera_from_sensor = read_calibration(folder / "calib.txt");
+  const std::vector<double> times_s = read_times(folder / "times.txt", lines.size());
+  Trajectory trajectory;
+  trajectory.reserve(lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    RigidTransform pose = transform_from_rows(path, lines[i].number, split_blanks(lines[i].text));
+    if (camera_from_sensor) pose = camera_from_sensor->inverse() * pose * *camera_from_sensor;
+    trajectory.push_back({times_s[i], pose});
+  }
+  return trajectory;
+}
+
+bool is_csv_header(const NumberedLine& line) {
+  return std::ranges::equal(split_commas(line.text), split_commas(kCsvHeader));
+}
+
+Trajectory read_csv_poses(const std::filesystem::path& path,
+                          const std::vector<NumberedLine>& lines) {
+  Trajectory trajectory;
+  for (const NumberedLine& line : lines) {
+    if (&line == &lines.front() && is_csv_header(line)) continue;
+    const auto v = finite_numbers<8>(path, line.number, split_commas(line.text));
+    const double norm = std::sqrt(v[4] * v[4] + v[5] * v[5] + v[6] * v[6] + v[7] * v[7]);
+    if (!(std::fabs(norm - 1) <= kTolerance))
+      throw data_error({path, {}, line.number},
+                       "the quaternion's norm is " + short_text(norm) + ", expected 1");
+    if (!trajectory.empty()) require_ascending(path, line.number, trajectory.back().time_s, v[0]);
+    const Mat3d rotation =
+        rotation_from_quaternion(v[4] / norm, v[5] / norm, v[6] / norm, v[7] / norm);
+    trajectory.push_back({v[0], {rotation, {v[1], v[2], v[3]}}});
+  }
+  return trajectory;
+}
+
+void append_fixed(std::string& text, double value) {
+  std::array<char, 400> buffer;  // the largest double has 309 digits before the point
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                    std::chars_format::fixed, 9);
+  text.append(buffer.data(), result.ptr);
+}
+
+}  // namespace
+
+Trajectory read_trajectory(const std::filesystem::path& path) {
+  const std::vector<NumberedLine> lines = filled_lines(path);
+  const bool is_csv = !lines.empty() && lines.front().text.find(',') != std::string::npos;
+  Trajectory trajectory = is_csv ? read_csv_poses(path, lines) : read_kitti_poses(path, lines);
+  if (trajectory.empty()) throw Error(ErrorKind::data, path.string() + ": holds no poses");
+  return trajectory;
+}
+
+void write_trajectory_csv(const std::filesystem::path& path, const Trajectory& trajectory) {
+  std::string text(kCsvHeader);
+  text += '\n';
+  for (const TimedPose& pose : trajectory) {
+    const Vec3d p = pose.world_from_sensor.translation;
+    const Quaternion q = quaternion_from_rotation(pose.world_from_sensor.rotation);
+    append_fixed(text, pose.time_s);
+    for (const double value : {p.x, p.y, p.z, q.w, q.x, q.y, q.z}) {
+      text += ',';
+      append_fixed(text, value);
+    }
+    text += '\n';
+  }
+  write_file(path, text);
+}
+
+}  // namespace adasplats

@@ -1,0 +1,272 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/evaluate/resimulate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "adasplats/core/error.h"
+#include "adasplats/evaluate/beam_accuracy_internal.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+constexpr std::array<double, 7> kRangeEdges_m = {10, 20, 30, 40, 50, 75, 100};
+constexpr std::array<double, 6> kIncidenceEdges_deg = {0, 30, 60, 75, 85, 90};
+constexpr double kDegreesPerRadian = 57.29577951308232;
+
+/// What is kept of a beam until the end: 8 bytes.
+struct Beam {
+  float error_m = kNoHitError;
+  std::uint8_t range_bin = 0;
+  std::uint8_t incidence_bin = 0;  ///< meaningless without a hit
+  std::uint16_t class_id = 0;      ///< 0 without labels
+};
+
+/// Beams of one scan that take part, with the points they measured and the model predicts.
+struct ScanBeams {
+  std::vector<Beam> beams;
+  PointCloud measured;   ///< sensor frame
+  PointCloud predicted;  ///< sensor frame; beams without a hit have none
+};
+
+/// Names and bounds of bins: value v is in bin k for edges[k] <= v < edges[k + 1].
+struct Bins {
+  std::vector<double> edges;
+  const char* unit;
+
+  std::uint8_t bin_of(double value) const {
+    const auto after = std::upper_bound(edges.begin() + 1, edges.end() - 1, value);
+    return static_cast<std::uint8_t>(after - edges.begin() - 1);
+  }
+  std::size_t size() const { return edges.size() - 1; }
+  std::string name_of(std::size_t bin) const {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%g-%g %s", edges[bin], edges[bin + 1], unit);
+    return text.data();
+  }
+};
+
+Bins range_bins(const ResimulateOptions& options) {
+  Bins bins{{options.min_range_m}, "m"};
+  for (const double edge : kRangeEdges_m) {
+    if (edge > options.min_range_m && edge < options.max_range_m) bins.edges.push_back(edge);
+  }
+  bins.edges.push_back(options.max_range_m);
+  return bins;
+}
+
+Bins incidence_bins() { return {{kIncidenceEdges_deg.begin(), kIncidenceEdges_deg.end()}, "deg"}; }
+
+/// Unit normal of a primitive, either side.
+Vec3f normal_of(const SceneView& scene, std::uint32_t primitive) {
+  if (primitive < scene.disk_count()) return scene.disks[primitive].normal;
+  const Triangle triangle = scene.mesh->triangle(primitive - scene.disk_count());
+  return normalized(cross(triangle.b - triangle.a, triangle.c - triangle.a));
+}
+
+double incidence_deg(const SceneView& scene, const Ray& ray, std::uint32_t primitive) {
+  const double cosine =
+      std::fabs(static_cast<double>(dot(ray.direction, normal_of(scene, primitive))));
+  return std::acos(std::min(cosine, 1.0)) * kDegreesPerRadian;
+}
+
+/// Whether a beam on an object of this class takes part.
+bool takes_part(const SemanticClass& semantic_class, const ResimulateOptions& options) {
+  switch (semantic_class.mobility) {
+    case Mobility::fixed: return true;
+    case Mobility::movable: return !options.drop_movable;
+    case Mobility::moving: return !options.drop_moving;
+  }
+  return true;
+}
+
+/// The measured points that take part: finite, within the ranges, of classes that are kept.
+std::vector<std::uint32_t> select_points(const KittiScan& scan, const std::filesystem::path& file,
+                                         const LabelScheme& labels,
+                                         const ResimulateOptions& options) {
+  std::vector<std::uint32_t> selected;
+  for (std::size_t i = 0; i < scan.positions.size(); ++i) {
+    const Vec3d point = vec_cast<double>(scan.positions[i]);
+    const double range_m = length(point);
+    // A point that is not finite has no range within the bounds.
+    if (!(range_m >= options.min_range_m && range_m <= options.max_range_m)) continue;
+    if (!scan.classes.empty()) {
+      const SemanticClass* found = labels.find(scan.classes[i]);
+      if (found == nullptr) {
+        throw Error(ErrorKind::data, file.string() + ": point " + std::to_string(i) + ": class " +
+                                         std::to_string(scan.classes[i]) +
+                                         " is not in the label scheme '" + labels.name() + "'");
+      }
+      if (!takes_part(*found, options)) continue;
+    }
+    selected.push_back(static_cast<std::uint32_t>(i));
+  }
+  return selected;
+}
+
+/// From the sensor's origin through the measured point, in the scene's frame.
+Ray beam_ray(const RigidTransform& scene_from_sensor, Vec3f measured) {
+  const Vec3d direction = normalized(vec_cast<double>(measured));
+  Ray ray;
+  ray.origin = vec_cast<float>(scene_from_sensor.translation);
+  ray.direction = vec_cast<float>(scene_from_sensor.rotation * direction);
+  return ray;
+}
+
+/// Everything the beams of all scans are cast and sorted with.
+struct Setting {
+  const Tracer& tracer;
+  const SceneView& scene;
+  Vec3d scene_origin;
+  const LabelScheme& labels;
+  const ResimulateOptions& options;
+  Bins ranges;
+  Bins incidences;
+};
+
+ScanBeams cast_scan(const Setting& setting, const KittiSequence& sequence, std::size_t index,
+                    const Executor& executor) {
+  const KittiScan scan = read_kitti_scan(sequence, index);
+  const std::vector<std::uint32_t> selected =
+      select_points(scan, sequence.scans[index], setting.labels, setting.options);
+  RigidTransform scene_from_sensor = sequence.trajectory[index].world_from_sensor;
+  scene_from_sensor.translation = scene_from_sensor.translation - setting.scene_origin;
+
+  ScanBeams result;
+  result.beams.resize(selected.size());
+  result.measured.positions.resize(selected.size());
+  std::vector<Ray> rays(selected.size());
+  std::vector<Hit> hits(selected.size());
+  executor.for_chunks(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      result.measured.positions[k] = scan.positions[selected[k]];
+      rays[k] = beam_ray(scene_from_sensor, result.measured.positions[k]);
+    }
+  });
+  setting.tracer.nearest(rays, hits, executor);
+  for (std::size_t k = 0; k < selected.size(); ++k) {
+    const Vec3d measured = vec_cast<double>(result.measured.positions[k]);
+    const double range_m = length(measured);
+    Beam& beam = result.beams[k];
+    beam.range_bin = setting.ranges.bin_of(range_m);
+    if (!scan.classes.empty()) beam.class_id = scan.classes[selected[k]];
+    if (!hits[k].valid()) continue;
+    const double predicted_m = static_cast<double>(hits[k].t);
+    beam.error_m = static_cast<float>(predicted_m - range_m);
+    beam.incidence_bin =
+        setting.incidences.bin_of(incidence_deg(setting.scene, rays[k], hits[k].primitive));
+    result.predicted.positions.push_back(vec_cast<float>(measured * (predicted_m / range_m)));
+  }
+  return result;
+}
+
+/// Means of the scans' distances, as lidar-nerf and LiDAR4D average them over frames.
+class MeanCloudDistance {
+ public:
+  void add(const CloudDistance& scan) {
+    ++scans_;
+    sum_.c2c_m += scan.c2c_m;
+    sum_.completeness_m += scan.completeness_m;
+    sum_.chamfer_m += scan.chamfer_m;
+    sum_.chamfer_m2 += scan.chamfer_m2;
+    for (const auto& [bound_m, score] : scan.f_score) sum_.f_score[bound_m] += score;
+    sum_.simulated_points += scan.simulated_points;
+    sum_.original_points += scan.original_points;
+  }
+  /// NaN distances where no scan was added.
+  CloudDistance mean() const {
+    const double scans = scans_ == 0 ? std::numeric_limits<double>::quiet_NaN() : scans_;
+    CloudDistance result = sum_;
+    for (double* value :
+         {&result.c2c_m, &result.completeness_m, &result.chamfer_m, &result.chamfer_m2}) {
+      *value /= scans;
+    }
+    for (auto& [bound_m, score] : result.f_score) score /= scans;
+    return result;
+  }
+
+ private:
+  int scans_ = 0;
+  CloudDistance sum_;
+};
+
+template <class Predicate>
+BeamAccuracy accuracy_where(const std::vector<Beam>& beams, const Predicate& predicate) {
+  std::vector<float> errors_m;
+  for (const Beam& beam : beams) {
+    if (predicate(beam)) errors_m.push_back(beam.error_m);
+  }
+  return accuracy_of(errors_m);
+}
+
+void add_breakdowns(ResimulateResult& result, const std::vector<Beam>& beams,
+                    const Setting& setting, bool labelled) {
+  for (std::size_t bin = 0; bin < setting.ranges.size(); ++bin) {
+    result.by_range.emplace_back(
+        setting.ranges.name_of(bin),
+        accuracy_where(beams, [&](const Beam& beam) { return beam.range_bin == bin; }));
+  }
+  for (std::size_t bin = 0; bin < setting.incidences.size(); ++bin) {
+    result.by_incidence.emplace_back(
+        setting.incidences.name_of(bin), accuracy_where(beams, [&](const Beam& beam) {
+          return !std::isnan(beam.error_m) && beam.incidence_bin == bin;
+        }));
+  }
+  if (!labelled) return;
+  for (const SemanticClass& semantic_class : setting.labels.classes()) {
+    BeamAccuracy accuracy =
+        accuracy_where(beams, [&](const Beam& beam) { return beam.class_id == semantic_class.id; });
+    if (accuracy.rays > 0) result.by_class.emplace_back(semantic_class.name, std::move(accuracy));
+  }
+}
+
+void check(const ResimulateOptions& options) {
+  if (!(options.min_range_m >= 0 && options.min_range_m < options.max_range_m &&
+        std::isfinite(options.max_range_m))) {
+    throw Error(ErrorKind::usage, "ranges must be 0 <= minimum < maximum, found " +
+                                      std::to_string(options.min_range_m) + " and " +
+                                      std::to_string(options.max_range_m));
+  }
+}
+
+}  // namespace
+
+ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
+                            const KittiSequence& sequence, const LabelScheme& labels,
+                            const ResimulateOptions& options, const Executor& executor,
+                            ProgressSink& progress) {
+  check(options);
+  const Setting setting{tracer,          scene, scene_origin, labels, options, range_bins(options),
+                        incidence_bins()};
+  std::vector<Beam> beams;
+  MeanCloudDistance clouds;
+  progress.begin_step("re-simulate", sequence.scans.size());
+  for (std::size_t index = 0; index < sequence.scans.size(); ++index) {
+    const ScanBeams scan = cast_scan(setting, sequence, index, executor);
+    beams.insert(beams.end(), scan.beams.begin(), scan.beams.end());
+    if (!scan.predicted.empty()) {
+      clouds.add(cloud_distance(scan.predicted, scan.measured, executor));
+    } else if (!scan.beams.empty()) {
+      progress.warn(sequence.scans[index].string() +
+                    ": no beam hit the model; the scan is left out of the cloud distances");
+    }
+    progress.advance(index + 1);
+  }
+  progress.end_step();
+  if (beams.empty()) {
+    throw Error(ErrorKind::data, sequence.folder.string() +
+                                     ": no measured beams within the ranges and classes kept");
+  }
+  ResimulateResult result;
+  result.all = accuracy_where(beams, [](const Beam&) { return true; });
+  result.clouds = clouds.mean();
+  add_breakdowns(result, beams, setting, !sequence.labels.empty());
+  return result;
+}
+
+}  // namespace adasplats

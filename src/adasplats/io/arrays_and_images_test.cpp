@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <string>
+#include <vector>
+
+#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/npy.h"
+#include "adasplats/io/png.h"
+#include "adasplats/io/point_files.h"
+#include "adasplats/io/test_files.h"
+
+namespace adasplats {
+namespace {
+
+using io_test::bytes_of;
+using io_test::expect_error;
+using io_test::TemporaryFolder;
+using io_test::values_of;
+
+// The oracle: the bytes that numpy/lib/format.py (format version 1.0) describes, written by hand.
+TEST(Npy, BytesOfFormatVersion10) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "file.npy";
+  write_npy(path, std::vector<float>{1, 2, 3, 4, 5, 6}, 2, 3);
+  std::string header = std::string("\x93NUMPY\x01\x00\x76\x00", 10) +
+                       "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }";
+  header.resize(127, ' ');
+  std::string values;
+  for (const float value : {1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F}) values += bytes_of(value);
+  EXPECT_EQ(read_file(path), header + "\n" + values);
+
+  write_npy(path, std::vector<std::uint32_t>{7, 0xffffffff});
+  header = std::string("\x93NUMPY\x01\x00\x76\x00", 10) +
+           "{'descr': '<u4', 'fortran_order': False, 'shape': (2,), }";
+  header.resize(127, ' ');
+  EXPECT_EQ(read_file(path), header + "\n" + bytes_of(7U) + bytes_of(0xffffffffU));
+}
+
+TEST(Npy, ShapeMustMatchAndMayBeEmpty) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "file.npy";
+  const std::vector<float> six(6);
+  EXPECT_THROW(write_npy(path, six, 2, 4), std::logic_error);
+  EXPECT_THROW(write_npy(path, six, 6, 0), std::logic_error);
+  // 2^63 + 3 times 2 wraps to 6.
+  EXPECT_THROW(write_npy(path, six, (std::size_t{1} << 63) + 3, 2), std::logic_error);
+  EXPECT_EQ(folder.file_count(), 0U);
+  write_npy(path, std::vector<float>{}, 0, 4);
+  EXPECT_EQ(read_file(path).size(), 128U);
+}
+
+// The oracle: libpng's reader.
+TEST(Png, RoundTripOfNoiseAndOfOneColour) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "image.png";
+  for (const auto& [width, height] : std::vector<std::pair<int, int>>{{1, 1}, {7, 3}, {640, 480}}) {
+    for (const bool is_noise : {false, true}) {
+      std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width) * height * 3, 90);
+      std::uint32_t state = 1;
+      for (std::uint8_t& value : pixels)
+        if (is_noise)
+          value = static_cast<std::uint8_t>((state = state * 1664525U + 1013904223U) >> 24);
+      write_png(path, width, height, pixels);
+      png_image image{};
+      image.version = PNG_IMAGE_VERSION;
+      ASSERT_NE(png_image_begin_read_from_file(&image, path.c_str()), 0);
+      EXPECT_EQ(image.format, static_cast<png_uint_32>(PNG_FORMAT_RGB));
+      EXPECT_EQ(image.width, static_cast<png_uint_32>(width));
+      EXPECT_EQ(image.height, static_cast<png_uint_32>(height));
+      std::vector<std::uint8_t> read(pixels.size());
+      ASSERT_NE(png_image_finish_read(&image, nullptr, read.data(), 0, nullptr), 0);
+      EXPECT_EQ(read, pixels);
+    }
+  }
+}
+
+TEST(Png, PixelsMustMatchTheSize) {
+  const std::vector<std::uint8_t> pixels(12);
+  EXPECT_THROW(write_png("never-written.png", 2, 3, pixels), std::logic_error);
+  EXPECT_THROW(write_png("never-written.png", 0, 0, {}), std::logic_error);
+  EXPECT_THROW(write_png("never-written.png", -2, -2, pixels), std::logic_error);
+}
+
+TEST(KittiBin, FourFloatsAPoint) {
+  const TemporaryFolder folder;
+  std::string content;
+  for (int k = 0; k < 40000; ++k)
+    for (const float part : {0.0F, 0.25F, 0.5F, 0.75F})
+      content += bytes_of(static_cast<float>(k) + part);
+  const Table table = read_kitti_bin(folder.file("000000.bin", content));
+  ASSERT_EQ(table.rows, 40000U);
+  for (std::size_t column = 0; column < 4; ++column) {
+    const auto& values = std::get<std::vector<float>>(table.columns[column].values);
+    for (std::size_t k = 0; k < table.rows; ++k)
+      ASSERT_EQ(values[k], static_cast<float>(k) + 0.25F * static_cast<float>(column));
+  }
+  EXPECT_EQ(table.columns[3].name, "intensity");
+}
+
+TEST(KittiBin, PartOfAPointIsAnError) {
+  const TemporaryFolder folder;
+  expect_error(ErrorKind::data, {"byte 17", "found 1 bytes"},
+               [&] { read_kitti_bin(folder.file("a.bin", std::string(17, 'x'))); });
+  expect_error(ErrorKind::data, {"empty"}, [&] { read_kitti_bin(folder.file("b.bin", "")); });
+  expect_error(ErrorKind::no_input, {}, [&] { read_kitti_bin(folder.path() / "c.bin"); });
+}
+
+}  // namespace
+}  // namespace adasplats

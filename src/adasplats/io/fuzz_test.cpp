@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/ply.h"
+#include "adasplats/io/point_files.h"
+#include "adasplats/io/test_files.h"
+
+// Broken files of every format, the same in each run: nothing but adasplats::Error may escape, no
+// columns of unequal length, no memory beyond what the file's size allows. Worth most under the
+// sanitizers.
+namespace adasplats {
+namespace {
+
+using io_test::bytes_of;
+using io_test::put;
+using io_test::TemporaryFolder;
+
+struct Seed {
+  std::string name;
+  std::string content;
+};
+
+std::string las_seed(int minor, int format, std::size_t record_bytes) {
+  const std::size_t header_bytes = minor == 4 ? 375 : 227;
+  std::string content(header_bytes + 54 + 5 * record_bytes, '\0');
+  put(content, 0, std::uint32_t{0x4653414c});
+  put(content, 24, std::uint8_t{1});
+  put(content, 25, static_cast<std::uint8_t>(minor));
+  put(content, 94, static_cast<std::uint16_t>(header_bytes));
+  put(content, 96, static_cast<std::uint32_t>(header_bytes + 54));
+  put(content, 100, std::uint32_t{1});
+  put(content, 104, static_cast<std::uint8_t>(format));
+  put(content, 105, static_cast<std::uint16_t>(record_bytes));
+  put(content, 107, std::uint32_t{5});
+  for (std::size_t axis = 0; axis < 3; ++axis) put(content, 131 + 8 * axis, 0.01);
+  return content;
+}
+
+std::vector<Seed> small_seeds() {
+  const std::string mesh =
+      "comment c\nelement vertex 3\nproperty float x\nproperty double y\nproperty uchar z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nproperty short c\nend_header\n";
+  const std::string ascii_mesh = mesh + "1 2 3\n4 5.5 6\n-7 8e3 9\n3 0 1 2 5\n4 2 1 0 1 6\n";
+  std::string binary_mesh = mesh;
+  for (int k = 0; k < 3; ++k) binary_mesh += bytes_of(1.0F) + bytes_of(2.0) + "3";
+  binary_mesh += "\3" + bytes_of(0) + bytes_of(1) + bytes_of(2) + "ab";
+  binary_mesh += "\3" + bytes_of(2) + bytes_of(1) + bytes_of(0) + "cd";
+  const std::string pcd =
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS x _ n\nSIZE 4 1 2\nTYPE F U I\n"
+      "COUNT 1 3 2\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\n";
+  const std::string lzf = std::string(
+                              "\x03"
+                              "abcd\x60\x03",
+                              7) +
+                          std::string("\x20\x00", 2) +
+                          std::string(
+                              "\x09"
+                              "0123456789",
+                              11);
+  return {{"a.ply", "ply\nformat ascii 1.0\n" + ascii_mesh},
+          {"a.ply", "ply\nformat binary_little_endian 1.0\n" + binary_mesh},
+          {"a.ply", "ply\nformat binary_big_endian 1.0\n" + binary_mesh},
+          {"a.pcd", pcd + "DATA ascii\n1.5 1 2 3 4 5\nnan 1 2 3 4 5\n"},
+          {"a.pcd", pcd + "DATA binary\n" + std::string(22, 'b')},
+          {"a.pcd", pcd + "DATA binary_compressed\n" +
+                        bytes_of(static_cast<std::uint32_t>(lzf.size())) + bytes_of(22U) + lzf},
+          {"a.las", las_seed(2, 3, 34)},
+          {"a.las", las_seed(4, 7, 40)},
+          {"a.xyz", "# x y z\n1 2 3\n4 5.5 -6e3\n"},
+          {"a.pts", "2\n1 2 3 4 5 6 7\n1 2 3 4 5 6 7\n"},
+          {"a.csv", "x,y,z,\"t\"\n1,2,3,\n4,5,6,7\n"},
+          {"a.ptx",
+           "1\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n9 9 9 1\n"
+           "1 2 3 0.5\n0 0 0 0.5\n"},
+          {"a.bin", std::string(64, 'k')}};
+}
+
+std::vector<Seed> real_seeds() {
+  std::vector<Seed> seeds;
+  const std::filesystem::path folder = std::filesystem::path(ADASPLATS_TEST_DATA) / "formats";
+  if (!std::filesystem::exists(folder)) return seeds;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension == ".tsv" || entry.file_size() == 0) continue;
+    seeds.push_back({"a" + extension, read_file(entry.path())});
+  }
+  // The order of a folder is the machine's; the test must not depend on it.
+  std::sort(seeds.begin(), seeds.end(),
+            [](const Seed& a, const Seed& b) { return a.content < b.content; });
+  return seeds;
+}
+
+/// Breaks a file in one to four ways.
+class Mutator {
+ public:
+  explicit Mutator(std::uint64_t seed) : random_(seed) {}
+
+  std::string mutate(std::string content, const std::string& other) {
+    const std::size_t steps = 1 + below(4);
+    for (std::size_t step = 0; step < steps && !content.empty(); ++step)
+      mutate_once(content, other);
+    return content;
+  }
+
+ private:
+  std::size_t below(std::size_t limit) { return static_cast<std::size_t>(random_() % limit); }
+
+  /// Every other time within the first bytes, where the header is.
+  std::size_t place_in(const std::string& content) {
+    const std::size_t limit =
+        below(2) == 0 ? std::min<std::size_t>(400, content.size()) : content.size();
+    return below(limit);
+  }
+
+  void mutate_once(std::string& content, const std::string& other) {
+    const std::size_t place = place_in(content);
+    switch (below(7)) {
+      case 0: content[place] = static_cast<char>(content[place] ^ (1 << below(8))); break;
+      case 1: content[place] = static_cast<char>(random_()); break;
+      case 2: content.resize(place); break;
+      case 3: {  // splice
+        const std::size_t from = below(other.size());
+        content.insert(place, other.substr(from, 1 + below(40)));
+        break;
+      }
+      case 4: content.erase(place, 1 + below(20)); break;
+      case 5: replace_number(content, place); break;
+      default: {
+        const std::uint64_t extreme = kExtremes[below(std::size(kExtremes))];
+        for (std::size_t k = 0; k < 8 && place + k < content.size(); ++k)
+          content[place + k] = static_cast<char>(extreme >> (8 * k));
+      }
+    }
+  }
+
+  /// Writes an extreme number over the next digits of a text.
+  void replace_number(std::string& content, std::size_t place) {
+    constexpr std::string_view kDigits = "0123456789";
+    const std::size_t begin = content.find_first_of(kDigits, place);
+    if (begin == std::string::npos) return;
+    std::size_t end = content.find_first_not_of(kDigits, begin);
+    end = std::min(end, content.size());
+    constexpr const char* kNumbers[] = {
+        "-1",    "0",   "4294967295",          "4294967296", "2147483648", "18446744073709551615",
+        "1e999", "nan", "9223372036854775807", "1e-999",     "65536",      "1537228672809129302"};
+    content.replace(begin, end - begin, kNumbers[below(std::size(kNumbers))]);
+  }
+
+  static constexpr std::uint64_t kExtremes[] = {0,
+                                                0xffffffffffffffff,
+                                                0x7fffffffffffffff,
+                                                0x8000000000000000,
+                                                0x7ff0000000000000,
+                                                0x0000000100000001,
+                                                0x7f800000ffffffff};
+  std::mt19937_64 random_;
+};
+
+void expect_sound(const Table& table, std::size_t file_bytes) {
+  for (const Column& column : table.columns) ASSERT_EQ(column.size(), table.rows);
+  // The smallest record of any format has a byte, but where LZF packs 88 into one.
+  ASSERT_LE(table.rows, 88 * file_bytes);
+}
+
+/// Whether the file was read; anything but an Error ends the test.
+bool reads_or_throws_error(const std::filesystem::path& path, const std::string& content) {
+  io_test::write_bytes(path, content);
+  bool was_read = false;
+  try {
+    expect_sound(read_points(path, {content.size() % 2 == 0}), content.size());
+    was_read = true;
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(path.filename().string()), std::string::npos);
+  }
+  if (path.extension() != ".ply") return was_read;
+  try {
+    const MeshTable mesh = read_ply_mesh(path);
+    expect_sound(mesh.vertices, content.size());
+    expect_sound(mesh.faces, content.size());
+    EXPECT_EQ(mesh.triangle_vertices.size(), 3 * mesh.faces.rows);
+    for (const std::uint32_t index : mesh.triangle_vertices) EXPECT_LT(index, mesh.vertices.rows);
+  } catch (const Error&) {
+  }
+  return was_read;
+}
+
+void fuzz(const std::vector<Seed>& seeds, int rounds, std::uint64_t random_seed) {
+  const TemporaryFolder folder;
+  Mutator mutator(random_seed);
+  std::size_t was_read = 0;
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t k = 0; k < seeds.size(); ++k) {
+      const std::string& other =
+          seeds[(k + static_cast<std::size_t>(round)) % seeds.size()].content;
+      const std::string content = mutator.mutate(seeds[k].content, other);
+      ASSERT_NO_THROW(was_read +=
+                      reads_or_throws_error(folder.path() / seeds[k].name, content) ? 1 : 0)
+          << seeds[k].name << ", seed " << k << ", round " << round;
+    }
+  }
+  // Breaking every file beyond recognition would prove little, breaking none nothing.
+  const std::size_t cases = seeds.size() * static_cast<std::size_t>(rounds);
+  EXPECT_GT(was_read, cases / 20);
+  EXPECT_LT(was_read, cases * 19 / 20);
+}
+
+TEST(Fuzz, TheSmallSeedsAreValid) {
+  const TemporaryFolder folder;
+  for (const Seed& seed : small_seeds())
+    EXPECT_TRUE(reads_or_throws_error(folder.path() / seed.name, seed.content)) << seed.content;
+}
+
+TEST(Fuzz, SmallFilesOfEveryFormat) { fuzz(small_seeds(), 400, 1); }
+
+TEST(Fuzz, RealFiles) {
+  const std::vector<Seed> seeds = real_seeds();
+  if (seeds.empty()) GTEST_SKIP() << "no real files in " << ADASPLATS_TEST_DATA;
+  fuzz(seeds, 25, 2);
+}
+
+// Every prefix of a file that a reader believes to be longer.
+TEST(Fuzz, EveryTruncation) {
+  const TemporaryFolder folder;
+  for (const Seed& seed : small_seeds()) {
+    for (std::size_t size = 0; size < seed.content.size(); ++size)
+      reads_or_throws_error(folder.path() / seed.name, seed.content.substr(0, size));
+  }
+}
+
+}  // namespace
+}  // namespace adasplats

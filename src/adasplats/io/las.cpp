@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "adasplats/io/las_header.h"
+#include "adasplats/io/las_records.h"
+#include "adasplats/io/laz.h"
+#include "adasplats/io/point_files.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kChunkBytes = std::size_t{128} << 10;
+
+template <class T>
+T field(const std::byte* record, std::size_t offset) {
+  T value;
+  std::memcpy(&value, record + offset, sizeof(T));
+  return value;
+}
+
+/// One record (tables 7 to 17 of the specification); `record` has the format's least bytes.
+LasPoint decode_point(const LasHeader& header, const LasFormat& format, const std::byte* record) {
+  LasPoint point;
+  point.position = header.position(field<std::int32_t>(record, 0), field<std::int32_t>(record, 4),
+                                   field<std::int32_t>(record, 8));
+  point.intensity = field<std::uint16_t>(record, 12);
+  const auto returns = field<std::uint8_t>(record, 14);
+  if (format.is_extended) {
+    point.return_number = returns & 0x0f;
+    point.number_of_returns = static_cast<std::uint8_t>(returns >> 4);
+    point.classification = field<std::uint8_t>(record, 16);
+    point.user_data = field<std::uint8_t>(record, 17);
+    point.point_source_id = field<std::uint16_t>(record, 20);
+  } else {
+    point.return_number = returns & 0x07;
+    point.number_of_returns = static_cast<std::uint8_t>((returns >> 3) & 0x07);
+    // The upper three bits are flags (synthetic, key point, withheld).
+    point.classification = field<std::uint8_t>(record, 15) & 0x1f;
+    point.user_data = field<std::uint8_t>(record, 17);
+    point.point_source_id = field<std::uint16_t>(record, 18);
+  }
+  if (format.gps_time_offset != 0) point.gps_time = field<double>(record, format.gps_time_offset);
+  if (format.colour_offset != 0) {
+    point.red = field<std::uint16_t>(record, format.colour_offset);
+    point.green = field<std::uint16_t>(record, format.colour_offset + 2);
+    point.blue = field<std::uint16_t>(record, format.colour_offset + 4);
+  }
+  return point;
+}
+
+/// How many records to read: all that the header says, or with `salvage` those that are there.
+std::uint64_t records_to_read(const InputFile& file, const LasHeader& header, bool salvage) {
+  const std::uint64_t room = file.remaining() / header.record_bytes;
+  if (header.points <= room) return header.points;
+  if (salvage) return room;
+  throw file.error_here("found room for " + std::to_string(room) + " point records of " +
+                        std::to_string(header.record_bytes) + " bytes, the header says " +
+                        std::to_string(header.points) + " (salvage reads what is there)");
+}
+
+}  // namespace
+
+Table read_las(const std::filesystem::path& path, const LasReadOptions& options) {
+  InputFile file(path);
+  const LasHeader header = read_las_header(file);
+  if (header.is_compressed) return read_laz(path, options);
+  const LasFormat& format = las_format(header.format);
+  file.skip(header.points_offset_bytes);
+  const auto rows = static_cast<std::size_t>(records_to_read(file, header, options.salvage));
+  LasColumns columns(format, rows);
+  const std::size_t chunk_rows = std::max<std::size_t>(1, kChunkBytes / header.record_bytes);
+  for (std::size_t first = 0; first < rows; first += chunk_rows) {
+    const std::size_t count = std::min(chunk_rows, rows - first);
+    const std::byte* const records = file.peek(count * header.record_bytes).data();
+    for (std::size_t row = 0; row < count; ++row)
+      columns.push(decode_point(header, format, records + row * header.record_bytes));
+    file.skip(count * header.record_bytes);
+  }
+  Table table = columns.take();
+  if (rows < header.points) {
+    table.comments.push_back("salvaged " + std::to_string(rows) + " of " +
+                             std::to_string(header.points) + " records");
+  }
+  return table;
+}
+
+}  // namespace adasplats

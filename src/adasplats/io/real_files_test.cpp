@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "adasplats/io/ply.h"
+#include "adasplats/io/point_files.h"
+#include "adasplats/io/test_files.h"
+
+// Small files of other projects' tests, with a catalogue of what they hold that was made with other
+// readers (LASzip, the headers' text): the oracle of this file.
+namespace adasplats {
+namespace {
+
+using io_test::expect_error;
+using io_test::values_of;
+
+const std::filesystem::path kFolder = std::filesystem::path(ADASPLATS_TEST_DATA) / "formats";
+
+class RealFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(kFolder / "CATALOG.tsv"))
+      GTEST_SKIP() << "no real files in " << kFolder;
+    std::ifstream catalog(kFolder / "CATALOG.tsv");
+    for (std::string line; std::getline(catalog, line);) {
+      std::istringstream fields(line);
+      std::string name, size, what;
+      std::getline(fields, name, '\t');
+      std::getline(fields, size, '\t');
+      std::getline(fields, what);
+      catalog_[name] = what;
+    }
+  }
+
+  /// The number that follows `word` in a file's line of the catalogue.
+  static std::optional<std::size_t> number_after(const std::string& what, const std::string& word) {
+    const std::size_t found = what.find(word);
+    if (found == std::string::npos) return std::nullopt;
+    const std::string digits = what.substr(found + word.size());
+    std::size_t number = 0;
+    const auto [stop, error] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    return error == std::errc() ? std::optional(number) : std::nullopt;
+  }
+
+  std::map<std::string, std::string> catalog_;
+};
+
+TEST_F(RealFiles, LasAndPcdHaveTheCataloguedPoints) {
+  const std::map<std::string, std::string> broken = {
+      {"PDAL+PDAL__test__data__las__garbage_nVariableLength.las", "1069128089"},
+      {"PDAL+PDAL__test__data__las__permutations__1.2-no-points.las", "room for 0"},
+      {"PDAL+PDAL__test__data__pcd__missingheader.pcd", "'289814.15'"}};
+  int read = 0;
+  for (const auto& [name, what] : catalog_) {
+    if (!name.ends_with(".las") && !name.ends_with(".pcd")) continue;
+    SCOPED_TRACE(name);
+    if (broken.contains(name)) {
+      expect_error(ErrorKind::data, {broken.at(name)}, [&] { read_points(kFolder / name); });
+      continue;
+    }
+    const Table table = read_points(kFolder / name);
+    EXPECT_EQ(std::optional(table.rows), number_after(what, "points "));
+    for (const Column& column : table.columns) EXPECT_EQ(column.size(), table.rows);
+    EXPECT_NE(table.find("x"), nullptr);
+    ++read;
+  }
+  EXPECT_EQ(read, 37);
+}
+
+TEST_F(RealFiles, LazIsReadOrSaysWhatToInstall) {
+  for (const auto& [name, what] : catalog_) {
+    if (!name.ends_with(".laz")) continue;
+    SCOPED_TRACE(name);
+    try {
+      const Table table = read_points(kFolder / name);
+      EXPECT_EQ(what.find("ERR"), std::string::npos) << "a broken file was read";
+      EXPECT_EQ(std::optional(table.rows), number_after(what, "points "));
+    } catch (const Error& error) {
+      EXPECT_EQ(exit_code(error.kind()), 65);
+      const bool lacks_laszip =
+          std::string(error.what()).find("liblaszip-dev") != std::string::npos;
+      EXPECT_TRUE(lacks_laszip || what.find("ERR") != std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST_F(RealFiles, PlyHaveTheCataloguedVertices) {
+  for (const auto& [name, what] : catalog_) {
+    if (!name.ends_with(".ply")) continue;
+    SCOPED_TRACE(name);
+    if (name == "assimp+assimp__test__models__invalid__empty.ply") {
+      expect_error(ErrorKind::data, {"empty"}, [&] { read_points(kFolder / name); });
+      continue;
+    }
+    const Table table = read_points(kFolder / name);
+    EXPECT_EQ(std::optional(table.rows), number_after(what, "'vertex', '"));
+    const std::size_t faces = number_after(what, "'face', '").value_or(0);
+    EXPECT_EQ(ply_has_faces(kFolder / name), faces > 0);
+    if (faces > 0) {
+      EXPECT_GE(read_ply_mesh(kFolder / name).faces.rows, faces);
+    }
+  }
+}
+
+// The same cube written with two line ends.
+TEST_F(RealFiles, CubeIsTheUnitCube) {
+  for (const char* name :
+       {"assimp+assimp__test__models__PLY__cube_binary.ply",
+        "assimp+assimp__test__models__PLY__cube_binary_header_with_RN_newline.ply"}) {
+    const MeshTable mesh = read_ply_mesh(kFolder / name);
+    EXPECT_EQ(mesh.faces.rows, 12U);
+    EXPECT_EQ(values_of(mesh.vertices, "x"), (std::vector<double>{0, 0, 0, 0, 1, 1, 1, 1}));
+    EXPECT_EQ(values_of(mesh.vertices, "y"), (std::vector<double>{0, 0, 1, 1, 0, 0, 1, 1}));
+    EXPECT_EQ(values_of(mesh.vertices, "z"), (std::vector<double>{0, 1, 1, 0, 0, 1, 1, 0}));
+  }
+}
+
+// Compressed PCD: the images' 256 x 256 pixels as PCL wrote them.
+TEST_F(RealFiles, CompressedPcdUnpacksToAnImage) {
+  const Table table = read_pcd(kFolder / "PointCloudLibrary+pcl__test__2d__canny.pcd");
+  std::size_t edges = 0;
+  for (const double value : values_of(table, "intensity")) {
+    EXPECT_TRUE(value == 0 || value == 255) << value;
+    edges += value == 255 ? 1 : 0;
+  }
+  EXPECT_GT(edges, 100U);
+  EXPECT_LT(edges, 20000U);
+}
+
+// LAS headers hold the box of their points: every coordinate lies in it, and touches it.
+TEST_F(RealFiles, LasPointsTouchTheHeadersBox) {
+  for (const char* name : {"PDAL+PDAL__test__data__las__simple.las",
+                           "PDAL+PDAL__test__data__autzen__autzen-bmx-2010.las",
+                           "PDAL+PDAL__test__data__las__wontcompress3.las",
+                           "laz-rs+laz-rs__tests__data__point-time.las"}) {
+    SCOPED_TRACE(name);
+    std::ifstream file(kFolder / name, std::ios::binary);
+    std::string header(227, '\0');
+    file.read(header.data(), 227);
+    const Table table = read_las(kFolder / name);
+    for (const std::size_t axis : {0U, 1U, 2U}) {
+      double high = 0, low = 0;
+      std::memcpy(&high, header.data() + 179 + 16 * axis, 8);
+      std::memcpy(&low, header.data() + 187 + 16 * axis, 8);
+      const std::vector<double> values = values_of(table, std::string(1, "xyz"[axis]));
+      EXPECT_NEAR(*std::max_element(values.begin(), values.end()), high, 0.011);
+      EXPECT_NEAR(*std::min_element(values.begin(), values.end()), low, 0.011);
+    }
+  }
+}
+
+// Counts of lines of the files themselves; the bunny's own count (8) is one too small.
+TEST_F(RealFiles, TextHasAPointALine) {
+  const std::map<std::string, std::pair<std::size_t, std::size_t>> rows_and_columns = {
+      {"PDAL+PDAL__test__data__pts__bunny_8.pts", {9, 3}},
+      {"PDAL+PDAL__test__data__pts__site_56_8.pts", {8, 4}},
+      {"PDAL+PDAL__test__data__pts__test.pts", {19, 7}},
+      {"PDAL+PDAL__test__data__gdal__data.xyz", {400, 3}},
+      {"daavoo+pyntcloud__tests__data__diamond.xyz", {6, 6}},
+      {"PDAL+PDAL__test__data__ptx__1.2-with-color.ptx", {1065, 10}},
+      {"PDAL+PDAL__test__data__ptx__multiple-and-transform.ptx", {8, 7}},
+      {"PDAL+PDAL__test__data__ptx__complex-transform.ptx", {4, 10}}};
+  for (const auto& [name, expected] : rows_and_columns) {
+    SCOPED_TRACE(name);
+    const Table table = read_points(kFolder / name);
+    EXPECT_EQ(table.rows, expected.first);
+    EXPECT_EQ(table.columns.size(), expected.second);
+  }
+}
+
+// Two scans of the same four points, one of them as (x - 600000, ..., (z - 400) / 2).
+TEST_F(RealFiles, PtxTransformGivesTheSamePoints) {
+  const Table table =
+      read_points(kFolder / "PDAL+PDAL__test__data__ptx__multiple-and-transform.ptx");
+  for (const char* name : {"x", "y", "z"}) {
+    const std::vector<double> values = values_of(table, name);
+    ASSERT_GE(values.size(), 8U);
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(values[k], values[k + 4], 1e-6);
+  }
+}
+
+TEST_F(RealFiles, E57IsRefusedWithTheCure) {
+  for (const auto& [name, what] : catalog_) {
+    if (!name.ends_with(".e57")) continue;
+    expect_error(ErrorKind::data, {name, "E57 is not supported", "LAS or PLY"},
+                 [&] { read_points(kFolder / name); });
+  }
+}
+
+}  // namespace
+}  // namespace adasplats

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/simulate/image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "adasplats/core/error.h"
+#include "adasplats/simulate/shading.h"
+
+namespace adasplats {
+
+namespace {
+
+// A packet of 16 rays is a block of 4 x 4 samples: its rays meet nearly the same boxes.
+constexpr int kBlock = 4;
+// A tile is what one task renders; its rays are cast in one call.
+constexpr int kTile = 64;
+
+struct Sample {
+  int x, y;  ///< in samples from the image's top left corner
+};
+
+/// The samples of one tile, block by block.
+std::vector<Sample> samples_of_tile(Sample first, int columns, int rows) {
+  std::vector<Sample> samples;
+  samples.reserve(static_cast<std::size_t>(kTile) * kTile);
+  const int right = std::min(first.x + kTile, columns);
+  const int bottom = std::min(first.y + kTile, rows);
+  for (int y = first.y; y < bottom; y += kBlock)
+    for (int x = first.x; x < right; x += kBlock)
+      for (int v = y; v < std::min(y + kBlock, bottom); ++v)
+        for (int u = x; u < std::min(x + kBlock, right); ++u) samples.push_back({u, v});
+  return samples;
+}
+
+std::uint8_t to_byte(float value) {
+  return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
+}
+
+void check(const Camera& camera, const ImageOptions& options) {
+  constexpr int kMost = 1 << 15;
+  const auto outside = [](int value) { return value < 1 || value > kMost; };
+  if (outside(camera.width) || outside(camera.height))
+    throw Error(ErrorKind::usage, "an image of " + std::to_string(camera.width) + " x " +
+                                      std::to_string(camera.height) +
+                                      " pixels; expected 1 to 32768 each");
+  if (options.samples_per_axis < 1 || options.samples_per_axis > 16)
+    throw Error(ErrorKind::usage, std::to_string(options.samples_per_axis) +
+                                      " samples per axis of a pixel; expected 1 to 16");
+  const bool parallel = camera.orthographic_width_m > 0;
+  if (!parallel && !(camera.horizontal_fov_rad > 0 && camera.horizontal_fov_rad < std::numbers::pi))
+    throw Error(ErrorKind::usage, "a camera's field of view must be above 0 and below 180 degrees");
+}
+
+/// Renders tiles into the image's pixels; one object serves all threads.
+class Renderer {
+ public:
+  Renderer(const Tracer& tracer, const ImageScene& scene, const Camera& camera,
+           const ImageOptions& options, const Executor& executor)
+      : tracer_(tracer),
+        scene_(scene),
+        camera_(camera),
+        options_(options),
+        executor_(executor),
+        shading_(scene, options) {}
+
+  Image render() const {
+    Image image{camera_.width, camera_.height, {}};
+    image.pixels.resize(static_cast<std::size_t>(image.width) *
+                        static_cast<std::size_t>(image.height) * 3);
+    const int tile_pixels = kTile / options_.samples_per_axis;
+    const int tile_columns = (image.width + tile_pixels - 1) / tile_pixels;
+    const int tile_rows = (image.height + tile_pixels - 1) / tile_pixels;
+    const auto tiles = static_cast<std::size_t>(tile_columns) * static_cast<std::size_t>(tile_rows);
+    executor_.for_chunks(tiles, 1, [&](std::size_t tile, std::size_t) {
+      const auto index = static_cast<int>(tile);
+      render_tile({index % tile_columns * tile_pixels, index / tile_columns * tile_pixels},
+                  tile_pixels, image);
+    });
+    return image;
+  }
+
+ private:
+  void render_tile(Sample corner, int tile_pixels, Image& image) const {
+    const int axis = options_.samples_per_axis;
+    const int right = std::min(corner.x + tile_pixels, image.width);
+    const int bottom = std::min(corner.y + tile_pixels, image.height);
+    const std::vector<Sample> samples =
+        samples_of_tile({corner.x * axis, corner.y * axis}, right * axis, bottom * axis);
+    std::vector<Ray> rays;
+    rays.reserve(samples.size());
+    for (const Sample& sample : samples)
+      rays.push_back(camera_.ray((sample.x + 0.5) / axis, (sample.y + 0.5) / axis, scene_.origin));
+    std::vector<Hit> hits(rays.size());
+    tracer_.nearest(rays, hits, executor_);
+
+    const auto width = static_cast<std::size_t>(right - corner.x);
+    std::vector<Vec3f> sums(width * static_cast<std::size_t>(bottom - corner.y));
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const auto x = static_cast<std::size_t>(samples[i].x / axis - corner.x);
+      const auto y = static_cast<std::size_t>(samples[i].y / axis - corner.y);
+      sums[y * width + x] = sums[y * width + x] + shading_.color(rays[i], hits[i]);
+    }
+    store(sums, corner, width, image);
+  }
+
+  void store(std::span<const Vec3f> sums, Sample corner, std::size_t width, Image& image) const {
+    const float weight =
+        1.0F / static_cast<float>(options_.samples_per_axis * options_.samples_per_axis);
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const std::size_t x = static_cast<std::size_t>(corner.x) + i % width;
+      const std::size_t y = static_cast<std::size_t>(corner.y) + i / width;
+      std::uint8_t* const pixel =
+          &image.pixels[3 * (y * static_cast<std::size_t>(image.width) + x)];
+      for (int channel = 0; channel < 3; ++channel)
+        pixel[channel] = to_byte(weight * sums[i][channel]);
+    }
+  }
+
+  const Tracer& tracer_;
+  const ImageScene& scene_;
+  const Camera& camera_;
+  const ImageOptions& options_;
+  const Executor& executor_;
+  Shading shading_;
+};
+
+}  // namespace
+
+Image render_image(const Tracer& tracer, const ImageScene& scene, const Camera& camera,
+                   const ImageOptions& options, const Executor& executor) {
+  check(camera, options);
+  return Renderer(tracer, scene, camera, options, executor).render();
+}
+
+}  // namespace adasplats

@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/simulate/scan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace adasplats {
+namespace {
+
+const Executor& two_threads() {
+  static const Executor executor(2);
+  return executor;
+}
+
+/// The plane z = 0 as disks in a square grid that leaves no holes.
+std::vector<Disk> ground_disks(int half_count, float spacing_m) {
+  std::vector<Disk> disks;
+  for (int y = -half_count; y <= half_count; ++y)
+    for (int x = -half_count; x <= half_count; ++x)
+      disks.push_back({{spacing_m * static_cast<float>(x), spacing_m * static_cast<float>(y), 0},
+                       0.8F * spacing_m,
+                       {0, 0, 1}});
+  return disks;
+}
+
+/// The cube [-half, half]^3 as 12 triangles.
+TriangleMesh box_mesh(float half) {
+  TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i)
+    mesh.vertices.push_back(
+        {(i & 1) != 0 ? half : -half, (i & 2) != 0 ? half : -half, (i & 4) != 0 ? half : -half});
+  mesh.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+/// A scan of one sensor in one scene with the defaults of these tests.
+struct Setup {
+  SceneView view;
+  PrimitiveAttributes attributes;
+  Vec3d scene_origin;
+  LidarModel sensor = hdl_32_paper();
+  TimedPose pose;
+  std::uint64_t scan_index = 0;
+  SimulateOptions options;
+
+  Scan scan(const Executor& executor = two_threads()) const {
+    const auto tracer = make_embree_tracer(view, executor);
+    return simulate_scan(*tracer, attributes, scene_origin, sensor, firings_of(sensor), pose,
+                         scan_index, options, executor);
+  }
+};
+
+// Oracle: analytic. A ray that looks down by e from the height h meets the plane at h / sin(e).
+TEST(SimulateScan, RangesAboveAPlaneAreExact) {
+  const auto disks = ground_disks(60, 0.5F);
+  Setup setup;
+  setup.view = {disks, nullptr};
+  setup.sensor.max_range_m = 25;
+  setup.pose.world_from_sensor.translation = {0, 0, 2};
+  const Scan scan = setup.scan();
+
+  std::size_t expected_returns = 0;
+  std::size_t next = 0;
+  for (const Firing& firing : firings_of(setup.sensor)) {
+    const double range_m = -2.0 / static_cast<double>(firing.direction.z);
+    if (!(range_m > 0 && range_m < 25)) continue;
+    ++expected_returns;
+    ASSERT_LT(next, scan.size());
+    ASSERT_NEAR(static_cast<double>(scan.ranges_m[next]), range_m, 1e-5);
+    ASSERT_NEAR(static_cast<double>(scan.positions[next].z), -2.0, 1e-5);
+    ASSERT_EQ(scan.rings[next], firing.ring);
+    ASSERT_EQ(scan.times_s[next], firing.time_s);
+    ++next;
+  }
+  EXPECT_EQ(scan.size(), expected_returns);
+  EXPECT_GT(scan.size(), 30'000U);
+  EXPECT_EQ(scan.rays, 57'600U);
+}
+
+// Oracle: analytic. Inside a cube every ray ends on the side that it meets first.
+TEST(SimulateScan, RangesInsideABoxAreExactForAnyPose) {
+  const TriangleMesh mesh = box_mesh(10.0F);
+  Setup setup;
+  setup.view = {{}, &mesh};
+  setup.sensor = hdl_64_paper();
+  setup.pose.world_from_sensor = {rotation_from_yaw_pitch_roll(0.7, 0.4, -0.2), {1, -2, 3}};
+  const Scan scan = setup.scan();
+  ASSERT_EQ(scan.size(), 144'000U) << "a closed box lets no ray out";
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const Vec3d p = setup.pose.world_from_sensor * vec_cast<double>(scan.positions[i]);
+    const double side = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+    ASSERT_NEAR(side, 10.0, 2e-5) << "return " << i;
+    ASSERT_NEAR(static_cast<double>(length(scan.positions[i])),
+                static_cast<double>(scan.ranges_m[i]), 2e-5);
+  }
+}
+
+// Oracle: the same scene at the origin. Millimetres survive coordinates of millions of metres.
+TEST(SimulateScan, LargeWorldCoordinatesLoseNothing) {
+  const TriangleMesh mesh = box_mesh(10.0F);
+  Setup setup;
+  setup.view = {{}, &mesh};
+  setup.pose.world_from_sensor.translation = {0.25, 0.5, 1};
+  const Scan expected = setup.scan();
+  setup.scene_origin = {650'000, 6'860'000, 35};
+  setup.pose.world_from_sensor.translation = {650'000.25, 6'860'000.5, 36};
+  EXPECT_EQ(setup.scan().ranges_m, expected.ranges_m);
+}
+
+// Oracle: analytic. The paper's sensor is level; a tilted one is a matter of the pose.
+TEST(SimulateScan, APositivePitchTurnsTheSensorDown) {
+  const auto disks = ground_disks(60, 0.5F);
+  Setup setup;
+  setup.view = {disks, nullptr};
+  setup.sensor.elevations_rad = {0.0};
+  setup.sensor.columns = 4;
+  setup.pose.world_from_sensor = {rotation_from_yaw_pitch_roll(0, 0.3, 0), {0, 0, 3}};
+  const Scan scan = setup.scan();
+  ASSERT_EQ(scan.size(), 1U) << "forward alone meets the ground";
+  EXPECT_NEAR(static_cast<double>(scan.ranges_m[0]), 3 / std::sin(0.3), 1e-5);
+  EXPECT_NEAR(static_cast<double>(scan.positions[0].z), 0.0, 1e-6) << "in the sensor's frame";
+}
+
+TEST(SimulateScan, TheRangeOfTheSensorIsKept) {
+  const auto disks = ground_disks(60, 0.5F);
+  Setup setup;
+  setup.view = {disks, nullptr};
+  setup.pose.world_from_sensor.translation = {0, 0, 2};
+  setup.sensor.min_range_m = 6;
+  setup.sensor.max_range_m = 9;
+  const Scan scan = setup.scan();
+  ASSERT_GT(scan.size(), 1000U);
+  const auto [low, high] = std::ranges::minmax(scan.ranges_m);
+  EXPECT_GT(low, 6.0F);
+  EXPECT_LE(high, 9.0F);
+}
+
+TEST(SimulateScan, AttributesComeFromThePrimitiveThatWasHit) {
+  const std::vector<Disk> disks = {{{5, 0, 0}, 1, {1, 0, 0}}, {{0, 7, 0}, 1, {0, 1, 0}}};
+  const std::vector<std::uint16_t> classes = {40, 50}, instances = {3, 4};
+  const std::vector<float> intensities = {0.25F, 0.75F};
+  Setup setup;
+  setup.view = {disks, nullptr};
+  setup.attributes = {classes, instances, intensities};
+  setup.sensor.elevations_rad = {0.0};
+  setup.sensor.columns = 4;
+  setup.pose.time_s = 12.5;
+  const Scan scan = setup.scan();
+  EXPECT_EQ(scan.time_s, 12.5);
+  EXPECT_EQ(scan.ranges_m, (std::vector<float>{5, 7}));
+  EXPECT_EQ(scan.classes, classes);
+  EXPECT_EQ(scan.instances, instances);
+  EXPECT_EQ(scan.intensities, intensities);
+
+  setup.attributes = {};
+  const Scan bare = setup.scan();
+  EXPECT_EQ(bare.size(), 2U);
+  EXPECT_TRUE(bare.classes.empty() && bare.instances.empty() && bare.intensities.empty());
+
+  const std::vector<std::uint16_t> too_few = {1};
+  setup.attributes.classes = too_few;
+  EXPECT_THROW(setup.scan(), std::logic_error);
+}
+
+TEST(SimulateScan, EmptyScenesAndSensorsGiveEmptyScans) {
+  Setup setup;
+  EXPECT_EQ(setup.scan().size(), 0U);
+  EXPECT_EQ(setup.scan().rays, 57'600U);
+  setup.sensor.columns = 0;
+  EXPECT_EQ(setup.scan().rays, 0U);
+}
+
+TEST(SimulateScan, APoseThatIsNotFiniteGivesNoReturns) {
+  const TriangleMesh mesh = box_mesh(10.0F);
+  Setup setup;
+  setup.view = {{}, &mesh};
+  setup.pose.world_from_sensor.translation.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(setup.scan().size(), 0U);
+}
+
+class ScanNoise : public testing::Test {
+ protected:
+  ScanNoise() {
+    setup_.view = {{}, &mesh_};
+    setup_.sensor.range_noise_m = 0.02;
+    setup_.options.seed = 42;
+  }
+  TriangleMesh mesh_ = box_mesh(10.0F);
+  Setup setup_;
+};
+
+// Oracle: moments of the normal distribution; 57,600 draws.
+TEST_F(ScanNoise, IsWhiteAlongTheRay) {
+  const Scan noisy = setup_.scan();
+  setup_.options.range_noise = false;
+  const Scan clean = setup_.scan();
+  ASSERT_EQ(noisy.size(), clean.size());
+  double sum = 0, squares = 0, neighbours = 0, before = 0;
+  for (std::size_t i = 0; i < noisy.size(); ++i) {
+    const double noise =
+        static_cast<double>(noisy.ranges_m[i]) - static_cast<double>(clean.ranges_m[i]);
+    sum += noise;
+    squares += noise * noise;
+    neighbours += noise * before;
+    before = noise;
+    ASSERT_NEAR(static_cast<double>(length(noisy.positions[i])),
+                static_cast<double>(noisy.ranges_m[i]), 2e-5);
+  }
+  const auto n = static_cast<double>(noisy.size());
+  EXPECT_NEAR(sum / n, 0.0, 5 * 0.02 / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(squares / n), 0.02, 0.02 * 5 / std::sqrt(2 * n));
+  EXPECT_NEAR(neighbours / squares, 0.0, 5 / std::sqrt(n));
+}
+
+TEST_F(ScanNoise, DependsOnSeedScanAndRayAlone) {
+  const Scan first = setup_.scan();
+  EXPECT_EQ(setup_.scan().ranges_m, first.ranges_m);
+  setup_.scan_index = 1;
+  EXPECT_NE(setup_.scan().ranges_m, first.ranges_m);
+  setup_.scan_index = 0;
+  setup_.options.seed = 43;
+  EXPECT_NE(setup_.scan().ranges_m, first.ranges_m);
+}
+
+TEST_F(ScanNoise, NeverLeavesTheSensorsRange) {
+  setup_.sensor.min_range_m = 10.5;
+  setup_.sensor.max_range_m = 12;
+  setup_.sensor.range_noise_m = 0.5;
+  const Scan scan = setup_.scan();
+  ASSERT_GT(scan.size(), 100U);
+  const auto [low, high] = std::ranges::minmax(scan.ranges_m);
+  EXPECT_GT(low, 10.5F);
+  EXPECT_LE(high, 12.0F);
+}
+
+// Oracle: one thread.
+TEST_F(ScanNoise, ThreadsDoNotChangeAByte) {
+  const Scan expected = setup_.scan(Executor(1));
+  for (const int threads : {2, 3}) {
+    const Scan scan = setup_.scan(Executor(threads));
+    EXPECT_EQ(scan.ranges_m, expected.ranges_m);
+    EXPECT_EQ(scan.positions, expected.positions);
+    EXPECT_EQ(scan.rings, expected.rings);
+    EXPECT_EQ(scan.times_s, expected.times_s);
+  }
+}
+
+}  // namespace
+}  // namespace adasplats

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "adasplats/cloud/trajectory.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/sensors/lidar_model.h"
+#include "adasplats/synth/mesh_builder.h"
+#include "adasplats/synth/street.h"
+#include "adasplats/trace/tracer.h"
+
+// Inside synth/: rays of one revolution against a street with its movers in their places.
+
+namespace adasplats {
+
+/// What came back of one ray.
+struct Echo {
+  std::uint32_t ray = 0;  ///< index into the firings
+  float range_m = 0;      ///< measured: with noise
+  float intensity = 0;    ///< 0..1
+  std::uint16_t class_id = 0;
+  std::uint16_t instance = 0;
+};
+
+/// The movers that are there at a time, in world coordinates. Those that `vehicle` (a position)
+/// would bump into are left out.
+BuiltMesh movers_at(const Street& street, double time_s, Vec3d vehicle);
+
+/// Casts revolutions into one street. Keeps views of the street.
+class StreetCaster {
+ public:
+  StreetCaster(const Street& street, double range_noise_m, const Executor& executor);
+
+  /// The echoes of one revolution in the order of `firings`. Noise is drawn by (seed, scan, ray).
+  std::vector<Echo> cast(const LidarModel& sensor, std::span<const Firing> firings,
+                         const TimedPose& pose, std::uint64_t seed, std::uint64_t scan) const;
+
+  /// Share of rays that hit what does not move.
+  double fixed_share(const LidarModel& sensor, std::span<const Firing> firings,
+                     const TimedPose& pose) const;
+
+ private:
+  const Street& street_;
+  double range_noise_m_;
+  const Executor& executor_;
+  std::unique_ptr<Tracer> fixed_;
+};
+
+}  // namespace adasplats

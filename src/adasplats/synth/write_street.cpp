@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/core/error.h"
+#include "adasplats/dataset/semantickitti_writer.h"
+#include "adasplats/io/ply.h"
+#include "adasplats/synth/street.h"
+
+namespace adasplats {
+namespace {
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure)
+    throw system_error(ErrorKind::cannot_create, folder, "cannot create the folder",
+                       failure.value());
+}
+
+}  // namespace
+
+void save_street_mesh(const std::filesystem::path& path, const Street& street) {
+  const TriangleMesh& mesh = street.fixed;
+  const auto* first = mesh.vertices.data();
+  static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+  const float* floats = first == nullptr ? nullptr : &first->x;
+  const std::array<ColumnView, 3> vertex_columns = {
+      ColumnView{"x", ColumnType::f32, floats, sizeof(Vec3f)},
+      ColumnView{"y", ColumnType::f32, floats == nullptr ? nullptr : &first->y, sizeof(Vec3f)},
+      ColumnView{"z", ColumnType::f32, floats == nullptr ? nullptr : &first->z, sizeof(Vec3f)}};
+  const std::array<ColumnView, 3> face_columns = {
+      ColumnView{"class", ColumnType::u16, mesh.classes.data(), sizeof(std::uint16_t)},
+      ColumnView{"instance", ColumnType::u16, street.instances.data(), sizeof(std::uint16_t)},
+      ColumnView{"reflectance", ColumnType::f32, street.reflectances.data(), sizeof(float)}};
+  std::vector<std::uint32_t> corners;
+  corners.reserve(mesh.triangles.size() * 3);
+  for (const auto& t : mesh.triangles) corners.insert(corners.end(), t.begin(), t.end());
+  const std::array<std::string, 1> comments = {
+      "true surface of a procedural street, SemanticKITTI classes, moving objects not included"};
+  write_ply_mesh(path, mesh.vertices.size(), vertex_columns, corners, face_columns, comments);
+}
+
+StreetReport write_street(const std::filesystem::path& folder, StreetOptions street_options,
+                          const StreetScanOptions& scan, const Executor& executor,
+                          ProgressSink& progress) {
+  if (street_options.length_m == 0) street_options.length_m = street_length_for(scan.points);
+  const Street street = make_street(street_options);
+  make_folder(folder);
+
+  // First, as it refuses a folder that holds another street.
+  std::optional<SemanticKittiWriter> sequence;
+  if (scan.driving_spacing_m > 0 && scan.most_driving_scans > 0)
+    sequence.emplace(folder / "sequences" / "00");
+  save_street_mesh(folder / "mesh.ply", street);
+  const StreetRecording recording = scan_street(
+      street, scan,
+      [&](std::size_t index, const Scan& driving) { sequence->write_scan(index, driving); },
+      executor, progress);
+  if (sequence) {
+    sequence->finish();
+    write_trajectory_csv(folder / "true_driving_trajectory.csv", recording.true_driving_trajectory);
+  }
+  save_cloud_ply(folder / "mapping.ply", recording.mapping);
+  write_trajectory_csv(folder / "mapping_trajectory.csv", recording.mapping_trajectory);
+  write_trajectory_csv(folder / "true_mapping_trajectory.csv", recording.true_mapping_trajectory);
+  return {street.length_m,
+          street.fixed.triangles.size(),
+          street.moving.size(),
+          recording.mapping.size(),
+          recording.mapping_trajectory.size(),
+          recording.driving_trajectory.size()};
+}
+
+}  // namespace adasplats

@@ -1,0 +1,178 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""From points to numbers on a tiny place, end to end."""
+import json
+import struct
+import unittest
+
+from support import ProgramTest, run, tiny_place, write_cloud
+
+
+class Pipeline(ProgramTest):
+    def test_every_method(self):
+        for method in ["basic", "descriptors", "semantic"]:
+            model = self.model(f"{method}.ply", "--method", method)
+            scans = self.simulate(model, f"{method} scans", "--no-range-noise")
+            report = self.report("evaluate", "c2c", scans, self.cloud, "--by-class", "--labels",
+                                 "semantickitti")
+            # Splats of a place known to 1 cm, points 25 cm apart: half a diagonal is 18 cm.
+            self.assertLess(report["c2c_m"], 0.25, method)
+            self.assertGreater(report["completeness_m"], 0, method)
+            self.assertIn("road", report["by_class"])
+            self.assertGreater(report["by_class"]["road"]["points"], 100)
+
+    def test_reports_have_the_documented_keys(self):
+        model = self.folder / "m.ply"
+        report = self.report("model", self.cloud, "-o", model, "--labels", "semantickitti")
+        for key in ["program", "version", "command", "parameters", "threads", "points_in",
+                    "points_used", "primitives", "seconds", "peak_memory_bytes", "warnings"]:
+            self.assertIn(key, report)
+        self.assertEqual(report["points_in"], len(tiny_place()))
+        self.assertEqual(report["parameters"]["neighbors"], 40)
+        self.assertEqual(report["parameters"]["INPUT"], [str(self.cloud)])
+        self.assertIn("total", report["seconds"])
+        self.assertGreater(len(report["seconds"]), 3)
+
+        scans = self.folder / "scans"
+        report = self.report("simulate", model, "--trajectory", self.poses, "--sensor",
+                             self.sensor, "-o", scans, "--offset", "0.5,0,-0.5")
+        self.assertEqual(report["scans"], 3)
+        self.assertEqual(report["rays"], 3 * 16 * 180)
+        self.assertTrue(0 < report["hits"] <= report["rays"])
+        rates = report["scans_per_second"]
+        self.assertGreaterEqual(rates["traced"], rates["returned"])
+        self.assertGreaterEqual(rates["returned"], rates["written"])
+
+        report = self.report("evaluate", "c2c", scans, self.cloud, "--by-class")
+        self.assertLessEqual({"c2c_m", "completeness_m", "chamfer_m", "chamfer_m2", "by_class"},
+                             set(report))
+        self.assertEqual(set(report["f_score"]), {"0.05", "0.10", "0.224"})
+        self.assertLessEqual({"c2c_m", "points"}, set(report["by_class"]["road"]))
+
+        report = self.report("evaluate", "resimulate", model, scans)
+        self.assertLessEqual({"rays", "no_hit", "early_50cm", "late_50cm", "within",
+                              "range_error_m", "chamfer_m", "chamfer_m2", "f_score", "by_range",
+                              "by_incidence", "by_class"}, set(report))
+        self.assertEqual(set(report["within"]), {"0.02", "0.05", "0.10", "0.50"})
+        self.assertEqual(set(report["range_error_m"]), {"median", "mae", "rmse", "p90"})
+
+    def test_a_model_predicts_its_own_scans(self):
+        """Round trip: scans without noise cast again hit where they came from."""
+        model = self.model()
+        scans = self.simulate(model, "scans", "--no-range-noise")
+        report = self.report("evaluate", "resimulate", model, scans, "--min-range", "0.5")
+        self.assertGreater(report["rays"], 1000)
+        self.assertGreater(report["within"]["0.02"], 0.98)
+
+    def test_offset_moves_the_sensor(self):
+        model = self.model()
+        scans = self.simulate(model, "scans", "--format", "ply", "--offset", "1,1,-0.5", "--every",
+                              "2")
+        poses = (scans / "poses.csv").read_text().splitlines()
+        rows = [[float(v) for v in line.split(",")] for line in poses if line[0].isdigit()]
+        self.assertEqual([row[1:4] for row in rows], [[5, 1, 1.5], [9, 1, 1.5]])
+        self.assertEqual(sorted(p.name for p in scans.glob("*.ply")), ["000000.ply", "000001.ply"])
+        self.run_bad(65, "evaluate", "c2c", scans, self.cloud, says=["--format semantickitti"])
+
+    def test_formats(self):
+        model = self.model()
+        scans = self.simulate(model, "npy", "--format", "npy")
+        array = (scans / "000000.npy").read_bytes()
+        self.assertTrue(array.startswith(b"\x93NUMPY"))
+        self.assertTrue((scans / "000000_label.npy").exists())
+        sequence = self.simulate(model, "kitti") / "sequences" / "00"
+        for name in ["poses.txt", "calib.txt", "times.txt", "velodyne/000002.bin",
+                     "labels/000002.label"]:
+            self.assertTrue((sequence / name).exists(), name)
+
+    def test_sequence_as_input_and_trajectory(self):
+        scans = self.simulate(self.model(), "scans")
+        again = self.folder / "again.ply"
+        report = self.report("model", scans / "sequences" / "00", "-o", again, "--scans", "1:2")
+        self.assertGreater(report["points_in"], 1000)
+        self.run_good("simulate", again, "--trajectory", scans, "--sensor", self.sensor, "-o",
+                      self.folder / "scans of scans")
+
+    def test_render(self):
+        model = self.model()
+        picture = self.folder / "picture.png"
+        views = [[], ["--birds-eye"], ["--eye", "-3,-3,2"], ["--eye", "-3,-3,2", "--target", "6,3,1"],
+                 ["--trajectory", self.poses, "--pose", "1"], ["--color", "normal"]]
+        contents = set()
+        for view in views:
+            self.run_good("render", model, "-o", picture, "--width", "64", "--height", "48", *view)
+            data = picture.read_bytes()
+            self.assertEqual(struct.unpack(">II", data[16:24]), (64, 48))
+            contents.add(data)
+        self.assertEqual(len(contents), len(views))
+        self.run_good("render", model, model, "-o", picture, "--width", "64", "--height", "48")
+        self.assertEqual(struct.unpack(">II", picture.read_bytes()[16:24]), (128, 48))
+
+    def test_info(self):
+        model = self.model()
+        scans = self.simulate(model)
+        report = self.report("info", self.cloud, model, scans, "--labels", "semantickitti")
+        kinds = [facts["kind"] for facts in report["files"]]
+        self.assertEqual(kinds, ["point cloud", "splat model", "sequence"])
+        cloud = report["files"][0]
+        self.assertEqual(cloud["points"], len(tiny_place()))
+        self.assertEqual(cloud["classes"]["80"], 200)
+        self.assertAlmostEqual(cloud["extent_m"]["x"][1], 14.75, delta=0.1)
+        text = self.run_good("info", self.cloud, "--labels", "semantickitti").stdout
+        self.assertIn("80 pole", text)
+
+    def test_warning_for_labels_without_a_scheme(self):
+        result = run("model", self.cloud, "-o", self.folder / "m.ply")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("adasplats: warning: ", result.stderr)
+        self.assertIn("--labels", result.stderr)
+
+    def test_own_label_scheme(self):
+        scheme = self.folder / "mine.toml"
+        scheme.write_text('name = "mine"\n' + "".join(
+            f'[[class]]\nid = {number}\nname = "{name}"\ngroup = "{group}"\n'
+            for number, name, group in [(40, "street", "ground"), (50, "house", "surface"),
+                                        (80, "mast", "linear")]))
+        model = self.folder / "m.ply"
+        self.run_good("model", self.cloud, "-o", model, "--method", "semantic", "--labels", scheme)
+        self.assertIn("80 mast", self.run_good("info", model).stdout)
+
+    def test_street(self):
+        street = self.folder / "street"
+        report = self.report("synth", "street", "-o", street, "--points", "5000",
+                             "--driving-spacing", "25", "--seed", "3")
+        self.assertAlmostEqual(report["mapping_points"], 5000, delta=1000)
+        self.assertGreater(report["driving_scans"], 0)
+        kinds = [facts["kind"] for facts in self.report(
+            "info", street / "mapping.ply", street / "mesh.ply", street)["files"]]
+        self.assertEqual(kinds, ["point cloud", "mesh", "sequence"])
+        content = json.loads((street / "adasplats.json").read_text())
+        self.assertEqual(content["seed"], 3)
+
+    def test_demo(self):
+        demo = self.folder / "demo"
+        text = self.run_good("demo", "-o", demo, "--points", "5000").stdout
+        for word in ["basic", "descriptors", "semantic", "thin C2C"]:
+            self.assertIn(word, text)
+        pictures = [line.strip() for line in text.splitlines() if line.endswith(".png")]
+        self.assertEqual(len(pictures), 6)
+        for picture in pictures:
+            with open(picture, "rb") as file:
+                self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+
+
+class ManyPlaces(ProgramTest):
+    def test_inputs_add_up(self):
+        points = tiny_place()
+        half = len(points) // 2
+        first, second = self.folder / "first.ply", self.folder / "second.ply"
+        write_cloud(first, points[:half])
+        write_cloud(second, points[half:])
+        whole = self.model()
+        parts = self.folder / "parts.ply"
+        self.run_good("model", second, first, "-o", parts, "--labels", "semantickitti")
+        self.assertEqual(whole.read_bytes(), parts.read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()

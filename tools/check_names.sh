@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Checks what no compiler sees: every source carries the SPDX header, no file names a folder of
+# one machine, and nothing large or binary slipped in.
+set -euo pipefail
+
+readonly kLargestBytes=2000000
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+mapfile -d '' -t files < <(git ls-files -z --cached --others --exclude-standard)
+faults=0
+fault() {
+  echo "$*" >&2
+  faults=$((faults + 1))
+}
+
+# Folders that exist on one machine only. A file that has to name one says why on that line with
+# "machine path".
+readonly kMachinePath='(^|[^A-Za-z0-9_.~})-])/(work|home|root|Users|mnt)/'
+
+for file in "${files[@]}"; do
+  [[ -f $file ]] || continue
+  size=$(stat -c %s -- "$file")
+  ((size <= kLargestBytes)) || fault "$file: $size bytes, more than $kLargestBytes"
+  case $file in
+    *.h | *.cpp | *.cu | *.cuh | *.py | *.sh | *.cmake | *CMakeLists.txt | .ci/run | *.toml | *.js)
+      if [[ -s $file ]]; then
+        opening=$(head -n 4 -- "$file")
+        [[ $opening == *"SPDX-FileCopyrightText: "* &&
+          $opening == *"SPDX-License-Identifier: Apache-2.0"* ]] ||
+          fault "$file: no SPDX header in the first lines"
+      fi
+      ;;
+  esac
+  while IFS= read -r hit; do
+    fault "$file:$hit: names a folder of one machine"
+  done < <(grep -InE "$kMachinePath" -- "$file" | grep -v 'machine path' | cut -c 1-120)
+done
+
+if ((faults)); then
+  echo "check_names: $faults faults"
+  exit 1
+fi
+echo "check_names: ${#files[@]} files carry the header and name no machine"
