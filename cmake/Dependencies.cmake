@@ -4,13 +4,7 @@
 find_package(TBB REQUIRED)
 find_package(Threads REQUIRED)
 find_package(nlohmann_json REQUIRED)
-find_package(tomlplusplus QUIET)
-if(NOT tomlplusplus_FOUND)
-  find_path(ADASPLATS_TOML_INCLUDE toml++/toml.h REQUIRED)
-  add_library(tomlplusplus::tomlplusplus INTERFACE IMPORTED)
-  set_target_properties(tomlplusplus::tomlplusplus PROPERTIES INTERFACE_INCLUDE_DIRECTORIES
-                                                              ${ADASPLATS_TOML_INCLUDE})
-endif()
+find_package(tomlplusplus REQUIRED)
 find_package(PNG REQUIRED)
 
 # LAZ: LASzip is not in Debian 12; where it is missing the reader says what to install.

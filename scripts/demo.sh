@@ -7,7 +7,11 @@
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-output=$(realpath -m "${1:-$root/out/demo}")
+if (($#)); then
+  output=(-o "$(realpath -m "$1")")
+else
+  output=(-o "$root/out/demo" --overwrite)
+fi
 cd "$root"
 
 scripts/setup.sh --for demo
@@ -16,4 +20,5 @@ if [[ ! -f build/release/build.ninja ]]; then
   cmake --preset release -DADASPLATS_BUILD_TESTS=OFF -DADASPLATS_BUILD_BENCH=OFF
 fi
 cmake --build build/release --target adasplats_program
-build/release/bin/adasplats demo -o "$output"
+mkdir -p "$(dirname "${output[1]}")"
+build/release/bin/adasplats demo "${output[@]}"

@@ -21,8 +21,8 @@ demo  g++                  g++           compiles (C++20)
 demo  libtbb-dev           -             parallel loops
 demo  libembree-dev        -             ray tracing on the CPU
 demo  libcli11-dev         -             the command line
-demo  nlohmann-json3-dev   -             sensor and label files
-demo  libtomlplusplus-dev  -             configuration files
+demo  nlohmann-json3-dev   -             reports of the program
+demo  libtomlplusplus-dev  -             sensor, label and configuration files
 demo  libpng-dev           -             images
 maybe liblaszip-dev        -             LAZ files
 test  git                  git           lists the files to check

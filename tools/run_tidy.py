@@ -24,6 +24,7 @@ import sys
 PINNED = 14  # Debian 12's
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CHECKED = (ROOT / "src", ROOT / "apps")
+DIAGNOSTIC = re.compile(r"^(?=/[^\n]*:\d+:\d+: (?:error|warning): )", re.MULTILINE)
 OUR_INCLUDE = re.compile(rb'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
 
 
@@ -90,8 +91,11 @@ def main():
     stamps = options.build / "tidy"
     stamps.mkdir(exist_ok=True)
 
+    current = set()
+
     def check(source, command):
         stamp = stamps / stamp_of(source, command, version)
+        current.add(stamp)
         if stamp.exists():
             return source, None
         result = subprocess.run([program, "--quiet", "-p", options.build, source], text=True,
@@ -101,7 +105,7 @@ def main():
         # stderr counts the warnings of system headers; it matters where nothing else was said.
         return source, (result.returncode, result.stdout or result.stderr)
 
-    known, faulty = 0, 0
+    known, faulty, said = 0, 0, set()
     sources = list(sources_of(options.build))
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for source, verdict in pool.map(lambda pair: check(*pair), sources):
@@ -109,7 +113,12 @@ def main():
                 known += 1
             elif verdict[0] != 0:
                 faulty += 1
-                print(f"{source.relative_to(ROOT)}:\n{verdict[1]}", flush=True)
+                # What is wrong in a header is found once for every source that includes it.
+                new = [text for text in DIAGNOSTIC.split(verdict[1]) if text not in said]
+                said.update(new)
+                print(f"{source.relative_to(ROOT)}:\n{''.join(new)}", flush=True)
+    for old in set(stamps.iterdir()) - current:
+        old.unlink()
     print(f"run_tidy: {len(sources)} sources, {known} unchanged since they passed, {faulty} faulty")
     return 1 if faulty or not sources else 0
 

@@ -39,10 +39,15 @@ void add_cleaning(CLI::App& app, BuildOptions& options) {
   add_switch(app, "--resample,!--no-resample", options.resample,
              "Fill in points on splats and generate again")
       ->group(kGroup);
+  app.add_option("--resample-density", options.resample_density,
+                 "Wanted density of splats, times its mean")
+      ->capture_default_str()
+      ->group(kGroup);
   add_choice<BuildOptions::ResampleBase>(
       app, "--resample-base", options.resample_base,
       {{"points", BuildOptions::ResampleBase::points},
-       {"centers", BuildOptions::ResampleBase::centers}},
+       {"centers", BuildOptions::ResampleBase::centers},
+       {"mixed", BuildOptions::ResampleBase::mixed}},
       "What the second generation starts from, with the new points")
       ->group(kGroup);
 }
@@ -71,6 +76,12 @@ void add_build_options(CLI::App& app, BuildOptions& options) {
                  "R, m; without it the mean distance to the K-th neighbour");
   app.add_option("--error-bound", options.error_m,
                  "E, m; without it the mean distance of neighbours from their plane");
+  add_choice<SelectionOrder>(app, "--selection", options.selection,
+                             {{"most-discards-first", SelectionOrder::most_discards_first},
+                              {"largest-first", SelectionOrder::largest_first},
+                              {"curve", SelectionOrder::curve},
+                              {"scattered", SelectionOrder::scattered}},
+                             "Order in which candidate splats are taken");
   add_choice<DynamicRemoval>(app, "--remove", options.remove,
                              {{"none", DynamicRemoval::none},
                               {"moving", DynamicRemoval::moving},

@@ -38,6 +38,8 @@ class DemoCommand final : public Command {
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     app.add_option("--points", job_.points, "About as many points in the mapping cloud")
         ->capture_default_str();
+    app.add_option("--driving-spacing", job_.driving_spacing_m, "Between the held-out scans, m")
+        ->capture_default_str();
   }
 
   void run(Session& session) override {

@@ -74,15 +74,13 @@ std::vector<fs::path> draw(const std::string& name, std::size_t poses, const fs:
 }  // namespace
 
 DemoResult run_demo(const DemoJob& job, Session& session) {
-  nlohmann::ordered_json content;
-  content["program"] = "adasplats";
-  content["version"] = ADASPLATS_VERSION;
-  content["command"] = "demo";
-  OutputFolder folder(job.output, job.overwrite, content.dump(2) + "\n");
+  OutputFolder folder(job.output, job.overwrite, "demo",
+                      {{"seed", session.seed}, {"points", job.points}});
 
   SynthJob synth;
   synth.output = folder.path() / "street";
   synth.scan.points = job.points;
+  synth.scan.driving_spacing_m = job.driving_spacing_m;
   DemoResult result;
   result.street = run_synth_street(synth, session);
   for (const auto& [name, method] : method_names()) {

@@ -20,6 +20,7 @@ struct DemoJob {
   std::filesystem::path output = "adasplats-demo";
   bool overwrite = false;
   std::size_t points = 300'000;
+  double driving_spacing_m = 2;  ///< between the held-out scans
 };
 
 /// What one method came to.

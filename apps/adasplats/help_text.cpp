@@ -70,7 +70,8 @@ std::string help_text(const CLI::App& app) {
   std::string text = app.help(above, CLI::AppFormatMode::Normal);
   // CLI11 leaves two blank lines between groups.
   for (std::size_t at = 0; (at = text.find("\n\n\n", at)) != std::string::npos;) text.erase(at, 1);
-  return text;
+  text.erase(text.find_last_not_of('\n') + 1);
+  return text + "\n";
 }
 
 }  // namespace adasplats::app

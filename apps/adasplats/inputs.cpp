@@ -29,7 +29,7 @@ std::optional<LabelScheme> label_scheme_for(const std::string& labels,
 
 fs::path resolve_cloud_input(const fs::path& input) {
   require_input(input);
-  const fs::path sequence = input / "sequences" / "00";
+  fs::path sequence = input / "sequences" / "00";
   if (is_kitti_sequence(sequence)) return sequence;
   if (fs::exists(input / "poses.csv") && !is_kitti_sequence(input)) {
     throw Error(ErrorKind::data,

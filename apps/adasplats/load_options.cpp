@@ -16,7 +16,8 @@ void add_load_options(CLI::App& app, LoadOptions& options) {
     const std::size_t second = text.find(',', first + 1);
     if (first == std::string::npos || second == std::string::npos ||
         text.find(',', second + 1) != std::string::npos) {
-      throw CLI::ValidationError("expected three names of columns, found '" + text + "'");
+      throw CLI::ValidationError("--sensor-fields",
+                                 "expected three names of columns, found '" + text + "'");
     }
     options.sensor_x_field = text.substr(0, first);
     options.sensor_y_field = text.substr(first + 1, second - first - 1);
@@ -33,7 +34,7 @@ void add_load_options(CLI::App& app, LoadOptions& options) {
            "Poses whose nearest one is the sensor position of points that have none")
       ->group(kGroup);
   const auto set_scans = [&options](const std::string& text) {
-    const ScanRange range = parse_scan_range(text);
+    const ScanRange range = parse_scan_range("--scans", text);
     options.first_scan = range.first;
     options.scan_count = range.count;
     options.scan_stride = range.stride;

@@ -95,7 +95,11 @@ void check_extras(CLI::App& program, CLI::App& chosen) {
   const auto option = std::find_if(extras.begin(), extras.end(), is_option);
   if (option != extras.end()) {
     const std::string name = option->substr(0, option->find('='));
-    throw Error(ErrorKind::usage, unknown_word("option", name, option_names(chosen)));
+    const std::vector<std::string> known = option_names(chosen);
+    if (std::find(known.begin(), known.end(), name) != known.end()) {
+      throw Error(ErrorKind::usage, name + " must stand behind the subcommand");
+    }
+    throw Error(ErrorKind::usage, unknown_word("option", name, known));
   }
   std::vector<std::string> subcommands;
   for (const CLI::App* subcommand : chosen.get_subcommands({})) {

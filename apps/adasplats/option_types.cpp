@@ -33,30 +33,31 @@ std::string short_number(double number) {
   return {text.data(), end};
 }
 
-}  // namespace
-
-std::vector<double> parse_numbers(const std::string& text, std::size_t count) {
+/// "1,2.5,-3": three finite numbers, the value of `option`.
+std::array<double, 3> parse_three(const std::string& option, const std::string& text) {
   const std::vector<std::string> parts = split(text, ',');
-  std::vector<double> numbers(parts.size());
-  bool good = parts.size() == count;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    good = good && parse_whole(parts[i], numbers[i]) && std::isfinite(numbers[i]);
+  std::array<double, 3> numbers{};
+  bool good = parts.size() == numbers.size();
+  for (std::size_t i = 0; good && i < parts.size(); ++i) {
+    good = parse_whole(parts[i], numbers[i]) && std::isfinite(numbers[i]);
   }
   if (!good) {
-    throw CLI::ValidationError("expected " + std::to_string(count) +
-                               " numbers with commas between them, found '" + text + "'");
+    throw CLI::ValidationError(
+        option, "expected three numbers with commas between them, found '" + text + "'");
   }
   return numbers;
 }
 
-ScanRange parse_scan_range(const std::string& text) {
+}  // namespace
+
+ScanRange parse_scan_range(const std::string& option, const std::string& text) {
   const std::vector<std::string> parts = split(text, ':');
   ScanRange range;
   bool good = parts.size() == 2 || parts.size() == 3;
   good = good && parse_whole(parts[0], range.first) && parse_whole(parts[1], range.count);
   if (good && parts.size() == 3) good = parse_whole(parts[2], range.stride);
   if (!good || range.count == 0 || range.stride == 0) {
-    throw CLI::ValidationError("expected FIRST:COUNT[:STRIDE], found '" + text + "'");
+    throw CLI::ValidationError(option, "expected FIRST:COUNT[:STRIDE], found '" + text + "'");
   }
   return range;
 }
@@ -75,8 +76,8 @@ CLI::Option* add_vector(CLI::App& app, const std::string& name, std::optional<Ve
   return app
       .add_option_function<std::string>(
           name,
-          [&target](const std::string& text) {
-            const std::vector<double> v = parse_numbers(text, 3);
+          [&target, name](const std::string& text) {
+            const std::array<double, 3> v = parse_three(name, text);
             target = Vec3d{v[0], v[1], v[2]};
           },
           help)
@@ -88,8 +89,8 @@ CLI::Option* add_scale(CLI::App& app, const std::string& name, GroupScale& targe
   return app
       .add_option_function<std::string>(
           name,
-          [&target](const std::string& text) {
-            const std::vector<double> v = parse_numbers(text, 3);
+          [&target, name](const std::string& text) {
+            const std::array<double, 3> v = parse_three(name, text);
             target = {v[0], v[1], v[2]};
           },
           help)

@@ -23,10 +23,8 @@ struct ScanRange {
   std::size_t stride = 1;
 };
 
-/// "1,2.5,-3": exactly `count` finite numbers. Errors: CLI::ValidationError.
-std::vector<double> parse_numbers(const std::string& text, std::size_t count);
-/// "FIRST:COUNT[:STRIDE]".
-ScanRange parse_scan_range(const std::string& text);
+/// "FIRST:COUNT[:STRIDE]", the value of `option`. Errors: CLI::ValidationError.
+ScanRange parse_scan_range(const std::string& option, const std::string& text);
 
 CLI::Option* add_path(CLI::App& app, const std::string& name, std::filesystem::path& target,
                       const std::string& help);
@@ -57,14 +55,15 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, T& target, Choic
     joined += (joined.empty() ? "" : "|") + word;
     if (value == target) chosen = word;
   }
-  const auto choose = [&target, choices = std::move(choices), words](const std::string& given) {
+  const auto choose = [&target, name, choices = std::move(choices),
+                       words](const std::string& given) {
     for (const auto& [word, value] : choices) {
       if (word == given) {
         target = value;
         return;
       }
     }
-    throw CLI::ValidationError(unknown_word("value", given, words));
+    throw CLI::ValidationError(name, unknown_word("value", given, words));
   };
   return app.add_option_function<std::string>(name, choose, help)
       ->type_name(joined)

@@ -16,6 +16,7 @@ namespace adasplats::app {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 constexpr const char* kContentFile = "adasplats.json";
 
 Error cannot_create(const fs::path& path, const std::string& reason) {
@@ -43,7 +44,17 @@ fs::path without_slash(const fs::path& folder) {
   return normal.has_filename() ? normal : normal.parent_path();
 }
 
-void check_replaceable(const fs::path& folder, bool overwrite) {
+/// The command that wrote a folder, by its adasplats.json; empty where there is none.
+std::string writer_of(const fs::path& folder) {
+  const fs::path file = folder / kContentFile;
+  std::error_code failure;
+  if (!fs::is_regular_file(file, failure)) return "";
+  const Json content = Json::parse(read_file(file), nullptr, false);
+  const auto command = content.is_object() ? content.find("command") : content.end();
+  return command != content.end() && command->is_string() ? command->get<std::string>() : "";
+}
+
+void check_replaceable(const fs::path& folder, bool overwrite, const std::string& command) {
   std::error_code failure;
   const fs::file_status status = fs::status(folder, failure);
   if (!fs::exists(status)) return;
@@ -52,10 +63,21 @@ void check_replaceable(const fs::path& folder, bool overwrite) {
   if (!overwrite) {
     throw cannot_create(folder, "the folder is not empty; --overwrite replaces earlier output");
   }
-  if (!fs::exists(folder / kContentFile)) {
-    throw cannot_create(folder, std::string("not replaced: there is no ") + kContentFile +
-                                    " in it, so it is not output of adasplats alone");
+  // Replacing removes all that is there: it must be what this command makes again.
+  if (writer_of(folder) != command) {
+    throw cannot_create(folder, std::string("not replaced: no ") + kContentFile +
+                                    " in it says that 'adasplats " + command + "' wrote it");
   }
+}
+
+std::string content_text(const std::string& command, const Json& content) {
+  Json json;
+  json["program"] = "adasplats";
+  json["version"] = ADASPLATS_VERSION;
+  json["command"] = command;
+  json.update(content);
+  // Names of files need not be UTF-8; JSON must be.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
@@ -69,13 +91,14 @@ void check_output_file(const fs::path& file) {
   }
 }
 
-OutputFolder::OutputFolder(fs::path folder, bool overwrite, const std::string& content)
+OutputFolder::OutputFolder(const fs::path& folder, bool overwrite, const std::string& command,
+                           const Json& content)
     : folder_(without_slash(folder)) {
   if (folder_.empty() || folder_.filename() == "." || folder_.filename() == "..") {
     throw cannot_create(folder, "give the folder a name of its own");
   }
   check_parent(folder_);
-  check_replaceable(folder_, overwrite);
+  check_replaceable(folder_, overwrite, command);
   partial_ = parent_of(folder_) / ("." + folder_.filename().string() + ".partial");
   std::error_code failure;
   fs::create_directory(partial_, failure);
@@ -89,7 +112,7 @@ OutputFolder::OutputFolder(fs::path folder, bool overwrite, const std::string& c
     for (const fs::directory_entry& left_over : fs::directory_iterator(partial_)) {
       fs::remove_all(left_over.path());
     }
-    write_file(partial_ / kContentFile, content);
+    write_file(partial_ / kContentFile, content_text(command, content));
   } catch (...) {
     fs::remove_all(partial_, failure);
     close(lock_);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 namespace adasplats::app {
@@ -15,12 +16,13 @@ void check_output_file(const std::filesystem::path& file);
 /// ".NAME.partial" and renamed by commit(). Without commit() what was written is removed.
 class OutputFolder {
  public:
-  /// `content` (JSON) goes into the file adasplats.json of the folder, which tells a folder of ours
-  /// from others. A folder that is not empty is refused; with `overwrite` one with an
-  /// adasplats.json in it is replaced. A folder that another process fills now is refused; what a
-  /// killed process left is removed.
+  /// `content` goes into the file adasplats.json of the folder, with the program's version and the
+  /// command; it tells output of ours from other folders. A folder that is not empty is refused;
+  /// with `overwrite` one that the same command wrote is replaced. A folder that another process
+  /// fills now is refused; what a killed process left is removed.
   /// Errors: cannot_create.
-  OutputFolder(std::filesystem::path folder, bool overwrite, const std::string& content);
+  OutputFolder(const std::filesystem::path& folder, bool overwrite, const std::string& command,
+               const nlohmann::ordered_json& content);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;

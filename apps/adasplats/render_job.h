@@ -17,8 +17,8 @@ struct RenderJob {
   std::vector<std::filesystem::path> models;
   std::filesystem::path output;
   std::optional<ImageColor> color;  ///< else semantic where the model has classes or groups
-  int width = 1600;                 ///< of one model's part of the picture
-  int height = 900;
+  int width = 2560;                 ///< of one model's part of the picture
+  int height = 1440;
   int samples_per_axis = 2;
   double horizontal_fov_deg = 70;
   std::optional<Vec3d> eye;  ///< with `target`

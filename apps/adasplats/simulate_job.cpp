@@ -85,17 +85,12 @@ Trajectory poses_of(const SimulateJob& job) {
 }
 
 /// What the folder's adasplats.json says; nothing that differs between two runs.
-std::string content_description(const SimulateJob& job, std::uint64_t seed) {
-  nlohmann::ordered_json json;
-  json["program"] = "adasplats";
-  json["version"] = ADASPLATS_VERSION;
-  json["command"] = "simulate";
-  json["model"] = job.model.filename().string();
-  json["sensor"] = job.sensor;
-  json["offset_m"] = {job.offset_m.x, job.offset_m.y, job.offset_m.z};
-  json["every"] = job.every;
-  json["seed"] = seed;
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+nlohmann::ordered_json content_of(const SimulateJob& job, std::uint64_t seed) {
+  return {{"model", job.model.filename().string()},
+          {"sensor", job.sensor},
+          {"offset_m", {job.offset_m.x, job.offset_m.y, job.offset_m.z}},
+          {"every", job.every},
+          {"seed", seed}};
 }
 
 }  // namespace
@@ -106,7 +101,7 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   require_input(job.model);
   const LidarModel sensor = load_lidar_model(job.sensor);
   const Trajectory poses = poses_of(job);
-  OutputFolder folder(job.output, job.overwrite, content_description(job, session.seed));
+  OutputFolder folder(job.output, job.overwrite, "simulate", content_of(job, session.seed));
   const ModelScene scene(job.model, session);
 
   const TimedTracer tracer(scene.tracer());

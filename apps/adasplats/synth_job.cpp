@@ -10,14 +10,9 @@ StreetReport run_synth_street(const SynthJob& job, Session& session) {
   StreetOptions street = job.street;
   StreetScanOptions scan = job.scan;
   street.seed = scan.seed = session.seed;
-  nlohmann::ordered_json content;
-  content["program"] = "adasplats";
-  content["version"] = ADASPLATS_VERSION;
-  content["command"] = "synth street";
-  content["seed"] = session.seed;
-  content["points"] = scan.points;
-  content["length_m"] = street.length_m;
-  OutputFolder folder(job.output, job.overwrite, content.dump(2) + "\n");
+  OutputFolder folder(
+      job.output, job.overwrite, "synth street",
+      {{"seed", session.seed}, {"points", scan.points}, {"length_m", street.length_m}});
   const StreetReport report =
       write_street(folder.path(), street, scan, session.executor, session.progress);
   folder.commit();

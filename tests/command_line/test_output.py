@@ -37,8 +37,8 @@ class Output(ProgramTest):
     def test_file_too_large(self):
         old = self.folder / "model.ply"
         old.write_bytes(b"old")
-        self.run_bad(74, "model", self.cloud, "-o", old, preexec_fn=limit_files_to(2048),
-                     says=["model.ply"])
+        self.run_bad(74, "model", self.cloud, "-o", old, "--labels", "semantickitti",
+                     preexec_fn=limit_files_to(2048), says=["model.ply"])
         self.assertEqual(old.read_bytes(), b"old")
         self.assertEqual(self.names(), sorted(self.BEFORE + ["model.ply"]))
 
@@ -76,6 +76,12 @@ class Output(ProgramTest):
         (own / "thesis.txt").write_text("x")
         self.run_bad(73, *simulate[:-1], own, "--overwrite", says=["adasplats.json"])
         self.assertTrue((own / "thesis.txt").exists())
+        # Nor is one that another command wrote: its content would not come again.
+        street = self.folder / "street"
+        self.run_good("synth", "street", "-o", street, "--points", "2000", "--driving-spacing",
+                      "0")
+        self.run_bad(73, *simulate[:-1], street, "--overwrite", says=["simulate"])
+        self.assertTrue((street / "mapping.ply").exists())
 
     def test_two_runs_on_one_folder(self):
         model = self.model()

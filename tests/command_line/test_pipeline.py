@@ -15,8 +15,9 @@ class Pipeline(ProgramTest):
             scans = self.simulate(model, f"{method} scans", "--no-range-noise")
             report = self.report("evaluate", "c2c", scans, self.cloud, "--by-class", "--labels",
                                  "semantickitti")
-            # Splats of a place known to 1 cm, points 25 cm apart: half a diagonal is 18 cm.
-            self.assertLess(report["c2c_m"], 0.25, method)
+            # Large splats reach beyond the edges of the place by less than half a metre on
+            # average; a wrong pose or axis shows as metres.
+            self.assertLess(report["c2c_m"], 0.5, method)
             self.assertGreater(report["completeness_m"], 0, method)
             self.assertIn("road", report["by_class"])
             self.assertGreater(report["by_class"]["road"]["points"], 100)
@@ -151,7 +152,8 @@ class Pipeline(ProgramTest):
 
     def test_demo(self):
         demo = self.folder / "demo"
-        text = self.run_good("demo", "-o", demo, "--points", "5000").stdout
+        text = self.run_good("demo", "-o", demo, "--points", "5000", "--driving-spacing",
+                             "25").stdout
         for word in ["basic", "descriptors", "semantic", "thin C2C"]:
             self.assertIn(word, text)
         pictures = [line.strip() for line in text.splitlines() if line.endswith(".png")]

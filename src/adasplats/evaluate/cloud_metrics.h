@@ -29,7 +29,7 @@ struct ClassDistance {
   double c2c_m = 0;
   double c2c_to_all_m = 0;
   std::size_t simulated_points = 0;
-  std::size_t original_points = 0;   ///< of the class; 0: c2c_m is NaN
+  std::size_t original_points = 0;  ///< of the class; 0: c2c_m is NaN
 };
 
 /// Paper section "Evaluation Metric for LiDAR Simulation". The clouds may have different origins.
@@ -37,7 +37,8 @@ struct ClassDistance {
 CloudDistance cloud_distance(const PointCloud& simulated, const PointCloud& original,
                              const Executor& executor);
 
-/// By class, ascending id; both clouds need classes (ErrorKind::data otherwise).
+/// By class of either cloud, ascending id; both need classes (ErrorKind::data otherwise). A class
+/// that only one cloud has stays in the list with NaN for what is undefined.
 std::vector<ClassDistance> cloud_distance_by_class(const PointCloud& simulated,
                                                    const PointCloud& original,
                                                    const Executor& executor);

@@ -18,10 +18,10 @@
 namespace adasplats {
 
 struct ResimulateOptions {
-  double min_range_m = 2.5;    ///< measured beams nearer or farther than these are left out
+  double min_range_m = 2.5;  ///< measured beams nearer or farther than these are left out
   double max_range_m = 50.0;
-  bool drop_moving = true;     ///< leave out beams whose label is of a moving class
-  bool drop_movable = false;   ///< leave out beams on movable classes (parked cars) as well
+  bool drop_moving = true;    ///< leave out beams whose label is of a moving class
+  bool drop_movable = false;  ///< leave out beams on movable classes (parked cars) as well
 };
 
 /// Accuracy of predicted ranges over a set of beams. Shares are 0..1 of all rays; range errors are
@@ -31,16 +31,18 @@ struct BeamAccuracy {
   double no_hit = 0;
   double early_50cm = 0;
   double late_50cm = 0;
-  std::map<double, double> within;   ///< by bound in m: 0.02, 0.05, 0.10, 0.50
-  double median_m = 0;               ///< of |error|
+  std::map<double, double> within;  ///< by bound in m: 0.02, 0.05, 0.10, 0.50
+  double median_m = 0;              ///< of |error|
   double mae_m = 0;
   double rmse_m = 0;
-  double p90_m = 0;                  ///< of |error|
+  double p90_m = 0;  ///< of |error|
 };
 
 struct ResimulateResult {
   BeamAccuracy all;
-  CloudDistance clouds;                          ///< predicted against measured points
+  /// Predicted against measured points of each scan, the mean over scans (as lidar-nerf and LiDAR4D
+  /// average over frames); NaN where no beam hit. Point counts are sums.
+  CloudDistance clouds;
   std::vector<std::pair<std::string, BeamAccuracy>> by_range;      ///< "2.5-10 m", ...
   std::vector<std::pair<std::string, BeamAccuracy>> by_incidence;  ///< "0-30 deg" ... to the normal
   std::vector<std::pair<std::string, BeamAccuracy>> by_class;      ///< names of the label scheme

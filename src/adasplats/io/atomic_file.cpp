@@ -84,7 +84,7 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
 }
 
 void AtomicFile::write_through(const char* data, std::size_t bytes) {
-  if (descriptor_ < 0) throw std::logic_error("AtomicFile: written after commit()");
+  if (descriptor_ < 0) throw std::logic_error("AtomicFile: used after commit()");
   while (bytes > 0) {
     const ssize_t put = ::write(descriptor_, data, std::min(bytes, kLargestCallBytes));
     if (put < 0 && errno == EINTR) continue;
@@ -97,7 +97,6 @@ void AtomicFile::write_through(const char* data, std::size_t bytes) {
 void AtomicFile::commit() {
   write_through(buffer_.data(), buffer_.size());
   buffer_.clear();
-  if (descriptor_ < 0) throw std::logic_error("AtomicFile: committed twice");
   if (::fsync(descriptor_) != 0)
     throw system_error(ErrorKind::io, path_, "cannot be flushed to disk", errno);
   // Some network file systems report a full disk only here.

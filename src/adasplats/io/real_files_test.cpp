@@ -62,7 +62,9 @@ TEST_F(RealFiles, LasAndPcdHaveTheCataloguedPoints) {
       {"PDAL+PDAL__test__data__las__permutations__1.2-no-points.las", "room for 0"},
       {"PDAL+PDAL__test__data__pcd__missingheader.pcd", "'289814.15'"}};
   int read = 0;
-  for (const auto& [name, what] : catalog_) {
+  for (const auto& entry : catalog_) {
+    const std::string& name = entry.first;
+    const std::string& what = entry.second;
     if (!name.ends_with(".las") && !name.ends_with(".pcd")) continue;
     SCOPED_TRACE(name);
     if (broken.contains(name)) {
@@ -79,7 +81,9 @@ TEST_F(RealFiles, LasAndPcdHaveTheCataloguedPoints) {
 }
 
 TEST_F(RealFiles, LazIsReadOrSaysWhatToInstall) {
-  for (const auto& [name, what] : catalog_) {
+  for (const auto& entry : catalog_) {
+    const std::string& name = entry.first;
+    const std::string& what = entry.second;
     if (!name.ends_with(".laz")) continue;
     SCOPED_TRACE(name);
     try {
@@ -96,7 +100,9 @@ TEST_F(RealFiles, LazIsReadOrSaysWhatToInstall) {
 }
 
 TEST_F(RealFiles, PlyHaveTheCataloguedVertices) {
-  for (const auto& [name, what] : catalog_) {
+  for (const auto& entry : catalog_) {
+    const std::string& name = entry.first;
+    const std::string& what = entry.second;
     if (!name.ends_with(".ply")) continue;
     SCOPED_TRACE(name);
     if (name == "assimp+assimp__test__models__invalid__empty.ply") {
@@ -191,7 +197,8 @@ TEST_F(RealFiles, PtxTransformGivesTheSamePoints) {
 }
 
 TEST_F(RealFiles, E57IsRefusedWithTheCure) {
-  for (const auto& [name, what] : catalog_) {
+  for (const auto& entry : catalog_) {
+    const std::string& name = entry.first;
     if (!name.ends_with(".e57")) continue;
     expect_error(ErrorKind::data, {name, "E57 is not supported", "LAS or PLY"},
                  [&] { read_points(kFolder / name); });

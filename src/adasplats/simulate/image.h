@@ -19,7 +19,7 @@ namespace adasplats {
 /// What colours a picture shows.
 enum class ImageColor : std::uint8_t {
   shading,    ///< grey by the angle between view and surface
-  semantic,   ///< colour of the class (group where there are no classes, else grey), shaded
+  semantic,   ///< colour of the class, where it has none (or black) of the group, else grey; shaded
   normal,     ///< surface normal turned to the camera as RGB
   intensity,  ///< measured intensity, 2nd to 98th percentile; grey where there is none
   range,      ///< distance, on a logarithmic scale from 1 m to 100 m

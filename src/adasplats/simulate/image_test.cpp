@@ -33,7 +33,7 @@ std::size_t count_not(const Image& image, Rgb rgb) {
 }
 
 /// A picture of one scene with the defaults of these tests: from above, 100 pixels for 20 m.
-struct Setup {
+struct Shot {
   std::vector<Disk> disks;
   std::vector<std::uint16_t> classes;
   std::vector<float> intensities;
@@ -55,25 +55,25 @@ struct Setup {
 // Oracle of the tests here where nothing else is said: analytic.
 
 TEST(RenderImage, AnEmptySceneIsBackground) {
-  Setup setup;
-  setup.options.background = {1, 2, 3};
-  const Image image = setup.render();
+  Shot shot;
+  shot.options.background = {1, 2, 3};
+  const Image image = shot.render();
   EXPECT_EQ(image.pixels.size(), 30'000U);
   EXPECT_EQ(count_not(image, {1, 2, 3}), 0U);
 }
 
 TEST(RenderImage, ADiskCoversItsArea) {
-  Setup setup;
-  setup.disks = {{{0, 0, 1}, 8, {0, 0, 1}}};
-  const double pixels = count_not(setup.render(), kWhite);
+  Shot shot;
+  shot.disks = {{{0, 0, 1}, 8, {0, 0, 1}}};
+  const auto pixels = static_cast<double>(count_not(shot.render(), kWhite));
   const double expected = std::numbers::pi * 64 * std::pow(100 / 20.4, 2);
   EXPECT_NEAR(pixels, expected, 0.01 * expected);
 }
 
 TEST(RenderImage, NorthIsUpAndEastIsRight) {
-  Setup setup;
-  setup.disks = {{{7, 7, 1}, 2, {0, 0, 1}}};
-  const Image image = setup.render();
+  Shot shot;
+  shot.disks = {{{7, 7, 1}, 2, {0, 0, 1}}};
+  const Image image = shot.render();
   EXPECT_NE(pixel(image, 84, 16), kWhite);
   EXPECT_EQ(pixel(image, 16, 84), kWhite);
   EXPECT_EQ(pixel(image, 16, 16), kWhite);
@@ -84,11 +84,11 @@ TEST(RenderImage, ClassesHaveTheirColours) {
   const LabelScheme labels("mine",
                            {{1, "red", SemanticGroup::ground, Mobility::fixed, {200, 0, 0}},
                             {9, "blue", SemanticGroup::ground, Mobility::fixed, {0, 0, 200}}});
-  Setup setup;
-  setup.labels = &labels;
-  setup.disks = {{{-5, 0, 1}, 3, {0, 0, 1}}, {{5, 0, 1}, 3, {0, 0, 1}}, {{0, 7, 1}, 2, {0, 0, 1}}};
-  setup.classes = {1, 9, 777};
-  const Image image = setup.render();
+  Shot shot;
+  shot.labels = &labels;
+  shot.disks = {{{-5, 0, 1}, 3, {0, 0, 1}}, {{5, 0, 1}, 3, {0, 0, 1}}, {{0, 7, 1}, 2, {0, 0, 1}}};
+  shot.classes = {1, 9, 777};
+  const Image image = shot.render();
   const Rgb red = pixel(image, 25, 50), blue = pixel(image, 75, 50), unknown = pixel(image, 50, 16);
   EXPECT_GT(red[0], 150);
   EXPECT_EQ(red[1] + red[2], 0);
@@ -98,100 +98,115 @@ TEST(RenderImage, ClassesHaveTheirColours) {
   EXPECT_EQ(unknown[0], unknown[2]);
 }
 
+TEST(RenderImage, WhatHasNoClassShowsItsGroupNotBlack) {
+  const LabelScheme labels(
+      "mine", {{0, "unlabeled", SemanticGroup::non_surface, Mobility::fixed, {0, 0, 0}}});
+  Shot shot;
+  shot.labels = &labels;
+  shot.disks = {{{0, 0, 1}, 8, {0, 0, 1}}};
+  shot.classes = {0};
+  const Rgb grey = pixel(shot.render(), 50, 50);
+  EXPECT_GT(grey[0], 100);
+  EXPECT_EQ(grey[0], grey[1]);
+  shot.groups = {SemanticGroup::linear};
+  const Rgb reddish = pixel(shot.render(), 50, 50);
+  EXPECT_GT(reddish[0], reddish[1] + 50);
+}
+
 TEST(RenderImage, GroupsStandInForClassesAndGreyForBoth) {
-  Setup setup;
-  setup.disks = {{{-5, 0, 1}, 3, {0, 0, 1}}, {{5, 0, 1}, 3, {0, 0, 1}}};
-  setup.groups = {SemanticGroup::linear, SemanticGroup::non_surface};
-  const Image image = setup.render();
+  Shot shot;
+  shot.disks = {{{-5, 0, 1}, 3, {0, 0, 1}}, {{5, 0, 1}, 3, {0, 0, 1}}};
+  shot.groups = {SemanticGroup::linear, SemanticGroup::non_surface};
+  const Image image = shot.render();
   EXPECT_GT(pixel(image, 25, 50)[0], pixel(image, 25, 50)[1] + 50) << "reddish";
   EXPECT_GT(pixel(image, 75, 50)[1], pixel(image, 75, 50)[0] + 30) << "greenish";
-  setup.groups.clear();
-  const Rgb grey = pixel(setup.render(), 25, 50);
+  shot.groups.clear();
+  const Rgb grey = pixel(shot.render(), 25, 50);
   EXPECT_EQ(grey[0], grey[1]);
   EXPECT_EQ(grey[0], grey[2]);
 }
 
 TEST(RenderImage, BothSidesAreLitAlike) {
-  Setup setup;
-  setup.options.color = ImageColor::shading;
-  setup.disks = {{{0, 0, 1}, 8, {0, 0.6F, 0.8F}}};
-  const Image up = setup.render();
-  setup.disks[0].normal = {0, -0.6F, -0.8F};
-  EXPECT_EQ(setup.render().pixels, up.pixels);
+  Shot shot;
+  shot.options.color = ImageColor::shading;
+  shot.disks = {{{0, 0, 1}, 8, {0, 0.6F, 0.8F}}};
+  const Image up = shot.render();
+  shot.disks[0].normal = {0, -0.6F, -0.8F};
+  EXPECT_EQ(shot.render().pixels, up.pixels);
 }
 
 TEST(RenderImage, GroundAndFacadeSeenAtTheSameAngleDiffer) {
-  Setup setup;
-  setup.options.color = ImageColor::shading;
-  setup.camera = look_at({-10, 0, 10}, {0, 0, 0});
-  setup.camera.width = setup.camera.height = 21;
-  setup.disks = {{{0, 0, 0}, 3, {0, 0, 1}}};
-  const int ground = pixel(setup.render(), 10, 10)[0];
-  setup.disks[0].normal = {1, 0, 0};
-  const int facade = pixel(setup.render(), 10, 10)[0];
+  Shot shot;
+  shot.options.color = ImageColor::shading;
+  shot.camera = look_at({-10, 0, 10}, {0, 0, 0});
+  shot.camera.width = shot.camera.height = 21;
+  shot.disks = {{{0, 0, 0}, 3, {0, 0, 1}}};
+  const int ground = pixel(shot.render(), 10, 10)[0];
+  shot.disks[0].normal = {1, 0, 0};
+  const int facade = pixel(shot.render(), 10, 10)[0];
   EXPECT_GT(ground, facade + 10);
 }
 
 TEST(RenderImage, NormalsAreTurnedToTheCamera) {
-  Setup setup;
-  setup.options.color = ImageColor::normal;
-  setup.disks = {{{0, 0, 1}, 8, {0, 0, -1}}};
-  EXPECT_EQ(pixel(setup.render(), 50, 50), (Rgb{128, 128, 255}));
+  Shot shot;
+  shot.options.color = ImageColor::normal;
+  shot.disks = {{{0, 0, 1}, 8, {0, 0, -1}}};
+  EXPECT_EQ(pixel(shot.render(), 50, 50), (Rgb{128, 128, 255}));
 }
 
 TEST(RenderImage, TrianglesHaveNormalsToo) {
-  Setup setup;
-  setup.options.color = ImageColor::normal;
-  setup.mesh.vertices = {{-9, -9, 1}, {9, -9, 1}, {0, 9, 1}};
-  setup.mesh.triangles = {{0, 2, 1}};
-  EXPECT_EQ(pixel(setup.render(), 50, 50), (Rgb{128, 128, 255}));
+  Shot shot;
+  shot.options.color = ImageColor::normal;
+  shot.mesh.vertices = {{-9, -9, 1}, {9, -9, 1}, {0, 9, 1}};
+  shot.mesh.triangles = {{0, 2, 1}};
+  EXPECT_EQ(pixel(shot.render(), 50, 50), (Rgb{128, 128, 255}));
 }
 
 TEST(RenderImage, IntensitiesRunFromDarkToBright) {
-  Setup setup;
-  setup.options.color = ImageColor::intensity;
-  setup.disks = {{{-5, 0, 1}, 3, {0, 0, 1}}, {{5, 0, 1}, 3, {0, 0, 1}}, {{0, 7, 1}, 2, {0, 0, 1}}};
-  setup.intensities = {0.1F, 0.9F, std::numeric_limits<float>::quiet_NaN()};
-  const Image image = setup.render();
+  Shot shot;
+  shot.options.color = ImageColor::intensity;
+  shot.disks = {{{-5, 0, 1}, 3, {0, 0, 1}}, {{5, 0, 1}, 3, {0, 0, 1}}, {{0, 7, 1}, 2, {0, 0, 1}}};
+  shot.intensities = {0.1F, 0.9F, std::numeric_limits<float>::quiet_NaN()};
+  const Image image = shot.render();
   const auto sum = [](Rgb rgb) { return rgb[0] + rgb[1] + rgb[2]; };
   EXPECT_LT(sum(pixel(image, 25, 50)), sum(pixel(image, 75, 50)) - 200);
   EXPECT_EQ(pixel(image, 50, 16)[0], pixel(image, 50, 16)[1]) << "NaN is grey";
-  setup.intensities.clear();
-  EXPECT_EQ(pixel(setup.render(), 25, 50)[0], pixel(setup.render(), 25, 50)[1]);
+  shot.intensities.clear();
+  EXPECT_EQ(pixel(shot.render(), 25, 50)[0], pixel(shot.render(), 25, 50)[1]);
 }
 
 TEST(RenderImage, RangesRunFromBrightToDark) {
-  Setup setup;
-  setup.options.color = ImageColor::range;
-  setup.camera = birds_eye({-10, -10, 0}, {10, 10, 99}, 100, 100);
-  setup.disks = {{{-5, 0, 99}, 3, {0, 0, 1}}, {{5, 0, 0}, 3, {0, 0, 1}}};
-  const Image image = setup.render();
+  Shot shot;
+  shot.options.color = ImageColor::range;
+  shot.camera = birds_eye({-10, -10, 0}, {10, 10, 99}, 100, 100);
+  shot.disks = {{{-5, 0, 99}, 3, {0, 0, 1}}, {{5, 0, 0}, 3, {0, 0, 1}}};
+  const Image image = shot.render();
   EXPECT_EQ(pixel(image, 25, 50), (Rgb{253, 231, 37})) << "1 m";
   EXPECT_EQ(pixel(image, 75, 50), (Rgb{68, 1, 84})) << "100 m";
 }
 
 TEST(RenderImage, SamplesOfAPixelAreAveraged) {
-  Setup setup;
-  setup.options.color = ImageColor::normal;
-  setup.options.samples_per_axis = 2;
-  setup.options.background = {0, 0, 0};
-  setup.camera.width = setup.camera.height = 1;
+  Shot shot;
+  shot.options.color = ImageColor::normal;
+  shot.options.samples_per_axis = 2;
+  shot.options.background = {0, 0, 0};
+  shot.camera.width = shot.camera.height = 1;
   // The left half of the only pixel: two of its four samples.
-  setup.mesh.vertices = {{-40, -40, 1}, {0, -40, 1}, {0, 40, 1}, {-40, 40, 1}};
-  setup.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  EXPECT_EQ(pixel(setup.render(), 0, 0), (Rgb{64, 64, 128}));
+  shot.mesh.vertices = {{-40, -40, 1}, {0, -40, 1}, {0, 40, 1}, {-40, 40, 1}};
+  shot.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  EXPECT_EQ(pixel(shot.render(), 0, 0), (Rgb{64, 64, 128}));
 }
 
 TEST(RenderImage, TheSkyIsAboveTheHorizon) {
-  Setup setup;
-  setup.camera = look_at({0, 0, 2}, {10, 0, 2});
-  setup.camera.width = setup.camera.height = 64;
-  const Image image = setup.render();
+  Shot shot;
+  shot.camera = look_at({0, 0, 2}, {10, 0, 2});
+  shot.camera.width = shot.camera.height = 64;
+  const Image image = shot.render();
   EXPECT_EQ(pixel(image, 32, 63), kWhite);
   EXPECT_LT(pixel(image, 32, 0)[0], 230);
   EXPECT_GT(pixel(image, 32, 0)[2], pixel(image, 32, 0)[0] + 10);
-  setup.options.sky = false;
-  EXPECT_EQ(count_not(setup.render(), kWhite), 0U);
+  shot.options.sky = false;
+  EXPECT_EQ(count_not(shot.render(), kWhite), 0U);
 }
 
 std::vector<Disk> random_disks() {
@@ -208,23 +223,23 @@ std::vector<Disk> random_disks() {
 
 // Oracle: the ray through each pixel's centre, one by one. Sizes that no block or tile divides.
 TEST(RenderImage, EveryPixelIsItsOwnRay) {
-  Setup setup;
-  setup.disks = random_disks();
-  setup.options.color = ImageColor::normal;
+  Shot shot;
+  shot.disks = random_disks();
+  shot.options.color = ImageColor::normal;
   for (const auto& [width, height] : {std::pair{131, 67}, std::pair{1, 1}, std::pair{64, 3}}) {
-    setup.camera = birds_eye({-10, -10, 0}, {10, 10, 5}, width, height);
-    const Image image = setup.render();
-    const auto oracle = make_brute_force_tracer({setup.disks, nullptr});
+    shot.camera = birds_eye({-10, -10, 0}, {10, 10, 5}, width, height);
+    const Image image = shot.render();
+    const auto oracle = make_brute_force_tracer({shot.disks, nullptr});
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
-        const Ray ray = setup.camera.ray(x + 0.5, y + 0.5, {});
+        const Ray ray = shot.camera.ray(x + 0.5, y + 0.5, {});
         Hit hit;
         oracle->nearest({&ray, 1}, {&hit, 1}, Executor(1));
         Rgb expected = kWhite;
         if (hit.valid())
           for (int axis = 0; axis < 3; ++axis)
             expected[static_cast<std::size_t>(axis)] = static_cast<int>(
-                std::lround(127.5F * (1.0F + setup.disks[hit.primitive].normal[axis])));
+                std::lround(127.5F * (1.0F + shot.disks[hit.primitive].normal[axis])));
         ASSERT_EQ(pixel(image, x, y), expected) << x << ", " << y;
       }
     }
@@ -233,43 +248,43 @@ TEST(RenderImage, EveryPixelIsItsOwnRay) {
 
 // Oracle: one thread.
 TEST(RenderImage, ThreadsDoNotChangeAByte) {
-  Setup setup;
-  setup.disks = random_disks();
-  setup.options.samples_per_axis = 3;
-  const Image expected = setup.render(1);
-  EXPECT_EQ(setup.render(2).pixels, expected.pixels);
-  EXPECT_EQ(setup.render(3).pixels, expected.pixels);
+  Shot shot;
+  shot.disks = random_disks();
+  shot.options.samples_per_axis = 3;
+  const Image expected = shot.render(1);
+  EXPECT_EQ(shot.render(2).pixels, expected.pixels);
+  EXPECT_EQ(shot.render(3).pixels, expected.pixels);
 }
 
 TEST(RenderImage, NonsenseIsAUsageError) {
-  const auto expect_usage = [](const Setup& setup) {
+  const auto expect_usage = [](const Shot& shot) {
     try {
-      setup.render();
+      shot.render();
       ADD_FAILURE() << "no error";
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::usage);
     }
   };
-  Setup setup;
-  setup.camera.width = 0;
-  expect_usage(setup);
-  setup = {};
-  setup.camera.height = 1 << 20;
-  expect_usage(setup);
-  setup = {};
-  setup.options.samples_per_axis = 0;
-  expect_usage(setup);
-  setup = {};
-  setup.camera.orthographic_width_m = 0;
-  setup.camera.horizontal_fov_rad = 3.2;
-  expect_usage(setup);
+  Shot shot;
+  shot.camera.width = 0;
+  expect_usage(shot);
+  shot = {};
+  shot.camera.height = 1 << 20;
+  expect_usage(shot);
+  shot = {};
+  shot.options.samples_per_axis = 0;
+  expect_usage(shot);
+  shot = {};
+  shot.camera.orthographic_width_m = 0;
+  shot.camera.horizontal_fov_rad = 3.2;
+  expect_usage(shot);
 }
 
 TEST(RenderImage, AttributesOfAnotherSizeAreABug) {
-  Setup setup;
-  setup.disks = random_disks();
-  setup.classes = {1, 2};
-  EXPECT_THROW(setup.render(), std::logic_error);
+  Shot shot;
+  shot.disks = random_disks();
+  shot.classes = {1, 2};
+  EXPECT_THROW(shot.render(), std::logic_error);
 }
 
 TEST(Viridis, HasItsEndsAndClampsTheRest) {

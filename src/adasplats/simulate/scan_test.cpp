@@ -12,11 +12,6 @@
 namespace adasplats {
 namespace {
 
-const Executor& two_threads() {
-  static const Executor executor(2);
-  return executor;
-}
-
 /// The plane z = 0 as disks in a square grid that leaves no holes.
 std::vector<Disk> ground_disks(int half_count, float spacing_m) {
   std::vector<Disk> disks;
@@ -40,7 +35,7 @@ TriangleMesh box_mesh(float half) {
 }
 
 /// A scan of one sensor in one scene with the defaults of these tests.
-struct Setup {
+struct Drive {
   SceneView view;
   PrimitiveAttributes attributes;
   Vec3d scene_origin;
@@ -49,7 +44,8 @@ struct Setup {
   std::uint64_t scan_index = 0;
   SimulateOptions options;
 
-  Scan scan(const Executor& executor = two_threads()) const {
+  Scan scan(int threads = 2) const {
+    const Executor executor(threads);
     const auto tracer = make_embree_tracer(view, executor);
     return simulate_scan(*tracer, attributes, scene_origin, sensor, firings_of(sensor), pose,
                          scan_index, options, executor);
@@ -59,15 +55,15 @@ struct Setup {
 // Oracle: analytic. A ray that looks down by e from the height h meets the plane at h / sin(e).
 TEST(SimulateScan, RangesAboveAPlaneAreExact) {
   const auto disks = ground_disks(60, 0.5F);
-  Setup setup;
-  setup.view = {disks, nullptr};
-  setup.sensor.max_range_m = 25;
-  setup.pose.world_from_sensor.translation = {0, 0, 2};
-  const Scan scan = setup.scan();
+  Drive drive;
+  drive.view = {disks, nullptr};
+  drive.sensor.max_range_m = 25;
+  drive.pose.world_from_sensor.translation = {0, 0, 2};
+  const Scan scan = drive.scan();
 
   std::size_t expected_returns = 0;
   std::size_t next = 0;
-  for (const Firing& firing : firings_of(setup.sensor)) {
+  for (const Firing& firing : firings_of(drive.sensor)) {
     const double range_m = -2.0 / static_cast<double>(firing.direction.z);
     if (!(range_m > 0 && range_m < 25)) continue;
     ++expected_returns;
@@ -86,14 +82,14 @@ TEST(SimulateScan, RangesAboveAPlaneAreExact) {
 // Oracle: analytic. Inside a cube every ray ends on the side that it meets first.
 TEST(SimulateScan, RangesInsideABoxAreExactForAnyPose) {
   const TriangleMesh mesh = box_mesh(10.0F);
-  Setup setup;
-  setup.view = {{}, &mesh};
-  setup.sensor = hdl_64_paper();
-  setup.pose.world_from_sensor = {rotation_from_yaw_pitch_roll(0.7, 0.4, -0.2), {1, -2, 3}};
-  const Scan scan = setup.scan();
+  Drive drive;
+  drive.view = {{}, &mesh};
+  drive.sensor = hdl_64_paper();
+  drive.pose.world_from_sensor = {rotation_from_yaw_pitch_roll(0.7, 0.4, -0.2), {1, -2, 3}};
+  const Scan scan = drive.scan();
   ASSERT_EQ(scan.size(), 144'000U) << "a closed box lets no ray out";
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    const Vec3d p = setup.pose.world_from_sensor * vec_cast<double>(scan.positions[i]);
+    const Vec3d p = drive.pose.world_from_sensor * vec_cast<double>(scan.positions[i]);
     const double side = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
     ASSERT_NEAR(side, 10.0, 2e-5) << "return " << i;
     ASSERT_NEAR(static_cast<double>(length(scan.positions[i])),
@@ -104,24 +100,24 @@ TEST(SimulateScan, RangesInsideABoxAreExactForAnyPose) {
 // Oracle: the same scene at the origin. Millimetres survive coordinates of millions of metres.
 TEST(SimulateScan, LargeWorldCoordinatesLoseNothing) {
   const TriangleMesh mesh = box_mesh(10.0F);
-  Setup setup;
-  setup.view = {{}, &mesh};
-  setup.pose.world_from_sensor.translation = {0.25, 0.5, 1};
-  const Scan expected = setup.scan();
-  setup.scene_origin = {650'000, 6'860'000, 35};
-  setup.pose.world_from_sensor.translation = {650'000.25, 6'860'000.5, 36};
-  EXPECT_EQ(setup.scan().ranges_m, expected.ranges_m);
+  Drive drive;
+  drive.view = {{}, &mesh};
+  drive.pose.world_from_sensor.translation = {0.25, 0.5, 1};
+  const Scan expected = drive.scan();
+  drive.scene_origin = {650'000, 6'860'000, 35};
+  drive.pose.world_from_sensor.translation = {650'000.25, 6'860'000.5, 36};
+  EXPECT_EQ(drive.scan().ranges_m, expected.ranges_m);
 }
 
 // Oracle: analytic. The paper's sensor is level; a tilted one is a matter of the pose.
 TEST(SimulateScan, APositivePitchTurnsTheSensorDown) {
   const auto disks = ground_disks(60, 0.5F);
-  Setup setup;
-  setup.view = {disks, nullptr};
-  setup.sensor.elevations_rad = {0.0};
-  setup.sensor.columns = 4;
-  setup.pose.world_from_sensor = {rotation_from_yaw_pitch_roll(0, 0.3, 0), {0, 0, 3}};
-  const Scan scan = setup.scan();
+  Drive drive;
+  drive.view = {disks, nullptr};
+  drive.sensor.elevations_rad = {0.0};
+  drive.sensor.columns = 4;
+  drive.pose.world_from_sensor = {rotation_from_yaw_pitch_roll(0, 0.3, 0), {0, 0, 3}};
+  const Scan scan = drive.scan();
   ASSERT_EQ(scan.size(), 1U) << "forward alone meets the ground";
   EXPECT_NEAR(static_cast<double>(scan.ranges_m[0]), 3 / std::sin(0.3), 1e-5);
   EXPECT_NEAR(static_cast<double>(scan.positions[0].z), 0.0, 1e-6) << "in the sensor's frame";
@@ -129,12 +125,12 @@ TEST(SimulateScan, APositivePitchTurnsTheSensorDown) {
 
 TEST(SimulateScan, TheRangeOfTheSensorIsKept) {
   const auto disks = ground_disks(60, 0.5F);
-  Setup setup;
-  setup.view = {disks, nullptr};
-  setup.pose.world_from_sensor.translation = {0, 0, 2};
-  setup.sensor.min_range_m = 6;
-  setup.sensor.max_range_m = 9;
-  const Scan scan = setup.scan();
+  Drive drive;
+  drive.view = {disks, nullptr};
+  drive.pose.world_from_sensor.translation = {0, 0, 2};
+  drive.sensor.min_range_m = 6;
+  drive.sensor.max_range_m = 9;
+  const Scan scan = drive.scan();
   ASSERT_GT(scan.size(), 1000U);
   const auto [low, high] = std::ranges::minmax(scan.ranges_m);
   EXPECT_GT(low, 6.0F);
@@ -145,61 +141,61 @@ TEST(SimulateScan, AttributesComeFromThePrimitiveThatWasHit) {
   const std::vector<Disk> disks = {{{5, 0, 0}, 1, {1, 0, 0}}, {{0, 7, 0}, 1, {0, 1, 0}}};
   const std::vector<std::uint16_t> classes = {40, 50}, instances = {3, 4};
   const std::vector<float> intensities = {0.25F, 0.75F};
-  Setup setup;
-  setup.view = {disks, nullptr};
-  setup.attributes = {classes, instances, intensities};
-  setup.sensor.elevations_rad = {0.0};
-  setup.sensor.columns = 4;
-  setup.pose.time_s = 12.5;
-  const Scan scan = setup.scan();
+  Drive drive;
+  drive.view = {disks, nullptr};
+  drive.attributes = {classes, instances, intensities};
+  drive.sensor.elevations_rad = {0.0};
+  drive.sensor.columns = 4;
+  drive.pose.time_s = 12.5;
+  const Scan scan = drive.scan();
   EXPECT_EQ(scan.time_s, 12.5);
   EXPECT_EQ(scan.ranges_m, (std::vector<float>{5, 7}));
   EXPECT_EQ(scan.classes, classes);
   EXPECT_EQ(scan.instances, instances);
   EXPECT_EQ(scan.intensities, intensities);
 
-  setup.attributes = {};
-  const Scan bare = setup.scan();
+  drive.attributes = {};
+  const Scan bare = drive.scan();
   EXPECT_EQ(bare.size(), 2U);
   EXPECT_TRUE(bare.classes.empty() && bare.instances.empty() && bare.intensities.empty());
 
   const std::vector<std::uint16_t> too_few = {1};
-  setup.attributes.classes = too_few;
-  EXPECT_THROW(setup.scan(), std::logic_error);
+  drive.attributes.classes = too_few;
+  EXPECT_THROW(drive.scan(), std::logic_error);
 }
 
 TEST(SimulateScan, EmptyScenesAndSensorsGiveEmptyScans) {
-  Setup setup;
-  EXPECT_EQ(setup.scan().size(), 0U);
-  EXPECT_EQ(setup.scan().rays, 57'600U);
-  setup.sensor.columns = 0;
-  EXPECT_EQ(setup.scan().rays, 0U);
+  Drive drive;
+  EXPECT_EQ(drive.scan().size(), 0U);
+  EXPECT_EQ(drive.scan().rays, 57'600U);
+  drive.sensor.columns = 0;
+  EXPECT_EQ(drive.scan().rays, 0U);
 }
 
 TEST(SimulateScan, APoseThatIsNotFiniteGivesNoReturns) {
   const TriangleMesh mesh = box_mesh(10.0F);
-  Setup setup;
-  setup.view = {{}, &mesh};
-  setup.pose.world_from_sensor.translation.x = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(setup.scan().size(), 0U);
+  Drive drive;
+  drive.view = {{}, &mesh};
+  drive.pose.world_from_sensor.translation.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(drive.scan().size(), 0U);
 }
 
 class ScanNoise : public testing::Test {
  protected:
   ScanNoise() {
-    setup_.view = {{}, &mesh_};
-    setup_.sensor.range_noise_m = 0.02;
-    setup_.options.seed = 42;
+    drive_.view = {{}, &mesh_};
+    drive_.sensor.range_noise_m = 0.02;
+    drive_.options.seed = 42;
   }
   TriangleMesh mesh_ = box_mesh(10.0F);
-  Setup setup_;
+  Drive drive_;
 };
 
 // Oracle: moments of the normal distribution; 57,600 draws.
 TEST_F(ScanNoise, IsWhiteAlongTheRay) {
-  const Scan noisy = setup_.scan();
-  setup_.options.range_noise = false;
-  const Scan clean = setup_.scan();
+  const Scan noisy = drive_.scan();
+  drive_.options.range_noise = false;
+  const Scan clean = drive_.scan();
   ASSERT_EQ(noisy.size(), clean.size());
   double sum = 0, squares = 0, neighbours = 0, before = 0;
   for (std::size_t i = 0; i < noisy.size(); ++i) {
@@ -219,20 +215,20 @@ TEST_F(ScanNoise, IsWhiteAlongTheRay) {
 }
 
 TEST_F(ScanNoise, DependsOnSeedScanAndRayAlone) {
-  const Scan first = setup_.scan();
-  EXPECT_EQ(setup_.scan().ranges_m, first.ranges_m);
-  setup_.scan_index = 1;
-  EXPECT_NE(setup_.scan().ranges_m, first.ranges_m);
-  setup_.scan_index = 0;
-  setup_.options.seed = 43;
-  EXPECT_NE(setup_.scan().ranges_m, first.ranges_m);
+  const Scan first = drive_.scan();
+  EXPECT_EQ(drive_.scan().ranges_m, first.ranges_m);
+  drive_.scan_index = 1;
+  EXPECT_NE(drive_.scan().ranges_m, first.ranges_m);
+  drive_.scan_index = 0;
+  drive_.options.seed = 43;
+  EXPECT_NE(drive_.scan().ranges_m, first.ranges_m);
 }
 
 TEST_F(ScanNoise, NeverLeavesTheSensorsRange) {
-  setup_.sensor.min_range_m = 10.5;
-  setup_.sensor.max_range_m = 12;
-  setup_.sensor.range_noise_m = 0.5;
-  const Scan scan = setup_.scan();
+  drive_.sensor.min_range_m = 10.5;
+  drive_.sensor.max_range_m = 12;
+  drive_.sensor.range_noise_m = 0.5;
+  const Scan scan = drive_.scan();
   ASSERT_GT(scan.size(), 100U);
   const auto [low, high] = std::ranges::minmax(scan.ranges_m);
   EXPECT_GT(low, 10.5F);
@@ -241,9 +237,9 @@ TEST_F(ScanNoise, NeverLeavesTheSensorsRange) {
 
 // Oracle: one thread.
 TEST_F(ScanNoise, ThreadsDoNotChangeAByte) {
-  const Scan expected = setup_.scan(Executor(1));
+  const Scan expected = drive_.scan(1);
   for (const int threads : {2, 3}) {
-    const Scan scan = setup_.scan(Executor(threads));
+    const Scan scan = drive_.scan(threads);
     EXPECT_EQ(scan.ranges_m, expected.ranges_m);
     EXPECT_EQ(scan.positions, expected.positions);
     EXPECT_EQ(scan.rings, expected.rings);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "adasplats/simulate/color_map.h"
@@ -26,7 +27,7 @@ class Shading {
 
   const ImageScene& scene_;
   const ImageOptions& options_;
-  std::vector<Vec3f> class_colors_;  ///< by class id
+  std::vector<std::optional<Vec3f>> class_colors_;  ///< by class id
   ValueRange intensities_;
 };
 

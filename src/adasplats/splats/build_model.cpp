@@ -69,6 +69,8 @@ void check(const BuildOptions& options) {
   for (const GroupScale& scale : scales)
     require(scale.neighbors > 0 && scale.radius > 0 && scale.error >= 0,
             "group scales must be greater than 0");
+  require(options.resample_density >= 0 && options.resample_density <= 100,
+          "resample density must be 0 to 100");
 }
 
 /// The class of a point; an id that the scheme does not know is the input's fault.
@@ -200,7 +202,8 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
   std::vector<SemanticGroup> groups;
   if (options.method == SplatMethod::semantic) groups = groups_by_label(cloud, *labels);
   Generation generation = generate_splats(cloud, groups, options, executor, step);
-  if (options.resample && !generation.disks.empty()) {
+  const bool adaptive = options.method != SplatMethod::basic;
+  if (options.resample && adaptive && !generation.disks.empty()) {
     step("resampling");
     ResampledCloud resampled = resample(cloud, generation, options, executor);
     report.points_resampled = resampled.new_points;

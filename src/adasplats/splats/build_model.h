@@ -52,16 +52,21 @@ struct BuildOptions {
   /// Normals from the group's own neighbourhood (else from the base neighbourhood).
   bool group_normals = true;
   /// The order of the greedy selection.
-  SelectionOrder selection = SelectionOrder::largest_first;
+  SelectionOrder selection = SelectionOrder::most_discards_first;
 
   DynamicRemoval remove = DynamicRemoval::movable;
-  bool denoise = true;         ///< section "Splat-Based Resampling and Denoising"
-  double denoise_sigmas = 3;   ///< a neighbourhood votes against points farther than this
-  double denoise_votes = 0.5;  ///< share of its neighbourhoods that removes a point
-  bool resample = true;        ///< resampling and second generation
-  /// What the second generation starts from: the text's P with the new points, or the centres of
-  /// the first generation's splats with the new points, as its figures suggest.
-  enum class ResampleBase : std::uint8_t { points, centers } resample_base = ResampleBase::centers;
+  bool denoise = true;          ///< section "Splat-Based Resampling and Denoising"
+  double denoise_sigmas = 3;    ///< a neighbourhood votes against points farther than this
+  double denoise_votes = 0.5;   ///< share of its neighbourhoods that removes a point
+  bool resample = true;         ///< second generation; adaptive methods only, as in the paper
+  double resample_density = 1;  ///< wanted density of splats, times its mean
+  /// What the second generation starts from, besides the new points. The paper's text says the
+  /// points, its figures (fewer points and splats than before) say the splats' centers.
+  enum class ResampleBase : std::uint8_t {
+    points,   ///< all points
+    centers,  ///< centers of all splats
+    mixed,    ///< centers on ground and surface, points of thin things (linear, non-surface)
+  } resample_base = ResampleBase::mixed;
 };
 
 /// One step of the work and what it took.

@@ -240,6 +240,17 @@ TEST(SelectGreedily, EqualsTheSequentialDefinition) {
   EXPECT_EQ(select_greedily(radii, discards, SelectionOrder::largest_first, Executor(3)), expected);
 }
 
+TEST(SelectGreedily, MostDiscardsFirstTakesTheWidestCandidate) {
+  // 0 discards 1; 1 discards 0, 2 and 3; 3 discards 2. Largest first takes 0, which discards 1.
+  const std::vector<float> radii = {3, 2, 1, 1};
+  DiscardLists discards{{{1, 0, 2, 3, 2}}, {0, 1, 4, 4}, 4};
+  const Executor executor(1);
+  EXPECT_EQ(select_greedily(radii, discards, SelectionOrder::most_discards_first, executor),
+            (std::vector<std::uint32_t>{1}));
+  EXPECT_EQ(select_greedily(radii, discards, SelectionOrder::largest_first, executor),
+            (std::vector<std::uint32_t>{0, 2, 3}));
+}
+
 TEST(SplatModelFile, RoundTrip) {
   const auto path = std::filesystem::temp_directory_path() / "adasplats_model_test.ply";
   BuildOptions options;

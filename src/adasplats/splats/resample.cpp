@@ -14,6 +14,11 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
+/// Things that fewer points than measured would no longer show.
+bool is_thin(SemanticGroup group) {
+  return group == SemanticGroup::linear || group == SemanticGroup::non_surface;
+}
+
 /// A point half way between two splats, and the splat it takes its attributes from.
 struct NewPoint {
   Vec3f position;
@@ -39,8 +44,15 @@ double mean_density(std::span<const std::uint32_t> densities,
   return count > 0 ? sum / count : 0;
 }
 
-/// New points around one splat: from its farthest neighbour inwards until the density is reached.
-void fill_around(std::uint32_t splat, double missing, std::vector<std::uint64_t>& neighbors,
+/// How many of the points that a neighbourhood lacks one splat of it makes. The paper works through
+/// the splats one after another, and each new point raises the density of all splats around it.
+/// Here every splat works alone, so the `density` splats of a neighbourhood share what is missing.
+int share_of_missing(double wanted, std::uint32_t density) {
+  return static_cast<int>(std::lround((wanted - density) / density));
+}
+
+/// New points around one splat: with its farthest neighbours first, until it has made its share.
+void fill_around(std::uint32_t splat, int missing, std::vector<std::uint64_t>& neighbors,
                  const std::vector<Disk>& disks,
                  FunctionRef<bool(std::uint32_t, std::uint32_t)> alike,
                  std::vector<NewPoint>& new_points) {
@@ -60,7 +72,7 @@ std::vector<NewPoint> interpolate_points(const PointCloud& centers, const std::v
   const PointIndex index = PointIndex::from_sorted(centers.positions, executor);
   const float radius = static_cast<float>(radius_m);
   const std::vector<std::uint32_t> densities = index.count_within(radius, executor);
-  const double wanted = mean_density(densities, groups);
+  const double wanted = options.resample_density * mean_density(densities, groups);
   const bool is_oriented = !centers.sensor_positions.empty();
   const auto alike = [&](std::uint32_t a, std::uint32_t b) {
     const float smooth = dot(disks[a].normal, disks[b].normal);
@@ -81,7 +93,7 @@ std::vector<NewPoint> interpolate_points(const PointCloud& centers, const std::v
         if (found.empty()) return;
         std::vector<std::uint64_t> neighbors;
         for (std::uint32_t k = 0; k < found.size; ++k) neighbors.push_back(found.key(k));
-        fill_around(splat, wanted - densities[splat], neighbors, disks, alike,
+        fill_around(splat, share_of_missing(wanted, densities[splat]), neighbors, disks, alike,
                     chunks[splat / kGrain]);
       });
   std::vector<NewPoint> all;
@@ -124,16 +136,30 @@ ResampledCloud resample(const PointCloud& cloud, const Generation& first,
   std::vector<std::uint32_t> sources(new_points.size());
   for (std::size_t i = 0; i < new_points.size(); ++i) sources[i] = new_points[i].splat;
   PointCloud added = gather(centers, sources);
-  ResampledCloud result;
   for (std::size_t i = 0; i < new_points.size(); ++i) added.positions[i] = new_points[i].position;
-  const bool from_centers = options.resample_base == BuildOptions::ResampleBase::centers;
+  std::vector<SemanticGroup> added_groups;
+  if (!groups.empty())
+    for (const std::uint32_t s : sources) added_groups.push_back(groups[s]);
+
+  ResampledCloud result;
   result.new_points = new_points.size();
-  if (!groups.empty()) {
-    result.groups = from_centers ? groups : first.groups;
-    for (const std::uint32_t s : sources) result.groups.push_back(groups[s]);
-  }
-  result.cloud = from_centers ? std::move(centers) : cloud;
+  const auto keep = [&](const PointCloud& from, std::span<const SemanticGroup> from_groups,
+                        bool thin_things, bool the_rest) {
+    std::vector<std::uint32_t> kept;
+    for (std::uint32_t i = 0; i < from.size(); ++i) {
+      const bool thin = !from_groups.empty() && is_thin(from_groups[i]);
+      if (thin ? !thin_things : !the_rest) continue;
+      kept.push_back(i);
+      if (!from_groups.empty()) result.groups.push_back(from_groups[i]);
+    }
+    append(result.cloud, gather(from, kept));
+  };
+  using Base = BuildOptions::ResampleBase;
+  const Base base = options.resample_base;
+  keep(cloud, first.groups, base != Base::centers, base == Base::points);
+  keep(centers, groups, base == Base::centers, base != Base::points);
   append(result.cloud, std::move(added));
+  result.groups.insert(result.groups.end(), added_groups.begin(), added_groups.end());
   return result;
 }
 

@@ -11,21 +11,27 @@ namespace {
 
 constexpr std::size_t kGrain = 1 << 16;
 
-std::vector<std::uint32_t> visiting_order(std::span<const float> radii, SelectionOrder order,
+/// Ranks in the order in which candidates are taken.
+std::vector<std::uint32_t> visiting_order(std::span<const float> radii,
+                                          const DiscardLists& discards, SelectionOrder order,
                                           const Executor& executor) {
+  const auto key_of = [&](std::uint32_t rank) -> std::uint64_t {
+    // Radii are not negative, so their bits sort as they do; inverted, the largest come first.
+    const std::uint32_t by_radius = ~std::bit_cast<std::uint32_t>(radii[rank]);
+    switch (order) {
+      case SelectionOrder::most_discards_first: {
+        const auto count = static_cast<std::uint32_t>(discards.of(rank).size());
+        return std::uint64_t{~count} << 32 | by_radius;
+      }
+      case SelectionOrder::largest_first: return by_radius;
+      case SelectionOrder::curve: return rank;
+      case SelectionOrder::scattered: return Random::mix(rank + 1U) >> 32;
+    }
+    return rank;
+  };
   std::vector<std::uint64_t> keys(radii.size());
   executor.for_chunks(radii.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      switch (order) {
-        // Radii are not negative, so their bits sort as they do.
-        case SelectionOrder::largest_first:
-          keys[i] = ~std::bit_cast<std::uint32_t>(radii[i]);
-          break;
-        case SelectionOrder::curve: keys[i] = i; break;
-        case SelectionOrder::scattered: keys[i] = Random::mix(i + 1) >> 32; break;
-      }
-      keys[i] &= 0xffffffffU;
-    }
+    for (std::size_t i = begin; i < end; ++i) keys[i] = key_of(static_cast<std::uint32_t>(i));
   });
   std::vector<std::uint32_t> visiting;
   executor.sort_keys(keys, visiting);
@@ -47,7 +53,7 @@ std::vector<std::uint32_t> select_greedily(std::span<const float> radii,
                                            const Executor& executor) {
   enum State : std::uint8_t { kOpen, kDiscarded, kSelected };
   std::vector<std::uint8_t> states(radii.size(), kOpen);
-  for (const std::uint32_t rank : visiting_order(radii, order, executor)) {
+  for (const std::uint32_t rank : visiting_order(radii, discards, order, executor)) {
     if (states[rank] != kOpen || !(radii[rank] > 0.0F)) continue;
     states[rank] = kSelected;
     for (const std::uint32_t other : discards.of(rank))

@@ -21,9 +21,10 @@ struct DiscardLists {
 
 /// In which order candidates are taken: depends on the data alone.
 enum class SelectionOrder : std::uint8_t {
-  largest_first,  ///< by descending radius, equal ones by rank
-  curve,          ///< by rank: along the Hilbert curve
-  scattered,      ///< by a hash of the rank
+  most_discards_first,  ///< by descending number of points discarded, then as largest_first
+  largest_first,        ///< by descending radius, equal ones by rank
+  curve,                ///< by rank: along the Hilbert curve
+  scattered,            ///< by a hash of the rank
 };
 
 /// The greedy selection of paper section "Basic Splatting": in the given order, a candidate that

@@ -31,6 +31,10 @@ inline void intersect(RTCScene scene, QueryContext& context, RTCRayHit& ray) {
   RTCIntersectArguments arguments = arguments_of(context, false);
   rtcIntersect1(scene, &ray, &arguments);
 }
+inline void intersect(RTCScene scene, QueryContext& context, const int* valid, RTCRayHit4& rays) {
+  RTCIntersectArguments arguments = arguments_of(context, true);
+  rtcIntersect4(valid, scene, &rays, &arguments);
+}
 inline void intersect(RTCScene scene, QueryContext& context, const int* valid, RTCRayHit8& rays) {
   RTCIntersectArguments arguments = arguments_of(context, true);
   rtcIntersect8(valid, scene, &rays, &arguments);
@@ -49,6 +53,10 @@ inline void init(QueryContext& context) { rtcInitIntersectContext(&context); }
 inline void intersect(RTCScene scene, QueryContext& context, RTCRayHit& ray) {
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   rtcIntersect1(scene, &context, &ray);
+}
+inline void intersect(RTCScene scene, QueryContext& context, const int* valid, RTCRayHit4& rays) {
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect4(valid, scene, &context, &rays);
 }
 inline void intersect(RTCScene scene, QueryContext& context, const int* valid, RTCRayHit8& rays) {
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;

@@ -9,35 +9,35 @@ namespace adasplats {
 
 namespace {
 
-// Lambdas and small functions below must end up inside the functions with a target attribute, or
-// they would be compiled for the baseline.
-#define ADASPLATS_INLINE [[gnu::always_inline]] inline
+// always_inline: what is below must be compiled anew inside each function with a target attribute,
+// or it would be baseline code.
 
 struct DiskPrimitive {
   Disk disk;
   std::uint32_t index;
 
-  ADASPLATS_INLINE static DiskPrimitive of(const RTCIntersectFunctionNArguments& arguments) {
+  [[gnu::always_inline]] static DiskPrimitive of(const RTCIntersectFunctionNArguments& arguments) {
     const auto& geometry = *static_cast<const DiskGeometry*>(arguments.geometryUserPtr);
     return {geometry.disks[arguments.primID], arguments.primID};
   }
-  ADASPLATS_INLINE float intersect(const Ray& ray) const { return intersect_disk(ray, disk); }
+  [[gnu::always_inline]] float intersect(const Ray& ray) const { return intersect_disk(ray, disk); }
 };
 
 struct TrianglePrimitive {
   Triangle triangle;
   std::uint32_t index;
 
-  ADASPLATS_INLINE static TrianglePrimitive of(const RTCIntersectFunctionNArguments& arguments) {
+  [[gnu::always_inline]] static TrianglePrimitive of(
+      const RTCIntersectFunctionNArguments& arguments) {
     const auto& geometry = *static_cast<const TriangleGeometry*>(arguments.geometryUserPtr);
     return {geometry.mesh->triangle(arguments.primID), geometry.first_primitive + arguments.primID};
   }
-  ADASPLATS_INLINE float intersect(const Ray& ray) const {
+  [[gnu::always_inline]] float intersect(const Ray& ray) const {
     return intersect_triangle(ray, triangle);
   }
 };
 
-ADASPLATS_INLINE Ray ray_of(RTCRayN* rays, unsigned lanes, unsigned i) {
+[[gnu::always_inline]] inline Ray ray_of(RTCRayN* rays, unsigned lanes, unsigned i) {
   return {
       {RTCRayN_org_x(rays, lanes, i), RTCRayN_org_y(rays, lanes, i), RTCRayN_org_z(rays, lanes, i)},
       RTCRayN_tnear(rays, lanes, i),
@@ -48,8 +48,8 @@ ADASPLATS_INLINE Ray ray_of(RTCRayN* rays, unsigned lanes, unsigned i) {
 /// One primitive against all rays of a packet. No branches: lanes that are not valid are computed
 /// and dropped, and the compiler makes vector code of it.
 template <unsigned kLanes, class Primitive>
-ADASPLATS_INLINE void intersect_packet(const RTCIntersectFunctionNArguments& arguments,
-                                       const Primitive& primitive) {
+[[gnu::always_inline]] inline void intersect_packet(const RTCIntersectFunctionNArguments& arguments,
+                                                    const Primitive& primitive) {
   RTCRayN* const rays = RTCRayHitN_RayN(arguments.rayhit, kLanes);
   RTCHitN* const hits = RTCRayHitN_HitN(arguments.rayhit, kLanes);
   float t[kLanes];
@@ -69,8 +69,8 @@ ADASPLATS_INLINE void intersect_packet(const RTCIntersectFunctionNArguments& arg
 
 /// One primitive against a single ray, or a packet of an unusual size.
 template <class Primitive>
-ADASPLATS_INLINE void intersect_singly(const RTCIntersectFunctionNArguments& arguments,
-                                       const Primitive& primitive) {
+[[gnu::always_inline]] inline void intersect_singly(const RTCIntersectFunctionNArguments& arguments,
+                                                    const Primitive& primitive) {
   const unsigned lanes = arguments.N;
   RTCRayN* const rays = RTCRayHitN_RayN(arguments.rayhit, lanes);
   RTCHitN* const hits = RTCRayHitN_HitN(arguments.rayhit, lanes);
@@ -96,18 +96,18 @@ ADASPLATS_INLINE void intersect_singly(const RTCIntersectFunctionNArguments& arg
 }
 
 template <class Primitive>
-ADASPLATS_INLINE void intersect(const RTCIntersectFunctionNArguments& arguments) {
+[[gnu::always_inline]] inline void intersect(const RTCIntersectFunctionNArguments& arguments) {
   const Primitive primitive = Primitive::of(arguments);
   if (arguments.N == 16) {
     intersect_packet<16>(arguments, primitive);
   } else if (arguments.N == 8) {
     intersect_packet<8>(arguments, primitive);
+  } else if (arguments.N == 4) {
+    intersect_packet<4>(arguments, primitive);
   } else {
     intersect_singly(arguments, primitive);
   }
 }
-
-#undef ADASPLATS_INLINE
 
 template <class Primitive>
 void intersect_baseline(const RTCIntersectFunctionNArguments* arguments) {

@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <mutex>
 #include <stdexcept>
+#include <string>
+#include <type_traits>
 
 #include "adasplats/core/error.h"
 #include "adasplats/trace/castable.h"
-#include "adasplats/trace/check_spans.h"
+#include "adasplats/trace/clear_hits.h"
 #include "adasplats/trace/embree.h"
 #include "adasplats/trace/embree_callbacks.h"
 #include "adasplats/trace/tracer.h"
@@ -28,6 +31,7 @@ class ErrorLog {
   }
 
   void throw_if_any() const {
+    const std::lock_guard lock(mutex_);
     if (code_ == RTC_ERROR_NONE) return;
     const std::string message = "Embree: " + text_ + " (error " + std::to_string(code_) + ")";
     if (code_ == RTC_ERROR_OUT_OF_MEMORY || code_ == RTC_ERROR_UNSUPPORTED_CPU)
@@ -36,7 +40,7 @@ class ErrorLog {
   }
 
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   RTCError code_ = RTC_ERROR_NONE;
   std::string text_;
 };
@@ -52,7 +56,19 @@ using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDe
 using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
 template <unsigned kLanes>
-using Packet = std::conditional_t<kLanes == 16, RTCRayHit16, RTCRayHit8>;
+using Packet = std::conditional_t<kLanes == 16, RTCRayHit16,
+                                  std::conditional_t<kLanes == 8, RTCRayHit8, RTCRayHit4>>;
+
+/// The widest packet that Embree traverses as it is on this machine. Wider ones it takes apart, and
+/// then it keeps only hits with a geometry id, which our callbacks do not write.
+int native_packet_size(RTCDevice device) {
+  const auto has = [&](RTCDeviceProperty property) {
+    return rtcGetDeviceProperty(device, property) != 0;
+  };
+  if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return 16;
+  if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) return 8;
+  return has(RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED) ? 4 : 1;
+}
 
 class EmbreeTracer final : public Tracer {
  public:
@@ -79,12 +95,14 @@ class EmbreeTracer final : public Tracer {
     executor.for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
       const auto chunk_rays = rays.subspan(begin, end - begin);
       const auto chunk_hits = hits.subspan(begin, end - begin);
-      if (wide_packets_) {
-        cast_packets<16>(chunk_rays, chunk_hits);
-      } else {
-        cast_packets<8>(chunk_rays, chunk_hits);
+      switch (packet_size_) {
+        case 16: cast_packets<16>(chunk_rays, chunk_hits); break;
+        case 8: cast_packets<8>(chunk_rays, chunk_hits); break;
+        case 4: cast_packets<4>(chunk_rays, chunk_hits); break;
+        default: cast_singles(chunk_rays, 1, chunk_hits);
       }
     });
+    errors_.throw_if_any();
   }
 
   void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
@@ -92,9 +110,10 @@ class EmbreeTracer final : public Tracer {
     clear_hits(rays, depth, hits);
     const auto slots = static_cast<std::size_t>(depth);
     executor.for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        cast_single(rays[i], hits.subspan(i * slots, slots));
+      cast_singles(rays.subspan(begin, end - begin), slots,
+                   hits.subspan(begin * slots, (end - begin) * slots));
     });
+    errors_.throw_if_any();
   }
 
  private:
@@ -111,8 +130,7 @@ class EmbreeTracer final : public Tracer {
     executor.for_chunks(2, 1, [&](std::size_t begin, std::size_t) {
       if (begin == 0) rtcCommitScene(scene_.get());
     });
-    wide_packets_ =
-        rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+    packet_size_ = native_packet_size(device_.get());
   }
 
   void add(GeometryCallbacks callbacks, std::size_t primitives, void* user_data) {
@@ -165,6 +183,11 @@ class EmbreeTracer final : public Tracer {
     }
   }
 
+  void cast_singles(std::span<const Ray> rays, std::size_t slots, std::span<Hit> hits) const {
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      cast_single(rays[i], hits.subspan(i * slots, slots));
+  }
+
   void cast_single(const Ray& ray, std::span<Hit> slots) const {
     if (!castable(ray)) return;
     HitList list(slots);
@@ -192,7 +215,7 @@ class EmbreeTracer final : public Tracer {
   TriangleGeometry triangles_;
   DeviceHandle device_;
   SceneHandle scene_;
-  bool wide_packets_ = false;
+  int packet_size_ = 1;
 };
 
 }  // namespace

@@ -23,7 +23,9 @@ class Tracer {
 
   /// Nearest hit of every ray: hits[i] of rays[i]. Rays that are near each other in direction and
   /// stand side by side in the span (a laser row) are faster. A ray with a component that is not
-  /// finite hits nothing. Equal distances go to the smaller primitive index.
+  /// finite or beyond 1e18, or with no direction, hits nothing; a t_min below 0 counts as 0. Equal
+  /// distances go to the smaller primitive index. Throws std::logic_error where there is not one
+  /// hit a ray.
   virtual void nearest(std::span<const Ray> rays, std::span<Hit> hits,
                        const Executor& executor) const = 0;
 
@@ -36,7 +38,10 @@ class Tracer {
 /// Tests every primitive for every ray: the oracle of the tests. The scene's data must outlive it.
 std::unique_ptr<Tracer> make_brute_force_tracer(const SceneView& scene);
 
-/// Embree 3 or 4 with user geometry and exact disk bounds.
+/// Embree 3 or 4 with user geometry and exact disk bounds. Hits are those of brute force bit by bit
+/// for rays up to kExactReach_m. Builds on the executor's threads; the scene's data must outlive
+/// it. Errors: data (2^32 - 1 primitives or more), software (Embree does not start or has no
+/// memory).
 std::unique_ptr<Tracer> make_embree_tracer(const SceneView& scene, const Executor& executor);
 
 /// The fastest tracer on this machine's CPU.
