@@ -67,10 +67,26 @@ def stamp_of(source, command, version):
     return state.hexdigest()
 
 
-def sources_of(build):
-    """(source, compile command) of what is checked."""
+def without_precompiled_header(entry):
+    """A compile command that clang can follow: it cannot read what GCC has precompiled."""
+    plain = pathlib.Path(entry["file"]).parent / "precompiled.h"
+    command = entry["command"].replace("-Winvalid-pch ", "")
+    command = re.sub(r"-include \S*cmake_pch\.hxx", f"-include {plain}", command)
+    return {**entry, "command": command}
+
+
+def clang_commands(build):
+    """The compile commands for clang-tidy, written to a folder of their own."""
     with open(build / "compile_commands.json", encoding="utf-8") as file:
-        entries = json.load(file)
+        entries = [without_precompiled_header(entry) for entry in json.load(file)]
+    folder = build / "tidy-commands"
+    folder.mkdir(exist_ok=True)
+    (folder / "compile_commands.json").write_text(json.dumps(entries), encoding="utf-8")
+    return folder, entries
+
+
+def sources_of(entries):
+    """(source, compile command) of what is checked."""
     for entry in entries:
         source = pathlib.Path(entry["file"])
         checked = any(source.is_relative_to(folder) for folder in CHECKED)
@@ -91,6 +107,7 @@ def main():
     stamps = options.build / "tidy"
     stamps.mkdir(exist_ok=True)
 
+    commands, entries = clang_commands(options.build)
     current = set()
 
     def check(source, command):
@@ -98,7 +115,7 @@ def main():
         current.add(stamp)
         if stamp.exists():
             return source, None
-        result = subprocess.run([program, "--quiet", "-p", options.build, source], text=True,
+        result = subprocess.run([program, "--quiet", "-p", commands, source], text=True,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
         if result.returncode == 0:
             stamp.touch()
@@ -106,7 +123,7 @@ def main():
         return source, (result.returncode, result.stdout or result.stderr)
 
     known, faulty, said = 0, 0, set()
-    sources = list(sources_of(options.build))
+    sources = list(sources_of(entries))
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for source, verdict in pool.map(lambda pair: check(*pair), sources):
             if verdict is None:

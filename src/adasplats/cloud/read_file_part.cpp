@@ -124,7 +124,8 @@ std::vector<std::uint32_t> read_whole_numbers(const PointFile& file, const Colum
     else if constexpr (sizeof(value) > sizeof(std::uint32_t))
       fits = fits && value <= decltype(value){0xffffffff};
     if (!fits) throw file.value_error(column, i, "a whole number from 0 to 4294967295");
-    numbers[i] = static_cast<std::uint32_t>(value);
+    // By way of 64 bits: a signed char is not negative here, but the checker cannot know.
+    numbers[i] = static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
   });
   return numbers;
 }

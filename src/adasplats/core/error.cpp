@@ -30,8 +30,8 @@ Error data_error(const FilePlace& place, const std::string& message) {
 
 Error system_error(ErrorKind kind, const std::filesystem::path& file, const std::string& message,
                    int errno_value) {
-  return Error(kind, file.string() + ": " + message + ": " +
-                         std::generic_category().message(errno_value));
+  return Error(
+      kind, file.string() + ": " + message + ": " + std::generic_category().message(errno_value));
 }
 
 namespace {

@@ -24,7 +24,7 @@ constexpr std::size_t kLargestCallBytes = std::size_t{1} << 30;
 std::filesystem::path target_of(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_symlink(path, error)) return path;
-  const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
+  std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
   if (error) throw system_error(ErrorKind::cannot_create, path, "broken link", error.value());
   return target;
 }
@@ -47,7 +47,7 @@ void flush_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path path) : path_(target_of(path)) {
+AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(target_of(path)) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path_, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {

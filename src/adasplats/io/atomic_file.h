@@ -16,7 +16,7 @@ namespace adasplats {
 /// Errors: ErrorKind::cannot_create (no such folder, no permission), ErrorKind::io (disk full).
 class AtomicFile {
  public:
-  explicit AtomicFile(std::filesystem::path path);
+  explicit AtomicFile(const std::filesystem::path& path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;

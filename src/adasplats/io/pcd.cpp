@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -105,7 +106,7 @@ std::vector<Column> read_text(InputFile& file, LineReader& lines, const PcdHeade
   std::size_t value_count = 0;
   for (const PcdField& field : header.fields) value_count += field.count;
   // A value takes a digit and a separator; the last line may lack its end.
-  const std::uint64_t room = (file.remaining() + 1) / (2 * value_count);
+  const std::uint64_t room = (file.remaining() + 1) / (2 * std::max<std::size_t>(value_count, 1));
   if (header.points > room) {
     throw lines.error_here("found room for at most " + std::to_string(room) +
                            " points after this line, the header says " +

@@ -51,17 +51,17 @@ std::span<const std::uint32_t> DiscardLists::of(std::uint32_t rank) const {
 std::vector<std::uint32_t> select_greedily(std::span<const float> radii,
                                            const DiscardLists& discards, SelectionOrder order,
                                            const Executor& executor) {
-  enum State : std::uint8_t { kOpen, kDiscarded, kSelected };
-  std::vector<std::uint8_t> states(radii.size(), kOpen);
+  enum State : std::uint8_t { open, discarded, taken };
+  std::vector<std::uint8_t> states(radii.size(), open);
   for (const std::uint32_t rank : visiting_order(radii, discards, order, executor)) {
-    if (states[rank] != kOpen || !(radii[rank] > 0.0F)) continue;
-    states[rank] = kSelected;
+    if (states[rank] != open || !(radii[rank] > 0.0F)) continue;
+    states[rank] = taken;
     for (const std::uint32_t other : discards.of(rank))
-      if (states[other] == kOpen) states[other] = kDiscarded;
+      if (states[other] == open) states[other] = discarded;
   }
   std::vector<std::uint32_t> selected;
   for (std::uint32_t rank = 0; rank < states.size(); ++rank)
-    if (states[rank] == kSelected) selected.push_back(rank);
+    if (states[rank] == taken) selected.push_back(rank);
   return selected;
 }
 

@@ -62,7 +62,7 @@ double street_length_for(std::size_t points);
 struct StreetScanOptions {
   std::uint64_t seed = 1;
   std::size_t points = 300'000;    ///< within 10 % as many points in the mapping cloud; >= 1000
-  double range_noise_m = 0.005;  ///< standard deviation; the HDL-32 of paper section "SimKITTI32"
+  double range_noise_m = 0.005;    ///< standard deviation; the HDL-32 of paper section "SimKITTI32"
   double pose_error_m = 0.01;      ///< standard deviation of each pass's offset, per axis
   double pose_error_rad = 0.0002;  ///< standard deviation of each pass's rotation, per axis
   int passes = 2;                  ///< drives along the street, there and back

@@ -105,7 +105,7 @@ void put_item(StreetPlan& plan, ItemKind kind, int side, double x, double length
 /// time, a lamp, a barrier, or bollards.
 void add_module(StreetPlan& plan, int side, double x, int module) {
   Random random =
-      plan.random(kItemStream, static_cast<std::uint64_t>(module * 2 + (side > 0 ? 1 : 0)));
+      plan.random(kItemStream, static_cast<std::uint64_t>(module) * 2 + (side > 0 ? 1 : 0));
   const auto put = [&](ItemKind kind, double at, double length = 0.0) {
     put_item(plan, kind, side, at, length);
   };

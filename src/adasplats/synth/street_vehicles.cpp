@@ -130,6 +130,7 @@ void add_body(MeshBuilder& builder, const CarShape& car, const Material& paint,
                                                         {0.94 * s.half_width, s.top - 0.03},
                                                         {0.8 * s.half_width, s.top}}};
     std::vector<Vec3d> ring;
+    ring.reserve(2 * half.size());
     for (const auto& [y, z] : half) ring.push_back(place * Vec3d{s.x, y, z});
     for (std::size_t k = half.size(); k-- > 0;)
       ring.push_back(place * Vec3d{s.x, -half[k][0], half[k][1]});
