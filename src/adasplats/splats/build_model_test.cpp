@@ -51,7 +51,8 @@ std::pair<SplatModel, BuildReport> build(PointCloud cloud, const BuildOptions& o
 
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+  if (a.size() != b.size()) return false;
+  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
 bool same_bytes(const SplatModel& a, const SplatModel& b) {
