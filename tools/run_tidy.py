@@ -60,19 +60,19 @@ def with_headers(source):
 def stamp_of(source, command, version):
     """A hash of everything that the verdict on a source depends on."""
     state = hashlib.sha256()
-    for part in (version, command, (ROOT / ".clang-tidy").read_text(encoding="utf-8")):
+    for part in (version, command):
         state.update(part.encode() + b"\0")
-    for path in with_headers(source):
+    settings = [folder / ".clang-tidy" for folder in source.parents if folder.is_relative_to(ROOT)]
+    for path in [path for path in settings if path.is_file()] + with_headers(source):
         state.update(os.fsencode(path) + b"\0" + hashlib.sha256(path.read_bytes()).digest())
     return state.hexdigest()
 
 
 def without_precompiled_header(entry):
-    """A compile command that clang can follow: it cannot read what GCC has precompiled."""
-    plain = pathlib.Path(entry["file"]).parent / "precompiled.h"
+    """A compile command that clang can follow: it cannot read what GCC has precompiled, and every
+    source includes what it needs itself."""
     command = entry["command"].replace("-Winvalid-pch ", "")
-    command = re.sub(r"-include \S*cmake_pch\.hxx", f"-include {plain}", command)
-    return {**entry, "command": command}
+    return {**entry, "command": re.sub(r"-include \S*cmake_pch\.hxx ", "", command)}
 
 
 def clang_commands(build):
