@@ -12,9 +12,6 @@ set -uo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 70
 readonly kChecks="names layers scripts format build tidy tests asan install"
-# Programs that read what others wrote: these run under the address and undefined-behaviour
-# sanitizers as well.
-readonly kAsanStages="io cloud sensors splats dataset"
 readonly logs=$root/build/test-logs
 
 # git refuses a clone that another user owns, which is what a container sees of a mounted folder.
@@ -79,54 +76,43 @@ build_release() {
   cmake --build build/release
 }
 
-# Runs every test program and counts each by its verdict in ctest's JUnit file.
+build_asan() {
+  cmake --preset asan -DADASPLATS_BUILD_APP=OFF
+  cmake --build build/asan
+}
+
+# run_tests NAME FOLDER: runs every test program of a build and counts each by its verdict in
+# ctest's JUnit file.
 run_tests() {
-  local junit=$logs/ctest.xml log=$logs/ctest.log name status begin=$SECONDS
+  local label=$1 folder=$2 junit=$logs/$1.xml log=$logs/$1.log name status begin=$SECONDS
   rm -f "$junit"
-  ctest --test-dir build/release --output-on-failure --output-junit "$junit" -j "$(nproc)" \
+  ctest --test-dir "$folder" --output-on-failure --output-junit "$junit" -j "$(nproc)" \
     >"$log" 2>&1 </dev/null
   if [[ ! -s $junit ]]; then
-    count_failure tests
-    echo "FAILED   tests: ctest wrote no $junit"
+    count_failure "$label"
+    echo "FAILED   $label: ctest wrote no $junit"
     return
   fi
   while read -r name status; do
     case $status in
       run) count_pass ;;
-      notrun | disabled) echo "skipped  test $name" ;;
-      *) count_failure "test $name" ;;
+      notrun | disabled) echo "skipped  $label $name" ;;
+      *) count_failure "$label $name" ;;
     esac
-  done < <(sed -n 's/.*<testcase name="\([^"]*\)".*status="\([^"]*\)".*/\1 \2/p' "$junit")
+  done < <(sed -n '/<testcase name=/ {
+      N
+      s/.* name="\([^"]*\)".* status="notrun".*Unable to find.*/\1 missing/p
+      t
+      s/.* name="\([^"]*\)".* status="\([^"]*\)".*/\1 \2/p
+    }' "$junit")
   sed -n '/^ *[0-9]*\/[0-9]* Test/s/^/    /p' "$log"
-  echo "         tests ($((SECONDS - begin)) s)," \
-    "$(grep -c '^\[  SKIPPED \] .* ms)' build/release/Testing/Temporary/LastTest.log)" \
+  echo "         $label ($((SECONDS - begin)) s)," \
+    "$(grep -c '^\[  SKIPPED \] .* ms)' "$folder/Testing/Temporary/LastTest.log")" \
     "cases skipped themselves (real recordings or hardware that is not here)"
-  if grep -q 'Failed\|Timeout\|Exception' "$log"; then
-    grep -n -B 3 -A 12 ': Failure$\|ERROR:\|terminate called' "$log" | head -n 200 | sed 's/^/    /'
+  if grep -q 'tests failed out of' "$log"; then
+    grep -n -B 3 -A 12 ': Failure$\|ERROR:\|FAIL:\|runtime error\|terminate called' "$log" |
+      head -n 200 | sed 's/^/    /'
   fi
-}
-
-asan_programs() {
-  local stage
-  for stage in $kAsanStages; do
-    if compgen -G "src/adasplats/$stage/*_test.cpp" >/dev/null; then
-      echo "adasplats_${stage}_test"
-    fi
-  done
-}
-
-build_asan() {
-  cmake --preset asan -DADASPLATS_BUILD_APP=OFF
-  local -a programs
-  mapfile -t programs < <(asan_programs)
-  cmake --build build/asan --target "${programs[@]}"
-}
-
-run_asan() {
-  local program
-  while read -r program; do
-    check "asan-$program" env UBSAN_OPTIONS=print_stacktrace=1 "build/asan/bin/$program"
-  done < <(asan_programs)
 }
 
 # Installs into a folder of its own and builds the example against that, as a stranger would.
@@ -156,11 +142,11 @@ else
   fi
   if $built; then
     wanted tidy && check tidy tools/run_tidy.py build/release
-    wanted tests && run_tests
+    wanted tests && run_tests tests build/release
     wanted install && check install build_example
   fi
   if wanted asan && check asan-build build_asan; then
-    run_asan
+    UBSAN_OPTIONS=print_stacktrace=1 run_tests asan build/asan
   fi
 fi
 
