@@ -1,6 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 include(CMakePackageConfigHelpers)
+
+# Installed beside the program, and built where Open3D is.
+if(ADASPLATS_BUILD_APP AND Open3D_FOUND)
+  add_subdirectory(apps/poisson)
+endif()
+
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/adasplats DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
         FILES_MATCHING PATTERN "*.h" PATTERN "*_test.h" EXCLUDE)
 install(EXPORT adasplatsTargets NAMESPACE adasplats::
@@ -13,5 +19,6 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/adasplatsConfigVersion.cmak
 install(FILES ${CMAKE_BINARY_DIR}/adasplatsConfig.cmake
               ${CMAKE_BINARY_DIR}/adasplatsConfigVersion.cmake
               ${CMAKE_CURRENT_LIST_DIR}/FindLASzip.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/FindOpenVDB.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adasplats)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -12,7 +12,8 @@ set -euo pipefail
 readonly kCmakeLeast=3.24
 
 # One line a package: when, package, command that may serve instead (- for none), what it is for.
-# "maybe" packages are taken where the distribution has them: liblaszip-dev is not in Debian 12.
+# "maybe" packages are taken where the distribution has them: liblaszip-dev is not in Debian 12;
+# those of "maybe-test" for tests alone.
 packages() {
   cat <<'LIST'
 demo  cmake                cmake         configures the build
@@ -32,6 +33,10 @@ test  libeigen3-dev        -             oracle of the tests
 test  libnanoflann-dev     -             baseline of the benchmarks
 test  clang-format         clang-format  checks
 test  clang-tidy           clang-tidy    checks
+maybe-test libopenvdb-dev  -             IMLS meshes
+maybe-test libboost-dev    -             headers that those of OpenVDB include
+maybe-test libopen3d-dev   -             Poisson meshes
+maybe-test cloudcompare    CloudCompare  distances to compare ours with
 LIST
 }
 
@@ -95,10 +100,10 @@ offered() { [[ -n $(apt-cache madison "$1" 2>/dev/null) ]]; }
 missing=()
 not_offered_yet=()
 while read -r when package command reason; do
-  [[ $when == test && $purpose == demo ]] && continue
+  [[ $when == *test && $purpose == demo ]] && continue
   installed "$package" && continue
   [[ $command != - ]] && command -v "$command" >/dev/null && continue
-  if [[ $when == maybe ]] && ! offered "$package"; then
+  if [[ $when == maybe* ]] && ! offered "$package"; then
     not_offered_yet+=("$package")
   else
     say "missing: $package ($reason)"

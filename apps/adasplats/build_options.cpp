@@ -58,8 +58,17 @@ const std::vector<std::pair<std::string, SplatMethod>>& method_names() {
   static const std::vector<std::pair<std::string, SplatMethod>> names = {
       {"basic", SplatMethod::basic},
       {"descriptors", SplatMethod::descriptors},
-      {"semantic", SplatMethod::semantic}};
+      {"semantic", SplatMethod::semantic},
+      {"consistent", SplatMethod::consistent}};
   return names;
+}
+
+void add_removal_option(CLI::App& app, DynamicRemoval& removal) {
+  add_choice<DynamicRemoval>(app, "--remove", removal,
+                             {{"none", DynamicRemoval::none},
+                              {"moving", DynamicRemoval::moving},
+                              {"movable", DynamicRemoval::movable}},
+                             "Objects to leave out by their labels; movable: parked cars too");
 }
 
 void add_build_options(CLI::App& app, BuildOptions& options) {
@@ -82,11 +91,7 @@ void add_build_options(CLI::App& app, BuildOptions& options) {
                               {"curve", SelectionOrder::curve},
                               {"scattered", SelectionOrder::scattered}},
                              "Order in which candidate splats are taken");
-  add_choice<DynamicRemoval>(app, "--remove", options.remove,
-                             {{"none", DynamicRemoval::none},
-                              {"moving", DynamicRemoval::moving},
-                              {"movable", DynamicRemoval::movable}},
-                             "Objects to leave out by their labels; movable: parked cars too");
+  add_removal_option(app, options.remove);
   add_cleaning(app, options);
   add_scales(app, options);
 }

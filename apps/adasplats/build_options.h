@@ -14,4 +14,7 @@ const std::vector<std::pair<std::string, SplatMethod>>& method_names();
 /// Adds the flags of BuildOptions.
 void add_build_options(CLI::App& app, BuildOptions& options);
 
+/// Adds --remove.
+void add_removal_option(CLI::App& app, DynamicRemoval& removal);
+
 }  // namespace adasplats::app

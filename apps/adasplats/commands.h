@@ -12,10 +12,13 @@ namespace adasplats::app {
 std::unique_ptr<Command> make_synth_street_command(CLI::App& synth);
 std::unique_ptr<Command> make_info_command(CLI::App& program);
 std::unique_ptr<Command> make_model_command(CLI::App& program);
+std::unique_ptr<Command> make_mesh_command(CLI::App& program);
 std::unique_ptr<Command> make_simulate_command(CLI::App& program);
 std::unique_ptr<Command> make_render_command(CLI::App& program);
 std::unique_ptr<Command> make_evaluate_c2c_command(CLI::App& evaluate);
 std::unique_ptr<Command> make_evaluate_resimulate_command(CLI::App& evaluate);
+std::unique_ptr<Command> make_evaluate_truth_command(CLI::App& evaluate);
+std::unique_ptr<Command> make_compare_command(CLI::App& program);
 std::unique_ptr<Command> make_demo_command(CLI::App& program);
 
 }  // namespace adasplats::app

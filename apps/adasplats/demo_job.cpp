@@ -57,18 +57,18 @@ DemoRow run_method(const std::string& name, SplatMethod method, const fs::path& 
 /// A street-level view from the middle of the drive and one from above.
 std::vector<fs::path> draw(const std::string& name, std::size_t poses, const fs::path& folder,
                            Session& session) {
-  RenderJob view;
-  view.models = {folder / (name + ".ply")};
-  view.output = folder / (name + "-street.png");
-  view.trajectory = folder / "street" / "sequences" / "00";
-  view.pose = poses / 2;
-  run_render(view, session);
+  RenderJob ahead;
+  ahead.models = {folder / (name + ".ply")};
+  ahead.output = folder / (name + "-street.png");
+  ahead.view.trajectory = folder / "street" / "sequences" / "00";
+  ahead.view.pose = poses / 2;
+  run_render(ahead, session);
   RenderJob above;
-  above.models = view.models;
+  above.models = ahead.models;
   above.output = folder / (name + "-above.png");
-  above.birds_eye = true;
+  above.view.birds_eye = true;
   run_render(above, session);
-  return {view.output.filename(), above.output.filename()};
+  return {ahead.output.filename(), above.output.filename()};
 }
 
 }  // namespace

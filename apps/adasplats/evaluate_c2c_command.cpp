@@ -12,7 +12,8 @@ namespace {
 
 constexpr const char* kExamples =
     "  adasplats evaluate c2c scans street/mapping.ply\n"
-    "  adasplats evaluate c2c scans street/mapping.ply --by-class --labels semantickitti\n";
+    "  adasplats evaluate c2c scans street/mapping.ply --by-class --labels semantickitti\n"
+    "  adasplats evaluate c2c scans street/mapping.ply --picture distances.png\n";
 
 std::string table_of(const CloudDistance& distance) {
   TextTable table({"measure", "value"});
@@ -49,9 +50,15 @@ class EvaluateC2cCommand final : public Command {
     app.add_option("--labels", job_.labels,
                    "Names the classes: semantickitti, paris-carla-3d or a TOML file")
         ->type_name("SCHEME");
+    add_path(app, "--picture", job_.picture,
+             "Also draw the simulated points, coloured by their distance to the original (PNG)");
+    add_vector(app, "--eye", job_.view.eye, "Where the picture's camera is, world coordinates");
+    add_vector(app, "--target", job_.view.target, "What it looks at; the middle of the original");
+    add_picture_width(app, job_.view.width);
   }
 
   void run(Session& session) override {
+    job_.view.height = job_.view.width * 9 / 16;
     const Stopwatch watch;
     const CloudComparison comparison = run_cloud_comparison(job_, session);
     session.report.update(to_json(comparison));

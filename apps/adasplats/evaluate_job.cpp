@@ -9,8 +9,11 @@
 
 #include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/cloud/load_cloud.h"
+#include "adasplats/core/error.h"
+#include "evaluate_pictures.h"
 #include "inputs.h"
 #include "model_scene.h"
+#include "output_path.h"
 #include "report.h"
 
 namespace adasplats::app {
@@ -21,9 +24,29 @@ std::string class_name(const std::optional<LabelScheme>& scheme, std::uint16_t i
   return found == nullptr ? "class " + std::to_string(id) : found->name;
 }
 
+KittiSequence chosen_scans(KittiSequence all, const ScanRange& range) {
+  KittiSequence chosen;
+  chosen.folder = all.folder;
+  std::size_t taken = 0;
+  for (std::size_t i = range.first; i < all.scans.size() && taken < range.count;
+       i += range.stride, ++taken) {
+    chosen.scans.push_back(all.scans[i]);
+    if (!all.labels.empty()) chosen.labels.push_back(all.labels[i]);
+    chosen.trajectory.push_back(all.trajectory[i]);
+  }
+  if (chosen.scans.empty()) {
+    throw Error(ErrorKind::usage, "--scans: " + all.folder.string() + " has only " +
+                                      std::to_string(all.scans.size()) + " scans");
+  }
+  return chosen;
+}
+
 }  // namespace
 
 CloudComparison run_cloud_comparison(const CloudComparisonJob& job, Session& session) {
+  check(job.view);
+  if (job.view.eye && job.picture.empty()) throw Error(ErrorKind::usage, "--eye needs --picture");
+  if (!job.picture.empty()) check_output_file(job.picture);
   const std::array<std::filesystem::path, 2> inputs = {resolve_cloud_input(job.simulated),
                                                        resolve_cloud_input(job.original)};
   const auto scheme = label_scheme_for(job.labels, inputs);
@@ -43,16 +66,29 @@ CloudComparison run_cloud_comparison(const CloudComparisonJob& job, Session& ses
     }
   }
   session.progress.end_step();
+  if (!job.picture.empty()) {
+    write_distance_picture(job.picture, simulated, original, job.view, session);
+  }
   return comparison;
 }
 
 ResimulateResult run_resimulate(const ResimulateJob& job, Session& session) {
   require_input(job.model);
+  if (!job.picture.empty()) check_output_file(job.picture);
   const LabelScheme labels = load_label_scheme(job.labels);
-  const KittiSequence sequence = open_kitti_sequence(resolve_cloud_input(job.sequence));
-  const ModelScene scene(job.model, session);
-  return resimulate(scene.tracer(), scene.model().view(), scene.model().origin, sequence, labels,
-                    job.options, session.executor, session.progress);
+  const KittiSequence sequence =
+      chosen_scans(open_kitti_sequence(resolve_cloud_input(job.sequence)), job.scans);
+  const ModelScene scene(job.model, "", session);
+  ResimulateResult result = resimulate(scene.tracer(), scene.view(), scene.origin(), sequence,
+                                       labels, job.options, session.executor, session.progress);
+  if (!job.picture.empty()) {
+    const std::size_t middle = sequence.scans.size() / 2;
+    write_beam_picture(job.picture,
+                       resimulate_scan(scene.tracer(), scene.view(), scene.origin(), sequence,
+                                       middle, labels, job.options, session.executor),
+                       job.picture_width, session);
+  }
+  return result;
 }
 
 double c2c_of_classes(const CloudComparison& comparison, const std::vector<std::string>& names) {

@@ -10,7 +10,9 @@
 
 #include "adasplats/evaluate/cloud_metrics.h"
 #include "adasplats/evaluate/resimulate.h"
+#include "option_types.h"
 #include "session.h"
+#include "view_choice.h"
 
 namespace adasplats::app {
 
@@ -20,6 +22,8 @@ struct CloudComparisonJob {
   std::filesystem::path original;
   bool by_class = false;
   std::string labels;
+  std::filesystem::path picture;  ///< PNG of the simulated points by distance; empty: none
+  ViewChoice view = {.width = 1920, .height = 1080};
 };
 
 struct CloudComparison {
@@ -33,8 +37,11 @@ CloudComparison run_cloud_comparison(const CloudComparisonJob& job, Session& ses
 struct ResimulateJob {
   std::filesystem::path model;
   std::filesystem::path sequence;
+  ScanRange scans;  ///< of the sequence
   std::string labels = "semantickitti";
   ResimulateOptions options;
+  std::filesystem::path picture;  ///< PNG of the middle scan's beams by error; empty: none
+  int picture_width = 1920;
 };
 
 ResimulateResult run_resimulate(const ResimulateJob& job, Session& session);

@@ -52,6 +52,14 @@ class EvaluateResimulateCommand final : public Command {
     app.add_flag("--keep-moving", keep_moving_, "Count beams on moving objects");
     app.add_flag("--drop-movable", job_.options.drop_movable,
                  "Leave out beams on movable objects (parked cars)");
+    add_path(app, "--picture", job_.picture,
+             "Also draw the middle scan, its points coloured by the range error (PNG)");
+    add_picture_width(app, job_.picture_width);
+    app.add_option_function<std::string>(
+           "--scans",
+           [this](const std::string& text) { job_.scans = parse_scan_range("--scans", text); },
+           "Which scans of the sequence")
+        ->type_name("FIRST:COUNT[:STRIDE]");
   }
 
   void run(Session& session) override {

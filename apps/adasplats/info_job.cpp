@@ -10,8 +10,8 @@
 
 #include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/ply.h"
 #include "adasplats/io/point_files.h"
+#include "adasplats/scene/mesh_model.h"
 #include "adasplats/splats/splat_model.h"
 #include "inputs.h"
 #include "text_table.h"
@@ -137,30 +137,27 @@ FileFacts model_facts(const fs::path& input) {
   return facts;
 }
 
-FileFacts mesh_facts(const fs::path& input, const std::optional<LabelScheme>& scheme) {
-  const MeshTable mesh = read_ply_mesh(input);
+FileFacts mesh_facts(const fs::path& input, std::optional<LabelScheme> scheme) {
+  const MeshModel model = load_mesh(input);
+  const TriangleMesh& mesh = model.mesh;
   FileFacts facts;
   facts.kind = "mesh";
-  facts.rows.emplace_back("fields of vertices", fields_of(mesh.vertices));
-  facts.rows.emplace_back("fields of faces", fields_of(mesh.faces));
-  facts.rows.emplace_back("triangles", grouped(mesh.triangle_vertices.size() / 3));
-  facts.json["triangles"] = mesh.triangle_vertices.size() / 3;
-  const Column* x = mesh.vertices.find("x");
-  const Column* y = mesh.vertices.find("y");
-  const Column* z = mesh.vertices.find("z");
-  if (x == nullptr || y == nullptr || z == nullptr) {
-    throw data_error({input, {}, {}}, "no x, y and z of the vertices");
+  if (!model.method.empty()) facts.rows.emplace_back("method", model.method);
+  if (!model.label_scheme.empty()) facts.rows.emplace_back("labels", model.label_scheme);
+  double area_m2 = 0;
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    const Triangle t = mesh.triangle(i);
+    area_m2 += 0.5 * length(vec_cast<double>(cross(t.b - t.a, t.c - t.a)));
   }
+  facts.rows.emplace_back("triangles", grouped(model.size()));
+  facts.rows.emplace_back("area", fixed(area_m2, 1) + " m2");
+  facts.json["triangles"] = model.size();
+  facts.json["area_m2"] = area_m2;
   Survey survey;
-  for (std::size_t i = 0; i < mesh.vertices.rows; ++i) {
-    survey.add({x->as_double(i), y->as_double(i), z->as_double(i)});
-  }
-  if (const Column* classes = mesh.faces.find("class")) {
-    for (std::size_t i = 0; i < mesh.faces.rows; ++i) {
-      survey.add_class(static_cast<std::uint16_t>(std::clamp(classes->as_double(i), 0., 65535.)));
-    }
-  }
+  for (const Vec3f vertex : mesh.vertices) survey.add(model.origin + vec_cast<double>(vertex));
+  for (const std::uint16_t id : mesh.classes) survey.add_class(id);
   survey.describe(facts, "vertices");
+  if (!scheme && !model.label_scheme.empty()) scheme = load_label_scheme(model.label_scheme);
   survey.describe_classes(facts, scheme);
   return facts;
 }
@@ -196,18 +193,6 @@ FileFacts sequence_facts(const fs::path& input, const std::optional<LabelScheme>
   return facts;
 }
 
-bool is_ply(const fs::path& input) {
-  std::string extension = input.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".ply";
-}
-
-bool is_splat_model(const fs::path& input) {
-  const Table table = read_ply(input);
-  return table.find("radius") != nullptr && table.find("nx") != nullptr;
-}
-
 }  // namespace
 
 FileFacts run_info(const fs::path& input, const std::string& labels, const LoadOptions& options,
@@ -215,8 +200,8 @@ FileFacts run_info(const fs::path& input, const std::string& labels, const LoadO
   const fs::path resolved = resolve_cloud_input(input);
   const auto scheme = label_scheme_for(labels, std::span(&resolved, 1));
   if (is_kitti_sequence(resolved)) return sequence_facts(resolved, scheme, session);
-  if (fs::is_regular_file(resolved) && is_ply(resolved)) {
-    if (ply_has_faces(resolved)) return mesh_facts(resolved, scheme);
+  if (fs::is_regular_file(resolved)) {
+    if (is_mesh_file(resolved)) return mesh_facts(resolved, scheme);
     if (is_splat_model(resolved)) return model_facts(resolved);
   }
   return cloud_facts(resolved, scheme, options, session);

@@ -17,12 +17,22 @@ namespace adasplats::app {
 std::optional<LabelScheme> label_scheme_for(const std::string& labels,
                                             std::span<const std::filesystem::path> inputs);
 
+/// How a model or a mesh names its scheme, so that it can be loaded again from another folder.
+std::string scheme_reference(const std::string& labels, const LabelScheme& scheme);
+
 /// A point cloud input as given, or the one sequence in a folder that `simulate` wrote.
 /// Errors: data for a folder of scans in the sensor frame.
 std::filesystem::path resolve_cloud_input(const std::filesystem::path& input);
 
+/// Whether a file is a PLY that has what a splat model has (a radius and a normal).
+bool is_splat_model(const std::filesystem::path& file);
+
 /// The trajectory of a pose file or of a sequence folder.
 Trajectory load_trajectory(const std::filesystem::path& path);
+
+/// Every n-th pose of that trajectory, shifted in world axes. Errors: usage (`every` is 0), data
+/// (no poses).
+Trajectory poses_along(const std::filesystem::path& path, Vec3d offset_m, std::size_t every);
 
 /// Throws no_input where there is nothing of that name, so that it is said before long work.
 void require_input(const std::filesystem::path& path);

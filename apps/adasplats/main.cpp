@@ -50,6 +50,7 @@ struct Program {
     commands.push_back(make_synth_street_command(synth));
     commands.push_back(make_info_command(app));
     commands.push_back(make_model_command(app));
+    commands.push_back(make_mesh_command(app));
     commands.push_back(make_simulate_command(app));
     commands.push_back(make_render_command(app));
     CLI::App& evaluate = group("evaluate", "Measure simulations and models",
@@ -57,6 +58,8 @@ struct Program {
                                "  adasplats evaluate resimulate place.ply sequences/01\n");
     commands.push_back(make_evaluate_c2c_command(evaluate));
     commands.push_back(make_evaluate_resimulate_command(evaluate));
+    commands.push_back(make_evaluate_truth_command(evaluate));
+    commands.push_back(make_compare_command(app));
     commands.push_back(make_demo_command(app));
     for (const auto& command : commands) command->add_common_options();  // last in the help
   }

@@ -19,13 +19,6 @@ std::optional<LabelScheme> scheme_of(const ModelJob& job) {
   return scheme;
 }
 
-/// What simulate and render must be able to load again from another folder.
-std::string scheme_reference(const ModelJob& job, const LabelScheme& scheme) {
-  std::error_code failure;
-  const bool is_file = std::filesystem::is_regular_file(job.labels, failure);
-  return is_file ? std::filesystem::absolute(job.labels).string() : scheme.name();
-}
-
 }  // namespace
 
 ModelResult run_model(const ModelJob& job, Session& session) {
@@ -46,7 +39,7 @@ ModelResult run_model(const ModelJob& job, Session& session) {
 
   auto [model, built] = build_model(std::move(cloud), scheme ? &*scheme : nullptr, job.build,
                                     session.executor, session.progress);
-  if (scheme) model.label_scheme = scheme_reference(job, *scheme);
+  if (scheme) model.label_scheme = scheme_reference(job.labels, *scheme);
   result.steps.insert(result.steps.end(), built.steps.begin(), built.steps.end());
   result.built = std::move(built);
 
@@ -74,6 +67,7 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
   json["radius_m"] = built.radius_m;
   json["error_m"] = built.error_m;
   json["oriented"] = built.oriented;
+  json["ray_checked"] = built.ray_checked;
   json["seconds"]["total"] = result.seconds;
   for (const StepTime& step : result.steps) {
     // The second generation has the same steps: their times add up.

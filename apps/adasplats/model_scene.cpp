@@ -2,44 +2,70 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model_scene.h"
 
+#include <vector>
+
 #include "adasplats/core/error.h"
 #include "inputs.h"
+#include "view_choice.h"
 
 namespace adasplats::app {
 
-ModelScene::ModelScene(const std::filesystem::path& file, Session& session) {
+ModelScene::ModelScene(const std::filesystem::path& file, const std::string& labels,
+                       Session& session) {
   require_input(file);
+  if (!labels.empty()) labels_ = load_label_scheme(labels);
   session.progress.begin_step("load " + file.filename().string(), 0);
-  model_ = load_model(file);
-  if (model_.size() == 0) throw Error(ErrorKind::data, file.string() + ": no splats");
-  if (!model_.label_scheme.empty()) {
+  load(file);
+  const std::string& known = is_mesh_ ? mesh_.label_scheme : splats_.label_scheme;
+  if (!labels_ && !known.empty()) {
     try {
-      labels_ = load_label_scheme(model_.label_scheme);
+      labels_ = load_label_scheme(known);
     } catch (const Error& error) {
       // The scheme only names and colours; geometry and class numbers are in the model.
       session.progress.warn(std::string("labels of the model: ") + error.what());
     }
   }
   session.progress.begin_step("build the ray index", 0);
-  tracer_ = make_cpu_tracer(model_.view(), session.executor);
+  tracer_ = make_cpu_tracer(view(), session.executor);
   session.progress.end_step();
 }
 
+void ModelScene::load(const std::filesystem::path& file) {
+  is_mesh_ = is_mesh_file(file);
+  if (is_mesh_) {
+    mesh_ = load_mesh(file);
+  } else {
+    splats_ = load_model(file);
+  }
+  if (view().primitive_count() > 0) return;
+  throw Error(ErrorKind::data, file.string() + (is_mesh_ ? ": no triangles" : ": no splats"));
+}
+
+SceneView ModelScene::view() const { return is_mesh_ ? mesh_.view() : splats_.view(); }
+
 PrimitiveAttributes ModelScene::attributes() const {
   PrimitiveAttributes attributes;
-  attributes.classes = model_.classes;
-  attributes.intensities = model_.intensities;
+  attributes.classes = is_mesh_ ? mesh_.mesh.classes : splats_.classes;
+  attributes.intensities = splats_.intensities;
   return attributes;
 }
 
 ImageScene ModelScene::image_scene() const {
   ImageScene scene;
-  scene.view = model_.view();
+  scene.view = view();
   scene.attributes = attributes();
-  scene.groups = model_.groups;
+  scene.groups = splats_.groups;
   scene.labels = labels_ ? &*labels_ : nullptr;
-  scene.origin = model_.origin;
+  scene.origin = origin();
   return scene;
+}
+
+std::pair<Vec3d, Vec3d> ModelScene::middle_box() const {
+  if (is_mesh_) return app::middle_box(mesh_.mesh.vertices, mesh_.origin);
+  std::vector<Vec3f> centers;
+  centers.reserve(splats_.size());
+  for (const Disk& disk : splats_.disks) centers.push_back(disk.center);
+  return app::middle_box(centers, splats_.origin);
 }
 
 }  // namespace adasplats::app

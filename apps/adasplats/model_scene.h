@@ -5,7 +5,10 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 
+#include "adasplats/scene/mesh_model.h"
 #include "adasplats/simulate/image.h"
 #include "adasplats/splats/splat_model.h"
 #include "adasplats/trace/tracer.h"
@@ -13,19 +16,32 @@
 
 namespace adasplats::app {
 
-/// A splat model from a file with what is needed to cast rays into it.
+/// A splat model or a triangle mesh from a file with what is needed to cast rays into it.
 class ModelScene {
  public:
-  ModelScene(const std::filesystem::path& file, Session& session);
+  /// `labels` as load_label_scheme takes it names the classes; empty: what the model's file says.
+  ModelScene(const std::filesystem::path& file, const std::string& labels, Session& session);
+  ModelScene(const ModelScene&) = delete;  // the tracer and the views look into it
+  ModelScene& operator=(const ModelScene&) = delete;
 
-  const SplatModel& model() const { return model_; }
+  /// Splats or triangles.
+  SceneView view() const;
+  /// World coordinates of the view's local origin, m.
+  Vec3d origin() const { return is_mesh_ ? mesh_.origin : splats_.origin; }
   const Tracer& tracer() const { return *tracer_; }
   PrimitiveAttributes attributes() const;
   /// For pictures: geometry, attributes and the colours of the classes.
   ImageScene image_scene() const;
+  /// World box of the middle 98 % of the splats or vertices along each axis: far outliers must not
+  /// decide what a picture shows.
+  std::pair<Vec3d, Vec3d> middle_box() const;
 
  private:
-  SplatModel model_;
+  void load(const std::filesystem::path& file);
+
+  bool is_mesh_ = false;
+  SplatModel splats_;
+  MeshModel mesh_;
   std::optional<LabelScheme> labels_;
   std::unique_ptr<Tracer> tracer_;
 };

@@ -99,6 +99,13 @@ CLI::Option* add_scale(CLI::App& app, const std::string& name, GroupScale& targe
                     short_number(target.error));
 }
 
+CLI::Option* add_picture_width(CLI::App& app, int& width) {
+  return app.add_option("--picture-width", width, "Pixels; the height is 9/16 of it")
+      ->capture_default_str()
+      ->check(CLI::Range(64, 8192))
+      ->type_name("N");
+}
+
 CLI::Option* add_switch(CLI::App& app, const std::string& names, bool& target,
                         const std::string& help) {
   return app.add_flag(names, target, help)->default_str(target ? "true" : "false");

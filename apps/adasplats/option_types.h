@@ -32,6 +32,8 @@ CLI::Option* add_vector(CLI::App& app, const std::string& name, std::optional<Ve
                         const std::string& help);
 CLI::Option* add_scale(CLI::App& app, const std::string& name, GroupScale& target,
                        const std::string& help);
+/// --picture-width, pixels of a picture of 16:9.
+CLI::Option* add_picture_width(CLI::App& app, int& width);
 /// A flag with its opposite: names as "--denoise,!--no-denoise".
 CLI::Option* add_switch(CLI::App& app, const std::string& names, bool& target,
                         const std::string& help);

@@ -13,48 +13,64 @@ constexpr const char* kExamples =
     "  adasplats render street.ply -o street.png\n"
     "  adasplats render street.ply -o above.png --birds-eye --color semantic\n"
     "  adasplats render basic.ply adaptive.ply -o both.png --trajectory poses.txt --pose 12\n"
-    "  adasplats render street.ply -o pole.png --eye 3,-2,1.7 --target 8,4,2 --color normal\n";
+    "  adasplats render street.ply -o pole.png --eye 3,-2,1.7 --target 8,4,2 --color normal\n"
+    "  adasplats render street.ply street/mapping.ply -o measured.png --labels semantickitti\n";
 
 class RenderCommand final : public Command {
  public:
   explicit RenderCommand(CLI::App& program)
       : Command(program, "render",
-                "Draw splat models, side by side, from above a corner or as told", kExamples) {
+                "Draw splat models, meshes and point clouds, side by side, from above a corner or "
+                "as told",
+                kExamples) {
     CLI::App& app = options();
     require(app.add_option_function<std::vector<std::string>>(
                    "MODEL",
                    [this](const std::vector<std::string>& names) {
                      job_.models.assign(names.begin(), names.end());
                    },
-                   "Splat models")
+                   "Splat models, triangle meshes (PLY, OBJ), point files, sequence folders")
                 ->type_name("PATH"));
     require(add_path(app, "-o,--output", job_.output, "Picture to write, PNG"));
-    add_choice<std::optional<ImageColor>>(app, "--color", job_.color,
-                                          {{"shading", ImageColor::shading},
-                                           {"semantic", ImageColor::semantic},
-                                           {"normal", ImageColor::normal},
-                                           {"intensity", ImageColor::intensity},
-                                           {"range", ImageColor::range}},
-                                          "What colours show; semantic where the model has it");
-    app.add_option("--width", job_.width, "Pixels, of one model's part")->capture_default_str();
-    app.add_option("--height", job_.height, "Pixels")->capture_default_str();
+    app.add_option(
+           "--labels", job_.labels,
+           "What classes mean: semantickitti, paris-carla-3d or a TOML file; the default is "
+           "what the model says")
+        ->type_name("SCHEME");
+    add_choice<std::optional<ImageColor>>(
+        app, "--color", job_.color,
+        {{"shading", ImageColor::shading},
+         {"semantic", ImageColor::semantic},
+         {"normal", ImageColor::normal},
+         {"intensity", ImageColor::intensity},
+         {"range", ImageColor::range}},
+        "What colours show; semantic where the model has it, else shading; points: else "
+        "intensity or height");
+    app.add_option("--width", job_.view.width, "Pixels, of one model's part")
+        ->capture_default_str();
+    app.add_option("--height", job_.view.height, "Pixels")->capture_default_str();
     app.add_option("--samples", job_.samples_per_axis, "Rays a pixel: the square of this")
         ->capture_default_str();
-    app.add_option("--fov", job_.horizontal_fov_deg, "Horizontal field of view, degrees")
+    app.add_option("--repeat", job_.repeat, "Render so often and report the median of the time")
+        ->capture_default_str()
+        ->type_name("N");
+    app.add_option("--fov", job_.view.horizontal_fov_deg, "Horizontal field of view, degrees")
         ->capture_default_str();
-    add_vector(app, "--eye", job_.eye, "Where the camera is, world coordinates");
-    add_vector(app, "--target", job_.target, "What it looks at; the middle of the model");
-    app.add_flag("--birds-eye", job_.birds_eye, "From straight above, north up");
-    add_path(app, "--trajectory", job_.trajectory,
+    add_vector(app, "--eye", job_.view.eye, "Where the camera is, world coordinates");
+    add_vector(app, "--target", job_.view.target, "What it looks at; the middle of the model");
+    app.add_flag("--birds-eye", job_.view.birds_eye, "From straight above, north up");
+    add_path(app, "--trajectory", job_.view.trajectory,
              "Look ahead from a pose: a pose file or a sequence folder");
-    app.add_option("--pose", job_.pose, "Number of that pose, from 0")->capture_default_str();
+    app.add_option("--pose", job_.view.pose, "Number of that pose, from 0")->capture_default_str();
   }
 
   void run(Session& session) override {
-    const double seconds = run_render(job_, session);
-    session.report["seconds"]["render"] = seconds;
-    session.report["images_per_second"] = static_cast<double>(job_.models.size()) / seconds;
-    print(job_.output.string() + ": " + fixed(seconds, 2) + " s\n");
+    const RenderResult result = run_render(job_, session);
+    const double rate = static_cast<double>(result.images) / result.seconds_rendered;
+    session.report["images_per_second"] = rate;
+    session.report["seconds_rendered"] = result.seconds_rendered;
+    print(job_.output.string() + ": " + fixed(result.seconds_rendered, 2) + " s, " +
+          fixed(rate, 1) + " images/s\n");
   }
 
  private:

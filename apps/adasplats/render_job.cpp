@@ -3,10 +3,15 @@
 #include "render_job.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
 
+#include "adasplats/cloud/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/png.h"
+#include "adasplats/simulate/point_colors.h"
 #include "inputs.h"
 #include "model_scene.h"
 #include "output_path.h"
@@ -15,66 +20,38 @@
 namespace adasplats::app {
 namespace {
 
-constexpr double kRadiansPerDegree = 0.017453292519943295;
 constexpr int kMostPixels = 1 << 28;
 
-struct Box {
-  Vec3d low, high;
+/// What one part of the picture shows: a model, or else a cloud.
+struct Subject {
+  std::unique_ptr<ModelScene> model;
+  PointCloud cloud;
+  std::optional<LabelScheme> labels;  ///< of the cloud
 };
 
-/// World box of the middle 98 % of the splats along each axis: far outliers must not decide what
-/// a picture shows.
-Box middle_box(const SplatModel& model) {
-  Box box;
-  std::vector<float> values(model.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = model.disks[i].center[axis];
-    std::sort(values.begin(), values.end());
-    const std::size_t cut = values.size() / 100;
-    box.low[axis] = static_cast<double>(values[cut]) + model.origin[axis];
-    box.high[axis] = static_cast<double>(values[values.size() - 1 - cut]) + model.origin[axis];
+Subject load_subject(const RenderJob& job, const std::filesystem::path& input, Session& session) {
+  Subject subject;
+  const bool is_file = std::filesystem::is_regular_file(input);
+  if (is_file && (is_mesh_file(input) || is_splat_model(input))) {
+    subject.model = std::make_unique<ModelScene>(input, job.labels, session);
+    return subject;
   }
-  return box;
+  const std::filesystem::path resolved = resolve_cloud_input(input);
+  const std::span inputs(&resolved, 1);
+  subject.labels = label_scheme_for(job.labels, inputs);
+  subject.cloud = load_cloud(inputs, {}, session.executor, session.progress).first;
+  if (subject.cloud.empty()) throw Error(ErrorKind::data, input.string() + ": no points");
+  return subject;
 }
 
-/// From above one corner of the box to its middle.
-Camera overview(const Box& box) {
-  const Vec3d middle = 0.5 * (box.low + box.high);
-  const double size = std::max(length(box.high - box.low), 1.0);
-  return look_at(middle + size * Vec3d{-0.45, -0.4, 0.35}, middle);
+std::pair<Vec3d, Vec3d> middle_box_of(const Subject& subject) {
+  return subject.model ? subject.model->middle_box()
+                       : middle_box(subject.cloud.positions, subject.cloud.origin);
 }
 
-Camera camera_at_pose(const RenderJob& job) {
-  const Trajectory trajectory = load_trajectory(job.trajectory);
-  if (job.pose >= trajectory.size()) {
-    throw Error(ErrorKind::usage, "--pose " + std::to_string(job.pose) + ": the trajectory has " +
-                                      std::to_string(trajectory.size()) + " poses");
-  }
-  Camera camera;
-  camera.world_from_camera = trajectory[job.pose].world_from_sensor;
-  return camera;
-}
-
-Camera camera_of(const RenderJob& job, const SplatModel& model) {
-  const Box box = middle_box(model);
-  if (job.birds_eye) return birds_eye(box.low, box.high, job.width, job.height);
-  Camera camera;
-  if (!job.trajectory.empty()) {
-    camera = camera_at_pose(job);
-  } else if (job.eye) {
-    camera = look_at(*job.eye, job.target.value_or(0.5 * (box.low + box.high)));
-  } else {
-    camera = overview(box);
-  }
-  camera.width = job.width;
-  camera.height = job.height;
-  camera.horizontal_fov_rad = job.horizontal_fov_deg * kRadiansPerDegree;
-  return camera;
-}
-
-ImageColor color_of(const RenderJob& job, const SplatModel& model) {
+ImageColor color_of(const RenderJob& job, const ImageScene& scene) {
   if (job.color) return *job.color;
-  const bool bare = model.classes.empty() && model.groups.empty();
+  const bool bare = scene.attributes.classes.empty() && scene.groups.empty();
   return bare ? ImageColor::shading : ImageColor::semantic;
 }
 
@@ -94,53 +71,81 @@ void paste(Image& picture, const Image& part, int left) {
 }
 
 void check(const RenderJob& job) {
-  const bool sizes_good =
-      job.width > 0 && job.height > 0 &&
-      job.width <=
-          kMostPixels / job.height / static_cast<int>(std::max<std::size_t>(job.models.size(), 1));
-  if (!sizes_good) throw Error(ErrorKind::usage, "--width and --height are out of range");
+  check(job.view);
+  const auto parts = static_cast<int>(std::max<std::size_t>(job.models.size(), 1));
+  if (job.view.width > kMostPixels / job.view.height / parts) {
+    throw Error(ErrorKind::usage, "--width and --height are out of range");
+  }
   if (job.samples_per_axis < 1 || job.samples_per_axis > 64) {
     throw Error(ErrorKind::usage, "--samples must be 1 to 64");
   }
-  if (!(job.horizontal_fov_deg > 0 && job.horizontal_fov_deg < 180)) {
-    throw Error(ErrorKind::usage, "--fov must be above 0 and below 180 degrees");
+  if (job.repeat < 1) throw Error(ErrorKind::usage, "--repeat must be at least 1");
+}
+
+Image image_of(const ModelScene& model, const Camera& camera, const RenderJob& job,
+               Session& session) {
+  const ImageScene scene = model.image_scene();
+  ImageOptions options;
+  options.color = color_of(job, scene);
+  options.samples_per_axis = job.samples_per_axis;
+  return render_image(model.tracer(), scene, camera, options, session.executor);
+}
+
+Image image_of(const Subject& subject, const Camera& camera, const RenderJob& job,
+               Session& session) {
+  if (subject.model) return image_of(*subject.model, camera, job, session);
+  const PointCloud& cloud = subject.cloud;
+  const std::vector<Rgb> colors = point_colors(cloud, subject.labels ? &*subject.labels : nullptr,
+                                               job.color, camera.world_from_camera.translation);
+  return draw_points(cloud.positions, cloud.origin, colors, camera, {}, session.executor);
+}
+
+/// One part of the picture and the median of the seconds that it took.
+std::pair<Image, double> timed_image(const Subject& subject, const Camera& camera,
+                                     const RenderJob& job, Session& session) {
+  std::vector<double> seconds;
+  Image image;
+  session.progress.begin_step("render", static_cast<std::uint64_t>(job.repeat));
+  for (int i = 0; i < job.repeat; ++i) {
+    const Stopwatch watch;
+    image = image_of(subject, camera, job, session);
+    seconds.push_back(watch.seconds());
+    session.progress.advance(static_cast<std::uint64_t>(i) + 1);
   }
-  if (job.target && !job.eye) throw Error(ErrorKind::usage, "--target needs --eye");
-  const int views = (job.eye ? 1 : 0) + (job.birds_eye ? 1 : 0) + (job.trajectory.empty() ? 0 : 1);
-  if (views > 1) {
-    throw Error(ErrorKind::usage, "give one of --eye, --birds-eye and --trajectory");
-  }
+  session.progress.end_step();
+  std::sort(seconds.begin(), seconds.end());
+  const std::size_t half = seconds.size() / 2;
+  const double median =
+      seconds.size() % 2 == 1 ? seconds[half] : 0.5 * (seconds[half - 1] + seconds[half]);
+  return {std::move(image), median};
 }
 
 }  // namespace
 
-double run_render(const RenderJob& job, Session& session) {
+RenderResult run_render(const RenderJob& job, Session& session) {
   check(job);
   check_output_file(job.output);
   for (const auto& model : job.models) require_input(model);
   Image picture;
-  picture.width = job.width * static_cast<int>(job.models.size());
-  picture.height = job.height;
+  picture.width = job.view.width * static_cast<int>(job.models.size());
+  picture.height = job.view.height;
   picture.pixels.resize(static_cast<std::size_t>(picture.width) *
                         static_cast<std::size_t>(picture.height) * 3);
   std::optional<Camera> camera;  // the first model decides where it stands
-  double seconds = 0;
+  RenderResult result;
   for (std::size_t k = 0; k < job.models.size(); ++k) {
-    const ModelScene scene(job.models[k], session);
-    if (!camera) camera = camera_of(job, scene.model());
-    ImageOptions options;
-    options.color = color_of(job, scene.model());
-    options.samples_per_axis = job.samples_per_axis;
-    session.progress.begin_step("render", 0);
-    const Stopwatch watch;
-    paste(picture,
-          render_image(scene.tracer(), scene.image_scene(), *camera, options, session.executor),
-          job.width * static_cast<int>(k));
-    seconds += watch.seconds();
-    session.progress.end_step();
+    const Subject subject = load_subject(job, job.models[k], session);
+    if (!camera) {
+      const auto [low, high] = middle_box_of(subject);
+      camera = camera_of(job.view, low, high);
+    }
+    const auto [image, seconds] = timed_image(subject, *camera, job, session);
+    paste(picture, image, job.view.width * static_cast<int>(k));
+    result.seconds_rendered += seconds;
+    ++result.images;
   }
   write_png(job.output, picture.width, picture.height, picture.pixels);
-  return seconds;
+  return result;
 }
 
 }  // namespace adasplats::app

@@ -4,31 +4,34 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "adasplats/core/vec3.h"
 #include "adasplats/simulate/image.h"
 #include "session.h"
+#include "view_choice.h"
 
 namespace adasplats::app {
 
-/// One or several models from the same camera, side by side in one picture.
+/// One or several models (splats or meshes) or point clouds from the same camera, side by side in
+/// one picture.
 struct RenderJob {
   std::vector<std::filesystem::path> models;
   std::filesystem::path output;
-  std::optional<ImageColor> color;  ///< else semantic where the model has classes or groups
-  int width = 2560;                 ///< of one model's part of the picture
-  int height = 1440;
+  std::string labels;  ///< scheme of the classes; empty: what the models say
+  /// Else by class where the model has classes or groups, and points by intensity or height.
+  std::optional<ImageColor> color;
+  ViewChoice view;  ///< width and height are those of one model's part of the picture
   int samples_per_axis = 2;
-  double horizontal_fov_deg = 70;
-  std::optional<Vec3d> eye;  ///< with `target`
-  std::optional<Vec3d> target;
-  bool birds_eye = false;
-  std::filesystem::path trajectory;  ///< looks ahead from one of its poses
-  std::size_t pose = 0;
+  int repeat = 1;  ///< renders so often, for the median of the time
 };
 
-/// Renders and writes a PNG; gives back the seconds of rendering alone.
-double run_render(const RenderJob& job, Session& session);
+struct RenderResult {
+  std::size_t images = 0;       ///< one a model
+  double seconds_rendered = 0;  ///< sum over the models of the median, rendering alone
+};
+
+/// Renders and writes a PNG.
+RenderResult run_render(const RenderJob& job, Session& session);
 
 }  // namespace adasplats::app

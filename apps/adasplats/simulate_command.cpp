@@ -24,9 +24,9 @@ std::string known_sensors() {
 class SimulateCommand final : public Command {
  public:
   explicit SimulateCommand(CLI::App& program)
-      : Command(program, "simulate", "Drive a LiDAR through a splat model", kExamples) {
+      : Command(program, "simulate", "Drive a LiDAR through a splat model or a mesh", kExamples) {
     CLI::App& app = options();
-    require(add_path(app, "MODEL", job_.model, "Splat model"));
+    require(add_path(app, "MODEL", job_.model, "Splat model or triangle mesh (PLY, OBJ)"));
     require(add_path(app, "-o,--output", job_.output, "Folder to create"));
     require(add_path(app, "--trajectory", job_.trajectory,
                      "Poses of the sensor: KITTI poses.txt, CSV, or a sequence folder"));
@@ -35,6 +35,11 @@ class SimulateCommand final : public Command {
         ->type_name("NAME|FILE");
     add_vector(app, "--offset", offset_, "Shift of the trajectory in world axes, m")
         ->default_str("0,0,0");
+    app.add_option(
+           "--labels", job_.labels,
+           "What classes mean: semantickitti, paris-carla-3d or a TOML file; the default is "
+           "what the model says")
+        ->type_name("SCHEME");
     app.add_option("--every", job_.every, "Take every n-th pose")
         ->capture_default_str()
         ->type_name("N");

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <optional>
 
-#include "adasplats/core/error.h"
 #include "adasplats/dataset/semantickitti_writer.h"
 #include "adasplats/simulate/scan.h"
 #include "inputs.h"
@@ -76,33 +75,26 @@ class ScanWriter {
   Trajectory trajectory_;
 };
 
-Trajectory poses_of(const SimulateJob& job) {
-  const Trajectory all = shifted(load_trajectory(job.trajectory), job.offset_m);
-  Trajectory taken;
-  for (std::size_t i = 0; i < all.size(); i += job.every) taken.push_back(all[i]);
-  if (taken.empty()) throw Error(ErrorKind::data, job.trajectory.string() + ": no poses");
-  return taken;
-}
-
 /// What the folder's adasplats.json says; nothing that differs between two runs.
 nlohmann::ordered_json content_of(const SimulateJob& job, std::uint64_t seed) {
-  return {{"model", job.model.filename().string()},
-          {"sensor", job.sensor},
-          {"offset_m", {job.offset_m.x, job.offset_m.y, job.offset_m.z}},
-          {"every", job.every},
-          {"seed", seed}};
+  nlohmann::ordered_json content = {{"model", job.model.filename().string()},
+                                    {"sensor", job.sensor},
+                                    {"offset_m", {job.offset_m.x, job.offset_m.y, job.offset_m.z}},
+                                    {"every", job.every},
+                                    {"seed", seed}};
+  if (!job.labels.empty()) content["labels"] = load_label_scheme(job.labels).name();
+  return content;
 }
 
 }  // namespace
 
 SimulateResult run_simulate(const SimulateJob& job, Session& session) {
-  if (job.every == 0) throw Error(ErrorKind::usage, "--every must be at least 1");
   const Stopwatch total;
   require_input(job.model);
   const LidarModel sensor = load_lidar_model(job.sensor);
-  const Trajectory poses = poses_of(job);
+  const Trajectory poses = poses_along(job.trajectory, job.offset_m, job.every);
   OutputFolder folder(job.output, job.overwrite, "simulate", content_of(job, session.seed));
-  const ModelScene scene(job.model, session);
+  const ModelScene scene(job.model, job.labels, session);
 
   const TimedTracer tracer(scene.tracer());
   const std::vector<Firing> firings = firings_of(sensor);
@@ -112,8 +104,8 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   session.progress.begin_step("simulate", poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Stopwatch returned;
-    const Scan scan = simulate_scan(tracer, scene.attributes(), scene.model().origin, sensor,
-                                    firings, poses[i], i, options, session.executor);
+    const Scan scan = simulate_scan(tracer, scene.attributes(), scene.origin(), sensor, firings,
+                                    poses[i], i, options, session.executor);
     result.seconds_returned += returned.seconds();
     writer.write(i, scan);
     result.seconds_written += returned.seconds();

@@ -15,7 +15,8 @@ enum class ScanFormat : std::uint8_t { semantickitti, ply, npy };
 
 /// Paper section "New Trajectory Simulation": a sensor along a shifted trajectory.
 struct SimulateJob {
-  std::filesystem::path model;
+  std::filesystem::path model;  ///< splats or a mesh
+  std::string labels;           ///< scheme of the classes; empty: what the model says
   std::string sensor = "hdl-64-paper";
   std::filesystem::path trajectory;  ///< pose file or sequence folder
   Vec3d offset_m;

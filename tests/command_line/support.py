@@ -18,10 +18,12 @@ SUBCOMMANDS = [
     ["synth", "street"],
     ["info"],
     ["model"],
+    ["mesh"],
     ["simulate"],
     ["render"],
     ["evaluate", "c2c"],
     ["evaluate", "resimulate"],
+    ["evaluate", "truth"],
     ["demo"],
 ]
 ROAD, BUILDING, POLE = 40, 50, 80

@@ -154,10 +154,10 @@ class Pipeline(ProgramTest):
         demo = self.folder / "demo"
         text = self.run_good("demo", "-o", demo, "--points", "5000", "--driving-spacing",
                              "25").stdout
-        for word in ["basic", "descriptors", "semantic", "thin C2C"]:
+        for word in ["basic", "descriptors", "semantic", "consistent", "thin C2C"]:
             self.assertIn(word, text)
         pictures = [line.strip() for line in text.splitlines() if line.endswith(".png")]
-        self.assertEqual(len(pictures), 6)
+        self.assertEqual(len(pictures), 2 * 4)  # two views of every method
         for picture in pictures:
             with open(picture, "rb") as file:
                 self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")

@@ -13,6 +13,7 @@ int exit_code(ErrorKind kind) {
     case ErrorKind::usage: return 64;
     case ErrorKind::data: return 65;
     case ErrorKind::no_input: return 66;
+    case ErrorKind::unavailable: return 69;
     case ErrorKind::software: return 70;
     case ErrorKind::cannot_create: return 73;
     case ErrorKind::io: return 74;

@@ -16,6 +16,7 @@ enum class ErrorKind : std::uint8_t {
   usage,          ///< 64: wrong arguments or parameters
   data,           ///< 65: the content of an input is wrong
   no_input,       ///< 66: an input is missing or cannot be opened
+  unavailable,    ///< 69: a program or library that the work needs is not on this machine
   software,       ///< 70: a bug of ours
   cannot_create,  ///< 73: an output cannot be created
   io,             ///< 74: reading or writing failed

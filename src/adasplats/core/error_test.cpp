@@ -17,6 +17,7 @@ TEST(Error, ExitCodes) {
   EXPECT_EQ(exit_code(ErrorKind::usage), EX_USAGE);
   EXPECT_EQ(exit_code(ErrorKind::data), EX_DATAERR);
   EXPECT_EQ(exit_code(ErrorKind::no_input), EX_NOINPUT);
+  EXPECT_EQ(exit_code(ErrorKind::unavailable), EX_UNAVAILABLE);
   EXPECT_EQ(exit_code(ErrorKind::software), EX_SOFTWARE);
   EXPECT_EQ(exit_code(ErrorKind::cannot_create), EX_CANTCREAT);
   EXPECT_EQ(exit_code(ErrorKind::io), EX_IOERR);

@@ -19,13 +19,18 @@ double ranked(std::vector<float>& values, std::size_t rank) {
   return static_cast<double>(*nth);
 }
 
+}  // namespace
+
 double median_of(std::vector<float>& values) {
   const std::size_t middle = values.size() / 2;
   const double upper = ranked(values, middle);
   return values.size() % 2 == 1 ? upper : 0.5 * (upper + ranked(values, middle - 1));
 }
 
-}  // namespace
+double percentile_of(std::vector<float>& values, std::size_t percent) {
+  const std::size_t reached = (percent * values.size() + 99) / 100;  // rounded up
+  return ranked(values, reached - 1);
+}
 
 BeamAccuracy accuracy_of(const std::vector<float>& errors_m) {
   std::vector<float> sizes_m;
@@ -63,8 +68,7 @@ BeamAccuracy accuracy_of(const std::vector<float>& errors_m) {
   result.mae_m = sum / hits;
   result.rmse_m = std::sqrt(squares / hits);
   result.median_m = median_of(sizes_m);
-  const std::size_t rank_of_90 = (9 * sizes_m.size() + 9) / 10 - 1;  // ceil(0.9 n), from 0
-  result.p90_m = ranked(sizes_m, rank_of_90);
+  result.p90_m = percentile_of(sizes_m, 90);
   return result;
 }
 

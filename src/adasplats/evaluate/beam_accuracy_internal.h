@@ -9,6 +9,8 @@
 
 namespace adasplats {
 
+/// Private to evaluate/: what the comparisons of beams share.
+
 /// The range error of a beam that hit nothing.
 inline constexpr float kNoHitError = std::numeric_limits<float>::quiet_NaN();
 
@@ -17,5 +19,20 @@ inline constexpr float kNoHitError = std::numeric_limits<float>::quiet_NaN();
 /// percentile is by nearest rank; both and the means are NaN where no beam hit. No beams at all
 /// give shares of 0.
 BeamAccuracy accuracy_of(const std::vector<float>& errors_m);
+
+/// Median of one or more values, the mean of the middle two of an even number. Reorders them.
+double median_of(std::vector<float>& values);
+/// The smallest value that `percent` of all (one or more) do not exceed. Reorders them.
+double percentile_of(std::vector<float>& values, std::size_t percent);
+
+/// Whether a beam on an object of this mobility counts.
+inline bool takes_part(Mobility mobility, bool drop_moving, bool drop_movable) {
+  switch (mobility) {
+    case Mobility::fixed: return true;
+    case Mobility::movable: return !drop_movable;
+    case Mobility::moving: return !drop_moving;
+  }
+  return true;
+}
 
 }  // namespace adasplats

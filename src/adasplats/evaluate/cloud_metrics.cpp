@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
 
 #include "adasplats/core/error.h"
 #include "adasplats/neighbors/point_index.h"
@@ -37,10 +36,7 @@ struct DistanceSums {
   }
 };
 
-/// Positions relative to `origin`, in Hilbert order: sums over them then depend on the set of
-/// points and not on the order of the input, and neighbouring queries visit the same nodes.
-std::vector<Vec3f> sorted_in_frame(const PointCloud& cloud, Vec3d origin,
-                                   const Executor& executor) {
+std::vector<Vec3f> in_frame(const PointCloud& cloud, Vec3d origin, const Executor& executor) {
   const Vec3d shift = cloud.origin - origin;
   std::vector<Vec3f> points(cloud.size());
   executor.for_chunks(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -48,15 +44,16 @@ std::vector<Vec3f> sorted_in_frame(const PointCloud& cloud, Vec3d origin,
       points[i] = vec_cast<float>(vec_cast<double>(cloud.positions[i]) + shift);
     }
   });
-  const std::vector<std::uint32_t> order = hilbert_order(points, executor);
-  std::vector<Vec3f> sorted(points.size());
-  executor.for_chunks(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) sorted[i] = points[order[i]];
-  });
-  return sorted;
+  return points;
 }
 
-DistanceSums sums_to_nearest(std::span<const Vec3f> queries, const PointIndex& index,
+/// Points relative to `origin`. Ranks are in Hilbert order: sums over them then depend on the set
+/// of points and not on the order of the input, and neighbouring queries visit the same nodes.
+PointIndex index_in_frame(const PointCloud& cloud, Vec3d origin, const Executor& executor) {
+  return PointIndex(in_frame(cloud, origin, executor), executor);
+}
+
+DistanceSums sums_to_nearest(const PointIndex& queries, const PointIndex& index,
                              const Executor& executor) {
   const std::vector<Neighbor> nearest = index.nearest(queries, executor);
   return executor.sum_chunks(
@@ -113,12 +110,10 @@ CloudDistance cloud_distance(const PointCloud& simulated, const PointCloud& orig
                              const Executor& executor) {
   require_points(simulated, "simulated");
   require_points(original, "original");
-  const std::vector<Vec3f> from = sorted_in_frame(simulated, original.origin, executor);
-  const std::vector<Vec3f> to = sorted_in_frame(original, original.origin, executor);
-  const DistanceSums forward =
-      sums_to_nearest(from, PointIndex::from_sorted(to, executor), executor);
-  const DistanceSums backward =
-      sums_to_nearest(to, PointIndex::from_sorted(from, executor), executor);
+  const PointIndex from = index_in_frame(simulated, original.origin, executor);
+  const PointIndex to = index_in_frame(original, original.origin, executor);
+  const DistanceSums forward = sums_to_nearest(from, to, executor);
+  const DistanceSums backward = sums_to_nearest(to, from, executor);
 
   CloudDistance result;
   result.simulated_points = from.size();
@@ -136,6 +131,20 @@ CloudDistance cloud_distance(const PointCloud& simulated, const PointCloud& orig
   return result;
 }
 
+std::vector<float> distances_to(const PointCloud& cloud, const PointCloud& reference,
+                                const Executor& executor) {
+  require_points(cloud, "simulated");
+  require_points(reference, "original");
+  const PointIndex index = index_in_frame(reference, reference.origin, executor);
+  std::vector<float> distances_m;
+  distances_m.reserve(cloud.size());
+  for (const Neighbor& nearest :
+       index.nearest(in_frame(cloud, reference.origin, executor), executor)) {
+    distances_m.push_back(std::sqrt(nearest.squared_distance));
+  }
+  return distances_m;
+}
+
 std::vector<ClassDistance> cloud_distance_by_class(const PointCloud& simulated,
                                                    const PointCloud& original,
                                                    const Executor& executor) {
@@ -143,19 +152,18 @@ std::vector<ClassDistance> cloud_distance_by_class(const PointCloud& simulated,
   require_points(original, "original");
   require_classes(simulated, "simulated");
   require_classes(original, "original");
-  const PointIndex all =
-      PointIndex::from_sorted(sorted_in_frame(original, original.origin, executor), executor);
+  const PointIndex all = index_in_frame(original, original.origin, executor);
   std::vector<ClassDistance> result;
   for (auto [id, counts] : count_classes(simulated, original)) {
     counts.class_id = id;
     counts.c2c_m = counts.c2c_to_all_m = kNaN;
     if (counts.simulated_points > 0) {
-      const std::vector<Vec3f> from =
-          sorted_in_frame(points_of_class(simulated, id), original.origin, executor);
+      const PointIndex from =
+          index_in_frame(points_of_class(simulated, id), original.origin, executor);
       counts.c2c_to_all_m = mean(sums_to_nearest(from, all, executor).distance_m, from.size());
       if (counts.original_points > 0) {
-        const PointIndex same = PointIndex::from_sorted(
-            sorted_in_frame(points_of_class(original, id), original.origin, executor), executor);
+        const PointIndex same =
+            index_in_frame(points_of_class(original, id), original.origin, executor);
         counts.c2c_m = mean(sums_to_nearest(from, same, executor).distance_m, from.size());
       }
     }

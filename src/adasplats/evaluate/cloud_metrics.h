@@ -37,6 +37,11 @@ struct ClassDistance {
 CloudDistance cloud_distance(const PointCloud& simulated, const PointCloud& original,
                              const Executor& executor);
 
+/// Distance in m of each point of `cloud`, in its order, to the nearest of `reference`. Errors:
+/// data where either is empty.
+std::vector<float> distances_to(const PointCloud& cloud, const PointCloud& reference,
+                                const Executor& executor);
+
 /// By class of either cloud, ascending id; both need classes (ErrorKind::data otherwise). A class
 /// that only one cloud has stays in the list with NaN for what is undefined.
 std::vector<ClassDistance> cloud_distance_by_class(const PointCloud& simulated,

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -75,6 +76,39 @@ TEST(CloudDistance, HoleCountsInCompletenessAlone) {
   EXPECT_DOUBLE_EQ(d.f_score.at(0.05), 2 * 0.9 / 1.9);  // precision 1, recall 0.9
 }
 
+// Analytic: the same points in another order, with another origin.
+TEST(CloudDistance, PermutedCloudIsNoDistanceAway) {
+  const PointCloud cloud = random_cloud(5'000, 5);
+  PointCloud permuted = cloud;
+  std::reverse(permuted.positions.begin(), permuted.positions.end());
+  permuted.origin = {0, 64, 0};
+  for (Vec3f& p : permuted.positions) p.y -= 64.0F;
+  const CloudDistance d = cloud_distance(permuted, cloud, Executor(2));
+  EXPECT_NEAR(d.c2c_m, 0.0, 1e-5);  // 64 m off, a float holds 4 micrometres
+  permuted.origin = {};
+  permuted.positions.assign(cloud.positions.rbegin(), cloud.positions.rend());
+  const CloudDistance exact = cloud_distance(permuted, cloud, Executor(2));
+  EXPECT_EQ(exact.c2c_m, 0.0);
+  EXPECT_EQ(exact.completeness_m, 0.0);
+  EXPECT_EQ(exact.chamfer_m2, 0.0);
+  for (const auto& [bound_m, score] : exact.f_score) EXPECT_EQ(score, 1.0) << bound_m;
+}
+
+// Analytic: a bound itself is not within; 0.125 m is between two of the three bounds.
+TEST(CloudDistance, FScoresOfPlanesOnEitherSideOfTheirBounds) {
+  const auto scores_at = [](float height_m) {
+    return cloud_distance(grid(10, 1.0F, height_m), grid(10, 1.0F, 0.0F), Executor(1)).f_score;
+  };
+  const std::vector<std::pair<float, std::array<double, 3>>> expected = {
+      {0.04F, {1, 1, 1}}, {0.0625F, {0, 1, 1}}, {0.125F, {0, 0, 1}}, {0.25F, {0, 0, 0}}};
+  for (const auto& [height_m, of_bounds] : expected) {
+    const auto scores = scores_at(height_m);
+    EXPECT_EQ(scores.at(0.05), of_bounds[0]) << height_m;
+    EXPECT_EQ(scores.at(0.10), of_bounds[1]) << height_m;
+    EXPECT_EQ(scores.at(std::sqrt(0.05)), of_bounds[2]) << height_m;
+  }
+}
+
 // Oracle: the definition, by brute force in double.
 TEST(CloudDistance, EqualsBruteForce) {
   const PointCloud a = random_cloud(500, 1);
@@ -108,6 +142,22 @@ TEST(CloudDistance, SameBitsForAnyOrderAndThreads) {
   const CloudDistance self = cloud_distance(a, shuffled, Executor(2));
   EXPECT_EQ(self.c2c_m, 0.0);
   EXPECT_EQ(self.completeness_m, 0.0);
+}
+
+// Oracle: the definition, by brute force.
+TEST(DistancesTo, AreInTheOrderOfThePoints) {
+  const PointCloud a = random_cloud(300, 8);
+  const PointCloud b = random_cloud(200, 9);
+  const std::vector<float> distances_m = distances_to(a, b, Executor(2));
+  ASSERT_EQ(distances_m.size(), a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    double best = std::numeric_limits<double>::infinity();
+    for (const Vec3f q : b.positions)
+      best = std::min(best, length(vec_cast<double>(a.positions[i]) - vec_cast<double>(q)));
+    ASSERT_NEAR(distances_m[i], best, 1e-5);
+  }
+  EXPECT_THROW(distances_to({}, b, Executor(1)), Error);
+  EXPECT_THROW(distances_to(a, {}, Executor(1)), Error);
 }
 
 TEST(CloudDistance, OriginsAreTakenIntoAccount) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/beam_accuracy_internal.h"
@@ -75,16 +76,6 @@ double incidence_deg(const SceneView& scene, const Ray& ray, std::uint32_t primi
   return std::acos(std::min(cosine, 1.0)) * kDegreesPerRadian;
 }
 
-/// Whether a beam on an object of this class takes part.
-bool takes_part(const SemanticClass& semantic_class, const ResimulateOptions& options) {
-  switch (semantic_class.mobility) {
-    case Mobility::fixed: return true;
-    case Mobility::movable: return !options.drop_movable;
-    case Mobility::moving: return !options.drop_moving;
-  }
-  return true;
-}
-
 /// The measured points that take part: finite, within the ranges, of classes that are kept.
 std::vector<std::uint32_t> select_points(const KittiScan& scan, const std::filesystem::path& file,
                                          const LabelScheme& labels,
@@ -102,7 +93,7 @@ std::vector<std::uint32_t> select_points(const KittiScan& scan, const std::files
                                          std::to_string(scan.classes[i]) +
                                          " is not in the label scheme '" + labels.name() + "'");
       }
-      if (!takes_part(*found, options)) continue;
+      if (!takes_part(found->mobility, options.drop_moving, options.drop_movable)) continue;
     }
     selected.push_back(static_cast<std::uint32_t>(i));
   }
@@ -266,6 +257,19 @@ ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d 
   result.all = accuracy_where(beams, [](const Beam&) { return true; });
   result.clouds = clouds.mean();
   add_breakdowns(result, beams, setting, !sequence.labels.empty());
+  return result;
+}
+
+ScanErrors resimulate_scan(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
+                           const KittiSequence& sequence, std::size_t index,
+                           const LabelScheme& labels, const ResimulateOptions& options,
+                           const Executor& executor) {
+  check(options);
+  const Setting setting{tracer,          scene, scene_origin, labels, options, range_bins(options),
+                        incidence_bins()};
+  ScanBeams scan = cast_scan(setting, sequence, index, executor);
+  ScanErrors result{std::move(scan.measured.positions), {}};
+  for (const Beam& beam : scan.beams) result.errors_m.push_back(beam.error_m);
   return result;
 }
 

@@ -55,4 +55,16 @@ ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d 
                             const ResimulateOptions& options, const Executor& executor,
                             ProgressSink& progress);
 
+/// What single beams of one scan gave, for pictures.
+struct ScanErrors {
+  std::vector<Vec3f> measured;  ///< sensor frame, m
+  std::vector<float> errors_m;  ///< predicted - measured range; NaN: no hit
+};
+
+/// The beams of one scan that `resimulate` takes. Errors: as resimulate's.
+ScanErrors resimulate_scan(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
+                           const KittiSequence& sequence, std::size_t index,
+                           const LabelScheme& labels, const ResimulateOptions& options,
+                           const Executor& executor);
+
 }  // namespace adasplats

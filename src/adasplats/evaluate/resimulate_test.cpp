@@ -89,6 +89,22 @@ TEST_F(Resimulate, KnownOffsetsGiveExactShares) {
   EXPECT_TRUE(r.by_class.empty());
 }
 
+TEST_F(Resimulate, SingleBeamsOfAScan) {
+  const KittiSequence held_out = sequence({{10, 0, 0}, {0.5F, 0, 0}, {9.75F, 0, 0}, {-10, 0, 0}});
+  const std::vector<Disk> disks = {
+      {vec_cast<float>(position_ + Vec3d{0, 10, 0} - origin_), 1000.0F, {0, 1, 0}}};
+  const SceneView scene{disks, nullptr};
+  const auto tracer = make_brute_force_tracer(scene);
+  const ScanErrors scan = resimulate_scan(*tracer, scene, origin_, held_out, 0,
+                                          semantickitti_labels(), {}, Executor(1));
+  ASSERT_EQ(scan.measured.size(), 3U);  // the second is nearer than 2.5 m
+  EXPECT_EQ(scan.measured[1].x, 9.75F);
+  ASSERT_EQ(scan.errors_m.size(), 3U);
+  EXPECT_NEAR(scan.errors_m[0], 0.0F, 1e-5F);
+  EXPECT_NEAR(scan.errors_m[1], 0.25F, 1e-5F);
+  EXPECT_TRUE(std::isnan(scan.errors_m[2]));
+}
+
 TEST_F(Resimulate, IncidenceIsAgainstTheSurfaceOfHitsAlone) {
   const ResimulateResult r = run(sequence({{10, 0, 0}, {10, 10, 0}, {10, -17, 0}, {-10, 0, 0}}));
   ASSERT_EQ(r.by_incidence.size(), 5U);
@@ -146,6 +162,29 @@ TEST_F(Resimulate, CloudsAreComparedInTheSensorFrame) {
   EXPECT_NEAR(r.clouds.completeness_m, 0.25, 1e-5);
   EXPECT_NEAR(r.clouds.chamfer_m2, 2 * 0.0625, 1e-5);
   EXPECT_EQ(r.clouds.simulated_points, 1U);
+}
+
+// Analytic: of ten beams on a wall three lie in a hole of the model, whose wall is a disk a beam.
+TEST_F(Resimulate, HoleOfKnownShare) {
+  std::vector<Vec3f> points;
+  std::vector<Disk> disks;
+  for (int i = 0; i < 10; ++i) {
+    const Vec3f point = {10, static_cast<float>(i) - 4.5F, 0};
+    points.push_back(point);
+    // The sensor's +y is the world's -x.
+    const Vec3d world = position_ + Vec3d{-static_cast<double>(point.y), 10, 0};
+    if (i < 7) disks.push_back({vec_cast<float>(world - origin_), 0.25F, {0, 1, 0}});
+  }
+  const SceneView scene{disks, nullptr};
+  const auto tracer = make_brute_force_tracer(scene);
+  ProgressSink quiet;
+  const ResimulateResult r = resimulate(*tracer, scene, origin_, sequence(points),
+                                        semantickitti_labels(), {}, Executor(1), quiet);
+  EXPECT_DOUBLE_EQ(r.all.no_hit, 0.3);
+  EXPECT_DOUBLE_EQ(r.all.within.at(0.02), 0.7);
+  EXPECT_EQ(r.clouds.simulated_points, 7U);
+  EXPECT_NEAR(r.clouds.c2c_m, 0.0, 1e-5);
+  EXPECT_NEAR(r.clouds.completeness_m, (1 + 2 + 3) / 10.0, 1e-5);
 }
 
 TEST_F(Resimulate, NothingHitGivesNoDistances) {

@@ -11,18 +11,23 @@
 
 namespace adasplats::detail {
 
-/// Up to 16 queries that are searched together, and what they found. One a thread; its buffers
-/// grow to the largest limit seen.
-struct QueryGroup {
+/// Up to 16 queries that are searched together, and how far each still looks. With no more than
+/// this, the search finds the nearest point of each: `bound` and `last_rank` are the answer.
+struct Queries {
   static constexpr std::uint32_t kSize = 16;
   alignas(64) float x[kSize];
   alignas(64) float y[kSize];
   alignas(64) float z[kSize];
-  alignas(64) float bound[kSize];  ///< squared distance beyond which nothing is wanted
-  std::uint32_t last_rank[kSize];  ///< at the bound itself, ranks beyond this are not wanted
-  std::uint32_t wanted[kSize];     ///< nearest so many; 0: only count what is within the bound
-  std::uint32_t found[kSize];
+  alignas(64) float bound[kSize];              ///< squared distance beyond which nothing is wanted
+  alignas(64) std::uint32_t last_rank[kSize];  ///< at the bound itself, ranks beyond are not wanted
   std::uint32_t size = 0;
+};
+
+/// Queries that look for several neighbours, and what they found. One a thread; its buffers grow to
+/// the largest limit seen.
+struct QueryGroup : Queries {
+  std::uint32_t wanted[kSize];  ///< nearest so many; 0: only count what is within the bound
+  std::uint32_t found[kSize];
   std::uint32_t capacity = 0;        ///< neighbours a query has room for
   std::vector<float> distances;      ///< squared; query q has found[q] from q * capacity on
   std::vector<std::uint32_t> ranks;  ///< likewise
@@ -36,6 +41,9 @@ struct QueryGroup {
 /// the last query with a negative bound, so they find nothing.
 void prepare(QueryGroup& group, std::span<const NeighborLimit> limits);
 
+/// The same for the nearest point: no bounds yet, and nothing found.
+void prepare(Queries& group);
+
 /// Room behind a query's neighbours that vector code may write to.
 inline constexpr std::uint32_t kSlack = 16;
 
@@ -44,16 +52,21 @@ inline constexpr std::uint32_t kSlack = 16;
 std::uint32_t drop_equal(float* distances, std::uint32_t* ranks, std::uint32_t found,
                          std::uint32_t wanted, float bound);
 
-/// Searches a group: `first_leaf` is looked at first (any leaf near the queries).
-/// Postcondition: found[q] <= wanted[q], and those are the neighbours.
-using SearchFunction = void (*)(const PointIndex::Tree& tree, std::uint32_t first_leaf,
-                                QueryGroup& group);
-void search_portable(const PointIndex::Tree& tree, std::uint32_t first_leaf, QueryGroup& group);
+/// Both kinds of search; `first_leaf` is looked at first (any leaf near the queries; what is found
+/// does not depend on it).
+struct SearchFunctions {
+  /// Postcondition: found[q] <= wanted[q], and those are the neighbours.
+  void (*neighbors)(const PointIndex::Tree& tree, std::uint32_t first_leaf, QueryGroup& group);
+  /// Postcondition: last_rank[q] is the nearest point's and bound[q] its squared distance; a query
+  /// without one (its coordinates are NaN or so large that squares overflow) has kNone.
+  void (*nearest)(const PointIndex::Tree& tree, std::uint32_t first_leaf, Queries& group);
+};
+SearchFunctions portable_search();
 #if defined(__x86_64__)
-void search_avx2(const PointIndex::Tree& tree, std::uint32_t first_leaf, QueryGroup& group);
+SearchFunctions avx2_search();
 #endif
 
 /// The fastest that this machine's CPU runs; all find the same.
-SearchFunction search_function();
+SearchFunctions search_functions();
 
 }  // namespace adasplats::detail

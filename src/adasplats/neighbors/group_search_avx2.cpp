@@ -21,6 +21,11 @@ struct GroupBox {
   float low[3], high[3];
 };
 using LeafBox = GroupBox;
+/// The nearest point of a leaf, the first of equally near ones.
+struct Nearest {
+  float distance2;
+  std::uint32_t lane;
+};
 
 /// max(low_a - high_b, low_b - high_a, 0): the gap between two intervals.
 inline __m256 gap(__m256 low_a, __m256 high_a, __m256 low_b, __m256 high_b) {
@@ -48,7 +53,7 @@ inline unsigned boxes_within(const PointIndex::Node& node, const GroupBox& box, 
   return mask_within(result, _mm256_set1_ps(bound));
 }
 
-inline unsigned queries_near(const QueryGroup& group, const LeafBox& box) {
+inline unsigned queries_near(const Queries& group, const LeafBox& box) {
   unsigned mask = 0;
   for (unsigned half = 0; half < 2; ++half) {
     const float* coordinates[3] = {group.x + 8 * half, group.y + 8 * half, group.z + 8 * half};
@@ -75,6 +80,38 @@ inline unsigned points_within(const float* x, const float* y, const float* z, fl
     mask |= mask_within(d2, _mm256_set1_ps(bound)) << (8 * half);
   }
   return mask;
+}
+
+/// The largest of 8 lanes, in all of them.
+inline __m256 max_of_lanes(__m256 v) {
+  v = _mm256_max_ps(v, _mm256_permute2f128_ps(v, v, 1));
+  v = _mm256_max_ps(v, _mm256_shuffle_ps(v, v, _MM_SHUFFLE(1, 0, 3, 2)));
+  return _mm256_max_ps(v, _mm256_shuffle_ps(v, v, _MM_SHUFFLE(2, 3, 0, 1)));
+}
+
+inline __m256 min_of_lanes(__m256 v) {
+  v = _mm256_min_ps(v, _mm256_permute2f128_ps(v, v, 1));
+  v = _mm256_min_ps(v, _mm256_shuffle_ps(v, v, _MM_SHUFFLE(1, 0, 3, 2)));
+  return _mm256_min_ps(v, _mm256_shuffle_ps(v, v, _MM_SHUFFLE(2, 3, 0, 1)));
+}
+
+inline float largest_bound(const Queries& group) {
+  return _mm256_cvtss_f32(
+      max_of_lanes(_mm256_max_ps(_mm256_load_ps(group.bound), _mm256_load_ps(group.bound + 8))));
+}
+
+inline Nearest nearest_of_leaf(const float* x, const float* y, const float* z, float qx, float qy,
+                               float qz) {
+  __m256 d2[2];
+  for (unsigned half = 0; half < 2; ++half) {
+    const __m256 dx = _mm256_sub_ps(_mm256_loadu_ps(x + 8 * half), _mm256_set1_ps(qx));
+    const __m256 dy = _mm256_sub_ps(_mm256_loadu_ps(y + 8 * half), _mm256_set1_ps(qy));
+    const __m256 dz = _mm256_sub_ps(_mm256_loadu_ps(z + 8 * half), _mm256_set1_ps(qz));
+    d2[half] = squared_norm(dx, dy, dz);
+  }
+  const __m256 least = min_of_lanes(_mm256_min_ps(d2[0], d2[1]));
+  const unsigned lanes = mask_within(d2[0], least) | mask_within(d2[1], least) << 8;
+  return {_mm256_cvtss_f32(least), static_cast<unsigned>(__builtin_ctz(lanes | 1U << 16))};
 }
 
 /// For every mask of 8 lanes the lanes that are set, first ones first.
@@ -141,9 +178,7 @@ inline std::uint32_t keep_within(float* distances, std::uint32_t* ranks, std::ui
 
 }  // namespace
 
-void search_avx2(const PointIndex::Tree& tree, std::uint32_t first_leaf, QueryGroup& group) {
-  search(tree, first_leaf, group);
-}
+SearchFunctions avx2_search() { return {find_neighbors, find_nearest}; }
 
 }  // namespace adasplats::detail
 

@@ -13,6 +13,11 @@ struct GroupBox {
   float low[3], high[3];
 };
 using LeafBox = GroupBox;
+/// The nearest point of a leaf, the first of equally near ones.
+struct Nearest {
+  float distance2;
+  std::uint32_t lane;
+};
 
 float gap(float low_a, float high_a, float low_b, float high_b) {
   const float below = low_a - high_b;
@@ -34,9 +39,9 @@ unsigned boxes_within(const PointIndex::Node& node, const GroupBox& box, float b
   return mask;
 }
 
-unsigned queries_near(const QueryGroup& group, const LeafBox& box) {
+unsigned queries_near(const Queries& group, const LeafBox& box) {
   unsigned mask = 0;
-  for (unsigned q = 0; q < QueryGroup::kSize; ++q) {
+  for (unsigned q = 0; q < Queries::kSize; ++q) {
     const float dx = gap(group.x[q], group.x[q], box.low[0], box.high[0]);
     const float dy = gap(group.y[q], group.y[q], box.low[1], box.high[1]);
     const float dz = gap(group.z[q], group.z[q], box.low[2], box.high[2]);
@@ -54,6 +59,24 @@ unsigned points_within(const float* x, const float* y, const float* z, float qx,
     mask |= static_cast<unsigned>(distance2[i] <= bound) << i;
   }
   return mask;
+}
+
+float largest_bound(const Queries& group) {
+  float bound = group.bound[0];
+  for (std::uint32_t q = 1; q < Queries::kSize; ++q)
+    bound = group.bound[q] > bound ? group.bound[q] : bound;
+  return bound;
+}
+
+Nearest nearest_of_leaf(const float* x, const float* y, const float* z, float qx, float qy,
+                        float qz) {
+  Nearest nearest{std::numeric_limits<float>::infinity(), 0};
+  for (std::uint32_t i = 0; i < PointIndex::kLeafPoints; ++i) {
+    const float dx = x[i] - qx, dy = y[i] - qy, dz = z[i] - qz;
+    const float distance2 = (dx * dx + dy * dy) + dz * dz;
+    if (distance2 < nearest.distance2) nearest = {distance2, i};
+  }
+  return nearest;
 }
 
 std::uint32_t append(unsigned points, const float* distance2, std::uint32_t first_rank,
@@ -91,19 +114,34 @@ std::uint32_t keep_within(float* distances, std::uint32_t* ranks, std::uint32_t 
 
 }  // namespace
 
-void search_portable(const PointIndex::Tree& tree, std::uint32_t first_leaf, QueryGroup& group) {
-  search(tree, first_leaf, group);
+SearchFunctions portable_search() { return {find_neighbors, find_nearest}; }
+
+namespace {
+
+/// Lanes behind the group's size repeat the last query, so that its box does not grow.
+void fill_lanes(Queries& group) {
+  for (std::uint32_t q = group.size; q < Queries::kSize; ++q) {
+    group.x[q] = group.x[group.size - 1];
+    group.y[q] = group.y[group.size - 1];
+    group.z[q] = group.z[group.size - 1];
+  }
+}
+
+}  // namespace
+
+void prepare(Queries& group) {
+  fill_lanes(group);
+  for (std::uint32_t q = 0; q < Queries::kSize; ++q) {
+    group.bound[q] = q < group.size ? std::numeric_limits<float>::max() : -1.0F;
+    group.last_rank[q] = Neighbor::kNone;
+  }
 }
 
 void prepare(QueryGroup& group, std::span<const NeighborLimit> limits) {
+  fill_lanes(group);
   std::uint32_t most = 1;
   for (std::uint32_t q = 0; q < QueryGroup::kSize; ++q) {
     const bool used = q < group.size;
-    if (!used) {
-      group.x[q] = group.x[group.size - 1];
-      group.y[q] = group.y[group.size - 1];
-      group.z[q] = group.z[group.size - 1];
-    }
     group.bound[q] = used ? limits[q].squared_radius : -1.0F;
     group.last_rank[q] = 0xffffffffU;
     group.wanted[q] = used ? limits[q].count : 0;
@@ -139,13 +177,13 @@ std::uint32_t drop_equal(float* distances, std::uint32_t* ranks, std::uint32_t f
   return ranks[wanted - 1];
 }
 
-SearchFunction search_function() {
+SearchFunctions search_functions() {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
       __builtin_cpu_supports("popcnt"))
-    return search_avx2;
+    return avx2_search();
 #endif
-  return search_portable;
+  return portable_search();
 }
 
 }  // namespace adasplats::detail

@@ -3,8 +3,10 @@
 #include "adasplats/neighbors/hilbert.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 namespace adasplats {
 namespace {
@@ -22,6 +24,84 @@ constexpr std::uint64_t spread(std::uint64_t v) {
   v = (v | v << 2) & 0x1249249249249249ULL;
   return v;
 }
+
+/// Skilling's algorithm level by level, from the top bit down. What the levels above did to the
+/// axes of this one is a permutation with inversions. His last step inverts all three bits of the
+/// key at once; since the Gray code passes an inversion of the first axis on to all three, that is
+/// one more inversion of the first axis.
+struct Turn {
+  std::array<std::uint8_t, 3> axis = {0, 1, 2};  ///< which coordinate stands on the i-th axis
+  std::array<bool, 3> inverted{};
+
+  constexpr bool operator==(const Turn&) const = default;
+
+  /// Takes one bit of x, y and z (x is the highest of the three) and gives three bits of the key.
+  constexpr std::uint32_t step(std::uint32_t bits) {
+    std::array<bool, 3> set{};
+    for (std::size_t i = 0; i < 3; ++i) set[i] = ((bits >> (2 - axis[i]) & 1U) != 0) != inverted[i];
+    // Inverse undo of excess work: changes the levels below.
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (set[i]) {
+        inverted[0] = !inverted[0];
+      } else {
+        std::swap(axis[0], axis[i]);
+        std::swap(inverted[0], inverted[i]);
+      }
+    }
+    // Gray encode.
+    set[1] = set[1] != set[0];
+    set[2] = set[2] != set[1];
+    inverted[0] = inverted[0] != set[2];
+    return set[0] * 4U + set[1] * 2U + set[2] * 1U;
+  }
+};
+
+/// For each of the turns that occur and one bit of x, y and z: next turn << 3 | bits of the key.
+constexpr std::size_t kTurns = 24;
+using LevelTable = std::array<std::array<std::uint16_t, 8>, kTurns>;
+
+constexpr LevelTable level_table() {
+  LevelTable table{};
+  std::array<Turn, kTurns> turns{};
+  std::size_t known = 1;
+  for (std::size_t from = 0; from < known; ++from) {
+    for (std::uint32_t bits = 0; bits < 8; ++bits) {
+      Turn turn = turns[from];
+      const std::uint32_t key = turn.step(bits);
+      std::size_t to = 0;
+      while (to < known && !(turns[to] == turn)) ++to;
+      if (to == known) turns[known++] = turn;  // past the end would not compile
+      table[from][bits] = static_cast<std::uint16_t>(to << 3 | key);
+    }
+  }
+  return table;
+}
+
+/// Three levels at once: next turn << 9 | 9 bits of the key. 24 KB stay in the first cache.
+struct StepTable {
+  static constexpr int kLevels = 3;
+  static constexpr int kStepBits = 3 * kLevels;
+  static constexpr std::size_t kEntries = 1U << kStepBits;
+  std::array<std::array<std::uint16_t, kEntries>, kTurns> entries{};
+
+  constexpr StepTable() {
+    const LevelTable levels = level_table();
+    for (std::size_t first = 0; first < kTurns; ++first) {
+      for (std::uint32_t bits = 0; bits < kEntries; ++bits) {
+        std::uint32_t turn = static_cast<std::uint32_t>(first);
+        std::uint32_t key = 0;
+        for (int level = kLevels - 1; level >= 0; --level) {
+          const std::uint32_t entry = levels[turn][bits >> (3 * level) & 7U];
+          turn = entry >> 3;
+          key = key << 3 | (entry & 7U);
+        }
+        entries[first][bits] = static_cast<std::uint16_t>(turn << kStepBits | key);
+      }
+    }
+  }
+};
+constexpr StepTable kSteps;
+static_assert(kBits % StepTable::kLevels == 0);
 
 struct Extent {
   Vec3f low{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
@@ -50,26 +130,16 @@ Extent extent_of(std::span<const Vec3f> points, const Executor& executor) {
 }  // namespace
 
 std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-  std::uint32_t axes[3] = {x, y, z};
-  // Inverse undo of excess work, from the highest bit down.
-  for (std::uint32_t bit = 1U << (kBits - 1); bit > 1; bit >>= 1) {
-    const std::uint32_t below = bit - 1;
-    for (std::uint32_t& axis : axes) {
-      // Without branches: `set` is all ones where the axis has the bit.
-      const std::uint32_t set = (axis & bit) != 0 ? 0xffffffffU : 0U;
-      const std::uint32_t swapped = (axes[0] ^ axis) & below;
-      axes[0] ^= (set & below) | (~set & swapped);
-      axis ^= ~set & swapped;
-    }
+  constexpr int kStepBits = StepTable::kStepBits;
+  constexpr std::uint64_t kMask = StepTable::kEntries - 1;
+  const std::uint64_t interleaved = spread(x) << 2 | spread(y) << 1 | spread(z);
+  std::uint64_t key = 0;
+  std::uint32_t step = 0;
+  for (int shift = 3 * kBits - kStepBits; shift >= 0; shift -= kStepBits) {
+    step = kSteps.entries[step >> kStepBits][interleaved >> shift & kMask];
+    key = key << kStepBits | (step & kMask);
   }
-  // Gray encode.
-  axes[1] ^= axes[0];
-  axes[2] ^= axes[1];
-  std::uint32_t flip = 0;
-  for (std::uint32_t bit = 1U << (kBits - 1); bit > 1; bit >>= 1)
-    if ((axes[2] & bit) != 0) flip ^= bit - 1;
-  for (std::uint32_t& axis : axes) axis ^= flip;
-  return spread(axes[0]) << 2 | spread(axes[1]) << 1 | spread(axes[2]);
+  return key;
 }
 
 std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const Executor& executor) {

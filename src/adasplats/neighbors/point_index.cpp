@@ -90,11 +90,11 @@ PointIndex::Tree PointIndex::tree() const {
 void PointIndex::for_each_neighborhood(
     const Executor& executor, FunctionRef<NeighborLimit(std::uint32_t)> limit,
     FunctionRef<void(std::uint32_t, const NeighborList&)> body) const {
-  const detail::SearchFunction search = detail::search_function();
+  const auto search = detail::search_functions().neighbors;
   const Tree search_tree = tree();
   executor.for_chunks(size_, kQueriesPerTask, [&](std::size_t begin, std::size_t end) {
     detail::QueryGroup group;
-    std::array<NeighborLimit, detail::QueryGroup::kSize> limits;
+    std::array<NeighborLimit, detail::Queries::kSize> limits;
     for (std::size_t first = begin; first < end; first += kLeafPoints) {
       group.size = static_cast<std::uint32_t>(std::min<std::size_t>(kLeafPoints, end - first));
       for (std::uint32_t q = 0; q < group.size; ++q) {
@@ -113,11 +113,11 @@ void PointIndex::for_each_neighborhood(
 
 std::vector<std::uint32_t> PointIndex::count_within(float radius, const Executor& executor) const {
   std::vector<std::uint32_t> counts(size_);
-  const detail::SearchFunction search = detail::search_function();
+  const auto search = detail::search_functions().neighbors;
   const Tree search_tree = tree();
   executor.for_chunks(size_, kQueriesPerTask, [&](std::size_t begin, std::size_t end) {
     detail::QueryGroup group;
-    std::array<NeighborLimit, detail::QueryGroup::kSize> limits;
+    std::array<NeighborLimit, detail::Queries::kSize> limits;
     limits.fill({0, radius * radius});
     for (std::size_t first = begin; first < end; first += kLeafPoints) {
       group.size = static_cast<std::uint32_t>(std::min<std::size_t>(kLeafPoints, end - first));
@@ -161,34 +161,62 @@ std::uint32_t leaf_near(const PointIndex::Tree& tree, Vec3f p) {
 
 }  // namespace
 
-std::vector<Neighbor> PointIndex::nearest(std::span<const Vec3f> queries,
-                                          const Executor& executor) const {
-  std::vector<Neighbor> result(queries.size());
-  if (size_ == 0) return result;
-  const std::vector<std::uint32_t> query_order = hilbert_order(queries, executor);
-  const detail::SearchFunction search = detail::search_function();
+template <class Load, class Store>
+void PointIndex::search_nearest(std::size_t queries, const Executor& executor, const Load& load,
+                                const Store& store) const {
+  if (size_ == 0) return;
+  const auto search = detail::search_functions().nearest;
   const Tree search_tree = tree();
-  executor.for_chunks(queries.size(), kQueriesPerTask, [&](std::size_t begin, std::size_t end) {
-    detail::QueryGroup group;
-    std::array<NeighborLimit, detail::QueryGroup::kSize> limits;
-    limits.fill({1});
-    for (std::size_t first = begin; first < end; first += detail::QueryGroup::kSize) {
+  executor.for_chunks(queries, kQueriesPerTask, [&](std::size_t begin, std::size_t end) {
+    detail::Queries group;
+    std::uint32_t leaf = Neighbor::kNone;
+    for (std::size_t first = begin; first < end; first += detail::Queries::kSize) {
       group.size =
-          static_cast<std::uint32_t>(std::min<std::size_t>(detail::QueryGroup::kSize, end - first));
+          static_cast<std::uint32_t>(std::min<std::size_t>(detail::Queries::kSize, end - first));
+      load(first, group);
+      detail::prepare(group);
+      // Groups follow each other along the curve: where the last one ended the next begins.
+      if (leaf == Neighbor::kNone)
+        leaf = leaf_near(search_tree, {group.x[0], group.y[0], group.z[0]});
+      search(search_tree, leaf, group);
       for (std::uint32_t q = 0; q < group.size; ++q) {
-        const Vec3f p = queries[query_order[first + q]];
-        group.x[q] = p.x;
-        group.y[q] = p.y;
-        group.z[q] = p.z;
-      }
-      detail::prepare(group, limits);
-      search(search_tree, leaf_near(search_tree, {group.x[0], group.y[0], group.z[0]}), group);
-      for (std::uint32_t q = 0; q < group.size; ++q) {
-        const NeighborList found = group.neighbors_of(q);
-        result[query_order[first + q]] = {found.squared_distances[0], index_of(found.ranks[0])};
+        const std::uint32_t rank = group.last_rank[q];
+        if (rank == Neighbor::kNone) continue;
+        store(first + q, Neighbor{group.bound[q], index_of(rank)});
+        leaf = rank / kLeafPoints;
       }
     }
   });
+}
+
+std::vector<Neighbor> PointIndex::nearest(std::span<const Vec3f> queries,
+                                          const Executor& executor) const {
+  std::vector<Neighbor> result(queries.size());
+  const std::vector<std::uint32_t> order = hilbert_order(queries, executor);
+  const auto load = [&](std::size_t first, detail::Queries& group) {
+    for (std::uint32_t q = 0; q < group.size; ++q) {
+      const Vec3f p = queries[order[first + q]];
+      group.x[q] = p.x;
+      group.y[q] = p.y;
+      group.z[q] = p.z;
+    }
+  };
+  search_nearest(queries.size(), executor, load,
+                 [&](std::size_t i, Neighbor found) { result[order[i]] = found; });
+  return result;
+}
+
+std::vector<Neighbor> PointIndex::nearest(const PointIndex& queries,
+                                          const Executor& executor) const {
+  std::vector<Neighbor> result(queries.size());
+  const auto load = [&](std::size_t first, detail::Queries& group) {
+    const auto& [x, y, z] = queries.coordinates_;
+    std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(first), group.size, group.x);
+    std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(first), group.size, group.y);
+    std::copy_n(z.begin() + static_cast<std::ptrdiff_t>(first), group.size, group.z);
+  };
+  search_nearest(queries.size(), executor, load,
+                 [&](std::size_t i, Neighbor found) { result[i] = found; });
   return result;
 }
 

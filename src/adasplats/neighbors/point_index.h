@@ -59,8 +59,13 @@ class PointIndex {
   std::size_t size() const { return size_; }
 
   /// Nearest indexed point of every query: result[i] belongs to queries[i]. Equal distances go to
-  /// the point of lower rank. An empty index gives Neighbor{}.
+  /// the point of lower rank. An empty index gives Neighbor{}, and so does a query so far away
+  /// (1e19 m) that the square of its distance is not a float.
   std::vector<Neighbor> nearest(std::span<const Vec3f> queries, const Executor& executor) const;
+
+  /// The same for all points of another index: result[rank] belongs to its point of that rank.
+  /// Saves the sorting of the queries.
+  std::vector<Neighbor> nearest(const PointIndex& queries, const Executor& executor) const;
 
   /// Calls body(rank, neighbours) for every indexed point, on any thread: runs of kQueriesPerTask
   /// consecutive ranks belong to one thread and come in ascending order, runs in any order.
@@ -97,6 +102,11 @@ class PointIndex {
   PointIndex(Sorted, std::span<const Vec3f> points, std::span<const std::uint32_t> order,
              const Executor& executor);
   void build_levels(const Executor& executor);
+  /// load(first, group) fills in the queries from number `first` on, store(number, neighbor) takes
+  /// the answers of those that have one.
+  template <class Load, class Store>
+  void search_nearest(std::size_t queries, const Executor& executor, const Load& load,
+                      const Store& store) const;
 
   std::size_t size_ = 0;
   std::vector<std::uint32_t> order_;  ///< empty: identity

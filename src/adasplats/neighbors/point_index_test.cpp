@@ -103,7 +103,7 @@ TEST(PointIndex, MillionEqualPointsFinish) {
 
 TEST(PointIndex, PortableAndVectorSearchAgree) {
 #if defined(__x86_64__)
-  if (detail::search_function() == detail::search_portable)
+  if (detail::search_functions().nearest == detail::portable_search().nearest)
     GTEST_SKIP() << "this CPU has no AVX2: there is one search only";
   const Executor executor(1);
   const std::vector<Vec3f> sorted = sorted_by_curve(random_points(5000, 9), executor);
@@ -120,8 +120,8 @@ TEST(PointIndex, PortableAndVectorSearchAgree) {
       }
       detail::prepare(group, limits);
     }
-    detail::search_portable(index.tree(), first / 16, groups[0]);
-    detail::search_avx2(index.tree(), first / 16, groups[1]);
+    detail::portable_search().neighbors(index.tree(), first / 16, groups[0]);
+    detail::avx2_search().neighbors(index.tree(), first / 16, groups[1]);
     for (std::uint32_t q = 0; q < 16; ++q) {
       ASSERT_EQ(groups[0].found[q], groups[1].found[q]);
       ASSERT_TRUE(std::equal(groups[0].ranks_of(q), groups[0].ranks_of(q) + groups[0].found[q],
@@ -133,22 +133,98 @@ TEST(PointIndex, PortableAndVectorSearchAgree) {
 #endif
 }
 
-TEST(PointIndex, NearestEqualsBruteForce) {
-  const Executor executor(2);
-  const std::vector<Vec3f> points = random_points(2000, 1);
-  const std::vector<Vec3f> queries = random_points(777, 2, 14.0F);
-  const PointIndex index(points, executor);
-  const std::vector<Neighbor> found = index.nearest(queries, executor);
-  for (std::size_t i = 0; i < queries.size(); ++i) {
-    float best = std::numeric_limits<float>::infinity();
-    for (const Vec3f p : points) {
-      const Vec3f d = p - queries[i];
-      best = std::min(best, (d.x * d.x + d.y * d.y) + d.z * d.z);
-    }
-    ASSERT_EQ(found[i].squared_distance, best);
-    const Vec3f d = points[found[i].index] - queries[i];
-    ASSERT_EQ((d.x * d.x + d.y * d.y) + d.z * d.z, best);
+/// The oracle: the nearest by (squared distance, rank), for points that are in the curve's order.
+Neighbor nearest_by_brute_force(const std::vector<Vec3f>& sorted, Vec3f query) {
+  Neighbor best;
+  for (std::uint32_t i = 0; i < sorted.size(); ++i) {
+    const Vec3f d = sorted[i] - query;
+    const float distance2 = (d.x * d.x + d.y * d.y) + d.z * d.z;
+    if (distance2 < best.squared_distance) best = {distance2, i};
   }
+  return best;
+}
+
+void expect_nearest(const std::vector<Vec3f>& points, const std::vector<Vec3f>& queries) {
+  const Executor executor(2);
+  const std::vector<Vec3f> sorted = sorted_by_curve(points, executor);
+  const PointIndex index = PointIndex::from_sorted(sorted, executor);
+  const std::vector<Neighbor> found = index.nearest(queries, executor);
+  const std::vector<Neighbor> of_index =
+      index.nearest(PointIndex::from_sorted(queries, executor), executor);
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const Neighbor expected = nearest_by_brute_force(sorted, queries[i]);
+    ASSERT_EQ(found[i].squared_distance, expected.squared_distance) << "query " << i;
+    ASSERT_EQ(found[i].index, expected.index) << "query " << i;
+    ASSERT_EQ(of_index[i].squared_distance, expected.squared_distance) << "query " << i;
+    ASSERT_EQ(of_index[i].index, expected.index) << "query " << i;
+  }
+}
+
+TEST(PointIndex, NearestEqualsBruteForce) {
+  for (const std::size_t n : {1, 2, 15, 16, 17, 129, 2000})
+    for (const std::size_t queries : {1, 16, 17, 777})
+      expect_nearest(random_points(n, n), random_points(queries, 2, 14.0F));
+}
+
+TEST(PointIndex, EquallyNearPointsAreChosenByRank) {
+  expect_nearest(std::vector<Vec3f>(700, {1, 2, 3}), random_points(100, 4));
+  std::vector<Vec3f> lattice;  // whole numbers: distances from the middles of cells are equal
+  for (int i = 0; i < 1000; ++i)
+    lattice.push_back(
+        {static_cast<float>(i / 100), static_cast<float>(i / 10 % 10), static_cast<float>(i % 10)});
+  std::vector<Vec3f> middles;
+  for (const Vec3f p : lattice) middles.push_back(p + Vec3f{0.5F, 0.5F, 0.5F});
+  expect_nearest(lattice, middles);
+}
+
+TEST(PointIndex, QueriesWithoutADistanceFindNothing) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const Executor executor(1);
+  const PointIndex index(random_points(100, 1), executor);
+  std::vector<Vec3f> queries = random_points(20, 2);
+  queries[3].y = nan;
+  queries[17].x = 1e30F;  // its square is no float
+  const std::vector<Neighbor> found =
+      index.nearest(PointIndex::from_sorted(queries, executor), executor);
+  for (std::size_t i = 0; i < queries.size(); ++i)
+    EXPECT_EQ(found[i].index == Neighbor::kNone, i == 3 || i == 17) << "query " << i;
+}
+
+TEST(PointIndex, MillionEqualPointsFindTheirNearest) {
+  const Executor executor(2);
+  const PointIndex index(std::vector<Vec3f>(1'000'000, {1, 1, 1}), executor);
+  const std::vector<Neighbor> found = index.nearest(index, executor);
+  EXPECT_TRUE(std::all_of(found.begin(), found.end(), [](Neighbor n) { return n.index == 0; }));
+}
+
+TEST(PointIndex, PortableAndVectorNearestAgree) {
+#if defined(__x86_64__)
+  if (detail::search_functions().nearest == detail::portable_search().nearest)
+    GTEST_SKIP() << "this CPU has no AVX2: there is one search only";
+  const Executor executor(1);
+  const PointIndex index(random_points(5000, 9), executor);
+  const std::vector<Vec3f> queries = random_points(16 * 100, 10, 12.0F);
+  for (std::uint32_t first = 0; first < queries.size(); first += 16) {
+    detail::Queries groups[2];
+    for (detail::Queries& group : groups) {
+      group.size = 1 + first / 16 % 16;
+      for (std::uint32_t q = 0; q < group.size; ++q) {
+        group.x[q] = queries[first + q].x;
+        group.y[q] = queries[first + q].y;
+        group.z[q] = queries[first + q].z;
+      }
+      detail::prepare(group);
+    }
+    detail::portable_search().nearest(index.tree(), 0, groups[0]);
+    detail::avx2_search().nearest(index.tree(), 100, groups[1]);
+    for (std::uint32_t q = 0; q < groups[0].size; ++q) {
+      ASSERT_EQ(groups[0].bound[q], groups[1].bound[q]);
+      ASSERT_EQ(groups[0].last_rank[q], groups[1].last_rank[q]);
+    }
+  }
+#else
+  GTEST_SKIP() << "only x86-64 has a second search";
+#endif
 }
 
 TEST(PointIndex, EmptyIndexFindsNothing) {
@@ -167,6 +243,43 @@ TEST(PointIndex, CountWithinEqualsBruteForce) {
   const std::vector<std::uint32_t> counts = index.count_within(0.7F, executor);
   for (std::uint32_t i = 0; i < sorted.size(); ++i)
     ASSERT_EQ(counts[i], brute_force(sorted, i, {1'000'000, 0.7F * 0.7F}).size());
+}
+
+/// The oracle: Skilling's algorithm as he gives it, all bits of an axis at once.
+std::uint64_t skilling_key(std::array<std::uint32_t, 3> axes) {
+  constexpr int kBits = 21;
+  constexpr std::uint32_t kTop = 1U << (kBits - 1);
+  for (std::uint32_t bit = kTop; bit > 1; bit >>= 1) {
+    for (std::uint32_t& axis : axes) {
+      if ((axis & bit) != 0) {
+        axes[0] ^= bit - 1;
+      } else {
+        const std::uint32_t swapped = (axes[0] ^ axis) & (bit - 1);
+        axes[0] ^= swapped;
+        axis ^= swapped;
+      }
+    }
+  }
+  axes[1] ^= axes[0];
+  axes[2] ^= axes[1];
+  std::uint32_t flip = 0;
+  for (std::uint32_t bit = kTop; bit > 1; bit >>= 1)
+    if ((axes[2] & bit) != 0) flip ^= bit - 1;
+  std::uint64_t key = 0;
+  for (int bit = kBits - 1; bit >= 0; --bit)
+    for (const std::uint32_t axis : axes) key = key << 1 | ((axis ^ flip) >> bit & 1U);
+  return key;
+}
+
+TEST(HilbertOrder, KeysAreSkillings) {
+  constexpr std::uint32_t kLast = (1U << 21) - 1;
+  EXPECT_EQ(hilbert_key(kLast, kLast, kLast), skilling_key({kLast, kLast, kLast}));
+  for (std::uint64_t i = 0; i < 20'000; ++i) {
+    Random random(1, 2, i);
+    const auto cell = [&] { return static_cast<std::uint32_t>(random.next_bits() & kLast); };
+    const std::uint32_t x = cell(), y = cell(), z = cell();
+    ASSERT_EQ(hilbert_key(x, y, z), skilling_key({x, y, z}));
+  }
 }
 
 TEST(HilbertOrder, NeighboringCellsOfTheCurveTouch) {

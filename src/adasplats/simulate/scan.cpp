@@ -12,24 +12,6 @@ namespace {
 
 constexpr std::size_t kRaysPerChunk = 4096;
 
-std::vector<Ray> rays_of(const LidarModel& sensor, std::span<const Firing> firings,
-                         const RigidTransform& world_from_sensor, Vec3d scene_origin,
-                         const Executor& executor) {
-  Ray start;
-  start.origin = vec_cast<float>(world_from_sensor.translation - scene_origin);
-  start.t_min = static_cast<float>(sensor.min_range_m);
-  start.t_max = static_cast<float>(sensor.max_range_m);
-  std::vector<Ray> rays(firings.size(), start);
-  executor.for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      // In double and made a unit again: a rotation from a file is orthonormal to 1e-3 only.
-      const Vec3d direction = world_from_sensor.rotation * vec_cast<double>(firings[i].direction);
-      rays[i].direction = vec_cast<float>(normalized(direction));
-    }
-  });
-  return rays;
-}
-
 /// Adds the sensor's range noise to the hits; what it then measures outside its range is no return.
 void add_range_noise(std::span<Hit> hits, const LidarModel& sensor, std::uint64_t scan_index,
                      std::uint64_t seed, const Executor& executor) {
@@ -63,12 +45,30 @@ std::vector<T> gathered(std::span<const T> values, std::span<const Hit> hits,
 
 }  // namespace
 
+std::vector<Ray> scan_rays(const LidarModel& sensor, std::span<const Firing> firings,
+                           const RigidTransform& world_from_sensor, Vec3d scene_origin,
+                           const Executor& executor) {
+  Ray start;
+  start.origin = vec_cast<float>(world_from_sensor.translation - scene_origin);
+  start.t_min = static_cast<float>(sensor.min_range_m);
+  start.t_max = static_cast<float>(sensor.max_range_m);
+  std::vector<Ray> rays(firings.size(), start);
+  executor.for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      // In double and made a unit again: a rotation from a file is orthonormal to 1e-3 only.
+      const Vec3d direction = world_from_sensor.rotation * vec_cast<double>(firings[i].direction);
+      rays[i].direction = vec_cast<float>(normalized(direction));
+    }
+  });
+  return rays;
+}
+
 Scan simulate_scan(const Tracer& tracer, const PrimitiveAttributes& attributes, Vec3d scene_origin,
                    const LidarModel& sensor, std::span<const Firing> firings, const TimedPose& pose,
                    std::uint64_t scan_index, const SimulateOptions& options,
                    const Executor& executor) {
   const std::vector<Ray> rays =
-      rays_of(sensor, firings, pose.world_from_sensor, scene_origin, executor);
+      scan_rays(sensor, firings, pose.world_from_sensor, scene_origin, executor);
   std::vector<Hit> hits(rays.size());
   tracer.nearest(rays, hits, executor);
   if (options.range_noise && sensor.range_noise_m > 0)

@@ -42,6 +42,12 @@ struct SimulateOptions {
   bool range_noise = true;  ///< apply the sensor's range_noise_m
 };
 
+/// The rays of one revolution in the frame of a scene whose local origin is `scene_origin`, one a
+/// firing, between the sensor's least and greatest range.
+std::vector<Ray> scan_rays(const LidarModel& sensor, std::span<const Firing> firings,
+                           const RigidTransform& world_from_sensor, Vec3d scene_origin,
+                           const Executor& executor);
+
 /// Casts one revolution in a scene whose local origin is `scene_origin`. Paper section "Firing
 /// Sequence Simulation": all rays leave from the pose.
 Scan simulate_scan(const Tracer& tracer, const PrimitiveAttributes& attributes, Vec3d scene_origin,

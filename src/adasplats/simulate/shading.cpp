@@ -91,7 +91,10 @@ Vec3f Shading::normal_towards(const Ray& ray, std::uint32_t primitive) const {
     normal = scene_.view.disks[primitive].normal;
   } else {
     const Triangle triangle = scene_.view.mesh->triangle(primitive - disks);
-    normal = normalized(cross(triangle.b - triangle.a, triangle.c - triangle.a));
+    normal = cross(triangle.b - triangle.a, triangle.c - triangle.a);
+    const float doubled_area = length(normal);
+    // A sliver may have no area left in float and be hit all the same.
+    normal = doubled_area > 0.0F ? normal / doubled_area : -ray.direction;
   }
   return dot(normal, ray.direction) > 0.0F ? -normal : normal;
 }

@@ -139,20 +139,67 @@ std::vector<SemanticGroup> groups_by_label(const PointCloud& cloud, const LabelS
   return groups;
 }
 
+std::string_view method_name(SplatMethod method) {
+  switch (method) {
+    case SplatMethod::basic: return "basic";
+    case SplatMethod::descriptors: return "descriptors";
+    case SplatMethod::semantic: return "semantic";
+    case SplatMethod::consistent: return "consistent";
+  }
+  return "";
+}
+
 SplatModel to_model(const PointCloud& cloud, Generation generation, const LabelScheme* labels,
                     SplatMethod method) {
   SplatModel model;
   model.origin = cloud.origin;
   model.disks = std::move(generation.disks);
-  model.method = method == SplatMethod::basic
-                     ? "basic"
-                     : (method == SplatMethod::descriptors ? "descriptors" : "semantic");
+  model.method = std::string(method_name(method));
   const bool has_classes = !cloud.classes.empty();
   if (has_classes && labels != nullptr) model.label_scheme = labels->name();
   for (const std::uint32_t seed : generation.seeds) {
     if (has_classes) model.classes.push_back(cloud.classes[seed]);
     if (!generation.groups.empty()) model.groups.push_back(generation.groups[seed]);
     if (!cloud.intensities.empty()) model.intensities.push_back(cloud.intensities[seed]);
+  }
+  return model;
+}
+
+/// The class that most of the points have; of several the smallest.
+std::uint16_t majority_class(const PointCloud& cloud, std::span<const std::uint32_t> points) {
+  std::vector<std::uint16_t> classes;
+  classes.reserve(points.size());
+  for (const std::uint32_t i : points) classes.push_back(cloud.classes[i]);
+  std::sort(classes.begin(), classes.end());
+  std::uint16_t best = 0;
+  std::ptrdiff_t most = 0;
+  for (auto first = classes.begin(); first != classes.end();) {
+    const auto last = std::upper_bound(first, classes.end(), *first);
+    if (last - first > most) {
+      most = last - first;
+      best = *first;
+    }
+    first = last;
+  }
+  return best;
+}
+
+float mean_intensity(const PointCloud& cloud, std::span<const std::uint32_t> points) {
+  double sum = 0;
+  for (const std::uint32_t i : points) sum += static_cast<double>(cloud.intensities[i]);
+  return static_cast<float>(sum / static_cast<double>(points.size()));
+}
+
+SplatModel to_model(const PointCloud& cloud, ConsistentDisks made, const LabelScheme* labels) {
+  SplatModel model;
+  model.origin = cloud.origin;
+  model.disks = std::move(made.disks);
+  model.method = std::string(method_name(SplatMethod::consistent));
+  if (!cloud.classes.empty() && labels != nullptr) model.label_scheme = labels->name();
+  for (const std::uint32_t cell : made.cells) {
+    const auto points = made.fused.points_of(cell);
+    if (!cloud.classes.empty()) model.classes.push_back(majority_class(cloud, points));
+    if (!cloud.intensities.empty()) model.intensities.push_back(mean_intensity(cloud, points));
   }
   return model;
 }
@@ -183,14 +230,25 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
   report.oriented = !cloud.sensor_positions.empty();
   if (!report.oriented)
     progress.warn(
-        "no sensor positions: normals are not oriented (give a viewpoint or a "
-        "trajectory to orient them)");
+        options.method == SplatMethod::consistent
+            ? "no sensor positions: splats are not checked against measured rays (give a viewpoint "
+              "or a trajectory)"
+            : "no sensor positions: normals are not oriented (give a viewpoint or a "
+              "trajectory to orient them)");
   StepClock clock(report.steps, progress);
   const auto step = [&](std::string_view name) { clock.begin(name); };
 
   step("order");
   cloud = static_points_in_order(std::move(cloud), labels, options.remove, executor);
   report.points_dynamic = report.points_in - cloud.size();
+  if (options.method == SplatMethod::consistent && !cloud.empty()) {
+    ConsistentDisks made = consistent_disks(cloud, options.consistent, executor, step);
+    clock.end();
+    report.points_used = cloud.size();
+    report.primitives = made.disks.size();
+    report.ray_checked = made.checked;
+    return {to_model(cloud, std::move(made), labels), report};
+  }
   if (options.denoise) {
     step("denoising");
     const std::size_t before = cloud.size();

@@ -13,16 +13,18 @@
 #include "adasplats/cloud/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
+#include "adasplats/splats/consistent_model.h"
 #include "adasplats/splats/select.h"
 #include "adasplats/splats/splat_model.h"
 
 namespace adasplats {
 
-/// Which variant of the paper.
+/// The paper's variants, and ours.
 enum class SplatMethod : std::uint8_t {
   basic,        ///< section "Basic Splatting"
   descriptors,  ///< section "Adaptive Splatting Using Local Descriptors"
   semantic,     ///< section "Adaptive Splatting"
+  consistent,   ///< consistent_model.h: agrees with the rays that were measured
 };
 
 /// Which points of moving things are removed before modelling, by their labels.
@@ -37,6 +39,7 @@ struct GroupScale {
 
 struct BuildOptions {
   SplatMethod method = SplatMethod::descriptors;
+  ConsistentOptions consistent;  ///< of that method, which uses `remove` of what follows
 
   int neighbors = 40;       ///< K, section "Basic Splatting"
   double alpha = 0.2;       ///< share of a splat's radius within which seeds are discarded
@@ -82,9 +85,10 @@ struct BuildReport {
   std::size_t points_used = 0;       ///< that the (last) generation started from
   std::size_t points_resampled = 0;  ///< new points from resampling
   std::size_t primitives = 0;
-  double radius_m = 0;   ///< R of the last generation
-  double error_m = 0;    ///< E of the last generation
-  bool oriented = true;  ///< false: no sensor positions, normals as PCA gives them
+  double radius_m = 0;       ///< R of the last generation
+  double error_m = 0;        ///< E of the last generation
+  bool ray_checked = false;  ///< consistent: splats were checked against measured rays
+  bool oriented = true;      ///< false: no sensor positions, normals as PCA gives them
   std::vector<StepTime> steps;
 };
 

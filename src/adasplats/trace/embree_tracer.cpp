@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <mutex>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 
@@ -11,6 +9,7 @@
 #include "adasplats/trace/clear_hits.h"
 #include "adasplats/trace/embree.h"
 #include "adasplats/trace/embree_callbacks.h"
+#include "adasplats/trace/embree_handles.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {
@@ -18,42 +17,6 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kRaysPerChunk = 4096;
-
-/// The first error that Embree reports; it reports from any thread and must not see an exception.
-class ErrorLog {
- public:
-  static void report(void* log, RTCError code, const char* text) {
-    auto& self = *static_cast<ErrorLog*>(log);
-    const std::lock_guard lock(self.mutex_);
-    if (self.code_ != RTC_ERROR_NONE) return;
-    self.code_ = code;
-    self.text_ = text == nullptr ? "" : text;
-  }
-
-  void throw_if_any() const {
-    const std::lock_guard lock(mutex_);
-    if (code_ == RTC_ERROR_NONE) return;
-    const std::string message = "Embree: " + text_ + " (error " + std::to_string(code_) + ")";
-    if (code_ == RTC_ERROR_OUT_OF_MEMORY || code_ == RTC_ERROR_UNSUPPORTED_CPU)
-      throw Error(ErrorKind::software, message);
-    throw std::logic_error(message);
-  }
-
- private:
-  mutable std::mutex mutex_;
-  RTCError code_ = RTC_ERROR_NONE;
-  std::string text_;
-};
-
-/// Embree's handles by value: released where they go out of scope.
-struct ReleaseDevice {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct ReleaseScene {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice>;
-using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
 template <unsigned kLanes>
 using Packet = std::conditional_t<kLanes == 16, RTCRayHit16,
@@ -78,11 +41,7 @@ class EmbreeTracer final : public Tracer {
     if (scene.primitive_count() >= Hit::kNone)
       throw Error(ErrorKind::data, "a scene of " + std::to_string(scene.primitive_count()) +
                                        " primitives; at most 2^32 - 2 can be told apart");
-    device_.reset(rtcNewDevice(nullptr));
-    if (!device_)
-      throw Error(ErrorKind::software, "Embree does not start (error " +
-                                           std::to_string(rtcGetDeviceError(nullptr)) + ")");
-    rtcSetDeviceErrorFunction(device_.get(), &ErrorLog::report, &errors_);
+    device_ = start_embree(errors_);
     build(scene, executor);
     errors_.throw_if_any();
   }
@@ -124,12 +83,7 @@ class EmbreeTracer final : public Tracer {
     // Box tests that round outwards: with the margin of our boxes no hit is lost. Measured cost:
     // none.
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-    // Embree builds in the thread pool of its caller, so the call is made on the executor's. (The
-    // device's own setting `threads` would bound all of the process.) A loop of one chunk would
-    // stay on this thread.
-    executor.for_chunks(2, 1, [&](std::size_t begin, std::size_t) {
-      if (begin == 0) rtcCommitScene(scene_.get());
-    });
+    commit(scene_.get(), executor);
     packet_size_ = native_packet_size(device_.get());
   }
 

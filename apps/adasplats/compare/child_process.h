@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace adasplats::app {
+
+/// What a child may use, with all the processes it starts itself.
+struct ChildLimits {
+  double seconds = 3600;
+  std::uint64_t memory_bytes = 0;  ///< resident; 0: no limit
+};
+
+enum class ChildEnd { done, failed, timeout, out_of_memory };
+
+struct ChildResult {
+  ChildEnd end = ChildEnd::failed;
+  int exit_code = 0;  ///< as shells have it: 128 + the number of a signal
+  double seconds = 0;
+  std::uint64_t peak_memory_bytes = 0;  ///< largest sum seen over the child and its children
+  std::string message;                  ///< the last line of its output; empty where it went well
+};
+
+/// Runs a program in a process group of its own, with stdout and stderr in `log`, and ends the
+/// whole group where a limit is passed or this process is interrupted (throws Interrupted then).
+/// Errors: software (cannot be started), cannot_create (the log).
+ChildResult run_child(const std::vector<std::string>& arguments, const ChildLimits& limits,
+                      const std::filesystem::path& log);
+
+}  // namespace adasplats::app

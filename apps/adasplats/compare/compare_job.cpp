@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "compare/compare_job.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/memory.h"
+#include "adasplats/io/atomic_file.h"
+#include "compare/competitors.h"
+#include "compare/machine.h"
+#include "compare/paper_figures.h"
+#include "compare/steps.h"
+#include "compare/work_folder.h"
+#include "inputs.h"
+#include "option_types.h"
+#include "report_page/report_page.h"
+
+namespace adasplats::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostPoses = 20;
+constexpr double kBehind_m = 12, kAbove_m = 6, kAhead_m = 15;
+
+/// What the user says goes before what was found.
+ComparisonData data_of(const CompareJob& job) {
+  ComparisonData data = find_comparison_data(job.data, job.preset);
+  if (!job.labels.empty()) data.labels = job.labels;
+  if (!job.scans.empty()) data.scans = job.scans;
+  if (!job.trajectory.empty()) data.trajectory = job.trajectory;
+  if (!job.held_out.empty()) data.held_out = job.held_out;
+  if (!job.held_out_scans.empty()) data.held_out_scans = job.held_out_scans;
+  if (!job.truth.empty()) data.truth = job.truth;
+  if (job.offset_m) data.offset_m = job.offset_m;
+  for (const fs::path* path : {&data.trajectory, &data.held_out, &data.truth}) {
+    if (!path->empty()) require_input(*path);
+  }
+  for (const auto& [name, file] : job.meshes) require_input(file);
+  return data;
+}
+
+std::string vector_text(Vec3d v) {
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(), "%.3f,%.3f,%.3f", v.x, v.y, v.z);
+  return text.data();
+}
+
+/// Behind and above the middle pose, looking along the way.
+PictureView view_along(const Trajectory& trajectory, Vec3d offset_m) {
+  const std::size_t middle = trajectory.size() / 2;
+  const Vec3d place = trajectory[middle].world_from_sensor.translation + offset_m;
+  Vec3d ahead = trajectory.back().world_from_sensor.translation -
+                trajectory.front().world_from_sensor.translation;
+  ahead.z = 0;
+  ahead = length(ahead) > 0 ? normalized(ahead) : Vec3d{1, 0, 0};
+  const Vec3d up = {0, 0, 1};
+  return {vector_text(place - kBehind_m * ahead + kAbove_m * up),
+          vector_text(place + kAhead_m * ahead)};
+}
+
+/// What every competitor is asked with: data, poses, camera, limits.
+CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
+                          const PointFacts& facts, const fs::path& work) {
+  CompetitionRules rules;
+  rules.data = data;
+  rules.original = facts.original;
+  rules.labelled = facts.labelled && !data.labels.empty();
+  rules.sensor = job.sensor;
+  rules.remove = job.remove;
+  rules.poisson_depth = job.poisson_depth;
+  rules.picture_width = job.picture_width;
+  if (rules.data.trajectory.empty()) {
+    rules.data.trajectory = work / "trajectory.csv";
+    write_trajectory_csv(rules.data.trajectory, facts.trajectory);
+  }
+  const Trajectory trajectory = load_trajectory(rules.data.trajectory);
+  if (trajectory.empty()) {
+    throw Error(ErrorKind::data, rules.data.trajectory.string() + ": no poses");
+  }
+  rules.offset_m = data.offset_m.value_or(Vec3d{});
+  rules.every = job.every > 0 ? job.every : (trajectory.size() + kMostPoses - 1) / kMostPoses;
+  rules.view = view_along(trajectory, rules.offset_m);
+  rules.pictures = job.output / "pictures";
+  return rules;
+}
+
+Json data_json(const CompetitionRules& rules, const PointFacts& facts, Preset preset) {
+  Json json;
+  for (const fs::path& input : rules.data.inputs) json["inputs"].push_back(input.string());
+  json["points"] = facts.points;
+  json["labels"] = rules.data.labels;
+  json["labelled"] = rules.labelled;
+  json["held_out"] = rules.data.held_out.string();
+  json["held_out_scans"] = rules.data.held_out_scans;
+  json["scans"] = rules.data.scans;
+  json["truth"] = rules.data.truth.string();
+  json["trajectory"] = rules.data.trajectory.string();
+  json["offset_m"] = {rules.offset_m.x, rules.offset_m.y, rules.offset_m.z};
+  json["every"] = rules.every;
+  json["preset"] = preset_name(preset);
+  return json;
+}
+
+void write_reports(const fs::path& folder, const Json& results) {
+  write_file(folder / "compare.json",
+             results.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_file(folder / "report.md", report_markdown(results));
+  write_file(folder / "report.html", report_html(results, folder));
+}
+
+}  // namespace
+
+std::vector<std::string> compare_method_names() {
+  std::vector<std::string> names;
+  for (const Competitor& competitor : known_competitors()) names.push_back(competitor.name);
+  return names;
+}
+
+Json run_compare(const CompareJob& job, Session& session) {
+  const ComparisonData data = data_of(job);
+  const std::vector<Competitor> chosen = chosen_competitors(job.methods, job.meshes);
+  const WorkFolder folder(job.output, data.title);
+  const PointFacts facts = look_at_points(data, folder.work() / "original.ply", session);
+  const CompetitionRules rules = rules_of(job, data, facts, folder.work());
+
+  Json results = {
+      {"program", "adasplats"},
+      {"version", ADASPLATS_VERSION},
+      {"schema", 1},
+      {"title", data.title},
+      {"data", data_json(rules, facts, job.preset)},
+      {"machine", machine_json(session.executor.threads())},
+      {"limits", {{"seconds", job.limits.seconds}, {"memory_bytes", job.limits.memory_bytes}}},
+      {"command", job.command},
+      {"original", Json::object()},
+      {"competitors", Json::array()},
+      {"paper", paper_figures(job.preset)}};
+  session.progress.begin_step("compare", chosen.size() + 1);
+  results["original"] =
+      original_picture(rules, StepRunner(folder.work() / "original", job.limits, job.retry));
+  for (const Competitor& competitor : chosen) {
+    if (competitor.needs_labels && !rules.labelled && job.methods.empty()) continue;
+    const StepRunner runner(folder.work() / competitor.name, job.limits, job.retry);
+    results["competitors"].push_back(compete(competitor, rules, runner));
+    // After every competitor, so that an interrupted run has shown what it knows.
+    write_reports(job.output, results);
+    session.progress.advance(results["competitors"].size() + 1);
+  }
+  session.progress.end_step();
+  write_reports(job.output, results);
+  return results;
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/trajectory.h"
+#include "adasplats/core/vec3.h"
+#include "session.h"
+
+namespace adasplats::app {
+
+/// The data sets of the paper's experiments, in the layout their authors ship.
+enum class Preset { none, paper_pc3d, paper_kitti, paper_mcity };
+
+/// What a comparison is made on: found in a folder, or as the user says. Empty: there is none.
+struct ComparisonData {
+  std::string title;
+  std::vector<std::filesystem::path> inputs;  ///< the points that models are made from
+  std::string labels;                         ///< label scheme
+  std::string scans;                          ///< --scans of a sequence
+  std::filesystem::path trajectory;  ///< poses of the recording; empty: made from the points
+  std::filesystem::path held_out;    ///< a sequence whose beams were not used
+  std::string held_out_scans;        ///< --scans of that
+  std::filesystem::path truth;       ///< mesh of the true surface
+  std::optional<Vec3d> offset_m;     ///< of the trajectory (paper: [1, 1, -1] or [1, 1, -0.5])
+};
+
+/// Recognises, in this order: what `synth street` wrote (mapping.ply, mesh.ply, sequences/00), a
+/// folder with sequences/00 (held out: sequences/01, where there is one), a sequence folder, a
+/// folder of point files, a point file. The presets: Soufflot-1 and -2 (PLY) anywhere below the
+/// folder; scans 0-149 of sequence 00; any cloud without sensor positions.
+/// Errors: no_input, data where the layout is not there.
+ComparisonData find_comparison_data(const std::filesystem::path& data, Preset preset);
+
+/// What the points themselves say.
+struct PointFacts {
+  std::size_t points = 0;
+  bool labelled = false;  ///< most points have a class other than 0
+  /// The points as one input of other commands: the one input that there is, or `original_file`.
+  std::filesystem::path original;
+  Trajectory trajectory;  ///< a way through the points, see trajectory_of
+};
+
+/// Loads the points once and looks. Writes them to `original_file` where they are of several files
+/// or some of the scans.
+PointFacts look_at_points(const ComparisonData& data, const std::filesystem::path& original_file,
+                          Session& session);
+
+/// A trajectory for points whose recording has no poses. With sensor positions: their means in
+/// cells of 1 m, in the order along their main direction. Without: 20 poses on a straight line
+/// along the main direction of the points in the plane, from the 10th to the 90th percentile,
+/// 1.8 m above the lower quartile's height near it (paper section "New Trajectory Simulation",
+/// M-City). Rotations are the identity.
+Trajectory trajectory_of(const PointCloud& cloud);
+
+}  // namespace adasplats::app

@@ -1,0 +1,269 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "compare/competitors.h"
+
+#include <algorithm>
+
+#include "adasplats/core/error.h"
+#include "option_types.h"
+
+namespace adasplats::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Words = std::vector<std::string>;
+
+void add(Words& words, const Words& more) { words.insert(words.end(), more.begin(), more.end()); }
+
+std::string vector_text(Vec3d v) {
+  return std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z);
+}
+
+/// The common view, 16:9.
+Words camera(const CompetitionRules& rules, int width) {
+  return {"--eye=" + rules.view.eye,
+          "--target=" + rules.view.target,
+          "--width",
+          std::to_string(width),
+          "--height",
+          std::to_string(width * 9 / 16)};
+}
+
+/// One competitor on its way through the steps.
+class Run {
+ public:
+  Run(const Competitor& competitor, const CompetitionRules& rules, const StepRunner& runner)
+      : competitor_(competitor), rules_(rules), runner_(runner) {
+    entry_ = {{"name", competitor.name},
+              {"title", competitor.title},
+              {"kind", competitor.is_mesh ? "mesh" : "splats"},
+              {"state", "done"}};
+    model_ = competitor.file.empty() ? runner.folder() / "model.ply" : competitor.file;
+  }
+
+  Json result() {
+    // Nothing else can be done without a model; every later step stands for itself.
+    if (!generate()) return entry_;
+    time_rendering();
+    draw();
+    if (simulate()) compare_clouds();
+    if (!rules_.data.held_out.empty()) resimulate();
+    if (!rules_.data.truth.empty()) compare_with_truth();
+    return entry_;
+  }
+
+ private:
+  /// Runs a step; a failure is noted in the entry.
+  StepResult run(const Step& step) {
+    StepResult result = runner_.run(step);
+    if (!result.done() && entry_["state"] == "done") {
+      entry_["state"] = end_name(result.child.end);
+      entry_["failed_step"] = step.name;
+      entry_["message"] = result.child.message;
+    }
+    return result;
+  }
+
+  bool generate() {
+    if (!competitor_.file.empty()) {
+      const StepResult info = run({"info", {"info", model_.string()}, {model_}, {}});
+      entry_["generate"] = {{"command", nullptr}, {"seconds", nullptr}};
+      if (info.done()) entry_["generate"]["primitives"] = info.report.value("faces", Json());
+      return info.done();
+    }
+    Words words = {competitor_.is_mesh ? "mesh" : "model"};
+    for (const fs::path& input : rules_.data.inputs) words.push_back(input.string());
+    add(words, {"-o", model_.string()});
+    add(words, competitor_.arguments);
+    if (competitor_.name == "poisson") {
+      add(words, {"--depth", std::to_string(rules_.poisson_depth)});
+    }
+    if (!rules_.data.labels.empty()) add(words, {"--labels", rules_.data.labels});
+    if (!rules_.data.scans.empty()) add(words, {"--scans", rules_.data.scans});
+    add(words, {"--remove", rules_.remove});
+    const StepResult made = run({"generate", words, rules_.data.inputs, {model_}});
+    entry_["generate"] = {{"command", made.command},
+                          {"seconds", made.child.seconds},
+                          {"peak_memory_bytes", made.child.peak_memory_bytes}};
+    for (const char* key : {"primitives", "points_in", "points_used"}) {
+      if (made.done()) entry_["generate"][key] = made.report.value(key, Json());
+    }
+    if (made.done()) entry_["generate"]["step_seconds"] = made.report.value("seconds", Json());
+    return made.done();
+  }
+
+  /// Frequency at the paper's resolution, one ray a pixel.
+  void time_rendering() {
+    const fs::path picture = runner_.folder() / "render.png";
+    Words words = {"render", model_.string(), "-o", picture.string(), "--samples",
+                   "1",      "--repeat",      "3"};
+    add(words, camera(rules_, 2560));
+    const StepResult timed = run({"render", words, {model_}, {picture}});
+    if (timed.done()) {
+      entry_["render"]["images_per_second"] = timed.report.value("images_per_second", Json());
+    }
+  }
+
+  void draw() {
+    const fs::path picture = rules_.pictures / (competitor_.name + ".png");
+    Words words = {"render", model_.string(), "-o", picture.string()};
+    add(words, camera(rules_, rules_.picture_width));
+    if (run({"picture", words, {model_}, {picture}}).done()) {
+      entry_["render"]["picture"] = relative_to_report(picture);
+    }
+  }
+
+  Words drive() const {
+    return {"--sensor",
+            rules_.sensor,
+            "--trajectory",
+            rules_.data.trajectory.string(),
+            "--offset=" + vector_text(rules_.offset_m),
+            "--every",
+            std::to_string(rules_.every)};
+  }
+
+  bool simulate() {
+    scans_ = runner_.folder() / "scans";
+    Words words = {"simulate", model_.string(), "-o", scans_.string(), "--overwrite"};
+    add(words, drive());
+    const StepResult driven = run({"simulate", words, {model_, rules_.data.trajectory}, {scans_}});
+    if (!driven.done()) return false;
+    for (const char* key : {"scans", "rays", "hits", "scans_per_second"}) {
+      entry_["simulate"][key] = driven.report.value(key, Json());
+    }
+    entry_["simulate"]["sensor"] = rules_.sensor;
+    entry_["simulate"]["command"] = driven.command;
+    return true;
+  }
+
+  void compare_clouds() {
+    const fs::path picture = rules_.pictures / (competitor_.name + "-c2c.png");
+    Words words = {"evaluate", "c2c", scans_.string(), rules_.original.string()};
+    add(words, {"--picture", picture.string(), "--eye=" + rules_.view.eye,
+                "--target=" + rules_.view.target, "--picture-width",
+                std::to_string(rules_.picture_width)});
+    if (rules_.labelled) add(words, {"--by-class", "--labels", rules_.data.labels});
+    const StepResult compared = run({"c2c", words, {scans_, rules_.original}, {picture}});
+    store("c2c", compared, picture);
+  }
+
+  void resimulate() {
+    const fs::path picture = rules_.pictures / (competitor_.name + "-beams.png");
+    Words words = {"evaluate",  "resimulate",    model_.string(), rules_.data.held_out.string(),
+                   "--picture", picture.string()};
+    add(words, {"--picture-width", std::to_string(rules_.picture_width)});
+    if (!rules_.data.held_out_scans.empty()) add(words, {"--scans", rules_.data.held_out_scans});
+    if (!rules_.data.labels.empty()) add(words, {"--labels", rules_.data.labels});
+    if (rules_.remove == "movable") words.push_back("--drop-movable");
+    store("resimulate", run({"resimulate", words, {model_, rules_.data.held_out}, {picture}}),
+          picture);
+  }
+
+  void compare_with_truth() {
+    Words words = {"evaluate", "truth", model_.string(), rules_.data.truth.string()};
+    add(words, drive());
+    if (!rules_.data.labels.empty()) add(words, {"--labels", rules_.data.labels});
+    if (rules_.remove == "movable") words.push_back("--drop-movable");
+    store("truth", run({"truth", words, {model_, rules_.data.truth, rules_.data.trajectory}, {}}),
+          {});
+  }
+
+  void store(const char* key, const StepResult& result, const fs::path& picture) {
+    if (!result.done()) return;
+    Json& part = entry_[key];
+    part = result.report;
+    // What every report has and no table shows.
+    for (const char* common : {"program", "version", "parameters", "threads", "warnings"}) {
+      part.erase(common);
+    }
+    part["command"] = result.command;
+    if (!picture.empty()) part["picture"] = relative_to_report(picture);
+  }
+
+  static std::string relative_to_report(const fs::path& picture) {
+    return (fs::path("pictures") / picture.filename()).string();
+  }
+
+  const Competitor& competitor_;
+  const CompetitionRules& rules_;
+  const StepRunner& runner_;
+  Json entry_;
+  fs::path model_;
+  fs::path scans_;
+};
+
+}  // namespace
+
+const std::vector<Competitor>& known_competitors() {
+  static const std::vector<Competitor> known = {
+      {"basic", "Basic splats", false, false, {"--method", "basic"}, {}},
+      {"descriptors", "AdaSplats, descriptors", false, false, {"--method", "descriptors"}, {}},
+      {"descriptors-no-resample",
+       "AdaSplats, descriptors, no resampling",
+       false,
+       false,
+       {"--method", "descriptors", "--no-resample"},
+       {}},
+      {"semantic", "AdaSplats, classes", false, true, {"--method", "semantic"}, {}},
+      {"semantic-no-resample",
+       "AdaSplats, classes, no resampling",
+       false,
+       true,
+       {"--method", "semantic", "--no-resample"},
+       {}},
+      {"consistent", "Ray-consistent splats", false, false, {"--method", "consistent"}, {}},
+      {"imls", "Mesh, IMLS", true, false, {"--method", "imls"}, {}},
+      {"poisson", "Mesh, Poisson", true, false, {"--method", "poisson"}, {}}};
+  return known;
+}
+
+std::vector<Competitor> chosen_competitors(
+    const std::vector<std::string>& names,
+    const std::vector<std::pair<std::string, fs::path>>& meshes) {
+  std::vector<std::string> known;
+  for (const Competitor& competitor : known_competitors()) known.push_back(competitor.name);
+  std::vector<Competitor> chosen;
+  for (const std::string& name : names.empty() ? known : names) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end()) throw Error(ErrorKind::usage, unknown_word("method", name, known));
+    chosen.push_back(known_competitors()[static_cast<std::size_t>(found - known.begin())]);
+  }
+  for (const auto& [name, file] : meshes) {
+    const bool taken = std::any_of(chosen.begin(), chosen.end(),
+                                   [&](const Competitor& other) { return other.name == name; });
+    if (taken) throw Error(ErrorKind::usage, "--mesh: the name '" + name + "' is taken");
+    chosen.push_back({name, "Mesh, " + name, true, false, {}, fs::absolute(file)});
+  }
+  return chosen;
+}
+
+Json compete(const Competitor& competitor, const CompetitionRules& rules,
+             const StepRunner& runner) {
+  return Run(competitor, rules, runner).result();
+}
+
+Json original_picture(const CompetitionRules& rules, const StepRunner& runner) {
+  const fs::path picture = rules.pictures / "original.png";
+  Words words = {"render", rules.original.string()};
+  add(words, {"-o", picture.string()});
+  add(words, camera(rules, rules.picture_width));
+  if (!rules.data.labels.empty()) add(words, {"--labels", rules.data.labels});
+  const StepResult drawn = runner.run({"picture", words, {rules.original}, {picture}});
+  Json original = Json::object();
+  if (drawn.done()) original["picture"] = "pictures/original.png";
+  return original;
+}
+
+std::string preset_name(Preset preset) {
+  switch (preset) {
+    case Preset::paper_pc3d: return "paper-pc3d";
+    case Preset::paper_kitti: return "paper-kitti";
+    case Preset::paper_mcity: return "paper-mcity";
+    case Preset::none: break;
+  }
+  return "";
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compare/comparison_data.h"
+#include "compare/steps.h"
+
+namespace adasplats::app {
+
+/// One way to a model of the scene.
+struct Competitor {
+  std::string name;
+  std::string title;
+  bool is_mesh = false;
+  bool needs_labels = false;
+  std::vector<std::string> arguments;  ///< of `model` or `mesh`; empty for a ready-made mesh
+  std::filesystem::path file;          ///< of a ready-made mesh
+};
+
+/// Camera of the pictures, as --eye and --target take it.
+struct PictureView {
+  std::string eye;
+  std::string target;
+};
+
+/// What all competitors are asked with.
+struct CompetitionRules {
+  ComparisonData data;
+  std::filesystem::path original;  ///< the measured points
+  bool labelled = false;
+  std::string sensor;
+  std::string remove;
+  int poisson_depth = 13;
+  int picture_width = 960;
+  Vec3d offset_m;
+  std::size_t every = 1;
+  PictureView view;
+  std::filesystem::path pictures;  ///< folder
+};
+
+const std::vector<Competitor>& known_competitors();
+
+/// Those of the names (empty: all known ones) and the ready-made meshes behind them.
+/// Errors: usage for a name that is not known.
+std::vector<Competitor> chosen_competitors(
+    const std::vector<std::string>& names,
+    const std::vector<std::pair<std::string, std::filesystem::path>>& meshes);
+
+/// Generates, renders, simulates and measures: an entry of compare.json's "competitors".
+nlohmann::ordered_json compete(const Competitor& competitor, const CompetitionRules& rules,
+                               const StepRunner& runner);
+
+/// A picture of the measured points from the same camera: {"picture": FILE}, or empty.
+nlohmann::ordered_json original_picture(const CompetitionRules& rules, const StepRunner& runner);
+
+std::string preset_name(Preset preset);
+
+}  // namespace adasplats::app

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "compare/child_process.h"
+
+namespace adasplats::app {
+
+/// One command of this program, run as a child of its own.
+struct Step {
+  std::string name;                            ///< of the files that keep its result
+  std::vector<std::string> arguments;          ///< of the program, without --report
+  std::vector<std::filesystem::path> inputs;   ///< done again where one of them changes
+  std::vector<std::filesystem::path> outputs;  ///< done again where one is not there
+  double seconds_limit = 0;                    ///< 0: that of the runner
+};
+
+struct StepResult {
+  ChildResult child;
+  nlohmann::ordered_json report;  ///< what --report wrote; null where it failed
+  std::string command;            ///< as a user would type it
+  bool done() const { return child.end == ChildEnd::done; }
+};
+
+/// Runs steps and remembers in `folder` what has been done: NAME.json with a key of the command,
+/// the program and the inputs' sizes and times, NAME.log with the output. A step whose key is the
+/// same is not run again; one that failed is, where a limit is now higher or `retry` is set.
+class StepRunner {
+ public:
+  StepRunner(std::filesystem::path folder, const ChildLimits& limits, bool retry);
+
+  StepResult run(const Step& step) const;
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+  ChildLimits limits_;
+  bool retry_;
+};
+
+/// The program with these arguments as a user types it in a shell.
+std::string command_text(const std::vector<std::string>& arguments);
+
+/// This program's own file.
+std::filesystem::path own_program();
+
+/// "done", "failed", "timeout", "out of memory".
+std::string end_name(ChildEnd end);
+
+}  // namespace adasplats::app

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace adasplats::app {
+
+/// The output folder of a comparison, which grows step by step and stays after an interruption:
+/// OUTPUT/work for what steps make, OUTPUT/pictures, and a file adasplats.json that tells it from
+/// other folders. Locked as long as the object lives.
+class WorkFolder {
+ public:
+  /// Errors: cannot_create (not empty and not of a comparison, of a comparison of data with
+  /// another title, or used by another run).
+  WorkFolder(const std::filesystem::path& folder, const std::string& title);
+  ~WorkFolder();
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+
+  std::filesystem::path work() const { return folder_ / "work"; }
+
+ private:
+  std::filesystem::path folder_;
+  int lock_ = -1;
+};
+
+}  // namespace adasplats::app

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/baselines/poisson.h"
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+#include <vector>
+
+#include "adasplats/baselines/program.h"
+#include "adasplats/baselines/trim.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/ply.h"
+
+namespace adasplats {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that goes with this object.
+class WorkFolder {
+ public:
+  explicit WorkFolder(const fs::path& parent) {
+    std::string pattern = (parent / ".adasplats-poisson-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr)
+      throw system_error(ErrorKind::cannot_create, pattern, "cannot create the folder", errno);
+    path_ = pattern;
+  }
+  ~WorkFolder() {
+    std::error_code ignored;  // a destructor must not throw
+    fs::remove_all(path_, ignored);
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+void check(const PoissonOptions& options, std::size_t points) {
+  if (options.depth < 1 || options.depth > 16)
+    throw Error(ErrorKind::usage, "the depth must be 1 to 16");
+  if (!(options.samples_per_node > 0 && options.samples_per_node <= 1000))
+    throw Error(ErrorKind::usage, "the samples per node must be above 0 and at most 1000");
+  if (points == 0) throw Error(ErrorKind::data, "no points: there is nothing to reconstruct");
+}
+
+void write_points(const fs::path& path, std::span<const Vec3f> points,
+                  std::span<const Vec3f> normals) {
+  const auto column = [](const char* name, const float* first) {
+    return ColumnView{name, ColumnType::f32, first, sizeof(Vec3f)};
+  };
+  const std::array<ColumnView, 6> columns = {
+      column("x", &points[0].x),   column("y", &points[0].y),   column("z", &points[0].z),
+      column("nx", &normals[0].x), column("ny", &normals[0].y), column("nz", &normals[0].z)};
+  write_ply(path, points.size(), columns);
+}
+
+const Column& column_of(const MeshTable& table, const fs::path& path, std::string_view name) {
+  const Column* const column = table.vertices.find(name);
+  if (column == nullptr)
+    throw data_error({path, {}, {}}, "the vertices have no property " + std::string(name));
+  return *column;
+}
+
+/// A mesh that a program wrote.
+TriangleMesh to_mesh(const MeshTable& table, const fs::path& path) {
+  const Column& x = column_of(table, path, "x");
+  const Column& y = column_of(table, path, "y");
+  const Column& z = column_of(table, path, "z");
+  TriangleMesh mesh;
+  mesh.vertices.reserve(table.vertices.rows);
+  for (std::size_t i = 0; i < table.vertices.rows; ++i)
+    mesh.vertices.push_back(vec_cast<float>(Vec3d{x.as_double(i), y.as_double(i), z.as_double(i)}));
+  const std::vector<std::uint32_t>& corners = table.triangle_vertices;
+  mesh.triangles.reserve(corners.size() / 3);
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+    mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  return mesh;
+}
+
+/// Numbers as programs read them, whatever the locale.
+std::string text_of(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6f", value);
+  std::replace(text.begin(), text.end(), ',', '.');
+  return text.data();
+}
+
+/// The flags are those of PoissonRecon 18; boundary type 3 is Neumann's.
+PoissonSurface by_poisson_recon(const PoissonOptions& options, const PoissonPrograms& programs,
+                                const fs::path& folder, int threads, ProgressSink& progress) {
+  const fs::path whole = folder / "whole.ply", trimmed_mesh = folder / "trimmed.ply";
+  PoissonSurface surface;
+  progress.begin_step("reconstruct", 0);
+  surface.peak_memory_bytes =
+      run_program(programs.reconstruct,
+                  {"--in", (folder / "points.ply").string(), "--out", whole.string(), "--depth",
+                   std::to_string(options.depth), "--bType", "3", "--samplesPerNode",
+                   text_of(options.samples_per_node), "--density", "--tempDir", folder.string()},
+                  threads, folder / "log", progress);
+  progress.begin_step("trim", 0);
+  const std::uint64_t trim_bytes =
+      run_program(programs.trim,
+                  {"--in", whole.string(), "--out", trimmed_mesh.string(), "--trim",
+                   text_of(options.trim_depth())},
+                  threads, folder / "log", progress);
+  surface.peak_memory_bytes = std::max(surface.peak_memory_bytes, trim_bytes);
+  surface.mesh = to_mesh(read_ply_mesh(trimmed_mesh), trimmed_mesh);
+  return surface;
+}
+
+PoissonSurface by_open3d(const PoissonOptions& options, const PoissonPrograms& programs,
+                         const fs::path& folder, int threads, ProgressSink& progress) {
+  const fs::path whole = folder / "whole.ply";
+  PoissonSurface surface;
+  progress.begin_step("reconstruct", 0);
+  surface.peak_memory_bytes = run_program(programs.reconstruct,
+                                          {(folder / "points.ply").string(), whole.string(),
+                                           std::to_string(options.depth), std::to_string(threads)},
+                                          threads, folder / "log", progress);
+  progress.begin_step("trim", 0);
+  const MeshTable table = read_ply_mesh(whole);
+  const Column& depths = column_of(table, whole, "value");
+  std::vector<float> values;
+  values.reserve(table.vertices.rows);
+  for (std::size_t i = 0; i < table.vertices.rows; ++i)
+    values.push_back(static_cast<float>(depths.as_double(i)));
+  surface.mesh = trimmed(to_mesh(table, whole), values, static_cast<float>(options.trim_depth()));
+  return surface;
+}
+
+}  // namespace
+
+PoissonPrograms find_poisson_programs(PoissonProvider wanted) {
+  if (wanted != PoissonProvider::open3d) {
+    const auto reconstruct = find_on_path("PoissonRecon"), trim = find_on_path("SurfaceTrimmer");
+    if (reconstruct && trim) return {PoissonProvider::poisson_recon, *reconstruct, *trim};
+  }
+  if (wanted != PoissonProvider::poisson_recon) {
+    if (const auto own = find_beside_own("adasplats-poisson"))
+      return {PoissonProvider::open3d, *own, {}};
+  }
+  throw Error(ErrorKind::unavailable,
+              "screened Poisson needs a program that is not here: put PoissonRecon and "
+              "SurfaceTrimmer (github.com/mkazhdan/PoissonRecon) on PATH, or install "
+              "libopen3d-dev and build adasplats again, which makes adasplats-poisson beside it");
+}
+
+PoissonSurface poisson_surface(std::span<const Vec3f> points, std::span<const Vec3f> normals,
+                               const PoissonOptions& options, const PoissonPrograms& programs,
+                               const fs::path& folder, int threads, ProgressSink& progress) {
+  check(options, points.size());
+  const WorkFolder work(folder);
+  write_points(work.path() / "points.ply", points, normals);
+  PoissonSurface surface =
+      programs.provider == PoissonProvider::open3d
+          ? by_open3d(options, programs, work.path(), threads, progress)
+          : by_poisson_recon(options, programs, work.path(), threads, progress);
+  progress.end_step();
+  if (surface.mesh.triangles.empty())
+    throw Error(ErrorKind::data, "nothing is left of the Poisson surface after trimming at depth " +
+                                     text_of(options.trim_depth()) +
+                                     ": trim less or reconstruct deeper");
+  return surface;
+}
+
+}  // namespace adasplats

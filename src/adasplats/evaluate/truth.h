@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/trajectory.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/core/progress.h"
+#include "adasplats/evaluate/resimulate.h"
+#include "adasplats/scene/mesh_model.h"
+#include "adasplats/sensors/lidar_model.h"
+#include "adasplats/trace/tracer.h"
+
+namespace adasplats {
+
+struct TruthOptions {
+  bool drop_moving = true;    ///< leave out rays whose true surface is of a moving class
+  bool drop_movable = false;  ///< likewise of a movable class (parked cars)
+};
+
+/// Distances of simulated points to the nearest point of the true surface, m; NaN without points.
+/// The median of an even number is the mean of the middle two, the 95th percentile is by nearest
+/// rank.
+struct DistanceSummary {
+  std::size_t points = 0;
+  double mean_m = 0;
+  double median_m = 0;
+  double p95_m = 0;
+  double rmse_m = 0;
+};
+
+/// Accuracy over rays that meet the true surface.
+struct TruthAccuracy {
+  BeamAccuracy range;  ///< simulated - true range; `rays` counts the rays that meet the truth
+  /// Share of these rays that fall through the model: it has nothing there, or later by more than
+  /// 50 cm. NaN without rays.
+  double hole_share = 0;
+  DistanceSummary surface;  ///< of the points that these rays simulate
+};
+
+struct TruthResult {
+  std::size_t rays = 0;  ///< cast and of classes that are kept
+  TruthAccuracy all;     ///< `surface` holds the points of all rays, ghosts included
+  double ghost_share =
+      0;  ///< of the rays without a true surface in range: the model has one. NaN: 0/0
+  /// Share of the simulated points that hang between two objects: farther than 10 cm from the true
+  /// surface, and by 10 cm strictly between the nearest and the farthest of the true ranges of the
+  /// beam and its neighbours (beam_neighbors). NaN without points.
+  double bleeding_share = 0;
+  std::vector<std::pair<std::string, TruthAccuracy>> by_class;  ///< of the true triangle, by id
+};
+
+/// Casts the rays of a sensor at the poses, without noise and within the sensor's ranges, into a
+/// model whose local origin is `model_origin` and into the true surface, and compares. `labels`
+/// names the mesh's classes; without it they are "class N" and none is dropped.
+/// Errors: data (no poses, no triangles, a class of the mesh that `labels` does not have).
+TruthResult compare_with_truth(const Tracer& model, Vec3d model_origin, const MeshModel& truth,
+                               const LabelScheme* labels, const LidarModel& sensor,
+                               const Trajectory& poses, const TruthOptions& options,
+                               const Executor& executor, ProgressSink& progress);
+
+}  // namespace adasplats

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/splats/consistent_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kGrain = 16384;
+
+/// Mean distance of a cell's points to their sensors.
+double mean_range_m(const PointCloud& cloud, std::span<const std::uint32_t> points) {
+  double sum = 0;
+  for (const std::uint32_t i : points) {
+    sum += static_cast<double>(length(cloud.positions[i] - cloud.sensor_positions[i]));
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+/// As large as the cells are apart, but no larger than beams are from one another; 0 for a cell far
+/// from all others.
+float seed_radius(double spacing_m, double largest_m, const ConsistentOptions& options) {
+  const double wanted_m = options.seed_spacing * spacing_m;
+  if (!(wanted_m > 0) || wanted_m > options.isolated * largest_m) return 0;
+  return static_cast<float>(
+      std::clamp(wanted_m, options.least_radius_m, std::max(options.least_radius_m, largest_m)));
+}
+
+/// What the spacing of a cell is compared with: 1 m, or the distance to the sensor, where that is
+/// known.
+std::vector<float> spacing_units_m(const PointCloud& cloud, const FusedPoints& fused,
+                                   const Executor& executor) {
+  std::vector<float> units_m(fused.size(), 1.0F);
+  if (cloud.sensor_positions.empty()) return units_m;
+  executor.for_chunks(fused.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      units_m[i] = static_cast<float>(mean_range_m(cloud, fused.points_of(i)));
+    }
+  });
+  return units_m;
+}
+
+double median_spacing(const std::vector<LocalPlane>& planes, const std::vector<float>& units_m) {
+  std::vector<float> spacings;
+  spacings.reserve(planes.size());
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    if (units_m[i] > 0) spacings.push_back(planes[i].spacing_m / units_m[i]);
+  }
+  if (spacings.empty()) return 0;
+  const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
+  std::nth_element(spacings.begin(), middle, spacings.end());
+  return static_cast<double>(*middle);
+}
+
+std::vector<Disk> seed_disks(const PointCloud& cloud, const FusedPoints& fused,
+                             const std::vector<LocalPlane>& planes,
+                             const ConsistentOptions& options, const Executor& executor) {
+  const std::vector<float> units_m = spacing_units_m(cloud, fused, executor);
+  const double largest = options.largest_spacing * median_spacing(planes, units_m);
+  std::vector<Disk> seeds(planes.size());
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const double largest_m = largest * static_cast<double>(units_m[i]);
+    const auto spacing_m = static_cast<double>(planes[i].spacing_m);
+    seeds[i] = {planes[i].center, seed_radius(spacing_m, largest_m, options), planes[i].normal};
+  }
+  return seeds;
+}
+
+/// As many rays as a round needs, other ones every round.
+EvidenceOptions evidence_of_round(int round, std::size_t rays, const ConsistentOptions& options) {
+  EvidenceOptions chosen = options.evidence;
+  const std::size_t stride =
+      std::clamp<std::size_t>(rays / options.evidence_rays, 1, chosen.stride);
+  chosen.stride = static_cast<std::uint32_t>(stride);
+  chosen.phase = static_cast<std::uint32_t>(round) % chosen.stride;
+  return chosen;
+}
+
+/// Shrinks and removes seeds that more rays contradict than confirm; what stands behind them is
+/// judged better every round.
+void balance(std::span<Disk> seeds, const MeasuredRays& rays, const ConsistentOptions& options,
+             const Executor& executor) {
+  for (int round = 0; round < options.balance_rounds; ++round) {
+    const RayEvidence evidence =
+        collect_evidence(seeds, rays, evidence_of_round(round, rays.size(), options), executor);
+    executor.for_chunks(seeds.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const DiskEvidence own = evidence_of(evidence, i);
+        if (seeds[i].radius > 0 && own.seen()) {
+          seeds[i].radius = balanced_radius(own, seeds[i].radius);
+        }
+      }
+    });
+  }
+}
+
+/// Limits chosen disks that hang over edges until hardly any ray goes through them.
+void limit_overhangs(SurfaceCover& cover, const MeasuredRays& rays,
+                     const ConsistentOptions& options, const Executor& executor) {
+  for (int round = 0; round < options.strict_rounds; ++round) {
+    const std::vector<Disk> chosen = cover.choose(executor);
+    const RayEvidence evidence =
+        collect_evidence(chosen, rays, evidence_of_round(round, rays.size(), options), executor);
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      const DiskEvidence own = evidence_of(evidence, i);
+      if (!(chosen[i].radius > 0) || !own.seen()) continue;
+      const float radius_m = chosen[i].radius;
+      const float strict_m = strict_radius(own, radius_m, options.most_contradicted);
+      if (strict_m >= radius_m) continue;
+      // A seed need not be free of contradiction: leaves are not.
+      const float balanced_m = std::min(balanced_radius(own, radius_m), cover.seed_radius(i));
+      cover.limit(i, std::max(strict_m, balanced_m));
+    }
+  }
+}
+
+}  // namespace
+
+ConsistentDisks consistent_disks(const PointCloud& cloud, const ConsistentOptions& options,
+                                 const Executor& executor,
+                                 const std::function<void(std::string_view)>& begin_step) {
+  ConsistentDisks result;
+  begin_step("fusion");
+  result.fused = fuse_points(cloud.positions, options.cell_m, executor);
+  const PointIndex index = PointIndex::from_sorted(result.fused.positions, executor);
+
+  begin_step("planes");
+  const std::vector<LocalPlane> planes =
+      adaptive_planes(result.fused, index, options.planes, executor);
+  std::vector<Disk> seeds = seed_disks(cloud, result.fused, planes, options, executor);
+
+  std::optional<MeasuredRays> rays;
+  result.checked = !cloud.sensor_positions.empty() && options.balance_rounds > 0;
+  if (result.checked) {
+    begin_step("ray check of seeds");
+    rays.emplace(cloud, options.least_range_m, executor);
+    balance(seeds, *rays, options, executor);
+  }
+
+  begin_step("cover");
+  SurfaceCover cover(seeds, index, options.cover, executor);
+  if (result.checked) {
+    begin_step("ray check of splats");
+    limit_overhangs(cover, *rays, options, executor);
+  }
+  std::vector<Disk> chosen = cover.choose(executor);
+  if (result.checked) {
+    begin_step("settling");
+    for (int round = 0; round < options.settle_rounds; ++round) {
+      settle_disks(chosen, *rays, options.settle, executor);
+    }
+  }
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (!(chosen[i].radius > 0)) continue;
+    result.disks.push_back(chosen[i]);
+    result.cells.push_back(static_cast<std::uint32_t>(i));
+  }
+  return result;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/core/vec3.h"
+
+namespace adasplats {
+
+/// Points of many scans fused in the cells of a grid: noise layers become one, and no place weighs
+/// more because the sensor stood near it. Cells stand in Hilbert order of their means.
+struct FusedPoints {
+  std::vector<Vec3f> positions;        ///< mean of a cell's points
+  std::vector<std::uint32_t> begins;   ///< of a cell's points in `members`; one more than cells
+  std::vector<std::uint32_t> members;  ///< point indices, cell by cell, ascending within one
+
+  std::size_t size() const { return positions.size(); }
+  std::span<const std::uint32_t> points_of(std::size_t cell) const {
+    return std::span(members).subspan(begins[cell], begins[cell + 1] - begins[cell]);
+  }
+  float count(std::size_t cell) const {
+    return static_cast<float>(begins[cell + 1] - begins[cell]);
+  }
+};
+
+/// Fuses points in cells of side `cell_m`. The result depends on the order of the points only in
+/// the rounding of the means. Coordinates must be within 2^20 cells of zero (a float holds no
+/// finer ones there anyway); farther points share the outermost cells.
+FusedPoints fuse_points(std::span<const Vec3f> points, double cell_m, const Executor& executor);
+
+}  // namespace adasplats
