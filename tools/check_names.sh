@@ -6,7 +6,7 @@
 # one machine, and nothing large or binary slipped in.
 set -euo pipefail
 
-readonly kLargestBytes=2000000
+readonly kLargestBytes=3000000
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 mapfile -d '' -t files < <(git ls-files -z --cached --others --exclude-standard)

@@ -22,12 +22,14 @@ struct ChildResult {
   int exit_code = 0;  ///< as shells have it: 128 + the number of a signal
   double seconds = 0;
   std::uint64_t peak_memory_bytes = 0;  ///< largest sum seen over the child and its children
-  std::string message;                  ///< the last line of its output; empty where it went well
+  /// The last line of its output, or which limit or signal ended it; empty where it went well.
+  std::string message;
 };
 
 /// Runs a program in a process group of its own, with stdout and stderr in `log`, and ends the
-/// whole group where a limit is passed or this process is interrupted (throws Interrupted then).
-/// Errors: software (cannot be started), cannot_create (the log).
+/// whole group where a limit is passed, this process is interrupted (throws Interrupted then) or
+/// killed. The first argument is the program's file; one that cannot be started ends with exit code
+/// 127. Errors: software (no new process), cannot_create (the log).
 ChildResult run_child(const std::vector<std::string>& arguments, const ChildLimits& limits,
                       const std::filesystem::path& log);
 

@@ -1,7 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <limits>
 
+#include "adasplats/core/error.h"
 #include "commands.h"
 #include "compare/compare_job.h"
 #include "compare/machine.h"
@@ -14,7 +18,9 @@ namespace adasplats::app {
 namespace {
 
 constexpr double kBytesPerGiB = 1024.0 * 1024 * 1024;
+constexpr double kMostBytes = 1e18;   // fits into what the limit is kept in
 constexpr double kMemoryShare = 0.9;  // of the machine's, where the user gives no limit
+constexpr int kDeepestOctree = 16;
 
 constexpr const char* kExamples =
     "  adasplats compare street -o street-comparison\n"
@@ -36,13 +42,28 @@ double number_at(const nlohmann::ordered_json& json, const std::string& pointer)
   return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
+std::string with_unit(double number, int digits, const char* unit) {
+  return std::isnan(number) ? "-" : fixed(number, digits) + " " + unit;
+}
+
+/// One line for each competitor that failed.
+std::string failures_of(const nlohmann::ordered_json& results) {
+  std::string lines;
+  for (const auto& entry : results["competitors"]) {
+    if (entry["state"] == "done") continue;
+    lines += entry["name"].get<std::string>() + ": " + entry["failed_step"].get<std::string>() +
+             ": " + entry["message"].get<std::string>() + "\n";
+  }
+  return lines;
+}
+
 std::string table_of(const nlohmann::ordered_json& results) {
   TextTable table(
       {"model", "state", "primitives", "generate", "C2C", "within 10 cm", "early", "no hit"});
   for (const auto& entry : results["competitors"]) {
     table.add_row({entry["name"], entry["state"],
-                   fixed(number_at(entry, "/generate/primitives") * 1e-6, 2) + " M",
-                   fixed(number_at(entry, "/generate/seconds"), 1) + " s",
+                   with_unit(number_at(entry, "/generate/primitives") * 1e-6, 2, "M"),
+                   with_unit(number_at(entry, "/generate/seconds"), 1, "s"),
                    centimetres(number_at(entry, "/c2c/c2c_m")),
                    percent(number_at(entry, "/resimulate/within/0.10")),
                    percent(number_at(entry, "/resimulate/early_50cm")),
@@ -87,17 +108,37 @@ class CompareCommand final : public Command {
   }
 
   void run(Session& session) override {
-    job_.limits.memory_bytes =
-        memory_gib_ > 0 ? static_cast<std::uint64_t>(memory_gib_ * kBytesPerGiB)
-                        : static_cast<std::uint64_t>(kMemoryShare *
-                                                     static_cast<double>(machine_memory_bytes()));
+    job_.steps.limits.memory_bytes = memory_limit_bytes();
+    job_.steps.common_arguments = common_arguments();
     job_.command = own_command();
     const nlohmann::ordered_json results = run_compare(job_, session);
     session.report["results"] = results;
-    print(table_of(results) + "\n" + (job_.output / "report.html").string() + "\n");
+    print(table_of(results) + "\n" + failures_of(results) + (job_.output / "report.html").string() +
+          "\n");
   }
 
  private:
+  std::uint64_t memory_limit_bytes() const {
+    if (!(memory_gib_ >= 0)) throw Error(ErrorKind::usage, "--memory-limit must not be negative");
+    const double bytes = memory_gib_ > 0
+                             ? std::max(1.0, memory_gib_ * kBytesPerGiB)
+                             : kMemoryShare * static_cast<double>(usable_memory_bytes());
+    return static_cast<std::uint64_t>(std::min(bytes, kMostBytes));
+  }
+
+  /// What the steps are told as well, where the user has said it.
+  std::vector<std::string> common_arguments() const {
+    std::vector<std::string> arguments;
+    const CommonOptions defaults;
+    if (common().threads != defaults.threads) {
+      arguments.insert(arguments.end(), {"--threads", std::to_string(common().threads)});
+    }
+    if (common().seed != defaults.seed) {
+      arguments.insert(arguments.end(), {"--seed", std::to_string(common().seed)});
+    }
+    return arguments;
+  }
+
   void add_data_options(CLI::App& app) {
     CLI::App& group = *app.add_option_group("Data", "instead of what is found in DATA");
     group.add_option("--labels", job_.labels, "semantickitti, paris-carla-3d or a TOML file")
@@ -116,24 +157,25 @@ class CompareCommand final : public Command {
     group.add_option("--sensor", job_.sensor, "As simulate has it")
         ->capture_default_str()
         ->type_name("NAME|FILE");
-    group.add_option("--remove", job_.remove, "Dynamic objects, as model has it")
-        ->capture_default_str()
-        ->type_name("none|moving|movable");
+    add_choice<std::string>(group, "--remove", job_.remove,
+                            {{"none", "none"}, {"moving", "moving"}, {"movable", "movable"}},
+                            "Dynamic objects, as model has it");
     add_picture_width(group, job_.picture_width);
     group.add_option("--poisson-depth", job_.poisson_depth, "Depth of the octree")
+        ->check(CLI::Range(1, kDeepestOctree).description(""))
         ->capture_default_str()
         ->type_name("N");
   }
 
   void add_limit_options(CLI::App& app) {
     CLI::App& group = *app.add_option_group("Limits", "of every step");
-    group.add_option("--time-limit", job_.limits.seconds, "Seconds")
+    group.add_option("--time-limit", job_.steps.limits.seconds, "Seconds")
         ->capture_default_str()
         ->type_name("S");
     group.add_option("--memory-limit", memory_gib_, "GiB; 0: 90 % of the machine's")
         ->capture_default_str()
         ->type_name("GIB");
-    group.add_flag("--retry", job_.retry, "Run steps again that failed");
+    group.add_flag("--retry", job_.steps.retry, "Run steps again that failed");
   }
 
   void set_meshes(const std::vector<std::string>& given) {

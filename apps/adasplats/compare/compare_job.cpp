@@ -6,16 +6,16 @@
 #include <array>
 #include <cstdio>
 
+#include "adasplats/cloud/label_scheme.h"
 #include "adasplats/core/error.h"
-#include "adasplats/core/memory.h"
 #include "adasplats/io/atomic_file.h"
+#include "adasplats/sensors/lidar_model.h"
 #include "compare/competitors.h"
 #include "compare/machine.h"
 #include "compare/paper_figures.h"
 #include "compare/steps.h"
 #include "compare/work_folder.h"
 #include "inputs.h"
-#include "option_types.h"
 #include "report_page/report_page.h"
 
 namespace adasplats::app {
@@ -44,6 +44,15 @@ ComparisonData data_of(const CompareJob& job) {
   return data;
 }
 
+/// Throws what every competitor would fail with.
+void check_rules(const CompareJob& job, const ComparisonData& data) {
+  if (!(job.steps.limits.seconds > 0)) {
+    throw Error(ErrorKind::usage, "--time-limit must be more than 0 seconds");
+  }
+  if (!data.labels.empty()) load_label_scheme(data.labels);
+  load_lidar_model(job.sensor);
+}
+
 std::string vector_text(Vec3d v) {
   std::array<char, 96> text{};
   std::snprintf(text.data(), text.size(), "%.3f,%.3f,%.3f", v.x, v.y, v.z);
@@ -65,7 +74,7 @@ PictureView view_along(const Trajectory& trajectory, Vec3d offset_m) {
 
 /// What every competitor is asked with: data, poses, camera, limits.
 CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
-                          const PointFacts& facts, const fs::path& work) {
+                          const PointFacts& facts, const WorkFolder& folder) {
   CompetitionRules rules;
   rules.data = data;
   rules.original = facts.original;
@@ -74,9 +83,10 @@ CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
   rules.remove = job.remove;
   rules.poisson_depth = job.poisson_depth;
   rules.picture_width = job.picture_width;
-  if (rules.data.trajectory.empty()) {
-    rules.data.trajectory = work / "trajectory.csv";
-    write_trajectory_csv(rules.data.trajectory, facts.trajectory);
+  if (!facts.trajectory.empty()) {
+    rules.data.trajectory = folder.work() / "trajectory.csv";
+    write_if_changed(rules.data.trajectory,
+                     [&](const fs::path& file) { write_trajectory_csv(file, facts.trajectory); });
   }
   const Trajectory trajectory = load_trajectory(rules.data.trajectory);
   if (trajectory.empty()) {
@@ -85,7 +95,7 @@ CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
   rules.offset_m = data.offset_m.value_or(Vec3d{});
   rules.every = job.every > 0 ? job.every : (trajectory.size() + kMostPoses - 1) / kMostPoses;
   rules.view = view_along(trajectory, rules.offset_m);
-  rules.pictures = job.output / "pictures";
+  rules.pictures = folder.pictures();
   return rules;
 }
 
@@ -123,10 +133,11 @@ std::vector<std::string> compare_method_names() {
 
 Json run_compare(const CompareJob& job, Session& session) {
   const ComparisonData data = data_of(job);
+  check_rules(job, data);
   const std::vector<Competitor> chosen = chosen_competitors(job.methods, job.meshes);
   const WorkFolder folder(job.output, data.title);
   const PointFacts facts = look_at_points(data, folder.work() / "original.ply", session);
-  const CompetitionRules rules = rules_of(job, data, facts, folder.work());
+  const CompetitionRules rules = rules_of(job, data, facts, folder);
 
   Json results = {
       {"program", "adasplats"},
@@ -135,17 +146,17 @@ Json run_compare(const CompareJob& job, Session& session) {
       {"title", data.title},
       {"data", data_json(rules, facts, job.preset)},
       {"machine", machine_json(session.executor.threads())},
-      {"limits", {{"seconds", job.limits.seconds}, {"memory_bytes", job.limits.memory_bytes}}},
+      {"limits",
+       {{"seconds", job.steps.limits.seconds}, {"memory_bytes", job.steps.limits.memory_bytes}}},
       {"command", job.command},
       {"original", Json::object()},
       {"competitors", Json::array()},
       {"paper", paper_figures(job.preset)}};
   session.progress.begin_step("compare", chosen.size() + 1);
-  results["original"] =
-      original_picture(rules, StepRunner(folder.work() / "original", job.limits, job.retry));
+  results["original"] = original_picture(rules, StepRunner(folder.work() / "original", job.steps));
   for (const Competitor& competitor : chosen) {
     if (competitor.needs_labels && !rules.labelled && job.methods.empty()) continue;
-    const StepRunner runner(folder.work() / competitor.name, job.limits, job.retry);
+    const StepRunner runner(folder.work() / competitor.name, job.steps);
     results["competitors"].push_back(compete(competitor, rules, runner));
     // After every competitor, so that an interrupted run has shown what it knows.
     write_reports(job.output, results);

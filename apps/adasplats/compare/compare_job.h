@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "adasplats/core/vec3.h"
-#include "compare/child_process.h"
 #include "compare/comparison_data.h"
+#include "compare/steps.h"
 #include "session.h"
 
 namespace adasplats::app {
@@ -29,8 +29,7 @@ struct CompareJob {
   std::size_t every = 0;  ///< 0: at most 20 poses
   int poisson_depth = 13;
   int picture_width = 960;  ///< pixels; the height is 9/16 of it
-  ChildLimits limits;
-  bool retry = false;
+  StepRules steps;
   std::string command;  ///< as the user typed it
 };
 
@@ -39,8 +38,9 @@ std::vector<std::string> compare_method_names();
 
 /// Runs what is not done yet, writes compare.json, report.md and report.html into the output
 /// folder and gives back what compare.json holds (its layout: docs/formats.md). A competitor that
-/// fails is a row that says so. Errors: those of finding the data; cannot_create where the folder
-/// holds something else or another run works in it.
+/// fails is a row that says so. Errors: those of finding the data; usage for what no competitor
+/// could work with (limits, sensor, labels, names); cannot_create where the folder holds something
+/// else or another run works in it.
 nlohmann::ordered_json run_compare(const CompareJob& job, Session& session);
 
 }  // namespace adasplats::app

@@ -11,6 +11,7 @@
 #include "adasplats/cloud/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/symmetric_eigen.h"
+#include "compare/work_folder.h"
 #include "inputs.h"
 #include "option_types.h"
 
@@ -60,14 +61,24 @@ ComparisonData street_data(const fs::path& data) {
   return found;
 }
 
-/// The PLY file below `data` whose name begins with "soufflot", a separator or none, and `number`.
-fs::path soufflot_file(const fs::path& data, char number) {
+/// The first number in a text; empty where there is none.
+std::string first_number(const std::string& text) {
+  constexpr const char* kDigits = "0123456789";
+  const std::size_t first = std::min(text.find_first_of(kDigits), text.size());
+  return text.substr(first, text.find_first_not_of(kDigits, first) - first);
+}
+
+/// The PLY file below `data` whose name begins with "soufflot" and whose first number is `number`.
+fs::path soufflot_file(const fs::path& data, const std::string& number) {
   std::vector<fs::path> matches;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data)) {
-    const std::string name = lower(entry.path().filename().string());
-    if (entry.path().extension() != ".ply" || name.rfind("soufflot", 0) != 0) continue;
-    const std::size_t digit = name.find_first_of("0123456789");
-    if (digit != std::string::npos && name[digit] == number) matches.push_back(entry.path());
+  std::error_code failure;
+  constexpr auto kOptions = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator entry(data, kOptions, failure), end;
+       !failure && entry != end; entry.increment(failure)) {
+    const std::string name = lower(entry->path().filename().string());
+    if (lower(entry->path().extension().string()) != ".ply") continue;
+    if (name.rfind("soufflot", 0) != 0 || first_number(name) != number) continue;
+    matches.push_back(entry->path());
   }
   std::sort(matches.begin(), matches.end());
   if (matches.empty()) {
@@ -79,7 +90,7 @@ fs::path soufflot_file(const fs::path& data, char number) {
 
 ComparisonData pc3d_data(const fs::path& data) {
   ComparisonData found;
-  found.inputs = {soufflot_file(data, '1'), soufflot_file(data, '2')};
+  found.inputs = {soufflot_file(data, "1"), soufflot_file(data, "2")};
   found.labels = "paris-carla-3d";
   found.offset_m = kShiftMapping_m;
   return found;
@@ -188,6 +199,16 @@ std::vector<Vec3d> along_the_points(const PointCloud& cloud) {
   return places;
 }
 
+/// Where the vehicle was while it took these scans.
+Trajectory poses_of_scans(const fs::path& sequence, const ScanRange& range) {
+  const Trajectory all = load_trajectory(sequence);
+  const std::size_t first = std::min(range.first, all.size());
+  const std::size_t end = first + std::min(range.count, all.size() - first);
+  Trajectory chosen;
+  for (std::size_t k = first; k < end; k += range.stride) chosen.push_back(all[k]);
+  return chosen;
+}
+
 }  // namespace
 
 ComparisonData find_comparison_data(const fs::path& data, Preset preset) {
@@ -214,8 +235,9 @@ ComparisonData find_comparison_data(const fs::path& data, Preset preset) {
 PointFacts look_at_points(const ComparisonData& data, const fs::path& original_file,
                           Session& session) {
   LoadOptions options;
+  ScanRange range;
   if (!data.scans.empty()) {
-    const ScanRange range = parse_scan_range("--scans", data.scans);
+    range = parse_scan_range("--scans", data.scans);
     options.first_scan = range.first;
     options.scan_count = range.count;
     options.scan_stride = range.stride;
@@ -228,10 +250,16 @@ PointFacts look_at_points(const ComparisonData& data, const fs::path& original_f
   const auto known = std::count_if(cloud.classes.begin(), cloud.classes.end(),
                                    [](std::uint16_t id) { return id != 0; });
   facts.labelled = 2 * static_cast<std::size_t>(known) > cloud.size();
-  if (data.trajectory.empty()) facts.trajectory = trajectory_of(cloud);
+  if (data.trajectory.empty()) {
+    facts.trajectory = trajectory_of(cloud);
+  } else if (!data.scans.empty() && data.trajectory == data.inputs.front()) {
+    facts.trajectory = poses_of_scans(data.trajectory, range);
+  }
   const bool whole = data.inputs.size() == 1 && data.scans.empty();
   facts.original = whole ? data.inputs.front() : original_file;
-  if (!whole) save_cloud_ply(original_file, cloud);
+  if (!whole) {
+    write_if_changed(original_file, [&](const fs::path& file) { save_cloud_ply(file, cloud); });
+  }
   return facts;
 }
 

@@ -44,18 +44,21 @@ struct PointFacts {
   bool labelled = false;  ///< most points have a class other than 0
   /// The points as one input of other commands: the one input that there is, or `original_file`.
   std::filesystem::path original;
-  Trajectory trajectory;  ///< a way through the points, see trajectory_of
+  /// Where the data give none: a way through the points, see trajectory_of. Where scans of a
+  /// sequence are chosen: their poses. Else empty.
+  Trajectory trajectory;
 };
 
 /// Loads the points once and looks. Writes them to `original_file` where they are of several files
-/// or some of the scans.
+/// or some of the scans; a file with the same points is left as it is. Errors: those of load_cloud;
+/// data where there are no points.
 PointFacts look_at_points(const ComparisonData& data, const std::filesystem::path& original_file,
                           Session& session);
 
 /// A trajectory for points whose recording has no poses. With sensor positions: their means in
 /// cells of 1 m, in the order along their main direction. Without: 20 poses on a straight line
 /// along the main direction of the points in the plane, from the 10th to the 90th percentile,
-/// 1.8 m above the lower quartile's height near it (paper section "New Trajectory Simulation",
+/// 1.8 m above the 5th percentile of heights (paper section "New Trajectory Simulation",
 /// M-City). Rotations are the identity.
 Trajectory trajectory_of(const PointCloud& cloud);
 

@@ -3,6 +3,7 @@
 #include "compare/competitors.h"
 
 #include <algorithm>
+#include <system_error>
 
 #include "adasplats/core/error.h"
 #include "option_types.h"
@@ -30,6 +31,27 @@ Words camera(const CompetitionRules& rules, int width) {
           std::to_string(width * 9 / 16)};
 }
 
+bool is_file(const fs::path& path) {
+  std::error_code failure;
+  return fs::is_regular_file(path, failure);
+}
+
+void note_failure(Json& entry, const Step& step, const StepResult& result) {
+  entry["state"] = end_name(result.child.end);
+  entry["failed_step"] = step.name;
+  entry["message"] = result.child.message;
+}
+
+/// Whether a mesh cannot have the name: folders and pictures of others are called so.
+bool is_taken(const std::string& name, const std::vector<Competitor>& chosen) {
+  const auto is_named = [&](const Competitor& other) {
+    return name == other.name || name == other.name + "-c2c" || name == other.name + "-beams" ||
+           name + "-c2c" == other.name || name + "-beams" == other.name;
+  };
+  return name == "original" || std::any_of(chosen.begin(), chosen.end(), is_named) ||
+         std::any_of(known_competitors().begin(), known_competitors().end(), is_named);
+}
+
 /// One competitor on its way through the steps.
 class Run {
  public:
@@ -54,14 +76,14 @@ class Run {
   }
 
  private:
-  /// Runs a step; a failure is noted in the entry.
-  StepResult run(const Step& step) {
-    StepResult result = runner_.run(step);
-    if (!result.done() && entry_["state"] == "done") {
-      entry_["state"] = end_name(result.child.end);
-      entry_["failed_step"] = step.name;
-      entry_["message"] = result.child.message;
+  /// Runs a step; the first failure is noted in the entry.
+  StepResult run(Step step) {
+    // Names of built-in schemes and sensors are no files: nothing changes there.
+    for (const std::string& file : {rules_.data.labels, rules_.sensor}) {
+      if (is_file(file)) step.inputs.emplace_back(file);
     }
+    StepResult result = runner_.run(step);
+    if (!result.done() && entry_["state"] == "done") note_failure(entry_, step, result);
     return result;
   }
 
@@ -228,13 +250,16 @@ std::vector<Competitor> chosen_competitors(
   for (const std::string& name : names.empty() ? known : names) {
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end()) throw Error(ErrorKind::usage, unknown_word("method", name, known));
+    const bool given_before = std::any_of(chosen.begin(), chosen.end(),
+                                          [&](const Competitor& c) { return c.name == name; });
+    if (given_before) continue;
     chosen.push_back(known_competitors()[static_cast<std::size_t>(found - known.begin())]);
   }
   for (const auto& [name, file] : meshes) {
-    const bool taken = std::any_of(chosen.begin(), chosen.end(),
-                                   [&](const Competitor& other) { return other.name == name; });
-    if (taken) throw Error(ErrorKind::usage, "--mesh: the name '" + name + "' is taken");
-    chosen.push_back({name, "Mesh, " + name, true, false, {}, fs::absolute(file)});
+    if (is_taken(name, chosen)) {
+      throw Error(ErrorKind::usage, "--mesh: the name '" + name + "' is taken");
+    }
+    chosen.push_back({name, "Mesh, " + name, true, false, {}, file});
   }
   return chosen;
 }
@@ -250,9 +275,12 @@ Json original_picture(const CompetitionRules& rules, const StepRunner& runner) {
   add(words, {"-o", picture.string()});
   add(words, camera(rules, rules.picture_width));
   if (!rules.data.labels.empty()) add(words, {"--labels", rules.data.labels});
-  const StepResult drawn = runner.run({"picture", words, {rules.original}, {picture}});
-  Json original = Json::object();
-  if (drawn.done()) original["picture"] = "pictures/original.png";
+  Step step = {"picture", words, {rules.original}, {picture}};
+  if (is_file(rules.data.labels)) step.inputs.emplace_back(rules.data.labels);
+  const StepResult drawn = runner.run(step);
+  if (drawn.done()) return {{"picture", "pictures/original.png"}};
+  Json original;
+  note_failure(original, step, drawn);
   return original;
 }
 

@@ -44,10 +44,11 @@ struct CompetitionRules {
   std::filesystem::path pictures;  ///< folder
 };
 
+/// Every method that this program has, in the order of the tables.
 const std::vector<Competitor>& known_competitors();
 
-/// Those of the names (empty: all known ones) and the ready-made meshes behind them.
-/// Errors: usage for a name that is not known.
+/// Those of the names (empty: all known ones), each once, and the ready-made meshes behind them.
+/// Errors: usage for a name that is not known and for a mesh whose name others have.
 std::vector<Competitor> chosen_competitors(
     const std::vector<std::string>& names,
     const std::vector<std::pair<std::string, std::filesystem::path>>& meshes);
@@ -56,9 +57,11 @@ std::vector<Competitor> chosen_competitors(
 nlohmann::ordered_json compete(const Competitor& competitor, const CompetitionRules& rules,
                                const StepRunner& runner);
 
-/// A picture of the measured points from the same camera: {"picture": FILE}, or empty.
+/// A picture of the measured points from the same camera: {"picture": FILE}, or what a competitor
+/// that failed says.
 nlohmann::ordered_json original_picture(const CompetitionRules& rules, const StepRunner& runner);
 
+/// The word of --preset; empty for none.
 std::string preset_name(Preset preset);
 
 }  // namespace adasplats::app

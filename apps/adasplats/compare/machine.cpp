@@ -27,13 +27,24 @@ Json value_in(const char* file, const std::string& key, char separator) {
   return nullptr;
 }
 
-}  // namespace
-
 std::uint64_t machine_memory_bytes() {
   const long pages = sysconf(_SC_PHYS_PAGES), page_bytes = sysconf(_SC_PAGESIZE);
   return pages > 0 && page_bytes > 0
              ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes)
              : 0;
+}
+
+}  // namespace
+
+std::uint64_t usable_memory_bytes() {
+  std::uint64_t bytes = machine_memory_bytes();
+  // Control groups, version 2 and 1, as a container sees them; "max" is not a number.
+  for (const char* file :
+       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    std::uint64_t limit = 0;
+    if (std::ifstream(file) >> limit && limit > 0 && limit < bytes) bytes = limit;
+  }
+  return bytes;
 }
 
 Json machine_json(int threads) {

@@ -11,7 +11,8 @@ namespace adasplats::app {
 /// does not tell.
 nlohmann::ordered_json machine_json(int threads);
 
-/// Main memory; 0 where the system does not tell.
-std::uint64_t machine_memory_bytes();
+/// Main memory that this process may use: the machine's, or what its container is limited to.
+/// 0 where the system does not tell.
+std::uint64_t usable_memory_bytes();
 
 }  // namespace adasplats::app

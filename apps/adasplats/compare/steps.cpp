@@ -16,23 +16,50 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+// Stays the running program where its file is replaced meanwhile.
+constexpr const char* kOwnProgram = "/proc/self/exe";
 constexpr std::array<const char*, 4> kEndNames = {"done", "failed", "timeout", "out of memory"};
 
-Json file_stamp(const fs::path& path) {
+/// Sizes and the newest time of the files that lie in a folder itself; what lies deeper belongs to
+/// others (a comparison beside its data, say).
+void stamp_files_in(const fs::path& folder, Json& stamp) {
+  std::uint64_t files = 0, bytes = 0;
+  fs::file_time_type newest = fs::file_time_type::min();
+  std::error_code failure;
+  for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
+       entry.increment(failure)) {
+    std::error_code gone;
+    if (!entry->is_regular_file(gone)) continue;
+    ++files;
+    bytes += entry->file_size(gone);
+    newest = std::max(newest, entry->last_write_time(gone));
+  }
+  stamp["files"] = files;
+  stamp["bytes"] = bytes;
+  if (files > 0) stamp["newest"] = newest.time_since_epoch().count();
+}
+
+/// What changes where a file, a folder of point files or a sequence folder changes.
+Json stamp_of(const fs::path& path) {
   std::error_code failure;
   Json stamp = {{"path", path.string()}};
-  if (fs::is_regular_file(path, failure)) {
-    stamp["bytes"] = fs::file_size(path, failure);
-  }
-  // A folder's time changes where files are added or replaced in it, which is how we write them.
   const auto time = fs::last_write_time(path, failure);
-  if (!failure) stamp["time"] = time.time_since_epoch().count();
+  if (failure) return stamp;
+  stamp["time"] = time.time_since_epoch().count();
+  if (fs::is_regular_file(path, failure)) stamp["bytes"] = fs::file_size(path, failure);
+  if (!fs::is_directory(path, failure)) return stamp;
+  stamp_files_in(path, stamp);
+  for (const char* part : {"velodyne", "labels"}) {  // of a sequence
+    if (fs::is_directory(path / part, failure)) stamp_files_in(path / part, stamp[part]);
+  }
   return stamp;
 }
 
-Json key_of(const Step& step) {
-  Json key = {{"program", file_stamp(own_program())}, {"arguments", step.arguments}};
-  for (const fs::path& input : step.inputs) key["inputs"].push_back(file_stamp(input));
+Json key_of(const Step& step, const std::vector<std::string>& arguments) {
+  std::error_code failure;
+  Json key = {{"program", stamp_of(fs::read_symlink(kOwnProgram, failure))},
+              {"arguments", arguments}};
+  for (const fs::path& input : step.inputs) key["inputs"].push_back(stamp_of(input));
   return key;
 }
 
@@ -52,19 +79,6 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-}  // namespace
-
-std::string command_text(const std::vector<std::string>& arguments) {
-  std::string text = "adasplats";
-  for (const std::string& argument : arguments) {
-    text += ' ';
-    text += quoted(argument);
-  }
-  return text;
-}
-
-namespace {
-
 Json to_json(const ChildResult& child, const ChildLimits& limits) {
   return {{"end", end_name(child.end)},
           {"exit_code", child.exit_code},
@@ -75,11 +89,12 @@ Json to_json(const ChildResult& child, const ChildLimits& limits) {
           {"memory_limit_bytes", limits.memory_bytes}};
 }
 
-ChildResult child_from(const Json& json) {
+/// The opposite of to_json(). Errors: Json::exception; nothing for an end that is not known.
+std::optional<ChildResult> child_from(const Json& json) {
   ChildResult child;
   const std::string name = json.at("end");
   const auto* const found = std::find(kEndNames.begin(), kEndNames.end(), name);
-  if (found == kEndNames.end()) throw Json::other_error::create(501, "end", nullptr);
+  if (found == kEndNames.end()) return std::nullopt;
   child.end = static_cast<ChildEnd>(found - kEndNames.begin());
   child.exit_code = json.at("exit_code");
   child.seconds = json.at("seconds");
@@ -99,21 +114,20 @@ bool would_fail_again(const Json& child, const ChildLimits& limits) {
   return true;
 }
 
-/// What a state file remembers, where it is of this step and still holds. A file that is foreign or
+/// What a state file remembers, where it is of this key and still holds. A file that is foreign or
 /// broken counts as none: the step is run again and the file replaced.
-std::optional<StepResult> remembered(const fs::path& file, const Step& step,
-                                     const ChildLimits& limits, bool retry) {
+std::optional<StepResult> remembered(const fs::path& file, const Step& step, const Json& key,
+                                     const StepRules& rules) {
   std::error_code failure;
   if (!fs::is_regular_file(file, failure)) return std::nullopt;
   try {
     const Json state = Json::parse(read_file(file));
-    if (state.at("key") != key_of(step)) return std::nullopt;
-    StepResult result;
-    result.child = child_from(state.at("child"));
-    result.report = state.at("report");
-    result.command = state.at("command");
+    if (state.at("key") != key) return std::nullopt;
+    const std::optional<ChildResult> child = child_from(state.at("child"));
+    if (!child) return std::nullopt;
+    StepResult result{*child, state.at("report"), state.at("command")};
     if (result.done() && !all_there(step.outputs)) return std::nullopt;
-    if (!result.done() && (retry || !would_fail_again(state.at("child"), limits))) {
+    if (!result.done() && (rules.retry || !would_fail_again(state.at("child"), rules.limits))) {
       return std::nullopt;
     }
     return result;
@@ -122,14 +136,51 @@ std::optional<StepResult> remembered(const fs::path& file, const Step& step,
   }
 }
 
+/// Removes what a killed child has left beside its outputs: files and folders that were to be
+/// renamed when they were whole. The folders are ours alone (see WorkFolder).
+void remove_unfinished(const Step& step) {
+  for (const fs::path& output : step.outputs) {
+    std::error_code failure;
+    std::vector<fs::path> unfinished = {output.parent_path() /
+                                        ("." + output.filename().string() + ".partial")};
+    for (fs::directory_iterator entry(output.parent_path(), failure), end; !failure && entry != end;
+         entry.increment(failure)) {
+      const std::string name = entry->path().filename().string();
+      if (name.rfind(".adasplats-", 0) == 0) unfinished.push_back(entry->path());
+    }
+    for (const fs::path& path : unfinished) fs::remove_all(path, failure);
+  }
+}
+
+/// Runs a child, which leaves nothing unfinished behind however it ends.
+ChildResult run_cleanly(const Step& step, const std::vector<std::string>& arguments,
+                        const ChildLimits& limits, const fs::path& log) {
+  remove_unfinished(step);  // this program may have been killed before
+  try {
+    ChildResult result = run_child(arguments, limits, log);
+    if (result.end != ChildEnd::done) remove_unfinished(step);
+    return result;
+  } catch (...) {
+    remove_unfinished(step);
+    throw;
+  }
+}
+
 }  // namespace
 
-fs::path own_program() { return fs::read_symlink("/proc/self/exe"); }
+std::string command_text(const std::vector<std::string>& arguments) {
+  std::string text = "adasplats";
+  for (const std::string& argument : arguments) {
+    text += ' ';
+    text += quoted(argument);
+  }
+  return text;
+}
 
 std::string end_name(ChildEnd end) { return kEndNames.at(static_cast<std::size_t>(end)); }
 
-StepRunner::StepRunner(fs::path folder, const ChildLimits& limits, bool retry)
-    : folder_(std::move(folder)), limits_(limits), retry_(retry) {
+StepRunner::StepRunner(fs::path folder, StepRules rules)
+    : folder_(std::move(folder)), rules_(std::move(rules)) {
   std::error_code failure;
   fs::create_directories(folder_, failure);
   if (failure) {
@@ -141,24 +192,24 @@ StepRunner::StepRunner(fs::path folder, const ChildLimits& limits, bool retry)
 StepResult StepRunner::run(const Step& step) const {
   const fs::path state_file = folder_ / (step.name + ".json");
   const fs::path report_file = folder_ / (step.name + "-report.json");
-  ChildLimits limits = limits_;
-  if (step.seconds_limit > 0) limits.seconds = step.seconds_limit;
-  if (auto result = remembered(state_file, step, limits, retry_)) return *std::move(result);
+  std::vector<std::string> arguments = step.arguments;
+  arguments.insert(arguments.end(), rules_.common_arguments.begin(), rules_.common_arguments.end());
+  // Before the step: what changes while it runs has not been used.
+  const Json key = key_of(step, arguments);
+  if (auto result = remembered(state_file, step, key, rules_)) return *std::move(result);
 
   std::error_code ignored;
   fs::remove(state_file, ignored);
   fs::remove(report_file, ignored);
-  std::vector<std::string> arguments = {own_program().string()};
-  arguments.insert(arguments.end(), step.arguments.begin(), step.arguments.end());
-  arguments.insert(arguments.end(), {"--report", report_file.string()});
-
   StepResult result;
-  result.command = command_text(step.arguments);
-  result.child = run_child(arguments, limits, folder_ / (step.name + ".log"));
+  result.command = command_text(arguments);
+  arguments.insert(arguments.begin(), kOwnProgram);
+  arguments.insert(arguments.end(), {"--report", report_file.string()});
+  result.child = run_cleanly(step, arguments, rules_.limits, folder_ / (step.name + ".log"));
   if (result.done()) result.report = Json::parse(read_file(report_file));
-  const Json state = {{"key", key_of(step)},
+  const Json state = {{"key", key},
                       {"command", result.command},
-                      {"child", to_json(result.child, limits)},
+                      {"child", to_json(result.child, rules_.limits)},
                       {"report", result.report}};
   write_file(state_file, state.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   return result;

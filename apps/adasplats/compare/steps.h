@@ -17,7 +17,6 @@ struct Step {
   std::vector<std::string> arguments;          ///< of the program, without --report
   std::vector<std::filesystem::path> inputs;   ///< done again where one of them changes
   std::vector<std::filesystem::path> outputs;  ///< done again where one is not there
-  double seconds_limit = 0;                    ///< 0: that of the runner
 };
 
 struct StepResult {
@@ -27,27 +26,31 @@ struct StepResult {
   bool done() const { return child.end == ChildEnd::done; }
 };
 
+/// How all steps are run.
+struct StepRules {
+  ChildLimits limits;
+  bool retry = false;                              ///< also those that have failed before
+  std::vector<std::string> common_arguments = {};  ///< --threads and --seed, where they are given
+};
+
 /// Runs steps and remembers in `folder` what has been done: NAME.json with a key of the command,
 /// the program and the inputs' sizes and times, NAME.log with the output. A step whose key is the
-/// same is not run again; one that failed is, where a limit is now higher or `retry` is set.
+/// same is not run again; one that failed is, where the limit that ended it is now higher or
+/// `retry` is set.
 class StepRunner {
  public:
-  StepRunner(std::filesystem::path folder, const ChildLimits& limits, bool retry);
+  StepRunner(std::filesystem::path folder, StepRules rules);
 
   StepResult run(const Step& step) const;
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
   std::filesystem::path folder_;
-  ChildLimits limits_;
-  bool retry_;
+  StepRules rules_;
 };
 
 /// The program with these arguments as a user types it in a shell.
 std::string command_text(const std::vector<std::string>& arguments);
-
-/// This program's own file.
-std::filesystem::path own_program();
 
 /// "done", "failed", "timeout", "out of memory".
 std::string end_name(ChildEnd end);

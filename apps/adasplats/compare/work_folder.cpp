@@ -6,9 +6,12 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <vector>
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/atomic_file.h"
@@ -19,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 constexpr const char* kContentFile = "adasplats.json";
+constexpr std::streamsize kPartBytes = 1 << 20;
 
 void make_folder(const fs::path& folder) {
   std::error_code failure;
@@ -27,6 +31,22 @@ void make_folder(const fs::path& folder) {
     throw system_error(ErrorKind::cannot_create, folder, "cannot create the folder",
                        failure.value());
   }
+}
+
+bool same_bytes(const fs::path& a, const fs::path& b) {
+  std::error_code failure;
+  if (!fs::is_regular_file(b, failure) || fs::file_size(a) != fs::file_size(b)) return false;
+  std::ifstream left(a, std::ios::binary), right(b, std::ios::binary);
+  std::vector<char> left_part(kPartBytes), right_part(kPartBytes);
+  while (left && right) {
+    left.read(left_part.data(), kPartBytes);
+    right.read(right_part.data(), kPartBytes);
+    if (left.gcount() != right.gcount() ||
+        !std::equal(left_part.begin(), left_part.begin() + left.gcount(), right_part.begin())) {
+      return false;
+    }
+  }
+  return left.eof() && right.eof();
 }
 
 /// Refuses a folder with anything but a comparison of the same data in it.
@@ -57,14 +77,15 @@ WorkFolder::WorkFolder(const fs::path& folder, const std::string& title) : folde
       throw Error(ErrorKind::cannot_create, folder_.string() + ": another run works in it");
     }
     check_content(folder_, title);
-    make_folder(work());
-    make_folder(folder_ / "pictures");
     const Json content = {{"program", "adasplats"},
                           {"version", ADASPLATS_VERSION},
                           {"command", "compare"},
                           {"title", title}};
     write_file(folder_ / kContentFile,
                content.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    // Behind it: a run that is killed between them must not meet a foreign folder next time.
+    make_folder(work());
+    make_folder(pictures());
   } catch (...) {
     close(lock_);
     throw;
@@ -72,5 +93,15 @@ WorkFolder::WorkFolder(const fs::path& folder, const std::string& title) : folde
 }
 
 WorkFolder::~WorkFolder() { close(lock_); }
+
+void write_if_changed(const fs::path& file, const std::function<void(const fs::path&)>& write) {
+  const fs::path fresh = file.parent_path() / ("new-" + file.filename().string());
+  write(fresh);
+  if (same_bytes(fresh, file)) {
+    fs::remove(fresh);
+  } else {
+    fs::rename(fresh, file);
+  }
+}
 
 }  // namespace adasplats::app

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace adasplats::app {
@@ -20,10 +21,16 @@ class WorkFolder {
   WorkFolder& operator=(const WorkFolder&) = delete;
 
   std::filesystem::path work() const { return folder_ / "work"; }
+  std::filesystem::path pictures() const { return folder_ / "pictures"; }
 
  private:
   std::filesystem::path folder_;
   int lock_ = -1;
 };
+
+/// Has `write` make a file under another name beside it and puts it in place where its bytes are
+/// others: what was made from the same file need not be made again.
+void write_if_changed(const std::filesystem::path& file,
+                      const std::function<void(const std::filesystem::path&)>& write);
 
 }  // namespace adasplats::app

@@ -43,7 +43,7 @@ struct RayEvidence {
 };
 
 struct EvidenceOptions {
-  float margin_m = 0.2F;     ///< a ray that ends this near to where it crosses a disk ends at it
+  float margin_m = 0.1F;     ///< a ray that ends this near to where it crosses a disk ends at it
   std::uint32_t stride = 4;  ///< every n-th ray
   std::uint32_t phase = 0;   ///< begins with this one
   int depth = 48;            ///< disks that a ray crosses, at most; those behind are not seen

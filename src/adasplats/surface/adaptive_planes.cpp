@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kSpacingNeighbor = 7;
 constexpr int kTrimRounds = 2;
-constexpr double kLeastTrimmed = 6;  // cells that a trimmed fit must keep
+constexpr int kLeastTrimmed = 6;  // cells that a trimmed fit must keep
 
 /// A plane relative to the cell's mean.
 struct Fit {
@@ -95,11 +95,14 @@ Fit trimmed(const Neighborhood& neighborhood, const ScaledFit& start,
         options.trim_sigmas * std::max(options.least_sigma_m, std::sqrt(fit.shape.lambda[2]));
     const Vec3d normal = vec_cast<double>(fit.shape.normal);
     Moments moments;
+    int kept = 0;  // moments.count holds their points
     for (std::uint32_t k = 0; k < start.used; ++k) {
       const Vec3d offset = vec_cast<double>(neighborhood.offset(k));
-      if (std::fabs(dot(normal, offset - fit.mean)) < bound_m) neighborhood.add(moments, k);
+      if (!(std::fabs(dot(normal, offset - fit.mean)) < bound_m)) continue;
+      neighborhood.add(moments, k);
+      ++kept;
     }
-    if (moments.count < kLeastTrimmed) break;
+    if (kept < kLeastTrimmed) break;
     fit = fit_of(moments);
   }
   return fit;

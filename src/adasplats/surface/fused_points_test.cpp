@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/surface/fused_points.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "adasplats/core/random.h"
+#include "adasplats/neighbors/hilbert.h"
+
+namespace adasplats {
+namespace {
+
+using CellKey = std::array<double, 3>;
+
+CellKey key_of(Vec3f p, double cell_m) {
+  CellKey key;
+  for (int axis = 0; axis < 3; ++axis)
+    key[static_cast<std::size_t>(axis)] = std::floor(static_cast<double>(p[axis]) / cell_m);
+  return key;
+}
+
+/// Oracle: a map from cells to points, filled one by one; a mean of each.
+void expect_equals_grid(const std::vector<Vec3f>& points, double cell_m, const FusedPoints& fused) {
+  std::map<CellKey, std::vector<std::uint32_t>> grid;
+  for (std::uint32_t i = 0; i < points.size(); ++i) grid[key_of(points[i], cell_m)].push_back(i);
+  ASSERT_EQ(fused.size(), grid.size());
+  ASSERT_EQ(fused.begins.size(), grid.size() + 1);
+  EXPECT_EQ(fused.begins.front(), 0U);
+  EXPECT_EQ(fused.begins.back(), points.size());
+  ASSERT_EQ(fused.members.size(), points.size());
+  for (std::size_t cell = 0; cell < fused.size(); ++cell) {
+    const auto members = fused.points_of(cell);
+    ASSERT_FALSE(members.empty());
+    EXPECT_EQ(fused.count(cell), static_cast<float>(members.size()));
+    const auto& expected = grid.at(key_of(points[members[0]], cell_m));
+    ASSERT_TRUE(std::equal(members.begin(), members.end(), expected.begin(), expected.end()));
+    for (int axis = 0; axis < 3; ++axis) {
+      double mean = 0, largest = 0;
+      for (const std::uint32_t i : expected) {
+        const auto value = static_cast<double>(points[i][axis]);
+        mean += value / static_cast<double>(expected.size());
+        largest = std::max(largest, std::fabs(value));
+      }
+      EXPECT_NEAR(static_cast<double>(fused.positions[cell][axis]), mean, 1e-7 * largest);
+    }
+  }
+  std::vector<std::uint32_t> in_order(fused.size());
+  std::iota(in_order.begin(), in_order.end(), 0U);
+  EXPECT_EQ(hilbert_order(fused.positions, Executor(1)), in_order);
+}
+
+std::vector<Vec3f> random_points(std::size_t n, double low_m, double high_m) {
+  std::vector<Vec3f> points;
+  for (std::size_t i = 0; i < n; ++i) {
+    Random random(3, 0, i);
+    const double x = random.uniform(low_m, high_m), y = random.uniform(low_m, high_m);
+    points.push_back(vec_cast<float>(Vec3d{x, y, random.uniform(low_m, high_m)}));
+  }
+  return points;
+}
+
+TEST(FusePoints, EqualsAGridByBruteForce) {
+  const Executor executor(2);
+  const auto check = [&](const std::vector<Vec3f>& points, double cell_m) {
+    expect_equals_grid(points, cell_m, fuse_points(points, cell_m, executor));
+  };
+  check({}, 0.05);
+  check({{1, -2, 3}}, 0.05);
+  check({{0.01F, 0.01F, 0.01F}, {-0.01F, 0.01F, 0.01F}}, 0.05);  // either side of zero: two cells
+  check(std::vector<Vec3f>(1000, {1.1F, -2.2F, 3.3F}), 0.05);
+  check(random_points(20000, -0.5, 0.5), 0.05);     // some 2.5 points a cell
+  check(random_points(3000, -9e4, -8.9e4), 100);    // negative and far, cells of many points
+  check(random_points(3000, -52000, 52000), 0.05);  // nearly 2^20 cells from zero: one point a cell
+}
+
+TEST(FusePoints, PointsBeyondTheGridShareItsOutermostCells) {
+  const std::vector<Vec3f> points = {{1e30F, 0, 0}, {0, 0, 0},         {3e38F, 0, 0},
+                                     {3e38F, 0, 0}, {-1e30F, 0, 0},    {0.01F, 0.01F, 0.01F},
+                                     {0, 1e30F, 0}, {1e30F, 1e30F, 0}, {0, 0, -3e38F}};
+  const FusedPoints fused = fuse_points(points, 0.05, Executor(1));
+  std::vector<std::vector<std::uint32_t>> cells;
+  for (std::size_t cell = 0; cell < fused.size(); ++cell) {
+    EXPECT_TRUE(is_finite(fused.positions[cell]));
+    const auto members = fused.points_of(cell);
+    cells.emplace_back(members.begin(), members.end());
+  }
+  std::sort(cells.begin(), cells.end());
+  EXPECT_EQ(cells,
+            (std::vector<std::vector<std::uint32_t>>{{0, 2, 3}, {1, 5}, {4}, {6}, {7}, {8}}));
+}
+
+TEST(FusePoints, SameForEveryNumberOfThreads) {
+  const std::vector<Vec3f> points = random_points(150000, -2, 2);
+  const FusedPoints one = fuse_points(points, 0.1, Executor(1));
+  // 2.34 points a cell on average leave exp(-2.34) of the 64000 cells empty.
+  EXPECT_NEAR(static_cast<double>(one.size()), 64000 * (1 - std::exp(-150.0 / 64)), 300);
+  for (const int threads : {2, 3}) {
+    const FusedPoints other = fuse_points(points, 0.1, Executor(threads));
+    EXPECT_EQ(one.positions, other.positions);
+    EXPECT_EQ(one.begins, other.begins);
+    EXPECT_EQ(one.members, other.members);
+  }
+}
+
+TEST(FusePoints, OrderOfPointsChangesTheRoundingOfMeansAtMost) {
+  // Sums of doubles that hold floats: the rounded means of both orders agree to a float's ulp.
+  const std::vector<Vec3f> points = random_points(5000, -0.5, 0.5);
+  const std::vector<Vec3f> reversed(points.rbegin(), points.rend());
+  const FusedPoints a = fuse_points(points, 0.1, Executor(1));
+  const FusedPoints b = fuse_points(reversed, 0.1, Executor(1));
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t cell = 0; cell < a.size(); ++cell) {
+    EXPECT_LT(length(a.positions[cell] - b.positions[cell]), 1e-6F);
+    EXPECT_EQ(a.count(cell), b.count(cell));
+  }
+}
+
+}  // namespace
+}  // namespace adasplats
