@@ -71,6 +71,11 @@ void check(const BuildOptions& options) {
             "group scales must be greater than 0");
   require(options.resample_density >= 0 && options.resample_density <= 100,
           "resample density must be 0 to 100");
+  const ConsistentOptions& consistent = options.consistent;
+  require(consistent.cell_m > 0, "the cells of the consistent method must be greater than 0");
+  require(consistent.evidence_rays > 0 && consistent.evidence.stride > 0 &&
+              consistent.evidence.depth > 0,
+          "evidence rays, their stride and their depth must be greater than 0");
 }
 
 /// The class of a point; an id that the scheme does not know is the input's fault.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "adasplats/surface/local_shape.h"
+
 namespace adasplats {
 namespace {
 
@@ -18,6 +20,25 @@ double mean_range_m(const PointCloud& cloud, std::span<const std::uint32_t> poin
     sum += static_cast<double>(length(cloud.positions[i] - cloud.sensor_positions[i]));
   }
   return sum / static_cast<double>(points.size());
+}
+
+/// Turns normals to the sensors, or gives them a sign that depends on the data alone.
+void orient_normals(const PointCloud& cloud, const FusedPoints& fused, std::span<LocalPlane> planes,
+                    const Executor& executor) {
+  executor.for_chunks(planes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Vec3f& normal = planes[i].normal;
+      if (cloud.sensor_positions.empty()) {
+        normal = with_canonical_sign(normal);
+        continue;
+      }
+      Vec3d to_sensors;
+      for (const std::uint32_t k : fused.points_of(i)) {
+        to_sensors = to_sensors + vec_cast<double>(cloud.sensor_positions[k] - cloud.positions[k]);
+      }
+      if (dot(vec_cast<double>(normal), to_sensors) < 0) normal = -normal;
+    }
+  });
 }
 
 /// As large as the cells are apart, but no larger than beams are from one another; 0 for a cell far
@@ -90,7 +111,7 @@ void balance(std::span<Disk> seeds, const MeasuredRays& rays, const ConsistentOp
       for (std::size_t i = begin; i < end; ++i) {
         const DiskEvidence own = evidence_of(evidence, i);
         if (seeds[i].radius > 0 && own.seen()) {
-          seeds[i].radius = balanced_radius(own, seeds[i].radius);
+          seeds[i].radius = is_borne_out(own) ? balanced_radius(own, seeds[i].radius) : 0;
         }
       }
     });
@@ -100,8 +121,9 @@ void balance(std::span<Disk> seeds, const MeasuredRays& rays, const ConsistentOp
 /// Limits chosen disks that hang over edges until hardly any ray goes through them.
 void limit_overhangs(SurfaceCover& cover, const MeasuredRays& rays,
                      const ConsistentOptions& options, const Executor& executor) {
+  std::vector<Disk> chosen;
   for (int round = 0; round < options.strict_rounds; ++round) {
-    const std::vector<Disk> chosen = cover.choose(executor);
+    chosen = cover.choose(executor);
     const RayEvidence evidence =
         collect_evidence(chosen, rays, evidence_of_round(round, rays.size(), options), executor);
     for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -114,6 +136,10 @@ void limit_overhangs(SurfaceCover& cover, const MeasuredRays& rays,
       const float balanced_m = std::min(balanced_radius(own, radius_m), cover.seed_radius(i));
       cover.limit(i, std::max(strict_m, balanced_m));
     }
+  }
+  // What is chosen next instead of limited disks was not checked in its large size.
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (!(chosen[i].radius > 0)) cover.limit(i, cover.seed_radius(i));
   }
 }
 
@@ -128,8 +154,8 @@ ConsistentDisks consistent_disks(const PointCloud& cloud, const ConsistentOption
   const PointIndex index = PointIndex::from_sorted(result.fused.positions, executor);
 
   begin_step("planes");
-  const std::vector<LocalPlane> planes =
-      adaptive_planes(result.fused, index, options.planes, executor);
+  std::vector<LocalPlane> planes = adaptive_planes(result.fused, index, options.planes, executor);
+  orient_normals(cloud, result.fused, planes, executor);
   std::vector<Disk> seeds = seed_disks(cloud, result.fused, planes, options, executor);
 
   std::optional<MeasuredRays> rays;

@@ -108,8 +108,19 @@ float balanced_radius(const DiskEvidence& evidence, float radius_m) {
       rings = k + 1;
     }
   }
-  // Rings that nobody crossed stay.
-  return rings > 0 && rings == last_seen ? radius_m : radius_of(rings, radius_m);
+  // Rings that nobody crossed stay, and so do disks.
+  return rings == last_seen ? radius_m : radius_of(rings, radius_m);
+}
+
+bool is_borne_out(const DiskEvidence& evidence) {
+  double balance = 0, best = 0, contradicted = 0;
+  for (std::size_t bin = 0; bin < evidence.confirmed.size(); ++bin) {
+    balance += static_cast<double>(evidence.confirmed[bin]);
+    balance -= static_cast<double>(evidence.contradicted[bin]);
+    contradicted += static_cast<double>(evidence.contradicted[bin]);
+    best = std::max(best, balance);
+  }
+  return balance >= 0 || best * best >= contradicted;
 }
 
 float strict_radius(const DiskEvidence& evidence, float radius_m, double most_share) {

@@ -24,6 +24,11 @@ DiskEvidence evidence_of(const RayEvidence& evidence, std::size_t disk);
 /// none, the radius itself where nobody speaks against it.
 float balanced_radius(const DiskEvidence& evidence, float radius_m);
 
+/// Whether more than chance speaks for a disk at its balanced radius. The middle of a disk stands
+/// on the points that it is made from, so their rays confirm some of the middle, whatever goes
+/// through the rest: of n contradicting rays, the square root of n may miss it by chance.
+bool is_borne_out(const DiskEvidence& evidence);
+
 /// The largest radius at which at most `most_share` as many rays contradict as confirm.
 float strict_radius(const DiskEvidence& evidence, float radius_m, double most_share);
 

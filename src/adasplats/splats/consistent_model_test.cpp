@@ -1,0 +1,338 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/splats/consistent_model.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/random.h"
+#include "adasplats/splats/build_model.h"
+#include "adasplats/splats/scanned_room_test.h"
+#include "adasplats/trace/tracer.h"
+
+namespace adasplats {
+namespace {
+
+struct Warnings : ProgressSink {
+  std::vector<std::string> texts;
+  void warn(std::string_view text) override { texts.emplace_back(text); }
+};
+
+BuildOptions consistent_options() {
+  BuildOptions options;
+  options.method = SplatMethod::consistent;
+  options.remove = DynamicRemoval::none;
+  options.consistent.least_range_m = 0.5;  // no vehicle, but a small room
+  return options;
+}
+
+struct Built {
+  SplatModel model;
+  BuildReport report;
+  Warnings warnings;
+};
+
+Built build(PointCloud cloud, int threads = 2, const BuildOptions& options = consistent_options()) {
+  Built built;
+  std::tie(built.model, built.report) = build_model(std::move(cloud), &semantickitti_labels(),
+                                                    options, Executor(threads), built.warnings);
+  return built;
+}
+
+/// The room's model, made once: tests only look at it.
+const Built& room_model() {
+  static const Built built = build(scanned_room());
+  return built;
+}
+
+std::size_t splats_in(const SplatModel& model, const Box& box, double margin_m) {
+  return static_cast<std::size_t>(
+      std::count_if(model.disks.begin(), model.disks.end(),
+                    [&](const Disk& disk) { return box.contains(disk.center, margin_m); }));
+}
+
+void expect_sound(const Built& built) {
+  for (const Disk& disk : built.model.disks) {
+    EXPECT_TRUE(is_finite(disk.center));
+    EXPECT_NEAR(length(disk.normal), 1.0F, 1e-5F);
+    EXPECT_GT(disk.radius, 0.0F);
+    EXPECT_TRUE(std::isfinite(disk.radius));
+  }
+  EXPECT_EQ(built.report.primitives, built.model.size());
+}
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  if (a.size() != b.size()) return false;
+  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+bool same_bytes(const SplatModel& a, const SplatModel& b) {
+  return same_bytes(a.disks, b.disks) && same_bytes(a.classes, b.classes) &&
+         same_bytes(a.intensities, b.intensities);
+}
+
+TEST(ConsistentModel, PredictsBeamsItNeverSaw) {
+  const SplatModel& model = room_model().model;
+  expect_sound(room_model());
+  const Executor executor(2);
+  const auto tracer = make_cpu_tracer(model.view(), executor);
+  std::vector<Ray> rays;
+  std::vector<double> expected_m;
+  std::vector<bool> at_pillar, at_edge;
+  for (std::size_t i = 0; i < 8000; ++i) {
+    Random random(2, 0, i);
+    const Vec3d sensor = {random.uniform(1, 4), random.uniform(0.9, 1.4), random.uniform(1, 1.4)};
+    const double azimuth_rad = random.uniform(0, 6.2831853);
+    const Vec3d direction = direction_of(azimuth_rad, random.uniform(-0.6, 0.6));
+    Ray ray;
+    ray.origin = vec_cast<float>(sensor);
+    ray.direction = vec_cast<float>(direction);
+    rays.push_back(ray);
+    const Measured truth = measure(sensor, direction, false);
+    expected_m.push_back(truth.range_m);
+    at_pillar.push_back(truth.label == kPole);
+    at_edge.push_back(is_at_edge(sensor, direction));
+  }
+  std::vector<Hit> hits(rays.size());
+  tracer->nearest(rays, hits, executor);
+  int all_good = 0, faces = 0, faces_good = 0, pillar = 0, pillar_good = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const int good = hits[i].valid() && std::fabs(hits[i].t - expected_m[i]) < 0.02 ? 1 : 0;
+    all_good += good;
+    if (at_edge[i]) continue;
+    ++faces;
+    faces_good += good;
+    if (!at_pillar[i]) continue;
+    ++pillar;
+    pillar_good += good;
+  }
+  EXPECT_GT(all_good, 0.96 * 8000);
+  EXPECT_GT(faces, 6000);
+  EXPECT_GT(faces_good, 0.99 * faces);
+  EXPECT_GT(pillar, 100);
+  EXPECT_GT(pillar_good, 0.9 * pillar);
+}
+
+TEST(ConsistentModel, FlatRoomTakesFewSplats) {
+  const PointCloud cloud = scanned_room();
+  const FusedPoints fused = fuse_points(cloud.positions, 0.05, Executor(2));
+  EXPECT_LT(room_model().model.size(), fused.size() / 4);
+}
+
+TEST(ConsistentModel, WhatLaterRaysPassThroughLeavesNoSplat) {
+  // The floor under the passer-by is none of it.
+  const Box above_floor = {{kPasserby.low.x, kPasserby.low.y, 0.2}, kPasserby.high};
+  const PointCloud cloud = scanned_room();
+  const auto points = std::count_if(cloud.positions.begin(), cloud.positions.end(),
+                                    [&](Vec3f p) { return above_floor.contains(p, 0.05); });
+  EXPECT_GT(points, 300);
+  EXPECT_EQ(splats_in(room_model().model, above_floor, 0.05), 0U);
+  EXPECT_GT(splats_in(room_model().model, kPillar, 0.05), 10U);
+  EXPECT_TRUE(room_model().report.ray_checked);
+  // Without the rays it stays: that is what the check is for.
+  BuildOptions unchecked = consistent_options();
+  unchecked.consistent.balance_rounds = 0;
+  const Built built = build(cloud, 2, unchecked);
+  EXPECT_GE(splats_in(built.model, above_floor, 0.05), 5U);
+  EXPECT_FALSE(built.report.ray_checked);
+  EXPECT_TRUE(built.warnings.texts.empty());
+}
+
+TEST(ConsistentModel, SplatsFaceTheSensor) {
+  // All sensors are inside the room, outside the pillar. Exact for the walls; at edges normals lie
+  // between those of two faces.
+  const SplatModel& model = room_model().model;
+  EXPECT_TRUE(room_model().report.oriented);
+  std::size_t turned_away = 0;
+  for (const Disk& disk : model.disks)
+    if (dot(disk.normal, Vec3f{2.5F, 1, 1.2F} - disk.center) < 0) ++turned_away;
+  EXPECT_LT(turned_away, model.size() / 50);
+}
+
+TEST(ConsistentModel, ClassesAndIntensitiesAreThoseOfTheCells) {
+  const SplatModel& model = room_model().model;
+  EXPECT_EQ(model.method, "consistent");
+  EXPECT_EQ(model.label_scheme, semantickitti_labels().name());
+  EXPECT_TRUE(model.groups.empty());
+  ASSERT_EQ(model.classes.size(), model.size());
+  ASSERT_EQ(model.intensities.size(), model.size());
+  int floor = 0;
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    const Vec3f c = model.disks[i].center;
+    const bool at_wall = std::min({c.x, c.y, 5 - c.x, 4 - c.y}) < 0.1F;
+    if (at_wall || kPillar.contains(c, 0.1) || kPasserby.contains(c, 0.1)) continue;
+    EXPECT_EQ(model.classes[i], c.z < 1.2F ? kGround : kBuilding);
+    EXPECT_FLOAT_EQ(model.intensities[i], c.z < 1.2F ? 0.25F : 0.75F);
+    floor += c.z < 1.2F ? 1 : 0;
+  }
+  EXPECT_GT(floor, 50);
+}
+
+TEST(ConsistentModel, MajorityOfACellAndTheSmallestOfEquals) {
+  // Five points a cell, all at one place: classes 50 50 40 40 80 give 40, intensities their mean.
+  PointCloud cloud;
+  for (int y = 0; y < 20; ++y) {
+    for (int x = 0; x < 20; ++x) {
+      const Vec3f p = {0.05F * static_cast<float>(x) + 0.02F, 0.05F * static_cast<float>(y) + 0.02F,
+                       0.02F};
+      for (const std::uint16_t label : {kBuilding, kBuilding, kGround, kGround, kPole}) {
+        cloud.positions.push_back(p);
+        cloud.classes.push_back(label);
+        cloud.intensities.push_back(label);
+      }
+    }
+  }
+  const Built built = build(cloud);
+  ASSERT_GT(built.model.size(), 0U);
+  for (std::size_t i = 0; i < built.model.size(); ++i) {
+    EXPECT_EQ(built.model.classes[i], 40);
+    EXPECT_EQ(built.model.intensities[i], 52.0F);
+    EXPECT_LT(std::fabs(built.model.disks[i].center.z - 0.02F), 1e-6F);
+  }
+  for (std::uint16_t& label : cloud.classes)
+    if (label == 40) label = 10;  // cars can move
+  BuildOptions options = consistent_options();
+  options.remove = DynamicRemoval::movable;
+  const Built removed = build(cloud, 2, options);
+  EXPECT_EQ(removed.report.points_dynamic, 800U);
+  EXPECT_EQ(removed.report.points_used, 1200U);
+  ASSERT_GT(removed.model.size(), 0U);
+  EXPECT_EQ(removed.model.classes[0], 50);
+}
+
+/// Small neighbourhoods: enough for the bytes.
+BuildOptions quick_options() {
+  BuildOptions options = consistent_options();
+  options.consistent.planes.scales = {10, 20, 40, 40, 40};
+  options.consistent.cover.neighbors = 40;
+  return options;
+}
+
+PointCloud thin_room() {
+  const PointCloud cloud = scanned_room();
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t i = 0; i < cloud.size(); i += 2) some.push_back(i);
+  return gather(cloud, some);
+}
+
+TEST(ConsistentModel, OrderOfPointsAndThreadsDoNotChangeTheBytes) {
+  PointCloud cloud = thin_room();
+  // Equal positions with other attributes must not make the order matter either.
+  for (std::size_t i = 0; i < 300; ++i) cloud.positions[i + 1000] = cloud.positions[i];
+  const SplatModel one = build(cloud, 1, quick_options()).model;
+  EXPECT_GT(one.size(), 500U);
+  std::vector<std::uint32_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), 0U);
+  for (std::size_t i = order.size(); i-- > 1;)
+    std::swap(order[i], order[Random(5, 0, i).next_bits() % (i + 1)]);
+  EXPECT_TRUE(same_bytes(one, build(gather(cloud, order), 3, quick_options()).model));
+}
+
+TEST(ConsistentModel, WorksWithoutSensorPositionsAndSaysSoOnce) {
+  PointCloud cloud = thin_room();
+  cloud.sensor_positions.clear();
+  const Built built = build(cloud, 2, quick_options());
+  expect_sound(built);
+  EXPECT_GT(built.model.size(), 500U);
+  EXPECT_FALSE(built.report.ray_checked);
+  EXPECT_FALSE(built.report.oriented);
+  ASSERT_EQ(built.warnings.texts.size(), 1U);
+  EXPECT_NE(built.warnings.texts[0].find("no sensor positions"), std::string::npos);
+  EXPECT_TRUE(room_model().warnings.texts.empty());
+  std::vector<std::uint32_t> backward(cloud.size());
+  std::iota(backward.rbegin(), backward.rend(), 0U);
+  EXPECT_TRUE(same_bytes(built.model, build(gather(cloud, backward), 3, quick_options()).model));
+}
+
+std::optional<ErrorKind> kind_of_error(PointCloud cloud, const BuildOptions& options) {
+  try {
+    build(std::move(cloud), 1, options);
+  } catch (const Error& error) {
+    return error.kind();
+  }
+  return std::nullopt;
+}
+
+TEST(ConsistentModel, NoPointsAreAnError) {
+  EXPECT_EQ(kind_of_error({}, consistent_options()), ErrorKind::data);
+  PointCloud cars;  // all removed
+  cars.positions.resize(5);
+  cars.classes.resize(5, 10);
+  BuildOptions options = consistent_options();
+  options.remove = DynamicRemoval::movable;
+  EXPECT_EQ(kind_of_error(cars, options), ErrorKind::data);
+}
+
+TEST(ConsistentModel, OptionsOutOfRangeAreAnError) {
+  PointCloud cloud;
+  cloud.positions = {{1, 2, 3}};
+  const auto kind_with = [&](auto change) {
+    BuildOptions options = consistent_options();
+    change(options.consistent);
+    return kind_of_error(cloud, options);
+  };
+  EXPECT_EQ(kind_with([](ConsistentOptions&) {}), std::nullopt);
+  for (const double cell_m : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_EQ(kind_with([&](ConsistentOptions& o) { o.cell_m = cell_m; }), ErrorKind::usage);
+  EXPECT_EQ(kind_with([](ConsistentOptions& o) { o.evidence_rays = 0; }), ErrorKind::usage);
+  EXPECT_EQ(kind_with([](ConsistentOptions& o) { o.evidence.stride = 0; }), ErrorKind::usage);
+  EXPECT_EQ(kind_with([](ConsistentOptions& o) { o.evidence.depth = 0; }), ErrorKind::usage);
+}
+
+TEST(ConsistentModel, DegenerateCloudsFinish) {
+  for (const bool with_sensor : {false, true}) {
+    const auto cloud_of = [&](std::vector<Vec3f> points) {
+      PointCloud cloud;
+      cloud.positions = std::move(points);
+      if (with_sensor) cloud.sensor_positions.resize(cloud.size(), {0, 0, 1.7F});
+      return cloud;
+    };
+    // No extent, no radius, no splat.
+    EXPECT_EQ(build(cloud_of({{3, 1, 1}})).model.size(), 0U);
+    EXPECT_EQ(build(cloud_of(std::vector<Vec3f>(5000, {3, 1, 1}))).model.size(), 0U);
+    // Points at the sensor itself have no direction.
+    EXPECT_EQ(build(cloud_of(std::vector<Vec3f>(50, {0, 0, 1.7F}))).model.size(), 0U);
+    for (const int n : {2, 7, 9, 500}) {
+      std::vector<Vec3f> line, plane;
+      for (int i = 0; i < n; ++i) {
+        line.push_back({0.05F * static_cast<float>(i), 0, 0});
+        plane.push_back({0.1F * static_cast<float>(i % 20), 0.1F * static_cast<float>(i / 20), 0});
+      }
+      expect_sound(build(cloud_of(line)));
+      expect_sound(build(cloud_of(plane)));
+      // Outliers far beyond what floats can square.
+      plane.insert(plane.end(), {{1e30F, 0, 0}, {0, -3e38F, 0}, {1e12F, 1e12F, 0}});
+      expect_sound(build(cloud_of(plane)));
+    }
+  }
+}
+
+TEST(ConsistentDisks, CellsBelongToTheirDisks) {
+  // Every disk stands on its cell: off its mean by the shifts to the plane and to the rays at most.
+  const PointCloud cloud = thin_room();
+  std::vector<std::string> steps;
+  const ConsistentOptions options = quick_options().consistent;
+  const ConsistentDisks made = consistent_disks(
+      cloud, options, Executor(2), [&](std::string_view name) { steps.emplace_back(name); });
+  EXPECT_TRUE(made.checked);
+  ASSERT_EQ(made.cells.size(), made.disks.size());
+  EXPECT_TRUE(std::is_sorted(made.cells.begin(), made.cells.end()));
+  const double most_m = options.planes.most_shift_m + options.settle.most_shift_m;
+  for (std::size_t i = 0; i < made.disks.size(); ++i) {
+    const Vec3f mean = made.fused.positions[made.cells[i]];
+    EXPECT_LE(length(made.disks[i].center - mean), most_m + 1e-5);
+  }
+  EXPECT_EQ(std::unique(steps.begin(), steps.end()), steps.end());
+  EXPECT_GE(steps.size(), 4U);
+}
+
+}  // namespace
+}  // namespace adasplats
