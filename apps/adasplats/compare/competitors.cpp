@@ -87,13 +87,26 @@ class Run {
     return result;
   }
 
-  bool generate() {
-    if (!competitor_.file.empty()) {
-      const StepResult info = run({"info", {"info", model_.string()}, {model_}, {}});
-      entry_["generate"] = {{"command", nullptr}, {"seconds", nullptr}};
-      if (info.done()) entry_["generate"]["primitives"] = info.report.value("faces", Json());
-      return info.done();
+  /// In place of generate() for a ready-made mesh.
+  bool look_at_mesh() {
+    entry_["generate"] = {{"command", nullptr}, {"seconds", nullptr}};
+    const Step step = {"info", {"info", model_.string()}, {model_}, {}};
+    StepResult looked = run(step);
+    if (!looked.done()) return false;
+    const Json facts = looked.report.at("files").at(0);
+    if (!facts.contains("triangles")) {
+      looked.child.end = ChildEnd::failed;
+      looked.child.message =
+          model_.string() + ": is no mesh but a " + facts.at("kind").get<std::string>();
+      note_failure(entry_, step, looked);
+      return false;
     }
+    entry_["generate"]["primitives"] = facts.at("triangles");
+    return true;
+  }
+
+  bool generate() {
+    if (!competitor_.file.empty()) return look_at_mesh();
     Words words = {competitor_.is_mesh ? "mesh" : "model"};
     for (const fs::path& input : rules_.data.inputs) words.push_back(input.string());
     add(words, {"-o", model_.string()});

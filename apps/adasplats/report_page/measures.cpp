@@ -29,7 +29,8 @@ std::vector<Cell> cells_of(const std::vector<Measure>& measures,
   for (std::size_t m = 0; m < measures.size(); ++m) {
     const Measure& measure = measures[m];
     cells.push_back(cell_of(competitor ? measure.here(*competitor) : std::nullopt, measure.text));
-    if (competitor != nullptr && cells.back().value && measure.note) cells.back().note = measure.note(*competitor);
+    if (competitor != nullptr && cells.back().value && measure.note)
+      cells.back().note = measure.note(*competitor);
     if (!with_paper[m]) continue;
     cells.push_back(cell_of(paper ? measure.paper(*paper) : std::nullopt,
                             measure.paper_text != nullptr ? measure.paper_text : measure.text));
