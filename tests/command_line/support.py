@@ -24,6 +24,7 @@ SUBCOMMANDS = [
     ["evaluate", "c2c"],
     ["evaluate", "resimulate"],
     ["evaluate", "truth"],
+    ["compare"],
     ["demo"],
 ]
 ROAD, BUILDING, POLE = 40, 50, 80

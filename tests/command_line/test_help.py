@@ -9,7 +9,7 @@ from support import SUBCOMMANDS, ProgramTest, run
 class Help(ProgramTest):
     def test_program(self):
         text = self.run_good("--help").stdout
-        for name in ["synth", "info", "model", "simulate", "render", "evaluate", "demo"]:
+        for name in ["synth", "info", "model", "simulate", "render", "evaluate", "compare", "demo"]:
             self.assertIn(name, text)
 
     def test_subcommands(self):
