@@ -37,6 +37,7 @@ maybe-test libopenvdb-dev  -             IMLS meshes
 maybe-test libboost-dev    -             headers that those of OpenVDB include
 maybe-test libopen3d-dev   -             Poisson meshes
 maybe-test cloudcompare    CloudCompare  distances to compare ours with
+maybe-test chromium        chromium      the report page in a browser
 LIST
 }
 
