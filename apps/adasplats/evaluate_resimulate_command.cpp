@@ -40,7 +40,7 @@ class EvaluateResimulateCommand final : public Command {
   explicit EvaluateResimulateCommand(CLI::App& evaluate)
       : Command(evaluate, "resimulate", "Cast the beams of held-out scans again", kExamples) {
     CLI::App& app = options();
-    require(add_path(app, "MODEL", job_.model, "Splat model"));
+    require(add_path(app, "MODEL", job_.model, "Splat model or mesh"));
     require(add_path(app, "SEQUENCE", job_.sequence, "SemanticKITTI sequence folder"));
     app.add_option("--labels", job_.labels, "What labels mean: a name or a TOML file")
         ->capture_default_str()
