@@ -52,14 +52,33 @@ void add_cleaning(CLI::App& app, BuildOptions& options) {
       ->group(kGroup);
 }
 
+void add_consistent(CLI::App& app, ConsistentOptions& options) {
+  constexpr const char* kGroup = "Method consistent";
+  const auto number = [&app](const char* flag, auto& value, const char* help) {
+    app.add_option(flag, value, help)->capture_default_str()->group(kGroup);
+  };
+  number("--cell", options.cell_m, "Side of the cells that points are fused in, m");
+  number("--small-cell", options.small_cell_m,
+         "Side of cells where the surface is not flat, m; 0: as elsewhere");
+  number("--largest-radius", options.cover.largest_radius_m,
+         "Of a splat, m; 0: splats do not grow over their neighbours");
+  number("--balance-rounds", options.balance_rounds,
+         "Of judging small disks by the measured rays; 0: no ray check");
+  number("--strict-rounds", options.strict_rounds, "Of limiting grown splats that rays go through");
+  number("--settle-rounds", options.settle_rounds, "Of moving splats to where rays end");
+  add_switch(app, "--fill,!--no-fill", options.fill,
+             "Put small splats where measured rays fall through")
+      ->group(kGroup);
+}
+
 }  // namespace
 
 const std::vector<std::pair<std::string, SplatMethod>>& method_names() {
   static const std::vector<std::pair<std::string, SplatMethod>> names = {
+      {"consistent", SplatMethod::consistent},
       {"basic", SplatMethod::basic},
       {"descriptors", SplatMethod::descriptors},
-      {"semantic", SplatMethod::semantic},
-      {"consistent", SplatMethod::consistent}};
+      {"semantic", SplatMethod::semantic}};
   return names;
 }
 
@@ -73,7 +92,8 @@ void add_removal_option(CLI::App& app, DynamicRemoval& removal) {
 
 void add_build_options(CLI::App& app, BuildOptions& options) {
   add_choice<SplatMethod>(app, "--method", options.method, method_names(),
-                          "Variant of the paper; semantic needs labels");
+                          "consistent agrees with the measured rays; the others are the paper's variants, of "
+                          "which semantic needs labels");
   app.add_option("--neighbors", options.neighbors, "K, neighbours of a point")
       ->capture_default_str();
   app.add_option("--alpha", options.alpha,
@@ -92,6 +112,7 @@ void add_build_options(CLI::App& app, BuildOptions& options) {
                               {"scattered", SelectionOrder::scattered}},
                              "Order in which candidate splats are taken");
   add_removal_option(app, options.remove);
+  add_consistent(app, options.consistent);
   add_cleaning(app, options);
   add_scales(app, options);
 }

@@ -27,12 +27,14 @@ std::string class_name(const std::optional<LabelScheme>& scheme, std::uint16_t i
 KittiSequence chosen_scans(KittiSequence all, const ScanRange& range) {
   KittiSequence chosen;
   chosen.folder = all.folder;
+  chosen.beams.from_hdl64 = all.beams.from_hdl64;
   std::size_t taken = 0;
   for (std::size_t i = range.first; i < all.scans.size() && taken < range.count;
        i += range.stride, ++taken) {
     chosen.scans.push_back(all.scans[i]);
     if (!all.labels.empty()) chosen.labels.push_back(all.labels[i]);
     chosen.trajectory.push_back(all.trajectory[i]);
+    if (!all.beams.sweeps_m.empty()) chosen.beams.sweeps_m.push_back(all.beams.sweeps_m[i]);
   }
   if (chosen.scans.empty()) {
     throw Error(ErrorKind::usage, "--scans: " + all.folder.string() + " has only " +
@@ -76,8 +78,9 @@ ResimulateResult run_resimulate(const ResimulateJob& job, Session& session) {
   require_input(job.model);
   if (!job.picture.empty()) check_output_file(job.picture);
   const LabelScheme labels = load_label_scheme(job.labels);
-  const KittiSequence sequence =
-      chosen_scans(open_kitti_sequence(resolve_cloud_input(job.sequence)), job.scans);
+  KittiSequence all_scans = open_kitti_sequence(resolve_cloud_input(job.sequence));
+  if (!job.beams_from_poses) all_scans.beams = recognize_beams(all_scans);
+  const KittiSequence sequence = chosen_scans(std::move(all_scans), job.scans);
   const ModelScene scene(job.model, "", session);
   ResimulateResult result = resimulate(scene.tracer(), scene.view(), scene.origin(), sequence,
                                        labels, job.options, session.executor, session.progress);
@@ -120,6 +123,7 @@ nlohmann::ordered_json to_json(const CloudComparison& comparison) {
 nlohmann::ordered_json to_json(const ResimulateResult& result) {
   nlohmann::ordered_json json = to_json(result.all);
   json.update(to_json(result.clouds));
+  json["beams"] = result.beams;
   const auto add = [&](const char* key, const auto& parts) {
     json[key] = nlohmann::ordered_json::object();
     for (const auto& [name, accuracy] : parts) json[key][name] = to_json(accuracy);

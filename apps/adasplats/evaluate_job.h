@@ -38,6 +38,7 @@ struct ResimulateJob {
   std::filesystem::path model;
   std::filesystem::path sequence;
   ScanRange scans;  ///< of the sequence
+  bool beams_from_poses = false;  ///< even where the sensor is recognised
   std::string labels = "semantickitti";
   ResimulateOptions options;
   std::filesystem::path picture;  ///< PNG of the middle scan's beams by error; empty: none

@@ -31,7 +31,7 @@ std::string table_of(const ResimulateResult& result) {
     for (const auto& [name, accuracy] : *parts) add_row(table, name, accuracy);
   }
   const CloudDistance& clouds = result.clouds;
-  return table.text() + "\nChamfer " + centimetres(clouds.chamfer_m) + ", " +
+  return table.text() + "\nBeams from " + result.beams + "; Chamfer " + centimetres(clouds.chamfer_m) + ", " +
          fixed(clouds.chamfer_m2, 4) + " m2; shares are of all rays, errors of hits\n";
 }
 
@@ -49,6 +49,8 @@ class EvaluateResimulateCommand final : public Command {
         ->capture_default_str();
     app.add_option("--max-range", job_.options.max_range_m, "Farther beams are left out, m")
         ->capture_default_str();
+    app.add_flag("--beams-from-poses", job_.beams_from_poses,
+                 "Beams start at the poses, even where the sensor is recognised");
     app.add_flag("--keep-moving", keep_moving_, "Count beams on moving objects");
     app.add_flag("--drop-movable", job_.options.drop_movable,
                  "Leave out beams on movable objects (parked cars)");

@@ -42,6 +42,9 @@ void add_load_options(CLI::App& app, LoadOptions& options) {
   app.add_option_function<std::string>("--scans", set_scans, "Which scans of a sequence")
       ->type_name("FIRST:COUNT[:STRIDE]")
       ->group(kGroup);
+  app.add_flag("--beams-from-poses", options.beams_from_poses,
+               "Beams of sequences start at their poses, even where the sensor is recognised")
+      ->group(kGroup);
   app.add_option("--max-distance", options.max_distance_m,
                  "Points farther than this from the median of all are dropped, m")
       ->capture_default_str()

@@ -58,6 +58,7 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
   json["points_read"] = result.loaded.points_read;
   json["points_not_finite"] = result.loaded.dropped_not_finite;
   json["points_far"] = result.loaded.dropped_far;
+  json["beams"] = result.loaded.beams;
   json["points_in"] = built.points_in;
   json["points_dynamic"] = built.points_dynamic;
   json["points_noise"] = built.points_noise;

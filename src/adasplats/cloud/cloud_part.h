@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/scan_beams.h"
 #include "adasplats/core/rigid_transform.h"
 
 namespace adasplats {
@@ -19,6 +20,7 @@ struct PartRun {
   std::size_t end = 0;
   std::filesystem::path file;
   RigidTransform world_from_local;
+  std::size_t scan = 0;  ///< of the sequence
 };
 
 /// What one input of load_cloud gives while the common origin is not known yet.
@@ -30,6 +32,7 @@ struct CloudPart {
   std::vector<Vec3d> world_sensors;    ///< of files that have them
   std::vector<PartRun> runs;
   bool is_sequence = false;
+  ScanBeams beams;  ///< of a sequence
 
   std::size_t size() const { return runs.empty() ? 0 : runs.back().end; }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/cloud/scan_beams.h"
 #include "adasplats/cloud/trajectory.h"
 
 namespace adasplats {
@@ -19,6 +20,7 @@ struct KittiSequence {
   std::vector<std::filesystem::path> scans;   ///< by name
   std::vector<std::filesystem::path> labels;  ///< empty, or one a scan
   Trajectory trajectory;                      ///< world_from_velodyne, one a scan
+  ScanBeams beams;  ///< unless recognize_beams says more: from the frame's origin
 };
 
 /// True for a folder with a `velodyne` folder in it.

@@ -253,6 +253,12 @@ struct SensorFallback {
   }
 };
 
+/// Where the beam that measured a point of a scan started, world coordinates.
+Vec3d beam_origin(const ScanBeams& beams, const PartRun& run, Vec3d world) {
+  const RigidTransform& pose = run.world_from_local;
+  return pose * beams.origin_of(run.scan, pose.inverse() * world);
+}
+
 /// The part's cloud relative to `origin`, without the points that are dropped.
 PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin,
                      const SensorFallback& fallback, const Executor& executor) {
@@ -270,7 +276,7 @@ PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin,
       if (kept[i] == 0) return;
       positions[i] = vec_cast<float>(world - origin);
       if (!has_sensors) return;
-      const Vec3d sensor = part.is_sequence             ? run.world_from_local.translation
+      const Vec3d sensor = part.is_sequence             ? beam_origin(part.beams, run, world)
                            : part.world_sensors.empty() ? fallback.at(world)
                                                         : part.world_sensors[i];
       cloud.sensor_positions[i] = vec_cast<float>(sensor - origin);
@@ -334,6 +340,7 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
     gathered.kept.push_back(finite_points(part, executor));
     if (options.strict) require_all_finite(part, gathered.kept.back());
     report.points_read += part.size();
+    if (part.is_sequence) report.beams.push_back(part.beams.description());
     report.dropped_not_finite += count_dropped(gathered.kept.back());
   }
   const Extents extents = drop_far(gathered, options.max_distance_m, executor);

@@ -28,12 +28,14 @@ struct LoadOptions {
   /// A trajectory whose nearest position (in the plane) becomes the sensor position of points that
   /// have none.
   std::filesystem::path trajectory;
-  /// Of a sequence: scans [first, first + count), every `stride`-th.
+  /// Of a sequence: `count` scans (or as many as there are) from `first` on, every `stride`-th.
   std::size_t first_scan = 0;
   std::size_t scan_count = static_cast<std::size_t>(-1);
   std::size_t scan_stride = 1;
   /// Points not finite are an error instead of being dropped and counted.
   bool strict = false;
+  /// Sensor positions of sequences are their poses' even where beams start beside them (ScanBeams).
+  bool beams_from_poses = false;
   /// Read whole records of truncated LAS files.
   bool salvage = false;
   /// Points farther than this from the median of all points are dropped and counted, m.
@@ -43,6 +45,8 @@ struct LoadOptions {
 /// What was dropped on the way.
 struct LoadReport {
   std::size_t points_read = 0;
+  /// Where the beams of the sequences started (ScanBeams::description), one each.
+  std::vector<std::string> beams;
   /// Position, sensor position or intensity not finite (sensor positions: or beyond 1e12 m).
   std::size_t dropped_not_finite = 0;
   /// Farther than max_distance_m from the componentwise median, or beyond 1e12 m, where doubles no

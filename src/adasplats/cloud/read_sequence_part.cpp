@@ -20,10 +20,9 @@ std::vector<std::size_t> chosen_scans(const KittiSequence& sequence, const LoadO
     throw Error(ErrorKind::usage, sequence.folder.string() + ": has " + std::to_string(count) +
                                       " scans, the first asked for is number " +
                                       std::to_string(options.first_scan));
-  const std::size_t length = std::min(options.scan_count, count - options.first_scan);
   std::vector<std::size_t> chosen;
   // Not `i += stride` up to the end: a huge stride would wrap.
-  for (std::size_t i = 0; i < length; ++i)
+  for (std::size_t i = 0; i < count - options.first_scan && chosen.size() < options.scan_count; ++i)
     if (i % options.scan_stride == 0) chosen.push_back(options.first_scan + i);
   return chosen;
 }
@@ -39,7 +38,7 @@ std::vector<PartRun> runs_of(const KittiSequence& sequence,
     const std::uintmax_t bytes = std::filesystem::file_size(file, problem);
     if (problem) throw system_error(ErrorKind::no_input, file, "cannot be read", problem.value());
     const std::size_t end = begin + static_cast<std::size_t>(bytes / kPointBytes);
-    runs.push_back({begin, end, file, sequence.trajectory[scan].world_from_sensor});
+    runs.push_back({begin, end, file, sequence.trajectory[scan].world_from_sensor, scan});
     begin = end;
   }
   return runs;
@@ -68,6 +67,7 @@ CloudPart read_sequence_part(const std::filesystem::path& folder, const LoadOpti
   const std::vector<std::size_t> chosen = chosen_scans(sequence, options);
   CloudPart part;
   part.is_sequence = true;
+  if (!options.beams_from_poses) part.beams = recognize_beams(sequence);
   part.runs = runs_of(sequence, chosen);
   const std::size_t points = part.size();
   PointCloud& cloud = part.cloud;

@@ -29,7 +29,7 @@ struct Beam {
 };
 
 /// Beams of one scan that take part, with the points they measured and the model predicts.
-struct ScanBeams {
+struct CastScan {
   std::vector<Beam> beams;
   PointCloud measured;   ///< sensor frame
   PointCloud predicted;  ///< sensor frame; beams without a hit have none
@@ -100,12 +100,24 @@ std::vector<std::uint32_t> select_points(const KittiScan& scan, const std::files
   return selected;
 }
 
-/// From the sensor's origin through the measured point, in the scene's frame.
-Ray beam_ray(const RigidTransform& scene_from_sensor, Vec3f measured) {
-  const Vec3d direction = normalized(vec_cast<double>(measured));
+/// A measured beam in the sensor's frame.
+struct MeasuredBeam {
+  Vec3d origin;
+  Vec3d direction;  ///< unit
+  double range_m;
+};
+
+MeasuredBeam measured_beam(const ScanBeams& beams, std::size_t scan, Vec3f measured) {
+  const Vec3d point = vec_cast<double>(measured);
+  const Vec3d origin = beams.origin_of(scan, point);
+  const double range_m = length(point - origin);
+  return {origin, (point - origin) / range_m, range_m};
+}
+
+Ray ray_of(const MeasuredBeam& beam, const RigidTransform& scene_from_sensor) {
   Ray ray;
-  ray.origin = vec_cast<float>(scene_from_sensor.translation);
-  ray.direction = vec_cast<float>(scene_from_sensor.rotation * direction);
+  ray.origin = vec_cast<float>(scene_from_sensor * beam.origin);
+  ray.direction = vec_cast<float>(scene_from_sensor.rotation * beam.direction);
   return ray;
 }
 
@@ -120,7 +132,7 @@ struct Setting {
   Bins incidences;
 };
 
-ScanBeams cast_scan(const Setting& setting, const KittiSequence& sequence, std::size_t index,
+CastScan cast_scan(const Setting& setting, const KittiSequence& sequence, std::size_t index,
                     const Executor& executor) {
   const KittiScan scan = read_kitti_scan(sequence, index);
   const std::vector<std::uint32_t> selected =
@@ -128,30 +140,31 @@ ScanBeams cast_scan(const Setting& setting, const KittiSequence& sequence, std::
   RigidTransform scene_from_sensor = sequence.trajectory[index].world_from_sensor;
   scene_from_sensor.translation = scene_from_sensor.translation - setting.scene_origin;
 
-  ScanBeams result;
+  CastScan result;
   result.beams.resize(selected.size());
   result.measured.positions.resize(selected.size());
+  std::vector<MeasuredBeam> measured(selected.size());
   std::vector<Ray> rays(selected.size());
   std::vector<Hit> hits(selected.size());
   executor.for_chunks(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       result.measured.positions[k] = scan.positions[selected[k]];
-      rays[k] = beam_ray(scene_from_sensor, result.measured.positions[k]);
+      measured[k] = measured_beam(sequence.beams, index, result.measured.positions[k]);
+      rays[k] = ray_of(measured[k], scene_from_sensor);
     }
   });
   setting.tracer.nearest(rays, hits, executor);
   for (std::size_t k = 0; k < selected.size(); ++k) {
-    const Vec3d measured = vec_cast<double>(result.measured.positions[k]);
-    const double range_m = length(measured);
+    const double range_m = measured[k].range_m;
     Beam& beam = result.beams[k];
-    beam.range_bin = setting.ranges.bin_of(range_m);
+    beam.range_bin = setting.ranges.bin_of(length(vec_cast<double>(result.measured.positions[k])));
     if (!scan.classes.empty()) beam.class_id = scan.classes[selected[k]];
     if (!hits[k].valid()) continue;
     const double predicted_m = static_cast<double>(hits[k].t);
     beam.error_m = static_cast<float>(predicted_m - range_m);
     beam.incidence_bin =
         setting.incidences.bin_of(incidence_deg(setting.scene, rays[k], hits[k].primitive));
-    result.predicted.positions.push_back(vec_cast<float>(measured * (predicted_m / range_m)));
+    result.predicted.positions.push_back(vec_cast<float>(measured[k].origin + predicted_m * measured[k].direction));
   }
   return result;
 }
@@ -238,7 +251,7 @@ ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d 
   MeanCloudDistance clouds;
   progress.begin_step("re-simulate", sequence.scans.size());
   for (std::size_t index = 0; index < sequence.scans.size(); ++index) {
-    const ScanBeams scan = cast_scan(setting, sequence, index, executor);
+    const CastScan scan = cast_scan(setting, sequence, index, executor);
     beams.insert(beams.end(), scan.beams.begin(), scan.beams.end());
     if (!scan.predicted.empty()) {
       clouds.add(cloud_distance(scan.predicted, scan.measured, executor));
@@ -256,6 +269,7 @@ ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d 
   ResimulateResult result;
   result.all = accuracy_where(beams, [](const Beam&) { return true; });
   result.clouds = clouds.mean();
+  result.beams = sequence.beams.description();
   add_breakdowns(result, beams, setting, !sequence.labels.empty());
   return result;
 }
@@ -267,7 +281,7 @@ ScanErrors resimulate_scan(const Tracer& tracer, const SceneView& scene, Vec3d s
   check(options);
   const Setting setting{tracer,          scene, scene_origin, labels, options, range_bins(options),
                         incidence_bins()};
-  ScanBeams scan = cast_scan(setting, sequence, index, executor);
+  CastScan scan = cast_scan(setting, sequence, index, executor);
   ScanErrors result{std::move(scan.measured.positions), {}};
   for (const Beam& beam : scan.beams) result.errors_m.push_back(beam.error_m);
   return result;

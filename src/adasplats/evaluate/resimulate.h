@@ -40,6 +40,7 @@ struct BeamAccuracy {
 
 struct ResimulateResult {
   BeamAccuracy all;
+  std::string beams;  ///< where they started (ScanBeams::description)
   /// Predicted against measured points of each scan, the mean over scans (as lidar-nerf and LiDAR4D
   /// average over frames); NaN where no beam hit. Point counts are sums.
   CloudDistance clouds;
@@ -48,8 +49,8 @@ struct ResimulateResult {
   std::vector<std::pair<std::string, BeamAccuracy>> by_class;      ///< names of the label scheme
 };
 
-/// Casts each measured beam of a held-out sequence again, from the sensor's origin through the
-/// measured point, and compares ranges. Incidence is against the hit surface's normal.
+/// Casts each measured beam of a held-out sequence again, from where it started (sequence.beams)
+/// through the measured point, and compares ranges. Incidence is against the hit surface's normal.
 ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
                             const KittiSequence& sequence, const LabelScheme& labels,
                             const ResimulateOptions& options, const Executor& executor,

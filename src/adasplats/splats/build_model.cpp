@@ -73,6 +73,12 @@ void check(const BuildOptions& options) {
           "resample density must be 0 to 100");
   const ConsistentOptions& consistent = options.consistent;
   require(consistent.cell_m > 0, "the cells of the consistent method must be greater than 0");
+  require(consistent.small_cell_m >= 0 && consistent.small_cell_m < consistent.cell_m,
+          "small cells must be smaller than the cells, or 0");
+  require(consistent.cover.largest_radius_m >= 0, "the largest radius must not be negative");
+  require(consistent.balance_rounds >= 0 && consistent.strict_rounds >= 0 &&
+              consistent.settle_rounds >= 0,
+          "rounds of the ray check must not be negative");
   require(consistent.evidence_rays > 0 && consistent.evidence.stride > 0 &&
               consistent.evidence.depth > 0,
           "evidence rays, their stride and their depth must be greater than 0");

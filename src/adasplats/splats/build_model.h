@@ -38,7 +38,7 @@ struct GroupScale {
 };
 
 struct BuildOptions {
-  SplatMethod method = SplatMethod::descriptors;
+  SplatMethod method = SplatMethod::consistent;
   ConsistentOptions consistent;  ///< of that method, which uses `remove` of what follows
 
   int neighbors = 40;       ///< K, section "Basic Splatting"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "adasplats/splats/present_disks.h"
 #include "adasplats/surface/local_shape.h"
 
 namespace adasplats {
@@ -76,11 +77,14 @@ double median_spacing(const std::vector<LocalPlane>& planes, const std::vector<f
   return static_cast<double>(*middle);
 }
 
+/// `typical_spacing`: median spacing of cells that are all of one size.
 std::vector<Disk> seed_disks(const PointCloud& cloud, const FusedPoints& fused,
-                             const std::vector<LocalPlane>& planes,
+                             const std::vector<LocalPlane>& planes, double typical_spacing,
                              const ConsistentOptions& options, const Executor& executor) {
   const std::vector<float> units_m = spacing_units_m(cloud, fused, executor);
-  const double largest = options.largest_spacing * median_spacing(planes, units_m);
+  const double spacings = cloud.sensor_positions.empty() ? options.unchecked_largest_spacing
+                                                         : options.largest_spacing;
+  const double largest = spacings * typical_spacing;
   std::vector<Disk> seeds(planes.size());
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const double largest_m = largest * static_cast<double>(units_m[i]);
@@ -88,6 +92,24 @@ std::vector<Disk> seed_disks(const PointCloud& cloud, const FusedPoints& fused,
     seeds[i] = {planes[i].center, seed_radius(spacing_m, largest_m, options), planes[i].normal};
   }
   return seeds;
+}
+
+/// Splits cells around which no plane is larger than the smallest scales: leaves, poles, wires are
+/// smaller than a cell. Gives the median spacing of the cells before.
+double split_where_not_flat(const PointCloud& cloud, const ConsistentOptions& options,
+                            FusedPoints& fused, const Executor& executor) {
+  const PointIndex index = PointIndex::from_sorted(fused.positions, executor);
+  // Larger scales than the first that decides need not be looked at.
+  AdaptivePlaneOptions few = options.planes;
+  const std::size_t decides = std::min<std::size_t>(options.split_scale + 1U, few.scales.size() - 1);
+  std::fill(few.scales.begin() + decides, few.scales.end(), few.scales[decides]);
+  const auto planes = adaptive_planes(fused, index, few, executor);
+  const double spacing = median_spacing(planes, spacing_units_m(cloud, fused, executor));
+  if (options.small_cell_m == 0) return spacing;
+  std::vector<bool> split(planes.size());
+  for (std::size_t i = 0; i < planes.size(); ++i) split[i] = planes[i].scale <= options.split_scale;
+  fused = split_cells(cloud.positions, fused, split, options.small_cell_m, executor);
+  return spacing;
 }
 
 /// As many rays as a round needs, other ones every round.
@@ -111,7 +133,7 @@ void balance(std::span<Disk> seeds, const MeasuredRays& rays, const ConsistentOp
       for (std::size_t i = begin; i < end; ++i) {
         const DiskEvidence own = evidence_of(evidence, i);
         if (seeds[i].radius > 0 && own.seen()) {
-          seeds[i].radius = is_borne_out(own) ? balanced_radius(own, seeds[i].radius) : 0;
+          seeds[i].radius = judged_radius(own, seeds[i].radius, options.judge);
         }
       }
     });
@@ -143,6 +165,38 @@ void limit_overhangs(SurfaceCover& cover, const MeasuredRays& rays,
   }
 }
 
+/// Puts seeds back at cells whose rays find nothing where they ended: chosen disks cover the middles
+/// of all seeds, not all that is between them.
+void fill_gaps(std::vector<Disk>& chosen, const std::vector<Disk>& seeds, const FusedPoints& fused,
+               const MeasuredRays& rays, const ConsistentOptions& options,
+               const Executor& executor) {
+  constexpr std::size_t kRaysAtOnce = std::size_t{1} << 18;
+  std::vector<std::uint8_t> missed(fused.members.size());  // one a point
+  {
+    const PresentDisks present(chosen, executor);
+    if (present.empty()) return;
+    std::vector<Ray> batch;
+    std::vector<Hit> hits;
+    for (std::size_t first = 0; first < rays.size(); first += kRaysAtOnce) {
+      batch.resize(std::min(kRaysAtOnce, rays.size() - first));
+      hits.assign(batch.size(), Hit{});
+      executor.for_chunks(batch.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) batch[k] = rays.ray(first + k, options.missed_m);
+      });
+      present.tracer().nearest(batch, hits, executor);
+      for (std::size_t k = 0; k < batch.size(); ++k) {
+        if (!hits[k].valid()) missed[rays.point(first + k)] = 1;
+      }
+    }
+  }
+  for (std::size_t cell = 0; cell < chosen.size(); ++cell) {
+    if (chosen[cell].radius > 0) continue;
+    for (const std::uint32_t i : fused.points_of(cell)) {
+      if (missed[i] != 0) chosen[cell] = seeds[cell];
+    }
+  }
+}
+
 }  // namespace
 
 ConsistentDisks consistent_disks(const PointCloud& cloud, const ConsistentOptions& options,
@@ -151,12 +205,14 @@ ConsistentDisks consistent_disks(const PointCloud& cloud, const ConsistentOption
   ConsistentDisks result;
   begin_step("fusion");
   result.fused = fuse_points(cloud.positions, options.cell_m, executor);
-  const PointIndex index = PointIndex::from_sorted(result.fused.positions, executor);
 
   begin_step("planes");
+  const double typical_spacing = split_where_not_flat(cloud, options, result.fused, executor);
+  const PointIndex index = PointIndex::from_sorted(result.fused.positions, executor);
   std::vector<LocalPlane> planes = adaptive_planes(result.fused, index, options.planes, executor);
   orient_normals(cloud, result.fused, planes, executor);
-  std::vector<Disk> seeds = seed_disks(cloud, result.fused, planes, options, executor);
+  std::vector<Disk> seeds =
+      seed_disks(cloud, result.fused, planes, typical_spacing, options, executor);
 
   std::optional<MeasuredRays> rays;
   result.checked = !cloud.sensor_positions.empty() && options.balance_rounds > 0;
@@ -167,7 +223,9 @@ ConsistentDisks consistent_disks(const PointCloud& cloud, const ConsistentOption
   }
 
   begin_step("cover");
-  SurfaceCover cover(seeds, index, options.cover, executor);
+  CoverOptions cover_options = options.cover;
+  if (!result.checked) cover_options.sectors = options.unchecked_sectors;
+  SurfaceCover cover(seeds, index, cover_options, executor);
   if (result.checked) {
     begin_step("ray check of splats");
     limit_overhangs(cover, *rays, options, executor);
@@ -177,6 +235,10 @@ ConsistentDisks consistent_disks(const PointCloud& cloud, const ConsistentOption
     begin_step("settling");
     for (int round = 0; round < options.settle_rounds; ++round) {
       settle_disks(chosen, *rays, options.settle, executor);
+    }
+    if (options.fill) {
+      begin_step("filling");
+      fill_gaps(chosen, seeds, result.fused, *rays, options, executor);
     }
   }
   for (std::size_t i = 0; i < chosen.size(); ++i) {

@@ -123,6 +123,19 @@ bool is_borne_out(const DiskEvidence& evidence) {
   return balance >= 0 || best * best >= contradicted;
 }
 
+float judged_radius(const DiskEvidence& evidence, float radius_m, const JudgeOptions& options) {
+  const float balanced_m = is_borne_out(evidence) ? balanced_radius(evidence, radius_m) : 0;
+  if (balanced_m > 0 || radius_m <= options.least_radius_m) return balanced_m;
+  const auto core_sum = [&options](std::span<const std::uint32_t> counts) {
+    const auto core = counts.first(static_cast<std::size_t>(options.core_rings));
+    return std::accumulate(core.begin(), core.end(), std::uint32_t{0});
+  };
+  const std::uint32_t yes = core_sum(evidence.confirmed), no = core_sum(evidence.contradicted);
+  const bool has_chance =
+      yes >= options.core_rays && yes >= options.core_share * (double{1} * yes + no);
+  return has_chance ? std::max(options.core_radius * radius_m, options.least_radius_m) : 0;
+}
+
 float strict_radius(const DiskEvidence& evidence, float radius_m, double most_share) {
   double yes = 0, no = 0;
   int rings = 0;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "adasplats/core/executor.h"
@@ -28,6 +29,18 @@ float balanced_radius(const DiskEvidence& evidence, float radius_m);
 /// on the points that it is made from, so their rays confirm some of the middle, whatever goes
 /// through the rest: of n contradicting rays, the square root of n may miss it by chance.
 bool is_borne_out(const DiskEvidence& evidence);
+
+struct JudgeOptions {
+  int core_rings = 2;            ///< the middle of a disk
+  std::uint32_t core_rays = 2;   ///< that must confirm the middle...
+  double core_share = 0.3;       ///< ...and be so much of those that cross it, to give it a chance
+  float core_radius = 0.25F;     ///< of the radius: what is tried next
+  float least_radius_m = 0.015F;  ///< not below this
+};
+
+/// What the rays leave of a disk: its balanced radius; where that is none but many rays confirm
+/// the very middle (a bar, a twig), a small disk, to be judged again; else 0.
+float judged_radius(const DiskEvidence& evidence, float radius_m, const JudgeOptions& options);
 
 /// The largest radius at which at most `most_share` as many rays contradict as confirm.
 float strict_radius(const DiskEvidence& evidence, float radius_m, double most_share);

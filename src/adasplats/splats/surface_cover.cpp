@@ -3,8 +3,10 @@
 #include "adasplats/splats/surface_cover.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <numbers>
 
 namespace adasplats {
 namespace {
@@ -23,6 +25,42 @@ Place place_of(const Disk& disk, Vec3f point) {
   return {std::fabs(height_m),
           std::sqrt(std::max(0.0F, dot(offset, offset) - height_m * height_m))};
 }
+
+/// How far seeds reach from a disk's middle in each of some equal sectors of its plane.
+class SectorReach {
+ public:
+  SectorReach(const Disk& disk, int sectors) : center_(disk.center), reach_m_{}, sectors_(sectors) {
+    if (sectors_ == 0) return;
+    const Vec3f axis = std::fabs(disk.normal.z) < 0.9F ? Vec3f{0, 0, 1} : Vec3f{1, 0, 0};
+    right_ = normalized(cross(disk.normal, axis));
+    up_ = cross(disk.normal, right_);
+  }
+
+  void add(Vec3f point, float along_m) {
+    if (sectors_ == 0) return;
+    const Vec3f offset = point - center_;
+    const float turn = std::atan2(dot(offset, up_), dot(offset, right_)) / (2 * kPi) + 0.5F;
+    const int sector = std::clamp(static_cast<int>(turn * static_cast<float>(sectors_)), 0,
+                                  sectors_ - 1);
+    float& reach_m = reach_m_[static_cast<std::size_t>(sector)];
+    reach_m = std::max(reach_m, along_m);
+  }
+
+  /// Of the sector with the least; without sectors there is no limit.
+  float least_m() const {
+    if (sectors_ == 0) return std::numeric_limits<float>::max();
+    return *std::min_element(reach_m_.begin(), reach_m_.begin() + sectors_);
+  }
+
+  static constexpr int kMostSectors = 16;
+
+ private:
+  static constexpr float kPi = std::numbers::pi_v<float>;
+
+  Vec3f center_, right_, up_;
+  std::array<float, kMostSectors> reach_m_;
+  int sectors_;
+};
 
 /// How far a disk reaches before the surface ends or turns away.
 float grown_radius(std::span<const Disk> seeds, std::uint32_t seed, const NeighborList& neighbors,
@@ -45,13 +83,17 @@ float grown_radius(std::span<const Disk> seeds, std::uint32_t seed, const Neighb
     }
   }
   float reach_m = disk.radius;
+  SectorReach sectors(disk, options.sectors);
   for (std::uint32_t k = 0; k < neighbors.size; ++k) {
     const Disk& other = seeds[neighbors.ranks[k]];
     if (!(other.radius > 0)) continue;
     const Place place = place_of(disk, other.center);
-    if (place.along_m < end_m && fits(other, place)) reach_m = std::max(reach_m, place.along_m);
+    if (place.along_m < end_m && fits(other, place)) {
+      reach_m = std::max(reach_m, place.along_m);
+      sectors.add(other.center, place.along_m);
+    }
   }
-  return reach_m;
+  return std::max(disk.radius, std::min(reach_m, sectors.least_m() + 0.5F * disk.radius));
 }
 
 }  // namespace

@@ -14,11 +14,15 @@ namespace adasplats {
 
 struct CoverOptions {
   std::uint32_t neighbors = 160;     ///< seeds that a disk can grow over, at most
-  double tolerance_m = 0.015;        ///< a disk grows over seeds this near to its plane
+  double tolerance_m = 0.02;        ///< a disk grows over seeds this near to its plane
   double least_normal_cosine = 0.9;  ///< and turned like it
   double edge_m = 0.25;              ///< seeds farther from the plane are other things: no edge
   double largest_radius_m = 0.5;
-  double overlap = 0.8;            ///< a disk covers the seeds within this share of its radius
+  /// A disk reaches no farther than the seeds it grows over do in every one of so many directions
+  /// (and half a seed beyond): nothing hangs over edges. 0: no such limit, for clouds in which
+  /// measured rays tell where surfaces end and what merely nobody looked at.
+  int sectors = 0;
+  double overlap = 0.6;            ///< a disk covers the seeds within this share of its radius
   double covered_within_m = 0.04;  ///< and this near to its plane
 };
 

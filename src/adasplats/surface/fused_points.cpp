@@ -20,8 +20,13 @@ std::uint64_t axis_key(float value, double cell_m) {
 
 /// Points sorted by cell, and where each cell begins.
 struct Cells {
-  std::vector<std::uint32_t> begins;
+  std::vector<std::uint32_t> begins;  ///< one more than cells
   std::vector<std::uint32_t> members;
+
+  std::size_t size() const { return begins.size() - 1; }
+  std::span<const std::uint32_t> points_of(std::size_t cell) const {
+    return std::span(members).subspan(begins[cell], begins[cell + 1] - begins[cell]);
+  }
 };
 
 Cells sort_into_cells(std::span<const Vec3f> points, double cell_m, const Executor& executor) {
@@ -47,34 +52,70 @@ Vec3f mean_of(std::span<const Vec3f> points, std::span<const std::uint32_t> memb
   return vec_cast<float>(sum / static_cast<double>(members.size()));
 }
 
-}  // namespace
-
-FusedPoints fuse_points(std::span<const Vec3f> points, double cell_m, const Executor& executor) {
-  const Cells cells = sort_into_cells(points, cell_m, executor);
-  const std::size_t count = cells.begins.size() - 1;
-  const auto members_of = [&](std::size_t cell) {
-    return std::span(cells.members)
-        .subspan(cells.begins[cell], cells.begins[cell + 1] - cells.begins[cell]);
-  };
-  std::vector<Vec3f> means(count);
-  executor.for_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
+std::vector<Vec3f> means_of(std::span<const Vec3f> points, const Cells& cells,
+                            const Executor& executor) {
+  std::vector<Vec3f> means(cells.size());
+  executor.for_chunks(means.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) {
-      means[cell] = mean_of(points, members_of(cell));
+      means[cell] = mean_of(points, cells.points_of(cell));
     }
   });
+  return means;
+}
 
+/// Cells with their means, along the curve.
+template <class PointsOf>
+FusedPoints in_curve_order(const std::vector<Vec3f>& means, std::size_t points,
+                           const PointsOf& points_of, const Executor& executor) {
   FusedPoints fused;
-  fused.positions.reserve(count);
-  fused.members.reserve(points.size());
-  fused.begins.reserve(count + 1);
+  fused.positions.reserve(means.size());
+  fused.members.reserve(points);
+  fused.begins.reserve(means.size() + 1);
   for (const std::uint32_t cell : hilbert_order(means, executor)) {
     fused.positions.push_back(means[cell]);
     fused.begins.push_back(static_cast<std::uint32_t>(fused.members.size()));
-    const auto members = members_of(cell);
+    const auto members = points_of(cell);
     fused.members.insert(fused.members.end(), members.begin(), members.end());
   }
   fused.begins.push_back(static_cast<std::uint32_t>(fused.members.size()));
   return fused;
+}
+
+}  // namespace
+
+FusedPoints fuse_points(std::span<const Vec3f> points, double cell_m, const Executor& executor) {
+  const Cells cells = sort_into_cells(points, cell_m, executor);
+  const auto points_of = [&](std::size_t cell) { return cells.points_of(cell); };
+  return in_curve_order(means_of(points, cells, executor), points.size(), points_of, executor);
+}
+
+FusedPoints split_cells(std::span<const Vec3f> points, const FusedPoints& fused,
+                        const std::vector<bool>& split, double cell_m, const Executor& executor) {
+  // The points of the split cells in ascending order, so that small cells list theirs so too.
+  std::vector<std::uint32_t> loose;
+  std::vector<std::uint32_t> whole;  // cells that stay
+  for (std::size_t cell = 0; cell < fused.size(); ++cell) {
+    const auto members = fused.points_of(cell);
+    if (split[cell]) {
+      loose.insert(loose.end(), members.begin(), members.end());
+    } else {
+      whole.push_back(static_cast<std::uint32_t>(cell));
+    }
+  }
+  std::sort(loose.begin(), loose.end());
+  std::vector<Vec3f> loose_points;
+  loose_points.reserve(loose.size());
+  for (const std::uint32_t i : loose) loose_points.push_back(points[i]);
+  Cells small = sort_into_cells(loose_points, cell_m, executor);
+
+  std::vector<Vec3f> means = means_of(loose_points, small, executor);
+  const std::size_t small_count = means.size();
+  for (const std::uint32_t cell : whole) means.push_back(fused.positions[cell]);
+  for (std::uint32_t& member : small.members) member = loose[member];
+  const auto points_of = [&](std::size_t cell) {
+    return cell < small_count ? small.points_of(cell) : fused.points_of(whole[cell - small_count]);
+  };
+  return in_curve_order(means, points.size(), points_of, executor);
 }
 
 }  // namespace adasplats

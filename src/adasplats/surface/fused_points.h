@@ -32,4 +32,9 @@ struct FusedPoints {
 /// finer ones there anyway); farther points share the outermost cells.
 FusedPoints fuse_points(std::span<const Vec3f> points, double cell_m, const Executor& executor);
 
+/// The same with some cells split: their points are fused again in cells of side `cell_m`, finer
+/// than before, for surfaces that are no larger than a cell. One flag a cell.
+FusedPoints split_cells(std::span<const Vec3f> points, const FusedPoints& fused,
+                        const std::vector<bool>& split, double cell_m, const Executor& executor);
+
 }  // namespace adasplats
