@@ -91,9 +91,10 @@ void add_removal_option(CLI::App& app, DynamicRemoval& removal) {
 }
 
 void add_build_options(CLI::App& app, BuildOptions& options) {
-  add_choice<SplatMethod>(app, "--method", options.method, method_names(),
-                          "consistent agrees with the measured rays; the others are the paper's variants, of "
-                          "which semantic needs labels");
+  add_choice<SplatMethod>(
+      app, "--method", options.method, method_names(),
+      "consistent agrees with the measured rays; the others are the paper's variants, of "
+      "which semantic needs labels");
   app.add_option("--neighbors", options.neighbors, "K, neighbours of a point")
       ->capture_default_str();
   app.add_option("--alpha", options.alpha,

@@ -37,7 +37,7 @@ CloudComparison run_cloud_comparison(const CloudComparisonJob& job, Session& ses
 struct ResimulateJob {
   std::filesystem::path model;
   std::filesystem::path sequence;
-  ScanRange scans;  ///< of the sequence
+  ScanRange scans;                ///< of the sequence
   bool beams_from_poses = false;  ///< even where the sensor is recognised
   std::string labels = "semantickitti";
   ResimulateOptions options;

@@ -31,8 +31,9 @@ std::string table_of(const ResimulateResult& result) {
     for (const auto& [name, accuracy] : *parts) add_row(table, name, accuracy);
   }
   const CloudDistance& clouds = result.clouds;
-  return table.text() + "\nBeams from " + result.beams + "; Chamfer " + centimetres(clouds.chamfer_m) + ", " +
-         fixed(clouds.chamfer_m2, 4) + " m2; shares are of all rays, errors of hits\n";
+  return table.text() + "\nBeams from " + result.beams + "; Chamfer " +
+         centimetres(clouds.chamfer_m) + ", " + fixed(clouds.chamfer_m2, 4) +
+         " m2; shares are of all rays, errors of hits\n";
 }
 
 class EvaluateResimulateCommand final : public Command {

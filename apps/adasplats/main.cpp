@@ -59,6 +59,7 @@ struct Program {
     commands.push_back(make_evaluate_c2c_command(evaluate));
     commands.push_back(make_evaluate_resimulate_command(evaluate));
     commands.push_back(make_evaluate_truth_command(evaluate));
+    commands.push_back(make_evaluate_presence_command(evaluate));
     commands.push_back(make_compare_command(app));
     commands.push_back(make_demo_command(app));
     for (const auto& command : commands) command->add_common_options();  // last in the help

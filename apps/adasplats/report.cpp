@@ -84,10 +84,9 @@ Json to_json(const BeamAccuracy& accuracy) {
   json["early_50cm"] = accuracy.early_50cm;
   json["late_50cm"] = accuracy.late_50cm;
   json["within"] = by_bound(accuracy.within);
-  json["range_error_m"] = {{"median", accuracy.median_m},
-                           {"mae", accuracy.mae_m},
-                           {"rmse", accuracy.rmse_m},
-                           {"p90", accuracy.p90_m}};
+  json["range_error_m"] = {{"median", accuracy.median_m}, {"mae", accuracy.mae_m},
+                           {"rmse", accuracy.rmse_m},     {"p90", accuracy.p90_m},
+                           {"bias", accuracy.bias_m},     {"spread", accuracy.spread_m}};
   return json;
 }
 

@@ -62,6 +62,7 @@ struct LoadReport {
 /// reflectivity, luma and their scalar_ twins; classes are the low 16 bits of the label column,
 /// instances its high 16 bits or the column `instance`; `scan_index` as save_cloud_ply writes it.
 /// Memory: sequences 1.1x the cloud; files the reader's plus 24 bytes a point.
+/// Up to five scans of a sequence are read to recognise its sensor, whichever are chosen.
 /// Errors: those of the readers; usage for options that fit nothing and for named columns that
 /// are not there; data for labels that are no whole numbers from 0 to 2^32 - 1.
 std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,

@@ -90,7 +90,7 @@ TEST(LoadCloud, ChosenScansAreRenumbered) {
   write_sequence(folder, 6);
   LoadOptions options;
   options.first_scan = 1;
-  options.scan_count = 4;
+  options.scan_count = 2;
   options.scan_stride = 2;
   const PointCloud cloud = load({folder.path()}, options).first;
   ASSERT_EQ(cloud.size(), 2U + 4U);  // scans 1 and 3
@@ -98,6 +98,11 @@ TEST(LoadCloud, ChosenScansAreRenumbered) {
   EXPECT_NEAR(cloud.sensor_positions[2].x, 30, 1e-5);
   EXPECT_EQ(cloud.scan_indices[1], 0U);
   EXPECT_EQ(cloud.scan_indices[2], 1U);
+  options.scan_count = 4;  // more than are there: 1, 3 and 5
+  const PointCloud more = load({folder.path()}, options).first;
+  ASSERT_EQ(more.size(), 2U + 4U + 6U);
+  EXPECT_NEAR(more.sensor_positions[6].x, 50, 1e-5);
+  EXPECT_EQ(more.scan_indices[6], 2U);
   options.scan_stride = static_cast<std::size_t>(-1);
   EXPECT_EQ(load({folder.path()}, options).first.size(), 2U);
   options.first_scan = 6;

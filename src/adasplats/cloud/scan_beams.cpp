@@ -36,9 +36,7 @@ double block_height_m(double elevation_deg) {
 }
 
 /// Share of the revolution from its middle, -0.5 to 0.5, at which the sensor looked there.
-double sweep_phase(Vec3d point) {
-  return -std::atan2(point.y, point.x) / (2 * std::numbers::pi);
-}
+double sweep_phase(Vec3d point) { return -std::atan2(point.y, point.x) / (2 * std::numbers::pi); }
 
 /// Displacement over one revolution, in each scan's frame, from the poses before and after.
 std::vector<Vec3d> sweeps_of(const Trajectory& trajectory) {
@@ -121,7 +119,7 @@ ScanBeams recognize_beams(const KittiSequence& sequence) {
   const double as_measured = median(std::move(as_measured_m));
   const double compensated = median(std::move(compensated_m));
   if (!(std::min(as_measured, compensated) < kMostDistance_m)) return {};
-  if (as_measured < compensated) moving.sweeps_m.clear();
+  if (as_measured <= compensated) moving.sweeps_m.clear();
   return moving;
 }
 

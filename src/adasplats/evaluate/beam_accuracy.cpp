@@ -33,8 +33,9 @@ double percentile_of(std::vector<float>& values, std::size_t percent) {
 }
 
 BeamAccuracy accuracy_of(const std::vector<float>& errors_m) {
-  std::vector<float> sizes_m;
+  std::vector<float> sizes_m, signed_m;
   sizes_m.reserve(errors_m.size());
+  signed_m.reserve(errors_m.size());
   std::array<std::size_t, kBounds_m.size()> within{};
   std::size_t early = 0;
   std::size_t late = 0;
@@ -45,6 +46,7 @@ BeamAccuracy accuracy_of(const std::vector<float>& errors_m) {
     const double error = static_cast<double>(error_m);
     const double size = std::fabs(error);
     sizes_m.push_back(std::fabs(error_m));
+    signed_m.push_back(error_m);
     sum += size;
     squares += error * error;
     if (error < -kFar_m) ++early;
@@ -63,12 +65,18 @@ BeamAccuracy accuracy_of(const std::vector<float>& errors_m) {
   }
   if (sizes_m.empty()) {
     result.median_m = result.mae_m = result.rmse_m = result.p90_m = kNaN;
+    result.bias_m = result.spread_m = kNaN;
     return result;
   }
   result.mae_m = sum / hits;
   result.rmse_m = std::sqrt(squares / hits);
   result.median_m = median_of(sizes_m);
   result.p90_m = percentile_of(sizes_m, 90);
+  result.bias_m = median_of(signed_m);
+  for (float& error_m : signed_m) {
+    error_m = static_cast<float>(std::fabs(static_cast<double>(error_m) - result.bias_m));
+  }
+  result.spread_m = median_of(signed_m);
   return result;
 }
 

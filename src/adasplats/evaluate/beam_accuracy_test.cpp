@@ -26,6 +26,10 @@ TEST(BeamAccuracy, SharesAreOfAllRaysAndErrorsOfHits) {
   EXPECT_DOUBLE_EQ(a.mae_m, 3.8125 / 6);
   EXPECT_DOUBLE_EQ(a.rmse_m, std::sqrt((0.00390625 + 0.0625 + 0.25 + 1 + 4) / 6));
   EXPECT_DOUBLE_EQ(a.p90_m, 2.0);  // rank ceil(5.4) = 6
+  // Errors in order: -1, -0.0625, 0, 0.25, 0.5, 2; from their median 1.125, 0.1875, 0.125, 0.125,
+  // 0.375, 1.875.
+  EXPECT_DOUBLE_EQ(a.bias_m, 0.125);
+  EXPECT_DOUBLE_EQ(a.spread_m, 0.28125);
 }
 
 TEST(BeamAccuracy, NinetiethPercentileOfTenIsTheNinth) {
@@ -42,6 +46,8 @@ TEST(BeamAccuracy, OneBeam) {
   EXPECT_DOUBLE_EQ(a.median_m, 0.25);
   EXPECT_DOUBLE_EQ(a.p90_m, 0.25);
   EXPECT_DOUBLE_EQ(a.rmse_m, 0.25);
+  EXPECT_DOUBLE_EQ(a.bias_m, -0.25);
+  EXPECT_DOUBLE_EQ(a.spread_m, 0.0);
 }
 
 TEST(BeamAccuracy, NoBeamsAndNoHits) {
@@ -53,6 +59,8 @@ TEST(BeamAccuracy, NoBeamsAndNoHits) {
   EXPECT_DOUBLE_EQ(missed.no_hit, 1.0);
   EXPECT_DOUBLE_EQ(missed.within.at(0.50), 0.0);
   EXPECT_TRUE(std::isnan(missed.rmse_m));
+  EXPECT_TRUE(std::isnan(missed.bias_m));
+  EXPECT_TRUE(std::isnan(missed.spread_m));
 }
 
 }  // namespace

@@ -20,11 +20,12 @@ constexpr std::array<double, 7> kRangeEdges_m = {10, 20, 30, 40, 50, 75, 100};
 constexpr std::array<double, 6> kIncidenceEdges_deg = {0, 30, 60, 75, 85, 90};
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
-/// What is kept of a beam until the end: 8 bytes.
+/// What is kept of a beam until the end.
 struct Beam {
   float error_m = kNoHitError;
   std::uint8_t range_bin = 0;
   std::uint8_t incidence_bin = 0;  ///< meaningless without a hit
+  std::int8_t elevation_deg = 0;   ///< rounded down
   std::uint16_t class_id = 0;      ///< 0 without labels
 };
 
@@ -133,7 +134,7 @@ struct Setting {
 };
 
 CastScan cast_scan(const Setting& setting, const KittiSequence& sequence, std::size_t index,
-                    const Executor& executor) {
+                   const Executor& executor) {
   const KittiScan scan = read_kitti_scan(sequence, index);
   const std::vector<std::uint32_t> selected =
       select_points(scan, sequence.scans[index], setting.labels, setting.options);
@@ -158,13 +159,16 @@ CastScan cast_scan(const Setting& setting, const KittiSequence& sequence, std::s
     const double range_m = measured[k].range_m;
     Beam& beam = result.beams[k];
     beam.range_bin = setting.ranges.bin_of(length(vec_cast<double>(result.measured.positions[k])));
+    beam.elevation_deg = static_cast<std::int8_t>(
+        std::floor(std::asin(std::clamp(measured[k].direction.z, -1.0, 1.0)) * kDegreesPerRadian));
     if (!scan.classes.empty()) beam.class_id = scan.classes[selected[k]];
     if (!hits[k].valid()) continue;
     const double predicted_m = static_cast<double>(hits[k].t);
     beam.error_m = static_cast<float>(predicted_m - range_m);
     beam.incidence_bin =
         setting.incidences.bin_of(incidence_deg(setting.scene, rays[k], hits[k].primitive));
-    result.predicted.positions.push_back(vec_cast<float>(measured[k].origin + predicted_m * measured[k].direction));
+    result.predicted.positions.push_back(
+        vec_cast<float>(measured[k].origin + predicted_m * measured[k].direction));
   }
   return result;
 }
@@ -220,6 +224,12 @@ void add_breakdowns(ResimulateResult& result, const std::vector<Beam>& beams,
         setting.incidences.name_of(bin), accuracy_where(beams, [&](const Beam& beam) {
           return !std::isnan(beam.error_m) && beam.incidence_bin == bin;
         }));
+  }
+  for (int elevation = -90; elevation <= 90; ++elevation) {
+    BeamAccuracy accuracy =
+        accuracy_where(beams, [&](const Beam& beam) { return beam.elevation_deg == elevation; });
+    if (accuracy.rays == 0) continue;
+    result.by_elevation.emplace_back(std::to_string(elevation) + " deg", std::move(accuracy));
   }
   if (!labelled) return;
   for (const SemanticClass& semantic_class : setting.labels.classes()) {

@@ -35,7 +35,9 @@ struct BeamAccuracy {
   double median_m = 0;              ///< of |error|
   double mae_m = 0;
   double rmse_m = 0;
-  double p90_m = 0;  ///< of |error|
+  double p90_m = 0;     ///< of |error|
+  double bias_m = 0;    ///< median of the errors themselves: late where positive
+  double spread_m = 0;  ///< median of |error - bias_m|
 };
 
 struct ResimulateResult {
@@ -47,6 +49,9 @@ struct ResimulateResult {
   std::vector<std::pair<std::string, BeamAccuracy>> by_range;      ///< "2.5-10 m", ...
   std::vector<std::pair<std::string, BeamAccuracy>> by_incidence;  ///< "0-30 deg" ... to the normal
   std::vector<std::pair<std::string, BeamAccuracy>> by_class;      ///< names of the label scheme
+  /// "-25 deg", ...: of the beam in the sensor's frame, rounded down. Where the biases differ, the
+  /// lasers do: what one of them measures, no model can predict for all.
+  std::vector<std::pair<std::string, BeamAccuracy>> by_elevation;
 };
 
 /// Casts each measured beam of a held-out sequence again, from where it started (sequence.beams)

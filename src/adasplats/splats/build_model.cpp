@@ -75,6 +75,11 @@ void check(const BuildOptions& options) {
   require(consistent.cell_m > 0, "the cells of the consistent method must be greater than 0");
   require(consistent.small_cell_m >= 0 && consistent.small_cell_m < consistent.cell_m,
           "small cells must be smaller than the cells, or 0");
+  require(std::min(consistent.cover.sectors, consistent.unchecked_sectors) >= 0 &&
+              std::max(consistent.cover.sectors, consistent.unchecked_sectors) <= 16,
+          "sectors must be 0 to 16");
+  require(consistent.judge.core_rings >= 1 && consistent.judge.core_rings <= RayEvidence::kBins,
+          "the rings of a disk's middle must be 1 to 16");
   require(consistent.cover.largest_radius_m >= 0, "the largest radius must not be negative");
   require(consistent.balance_rounds >= 0 && consistent.strict_rounds >= 0 &&
               consistent.settle_rounds >= 0,

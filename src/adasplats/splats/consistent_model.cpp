@@ -82,8 +82,8 @@ std::vector<Disk> seed_disks(const PointCloud& cloud, const FusedPoints& fused,
                              const std::vector<LocalPlane>& planes, double typical_spacing,
                              const ConsistentOptions& options, const Executor& executor) {
   const std::vector<float> units_m = spacing_units_m(cloud, fused, executor);
-  const double spacings = cloud.sensor_positions.empty() ? options.unchecked_largest_spacing
-                                                         : options.largest_spacing;
+  const double spacings =
+      cloud.sensor_positions.empty() ? options.unchecked_largest_spacing : options.largest_spacing;
   const double largest = spacings * typical_spacing;
   std::vector<Disk> seeds(planes.size());
   for (std::size_t i = 0; i < planes.size(); ++i) {
@@ -101,7 +101,8 @@ double split_where_not_flat(const PointCloud& cloud, const ConsistentOptions& op
   const PointIndex index = PointIndex::from_sorted(fused.positions, executor);
   // Larger scales than the first that decides need not be looked at.
   AdaptivePlaneOptions few = options.planes;
-  const std::size_t decides = std::min<std::size_t>(options.split_scale + 1U, few.scales.size() - 1);
+  const std::size_t decides =
+      std::min<std::size_t>(options.split_scale + 1U, few.scales.size() - 1);
   std::fill(few.scales.begin() + decides, few.scales.end(), few.scales[decides]);
   const auto planes = adaptive_planes(fused, index, few, executor);
   const double spacing = median_spacing(planes, spacing_units_m(cloud, fused, executor));
@@ -165,8 +166,8 @@ void limit_overhangs(SurfaceCover& cover, const MeasuredRays& rays,
   }
 }
 
-/// Puts seeds back at cells whose rays find nothing where they ended: chosen disks cover the middles
-/// of all seeds, not all that is between them.
+/// Puts seeds back at cells whose rays find nothing where they ended: chosen disks cover the
+/// middles of all seeds, not all that is between them.
 void fill_gaps(std::vector<Disk>& chosen, const std::vector<Disk>& seeds, const FusedPoints& fused,
                const MeasuredRays& rays, const ConsistentOptions& options,
                const Executor& executor) {

@@ -127,14 +127,21 @@ TEST(ConsistentModel, FlatRoomTakesFewSplats) {
   EXPECT_LT(room_model().model.size(), fused.size() / 4);
 }
 
-TEST(ConsistentModel, WhatLaterRaysPassThroughLeavesNoSplat) {
+TEST(ConsistentModel, WhatLaterRaysPassThroughLeavesNextToNoSplat) {
   // The floor under the passer-by is none of it.
   const Box above_floor = {{kPasserby.low.x, kPasserby.low.y, 0.2}, kPasserby.high};
   const PointCloud cloud = scanned_room();
   const auto points = std::count_if(cloud.positions.begin(), cloud.positions.end(),
                                     [&](Vec3f p) { return above_floor.contains(p, 0.05); });
   EXPECT_GT(points, 300);
-  EXPECT_EQ(splats_in(room_model().model, above_floor, 0.05), 0U);
+  // Specks of the smallest size that three of their own points bear out.
+  const auto in_passerby = [&](const Disk& disk) {
+    return above_floor.contains(disk.center, 0.05);
+  };
+  double area_m2 = 0;
+  for (const Disk& disk : room_model().model.disks)
+    if (in_passerby(disk)) area_m2 += static_cast<double>(disk.radius * disk.radius);
+  EXPECT_LT(area_m2 * 3.1416, 0.02);
   EXPECT_GT(splats_in(room_model().model, kPillar, 0.05), 10U);
   EXPECT_TRUE(room_model().report.ray_checked);
   // Without the rays it stays: that is what the check is for.
@@ -332,6 +339,124 @@ TEST(ConsistentDisks, CellsBelongToTheirDisks) {
   }
   EXPECT_EQ(std::unique(steps.begin(), steps.end()), steps.end());
   EXPECT_GE(steps.size(), 4U);
+}
+
+ConsistentDisks disks_of(const PointCloud& cloud, const ConsistentOptions& options) {
+  return consistent_disks(cloud, options, Executor(2), [](std::string_view) {});
+}
+
+/// Which points' rays meet no disk up to `beyond_m` behind their ends.
+std::vector<bool> points_missed(const PointCloud& cloud, const ConsistentDisks& made,
+                                double least_range_m, float beyond_m) {
+  const Executor executor(2);
+  const MeasuredRays rays(cloud, least_range_m, executor);
+  const auto tracer = make_cpu_tracer({made.disks, nullptr}, executor);
+  std::vector<Ray> cast;
+  for (std::size_t i = 0; i < rays.size(); ++i) cast.push_back(rays.ray(i, beyond_m));
+  std::vector<Hit> hits(cast.size());
+  tracer->nearest(cast, hits, executor);
+  std::vector<bool> missed(cloud.size());
+  for (std::size_t i = 0; i < hits.size(); ++i) missed[rays.point(i)] = !hits[i].valid();
+  return missed;
+}
+
+TEST(ConsistentDisks, FillingAddsSplatsWhereRaysFallBetweenAndChangesNoOther) {
+  const PointCloud cloud = thin_room();
+  ConsistentOptions options = quick_options().consistent;
+  options.cover.overlap = 0.95;  // leaves gaps between disks
+  options.fill = false;
+  const ConsistentDisks bare = disks_of(cloud, options);
+  options.fill = true;
+  const ConsistentDisks filled = disks_of(cloud, options);
+  const auto missed = points_missed(cloud, bare, options.least_range_m, options.missed_m);
+  std::size_t i = 0, added = 0;
+  for (std::size_t k = 0; k < filled.disks.size(); ++k) {
+    if (i < bare.disks.size() && bare.cells[i] == filled.cells[k]) {
+      EXPECT_EQ(std::memcmp(&bare.disks[i], &filled.disks[k], sizeof(Disk)), 0);
+      ++i;
+      continue;
+    }
+    ++added;
+    const auto points = filled.fused.points_of(filled.cells[k]);
+    EXPECT_TRUE(std::any_of(points.begin(), points.end(), [&](auto p) { return missed[p]; }));
+  }
+  EXPECT_EQ(i, bare.disks.size());  // all are still there
+  EXPECT_GT(added, 20U);
+  const auto still = points_missed(cloud, filled, options.least_range_m, options.missed_m);
+  EXPECT_LT(std::count(still.begin(), still.end(), true),
+            std::count(missed.begin(), missed.end(), true) - 20);
+}
+
+TEST(ConsistentDisks, SmallCellsAreWhereNothingIsFlat) {
+  const PointCloud cloud = thin_room();
+  ConsistentOptions options = quick_options().consistent;
+  const FusedPoints large = fuse_points(cloud.positions, options.cell_m, Executor(1));
+  options.small_cell_m = 0;
+  const ConsistentDisks whole = disks_of(cloud, options);
+  EXPECT_EQ(whole.fused.positions, large.positions);
+  EXPECT_EQ(whole.fused.members, large.members);
+  options.small_cell_m = 0.02;
+  options.split_scale = 255;  // every cell
+  const FusedPoints small = fuse_points(cloud.positions, 0.02, Executor(1));
+  EXPECT_EQ(disks_of(cloud, options).fused.positions, small.positions);
+  // Oracle: the cells' scales where all scales may be taken.
+  const PointIndex index = PointIndex::from_sorted(large.positions, Executor(1));
+  const auto planes = adaptive_planes(large, index, options.planes, Executor(1));
+  std::size_t before = large.size();
+  for (std::uint8_t scale = 0; scale < 2; ++scale) {
+    std::vector<bool> split;
+    for (const LocalPlane& plane : planes) split.push_back(plane.scale <= scale);
+    options.split_scale = scale;
+    const FusedPoints some = disks_of(cloud, options).fused;
+    const FusedPoints expected = split_cells(cloud.positions, large, split, 0.02, Executor(1));
+    EXPECT_EQ(some.positions, expected.positions);
+    EXPECT_EQ(some.members, expected.members);
+    EXPECT_GT(some.size(), before);
+    EXPECT_LT(some.size(), small.size());
+    before = some.size();
+  }
+}
+
+// Oracle: a seed in a sector of the angle w that a straight border cuts off d away stands no
+// farther than d / cos(w); disks reach half a seed beyond it.
+TEST(ConsistentDisks, WithoutSensorPositionsDisksEndWhereAFlatPatchEnds) {
+  PointCloud cloud;
+  for (int y = 0; y < 50; ++y)
+    for (int x = 0; x < 50; ++x)
+      cloud.positions.push_back(
+          {0.05F * static_cast<float>(x) + 0.02F, 0.05F * static_cast<float>(y) + 0.02F, 0.02F});
+  constexpr float kEnd_m = 0.05F * 49 + 0.02F;
+  ConsistentOptions options = consistent_options().consistent;
+  const auto farthest_over_border = [](const ConsistentDisks& made) {
+    float farthest_m = 0;
+    for (const Disk& disk : made.disks)
+      for (const float c : {disk.center.x, disk.center.y})
+        farthest_m = std::max({farthest_m, disk.radius - (c - 0.02F), disk.radius - (kEnd_m - c)});
+    return farthest_m;
+  };
+  for (const int sectors : {8, 16}) {
+    options.unchecked_sectors = sectors;
+    const ConsistentDisks made = disks_of(cloud, options);
+    EXPECT_FALSE(made.checked);
+    ASSERT_GT(made.disks.size(), 50U);
+    float least_m = 1, largest_m = 0;
+    for (const Disk& disk : made.disks) {
+      least_m = std::min(least_m, disk.radius);
+      largest_m = std::max(largest_m, disk.radius);
+    }
+    EXPECT_LT(least_m, 0.06F);  // a seed
+    EXPECT_GT(largest_m, 0.3F);
+    const float cosine = std::cos(6.2831853F / static_cast<float>(sectors));
+    for (const Disk& disk : made.disks) {
+      const Vec3f c = disk.center;
+      const float inside_m = std::min({c.x - 0.02F, c.y - 0.02F, kEnd_m - c.x, kEnd_m - c.y});
+      EXPECT_LE(disk.radius, std::max(least_m, inside_m / cosine + 0.5F * least_m) + 1e-4F);
+    }
+  }
+  // With 16 that is no farther over the border than a seed, give or take.
+  EXPECT_LT(farthest_over_border(disks_of(cloud, options)), 0.06F);
+  options.unchecked_sectors = 0;
+  EXPECT_GT(farthest_over_border(disks_of(cloud, options)), 0.2F);
 }
 
 }  // namespace

@@ -31,10 +31,10 @@ float balanced_radius(const DiskEvidence& evidence, float radius_m);
 bool is_borne_out(const DiskEvidence& evidence);
 
 struct JudgeOptions {
-  int core_rings = 2;            ///< the middle of a disk
-  std::uint32_t core_rays = 2;   ///< that must confirm the middle...
-  double core_share = 0.3;       ///< ...and be so much of those that cross it, to give it a chance
-  float core_radius = 0.25F;     ///< of the radius: what is tried next
+  int core_rings = 2;             ///< the middle of a disk
+  std::uint32_t core_rays = 3;    ///< that must confirm the middle...
+  double core_share = 0.3;        ///< ...and be so much of those that cross it, to give it a chance
+  float core_radius = 0.25F;      ///< of the radius: what is tried next
   float least_radius_m = 0.015F;  ///< not below this
 };
 

@@ -109,6 +109,88 @@ TEST(IsBorneOut, KnownAnswers) {
   EXPECT_TRUE(borne_out(all_rings(0xffffffffU), all_rings(0xffffffffU)));
 }
 
+/// The tests' own numbers: the defaults may be tuned.
+JudgeOptions tested_judge() {
+  JudgeOptions options;
+  options.core_rings = 2;
+  options.core_rays = 4;
+  options.core_share = 0.25;
+  options.core_radius = 0.25F;
+  options.least_radius_m = 0.015F;
+  return options;
+}
+
+float judged(const Rings& confirmed, const Rings& contradicted, float radius_m = 2.0F) {
+  return judged_radius({confirmed, contradicted}, radius_m, tested_judge());
+}
+
+TEST(JudgedRadius, IsTheBalancedOneWhereThatIsBorneOut) {
+  const Rings none{};
+  EXPECT_EQ(judged(none, none), 2.0F);
+  EXPECT_EQ(judged(all_rings(3), none), 2.0F);
+  EXPECT_FLOAT_EQ(judged({5, 4}, {0, 0, 0, 5}), enclosing(2));
+  EXPECT_FLOAT_EQ(judged({20}, {0, 0, 30, 40}), enclosing(1));  // a thin pole: 20 against sqrt(70)
+  EXPECT_FLOAT_EQ(judged({4}, {0, 0, 16}), enclosing(1));       // just as many as chance
+  // Balanced at three rings; the core, with 1 against 1, does not matter.
+  EXPECT_FLOAT_EQ(judged({1, 0, 9}, {0, 1, 0, 40}), enclosing(3));
+}
+
+TEST(JudgedRadius, IsAQuarterWhereRaysConfirmTheCoreAlone) {
+  const Rings none{};
+  // 4 against sqrt(17): chance. But all of the core's rays are for it.
+  EXPECT_EQ(judged({4}, {0, 0, 17}), 0.5F);
+  EXPECT_EQ(judged({0, 4}, {0, 0, 17}), 0.5F);
+  EXPECT_EQ(judged({1, 3}, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 900}), 0.5F);
+  // Too few rays: 3 of 4.
+  EXPECT_EQ(judged({3}, {0, 0, 17}), 0.0F);
+  EXPECT_EQ(judged({1, 2}, {0, 0, 17}), 0.0F);
+  // Those beyond the core do not count for it, neither for nor against.
+  EXPECT_EQ(judged({3, 0, 5}, {0, 0, 900}), 0.0F);
+  EXPECT_EQ(judged({2, 2, 0}, {0, 0, 60, 900}), 0.5F);
+  EXPECT_EQ(judged(none, {1}), 0.0F);
+  EXPECT_EQ(judged(none, all_rings(5)), 0.0F);
+}
+
+TEST(JudgedRadius, TheCoreNeedsItsShareOfRays) {
+  EXPECT_EQ(judged({4}, {12}), 0.5F);  // just a quarter
+  EXPECT_EQ(judged({4}, {13}), 0.0F);
+  EXPECT_EQ(judged({1, 3}, {5, 7}), 0.5F);
+  EXPECT_EQ(judged({1, 3}, {5, 8}), 0.0F);
+  EXPECT_FLOAT_EQ(judged({100}, {0, 300}), enclosing(1));  // borne out: 100 against sqrt(300)
+  EXPECT_EQ(judged({50, 50}, {300}), 0.5F);
+  EXPECT_EQ(judged({50, 50}, {301}), 0.0F);
+  // Sums of large counts are exact.
+  EXPECT_EQ(judged({0x40000000U}, {0xc0000000U}), 0.5F);
+  EXPECT_EQ(judged({0x40000000U}, {0xc0000001U}), 0.0F);
+}
+
+TEST(JudgedRadius, IsNoSmallerThanAllowedAndIsTriedOnce) {
+  const Rings confirmed = {4}, contradicted = {0, 0, 17};
+  EXPECT_FLOAT_EQ(judged(confirmed, contradicted, 0.08F), 0.02F);
+  EXPECT_EQ(judged(confirmed, contradicted, 0.06F), 0.015F);
+  EXPECT_EQ(judged(confirmed, contradicted, 0.05F), 0.015F);
+  EXPECT_EQ(judged(confirmed, contradicted, 0.0151F), 0.015F);
+  EXPECT_EQ(judged(confirmed, contradicted, 0.015F), 0.0F);  // nothing smaller is left to try
+  EXPECT_EQ(judged(confirmed, contradicted, 0.01F), 0.0F);
+  // The balanced radius may be smaller, and small disks keep theirs.
+  EXPECT_FLOAT_EQ(judged({20}, {0, 0, 30, 40}, 0.02F), 0.005F);
+  EXPECT_EQ(judged(all_rings(3), {}, 0.01F), 0.01F);
+}
+
+TEST(JudgedRadius, TheCoreIsOfAsManyRingsAsAsked) {
+  const Rings confirmed = {2, 0, 2}, contradicted = {0, 0, 6, 0, 400};
+  JudgeOptions options = tested_judge();
+  const auto radius_with = [&](int rings, float core_radius) {
+    options.core_rings = rings;
+    options.core_radius = core_radius;
+    return judged_radius({confirmed, contradicted}, 2.0F, options);
+  };
+  EXPECT_EQ(radius_with(2, 0.25F), 0.0F);   // 2 rays
+  EXPECT_EQ(radius_with(3, 0.25F), 0.5F);   // 4 of 10
+  EXPECT_EQ(radius_with(4, 0.5F), 1.0F);    // the same
+  EXPECT_EQ(radius_with(16, 0.25F), 0.0F);  // 4 of 410
+}
+
 TEST(StrictRadius, KnownAnswers) {
   const Rings none{};
   EXPECT_EQ(strict(none, none, 0.03), 2.0F);

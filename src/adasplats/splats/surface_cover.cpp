@@ -40,8 +40,8 @@ class SectorReach {
     if (sectors_ == 0) return;
     const Vec3f offset = point - center_;
     const float turn = std::atan2(dot(offset, up_), dot(offset, right_)) / (2 * kPi) + 0.5F;
-    const int sector = std::clamp(static_cast<int>(turn * static_cast<float>(sectors_)), 0,
-                                  sectors_ - 1);
+    const int sector =
+        std::clamp(static_cast<int>(turn * static_cast<float>(sectors_)), 0, sectors_ - 1);
     float& reach_m = reach_m_[static_cast<std::size_t>(sector)];
     reach_m = std::max(reach_m, along_m);
   }

@@ -14,7 +14,7 @@ namespace adasplats {
 
 struct CoverOptions {
   std::uint32_t neighbors = 160;     ///< seeds that a disk can grow over, at most
-  double tolerance_m = 0.02;        ///< a disk grows over seeds this near to its plane
+  double tolerance_m = 0.02;         ///< a disk grows over seeds this near to its plane
   double least_normal_cosine = 0.9;  ///< and turned like it
   double edge_m = 0.25;              ///< seeds farther from the plane are other things: no edge
   double largest_radius_m = 0.5;

@@ -189,6 +189,107 @@ TEST(SurfaceCover, CurvedSurfaceKeepsSmallDisks) {
   for (const Disk& disk : chosen) EXPECT_LT(disk.radius, std::sqrt(2 * kTube_m * 0.015) + 0.04);
 }
 
+/// A patch and what its disks grow to: with no overlap every disk covers itself alone, so that all
+/// are chosen.
+struct GrownPatch {
+  Vec3f u, v;
+  std::vector<Disk> disks;
+
+  /// Turned by an angle within its own plane, which is tilted; `is_there(x, y)`, metres.
+  template <class IsThere>
+  GrownPatch(int n, float turn_rad, int sectors, const IsThere& is_there) {
+    const Vec3f a = normalized(Vec3f{1, 0, 0.5F}), b = {0, 1, 0};
+    u = std::cos(turn_rad) * a + std::sin(turn_rad) * b;
+    v = std::cos(turn_rad) * b - std::sin(turn_rad) * a;
+    std::vector<Disk> all, patch;
+    add_patch(all, n, {0, 0, 0}, u, v);
+    for (const Disk& disk : all)
+      if (is_there(x_of(disk), y_of(disk))) patch.push_back(disk);
+    CoverOptions options = tested_options();
+    options.neighbors = 1000;  // the largest radius limits, not these
+    options.overlap = 0;
+    options.sectors = sectors;
+    const Executor executor(2);
+    const Seeds seeds(patch, executor);
+    disks = SurfaceCover(seeds.disks, seeds.index, options, executor).choose(executor);
+  }
+  GrownPatch(int n, float turn_rad, int sectors)
+      : GrownPatch(n, turn_rad, sectors, [](float, float) { return true; }) {}
+
+  float x_of(const Disk& disk) const { return dot(disk.center, u); }
+  float y_of(const Disk& disk) const { return dot(disk.center, v); }
+  /// The disk at a place of the patch.
+  const Disk& at(float x, float y) const {
+    const auto distance = [&](const Disk& d) { return std::hypot(x_of(d) - x, y_of(d) - y); };
+    return *std::min_element(disks.begin(), disks.end(), [&](const Disk& d, const Disk& e) {
+      return distance(d) < distance(e);
+    });
+  }
+};
+
+/// A seed in a sector of 45 degrees that a straight border cuts off `d` away stands no farther than
+/// d / cos(45 degrees), whichever way the sectors are turned.
+float most_reach(float d) { return std::sqrt(2.0F) * d; }
+
+TEST(SurfaceCover, WithSectorsDisksEndWhereSeedsEndInTheirNearestDirection) {
+  constexpr float kSide_m = 30 * kStep_m;
+  for (const float turn_rad : {0.0F, 0.2F, 0.39F, 0.6F}) {
+    const GrownPatch limited(31, turn_rad, 8);
+    const GrownPatch free(31, turn_rad, 0);
+    int border = 0, inner = 0;
+    float largest_m = 0;
+    for (std::size_t i = 0; i < limited.disks.size(); ++i) {
+      const Disk& disk = limited.disks[i];
+      const float x = limited.x_of(disk), y = limited.y_of(disk);
+      const float from_border_m = std::max(0.0F, std::min({x, y, kSide_m - x, kSide_m - y}));
+      EXPECT_LE(disk.radius, std::max(kSeed_m, most_reach(from_border_m) + 0.5F * kSeed_m) + 1e-4F);
+      EXPECT_GE(disk.radius, std::max(kSeed_m, std::min(from_border_m, 0.45F) - 1e-4F));
+      EXPECT_LE(disk.radius, free.disks[i].radius);
+      largest_m = std::max(largest_m, disk.radius);
+      if (from_border_m < 0.01F) {
+        ++border;
+        EXPECT_EQ(disk.radius, kSeed_m);
+        EXPECT_GT(free.disks[i].radius, 0.45F);  // the tail that sectors are against
+      } else if (from_border_m > 0.51F) {
+        ++inner;
+        EXPECT_GT(disk.radius, 0.45F);
+      }
+    }
+    EXPECT_EQ(border, 4 * 30);
+    EXPECT_EQ(inner, 9 * 9);
+    EXPECT_LE(largest_m, 0.5F);
+  }
+}
+
+TEST(SurfaceCover, WithSectorsAGapEndsDisksUnlessTheyReachItsOtherSide) {
+  // A strip without seeds beside y-lines of the lattice; a disk 0.2 m away from it.
+  const auto radius_beside = [](float gap_m, int sectors) {
+    const GrownPatch patch(41, 0.3F, sectors,
+                           [&](float x, float) { return x < 1.01F || x > 0.99F + gap_m; });
+    return patch.at(0.8F, 1).radius;
+  };
+  EXPECT_GT(radius_beside(0.15F, 8), 0.4F);  // seeds 0.35 m and more away lie across it
+  EXPECT_GE(radius_beside(0.6F, 8), 0.2F);
+  EXPECT_LE(radius_beside(0.6F, 8), most_reach(0.2F) + 0.5F * kSeed_m);
+  EXPECT_GT(radius_beside(0.6F, 0), 0.45F);
+}
+
+TEST(SurfaceCover, WithSectorsEverySeedIsStillCovered) {
+  const Executor executor(2);
+  std::vector<Disk> patch;
+  add_patch(patch, 30, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  const Seeds seeds(patch, executor);
+  CoverOptions options = tested_options();
+  const auto chosen_with = [&](int sectors) {
+    options.sectors = sectors;
+    return SurfaceCover(seeds.disks, seeds.index, options, executor).choose(executor);
+  };
+  const std::vector<Disk> limited = chosen_with(8);
+  expect_all_covered(seeds.disks, limited);
+  EXPECT_GT(count_chosen(limited), count_chosen(chosen_with(0)));
+  EXPECT_LT(count_chosen(limited), 900U / 3);
+}
+
 TEST(SurfaceCover, LimitsHold) {
   const Executor executor(2);
   std::vector<Disk> patch;

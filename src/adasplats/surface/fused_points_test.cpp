@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "adasplats/core/random.h"
 #include "adasplats/neighbors/hilbert.h"
@@ -119,6 +120,110 @@ TEST(FusePoints, OrderOfPointsChangesTheRoundingOfMeansAtMost) {
     EXPECT_LT(length(a.positions[cell] - b.positions[cell]), 1e-6F);
     EXPECT_EQ(a.count(cell), b.count(cell));
   }
+}
+
+void expect_same(const FusedPoints& a, const FusedPoints& b) {
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.begins, b.begins);
+  EXPECT_EQ(a.members, b.members);
+}
+
+/// Nearly every third cell.
+std::vector<bool> some_flags(std::size_t cells) {
+  std::vector<bool> split(cells);
+  for (std::size_t cell = 0; cell < cells; ++cell) split[cell] = Random(4, 0, cell).uniform() < 0.3;
+  return split;
+}
+
+TEST(SplitCells, WithNoFlagAllCellsStay) {
+  for (const std::size_t n : {0, 1, 5000}) {
+    const std::vector<Vec3f> points = random_points(n, -0.5, 0.5);
+    const FusedPoints fused = fuse_points(points, 0.1, Executor(1));
+    const std::vector<bool> none(fused.size(), false);
+    expect_same(split_cells(points, fused, none, 0.03, Executor(2)), fused);
+  }
+}
+
+TEST(SplitCells, WithAllFlagsPointsAreFusedInTheSmallCells) {
+  for (const std::size_t n : {0, 1, 5000}) {
+    const std::vector<Vec3f> points = random_points(n, -0.5, 0.5);
+    const FusedPoints fused = fuse_points(points, 0.1, Executor(1));
+    const std::vector<bool> all(fused.size(), true);
+    const FusedPoints small = split_cells(points, fused, all, 0.03, Executor(2));
+    expect_same(small, fuse_points(points, 0.03, Executor(1)));
+    expect_equals_grid(points, 0.03, small);
+  }
+}
+
+/// Oracle: a map from (small or not, cell) to points, filled one by one.
+TEST(SplitCells, WithSomeFlagsEqualsTwoGridsByBruteForce) {
+  const std::vector<Vec3f> points = random_points(8000, -0.5, 0.5);
+  const FusedPoints fused = fuse_points(points, 0.1, Executor(2));
+  const std::vector<bool> split = some_flags(fused.size());
+  std::vector<bool> is_loose(points.size());
+  for (std::size_t cell = 0; cell < fused.size(); ++cell)
+    for (const std::uint32_t i : fused.points_of(cell)) is_loose[i] = split[cell];
+  // Small cells of 0.03 m reach over the borders of large ones: points of two split cells may meet.
+  std::map<std::pair<bool, CellKey>, std::vector<std::uint32_t>> grids;
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    grids[{is_loose[i], key_of(points[i], is_loose[i] ? 0.03 : 0.1)}].push_back(i);
+
+  const FusedPoints mixed = split_cells(points, fused, split, 0.03, Executor(2));
+  ASSERT_EQ(mixed.size(), grids.size());
+  ASSERT_EQ(mixed.begins.size(), grids.size() + 1);
+  EXPECT_GT(mixed.size(), fused.size() + 500);
+  std::vector<int> times(points.size());
+  for (std::size_t cell = 0; cell < mixed.size(); ++cell) {
+    const auto members = mixed.points_of(cell);
+    ASSERT_FALSE(members.empty());
+    EXPECT_TRUE(std::is_sorted(members.begin(), members.end()));
+    const bool loose = is_loose[members[0]];
+    const auto& expected = grids.at({loose, key_of(points[members[0]], loose ? 0.03 : 0.1)});
+    ASSERT_TRUE(std::equal(members.begin(), members.end(), expected.begin(), expected.end()));
+    Vec3d mean;
+    for (const std::uint32_t i : members) {
+      mean = mean + vec_cast<double>(points[i]) / static_cast<double>(members.size());
+      ++times[i];
+    }
+    EXPECT_LT(length(vec_cast<double>(mixed.positions[cell]) - mean), 1e-7);
+  }
+  EXPECT_EQ(times, std::vector<int>(points.size(), 1));
+  std::vector<std::uint32_t> in_order(mixed.size());
+  std::iota(in_order.begin(), in_order.end(), 0U);
+  EXPECT_EQ(hilbert_order(mixed.positions, Executor(1)), in_order);
+}
+
+TEST(SplitCells, SplitCellsCanBeSplitAgain) {
+  // A cell of four corners: two and two along x, then one and one along y.
+  const std::vector<Vec3f> points = {
+      {0.1F, 0.1F, 0.1F}, {0.9F, 0.1F, 0.1F}, {0.1F, 0.4F, 0.1F}, {0.9F, 0.4F, 0.1F}};
+  const Executor executor(1);
+  const FusedPoints one = fuse_points(points, 1, executor);
+  ASSERT_EQ(one.size(), 1U);
+  const FusedPoints two = split_cells(points, one, {true}, 0.5, executor);
+  ASSERT_EQ(two.size(), 2U);
+  const std::size_t left = two.positions[0].x < 0.5F ? 0 : 1;
+  EXPECT_EQ(two.points_of(left)[0], 0U);
+  EXPECT_EQ(two.points_of(left)[1], 2U);
+  EXPECT_LT(length(two.positions[left] - Vec3f{0.1F, 0.25F, 0.1F}), 1e-6F);
+  const FusedPoints three = split_cells(points, two, {left == 0, left == 1}, 0.25, executor);
+  std::vector<std::vector<std::uint32_t>> cells;
+  for (std::size_t cell = 0; cell < three.size(); ++cell) {
+    const auto members = three.points_of(cell);
+    cells.emplace_back(members.begin(), members.end());
+  }
+  std::sort(cells.begin(), cells.end());
+  EXPECT_EQ(cells, (std::vector<std::vector<std::uint32_t>>{{0}, {1, 3}, {2}}));
+}
+
+TEST(SplitCells, SameForEveryNumberOfThreads) {
+  const std::vector<Vec3f> points = random_points(150000, -2, 2);
+  const FusedPoints fused = fuse_points(points, 0.1, Executor(1));
+  const std::vector<bool> split = some_flags(fused.size());
+  const FusedPoints one = split_cells(points, fused, split, 0.02, Executor(1));
+  EXPECT_GT(one.size(), fused.size() + 20000);
+  for (const int threads : {2, 3})
+    expect_same(split_cells(points, fused, split, 0.02, Executor(threads)), one);
 }
 
 }  // namespace

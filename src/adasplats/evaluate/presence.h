@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/trace/tracer.h"
+
+namespace adasplats {
+
+struct PresenceOptions {
+  double within_m = 0.1;     ///< of the point, along the ray that measured it
+  double min_range_m = 2.5;  ///< points nearer to their sensor or farther are left out
+  double max_range_m = 50;
+};
+
+/// Measured points, and how many of them a model has a surface at.
+struct Presence {
+  std::size_t points = 0;
+  std::size_t present = 0;
+
+  /// 0..1; NaN without points.
+  double share() const;
+};
+
+struct PresenceResult {
+  Presence all;
+  Presence moving;  ///< of classes that move; none without labels
+  Presence still;   ///< the others
+  std::vector<std::pair<std::string, Presence>> by_class;  ///< with labels; by id
+};
+
+/// At which of the points that were measured does a model have a surface? The ray that measured a
+/// point must meet the model within `within_m` of it. Tells what a model lacks (of what is still)
+/// and what it should not have (of what moved). `labels`: what the classes mean, or null.
+/// Errors: usage (distances that are not positive, ranges that hold nothing); data (no sensor
+/// positions, no points within the ranges, a class that `labels` does not have).
+PresenceResult presence(const Tracer& tracer, Vec3d scene_origin, const PointCloud& cloud,
+                        const LabelScheme* labels, const PresenceOptions& options,
+                        const Executor& executor);
+
+}  // namespace adasplats
