@@ -9,7 +9,7 @@ from support import ProgramTest, tiny_place, tree_digest, write_cloud
 
 class Determinism(ProgramTest):
     def test_threads(self):
-        for method in ["basic", "descriptors", "semantic"]:
+        for method in ["basic", "descriptors", "semantic", "consistent"]:
             models, scans = set(), set()
             for threads in ["1", "2", "3"]:
                 model = self.model("model.ply", "--method", method, "--threads", threads)

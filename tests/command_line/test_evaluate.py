@@ -65,6 +65,36 @@ class Truth(ProgramTest):
                      self.poses, says=["gone.ply"])
 
 
+class Presence(ProgramTest):
+    def test_points_of_the_model_are_in_it_and_others_not(self):
+        model = self.model()
+        labels = ["--labels", "semantickitti"]
+        report = self.report("evaluate", "presence", model, self.cloud, *labels)
+        everything = report["all"]
+        self.assertGreater(everything["points"], 1000)
+        self.assertGreater(everything["present"], 0.9 * everything["points"])
+        self.assertEqual(report["moving"]["points"], 0)
+        self.assertEqual(report["still"], everything)
+        self.assertEqual(sum(part["points"] for part in report["by_class"].values()),
+                         everything["points"])
+        # The road alone: no wall.
+        road = self.folder / "road.ply"
+        road.write_text("\n".join(
+            ["ply", "format ascii 1.0", "element vertex 1"]
+            + [f"property float {name}" for name in "x y z nx ny nz radius".split()]
+            + ["end_header", "7 0 0 0 0 1 50"]) + "\n")
+        classes = self.report("evaluate", "presence", road, self.cloud, *labels)["by_class"]
+        self.assertGreater(classes["road"]["present"], 0.9 * classes["road"]["points"])
+        self.assertLess(classes["building"]["present"], 0.1 * classes["building"]["points"])
+
+    def test_errors(self):
+        model = self.model()
+        # Splats as a cloud: they do not say who saw them.
+        self.run_bad(65, "evaluate", "presence", model, model, says=["no sensor positions"])
+        self.run_bad(64, "evaluate", "presence", model, self.cloud, "--within", "0",
+                     says=["greater than 0"])
+
+
 class Pictures(ProgramTest):
     def size(self, picture):
         return struct.unpack(">II", picture.read_bytes()[16:24])

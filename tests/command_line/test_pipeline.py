@@ -10,7 +10,7 @@ from support import ProgramTest, run, tiny_place, write_cloud
 
 class Pipeline(ProgramTest):
     def test_every_method(self):
-        for method in ["basic", "descriptors", "semantic"]:
+        for method in ["basic", "descriptors", "semantic", "consistent"]:
             model = self.model(f"{method}.ply", "--method", method)
             scans = self.simulate(model, f"{method} scans", "--no-range-noise")
             report = self.report("evaluate", "c2c", scans, self.cloud, "--by-class", "--labels",
@@ -55,7 +55,8 @@ class Pipeline(ProgramTest):
                               "range_error_m", "chamfer_m", "chamfer_m2", "f_score", "by_range",
                               "by_incidence", "by_class"}, set(report))
         self.assertEqual(set(report["within"]), {"0.02", "0.05", "0.10", "0.50"})
-        self.assertEqual(set(report["range_error_m"]), {"median", "mae", "rmse", "p90"})
+        self.assertEqual(set(report["range_error_m"]), {"median", "mae", "rmse", "p90", "bias",
+                                                      "spread"})
 
     def test_a_model_predicts_its_own_scans(self):
         """Round trip: scans without noise cast again hit where they came from."""
