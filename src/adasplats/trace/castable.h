@@ -9,9 +9,9 @@
 namespace adasplats {
 
 /// Whether a ray can hit anything: its components are finite and its direction is not zero. Private
-/// to trace/: every backend asks it first. Embree asserts finite rays (and Debian's build aborts);
+/// to tracers: every backend asks it first. Embree asserts finite rays (and Debian's build aborts);
 /// beyond 1e18 squares overflow, and Embree's own limit for coordinates is 1.8e18.
-inline bool castable(const Ray& ray) {
+ADASPLATS_HD inline bool castable(const Ray& ray) {
   constexpr float kLargest = 1e18F;
   const auto usable = [](Vec3f v) {
     return std::fabs(v.x) <= kLargest && std::fabs(v.y) <= kLargest && std::fabs(v.z) <= kLargest;
@@ -22,6 +22,6 @@ inline bool castable(const Ray& ray) {
 }
 
 /// Where the search begins: nothing behind a ray's origin counts, whatever t_min says.
-inline float first_t(const Ray& ray) { return ray.t_min > 0.0F ? ray.t_min : 0.0F; }
+ADASPLATS_HD inline float first_t(const Ray& ray) { return ray.t_min > 0.0F ? ray.t_min : 0.0F; }
 
 }  // namespace adasplats

@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <string>
 
 #include "adasplats/core/random.h"
+#include "adasplats/trace/wide_kernel.h"
 
 namespace adasplats {
 namespace {
@@ -146,22 +149,50 @@ void expect_equal_hits(std::span<const Hit> found, std::span<const Hit> expected
   EXPECT_EQ(different, 0U);
 }
 
+/// A way to make a tracer.
+struct Backend {
+  std::string name;
+  std::function<std::unique_ptr<Tracer>(const SceneView&, const Executor&)> make;
+};
+
+/// All but brute force: Embree, and ours in each kind of vectors that this machine has.
+std::vector<Backend> fast_backends() {
+  std::vector<Backend> backends = {{"embree", make_embree_tracer}};
+  for (const detail::WideVersion& version : detail::wide_versions())
+    backends.push_back({"wide_" + std::string(version.name),
+                        [version](const SceneView& scene, const Executor& executor) {
+                          return detail::make_wide_tracer(scene, version, executor);
+                        }});
+  return backends;
+}
+
+std::vector<Backend> all_backends() {
+  std::vector<Backend> backends = fast_backends();
+  backends.push_back({"brute_force", [](const SceneView& scene, const Executor&) {
+                        return make_brute_force_tracer(scene);
+                      }});
+  return backends;
+}
+
 /// Oracle: brute force, bit for bit.
 void expect_same_as_brute_force(const SceneView& scene, std::span<const Ray> rays, int depth,
                                 double smallest_hit_share) {
   const Executor executor(2);
   const auto oracle = make_brute_force_tracer(scene);
-  const auto tracer = make_embree_tracer(scene, executor);
   const auto slots = static_cast<std::size_t>(depth);
   std::vector<Hit> expected_list(rays.size() * slots), found_list(rays.size() * slots);
   oracle->nearest_hits(rays, depth, expected_list, executor);
-  tracer->nearest_hits(rays, depth, found_list, executor);
-  expect_equal_hits(found_list, expected_list);
-
   std::vector<Hit> expected, found(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) expected.push_back(expected_list[i * slots]);
-  tracer->nearest(rays, found, executor);
-  expect_equal_hits(found, expected);
+
+  for (const Backend& backend : fast_backends()) {
+    SCOPED_TRACE(backend.name);
+    const auto tracer = backend.make(scene, executor);
+    tracer->nearest_hits(rays, depth, found_list, executor);
+    expect_equal_hits(found_list, expected_list);
+    tracer->nearest(rays, found, executor);
+    expect_equal_hits(found, expected);
+  }
   EXPECT_GT(static_cast<double>(count_valid(expected)),
             smallest_hit_share * static_cast<double>(rays.size()));
 }
@@ -202,31 +233,128 @@ INSTANTIATE_TEST_SUITE_P(Places, TracerInPlace,
                                          Place{5, {0, 0, 0}, 0.05, 1e-3, 0.02},
                                          Place{6, {-900, 20, 3}, 100, 30, 1000}));
 
-// A laser row has 4 rays a centimetre apart at the target: packets take other paths than for
-// rays in all directions.
-TEST(Tracer, CoherentRowsAreHitAsByBruteForce) {
-  const Place place = {7, {0, 0, 0}, 30, 0.2, 4};
-  const auto disks = random_disks(place, 600);
+/// Rays of rows side by side. With `travel_m` they start along a line, as those of a sensor that
+/// moves do; `pitch_rad` apart in azimuth.
+std::vector<Ray> laser_rows(int rows, int columns, double pitch_rad, double travel_m) {
   std::vector<Ray> rays;
-  for (int ring = 0; ring < 16; ++ring) {
-    for (int column = 0; column < 2250; ++column) {
-      const double azimuth = column * 6.283185307179586 / 2250;
-      const double elevation = 0.05 * (ring - 8);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const double azimuth = pitch_rad * column;
+      const double elevation = 0.05 * (row - rows / 2);
       const Vec3d d = {std::cos(elevation) * std::cos(azimuth),
                        std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
       Ray ray;
+      ray.origin.x = static_cast<float>(travel_m * column / columns);
       ray.direction = vec_cast<float>(d);
       ray.t_max = 25.0F;
       rays.push_back(ray);
     }
   }
+  return rays;
+}
+
+// A laser row has 4 rays a centimetre apart at the target: packets take other paths than for
+// rays in all directions.
+TEST(Tracer, CoherentRowsAreHitAsByBruteForce) {
+  const Place place = {7, {0, 0, 0}, 30, 0.2, 4};
+  const auto disks = random_disks(place, 600);
+  const auto rays = laser_rows(16, 2250, 6.283185307179586 / 2250, 0);
   expect_same_as_brute_force({disks, nullptr}, rays, 2, 0.2);
 }
 
-class AnyTracer : public testing::TestWithParam<bool> {
+// Rows from a moving sensor, packets as wide as can be and wider, and last packets that are not
+// full.
+TEST(Tracer, RowsOfEveryWidthAreHitAsByBruteForce) {
+  const Place place = {9, {0, 0, 0}, 20, 2, 8};
+  const auto disks = random_disks(place, 300);
+  const auto mesh = random_mesh(place, 100);
+  for (const double pitch_rad : {0.0, 1e-6, 0.003, 0.02, 0.03, 0.3})
+    for (const double travel_m : {0.0, 5.0})
+      expect_same_as_brute_force({disks, &mesh}, laser_rows(8, 333, pitch_rad, travel_m), 8, 0.1);
+}
+
+// Rays of a packet that cannot be cast, have other ranges or directions of another length.
+TEST(Tracer, OddRaysInAPacketAreHitAsByBruteForce) {
+  const Place place = {10, {0, 0, 0}, 30, 0.5, 6};
+  const auto disks = random_disks(place, 200);
+  std::vector<Ray> rays = laser_rows(16, 500, 0.003, 0);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Random random(place.seed, 3, i);
+    switch (random.next_bits() % 8) {
+      case 0: rays[i].direction = {}; break;
+      case 1: rays[i].t_max = static_cast<float>(random.uniform(-1, 20)); break;
+      case 2: rays[i].t_min = static_cast<float>(random.uniform(-5, 30)); break;
+      case 3: rays[i].origin.z = kNaN; break;
+      case 4: rays[i].t_max = kInfinity; break;
+      default: break;
+    }
+  }
+  expect_same_as_brute_force({disks, nullptr}, rays, 3, 0.1);
+  for (Ray& ray : rays) ray.direction = 1.02F * ray.direction;
+  expect_same_as_brute_force({disks, nullptr}, rays, 3, 0.1);
+}
+
+/// Scenes at the limits of a tree's build.
+struct Arrangement {
+  std::string name;
+  std::vector<Disk> disks;
+};
+
+std::vector<Arrangement> arrangements() {
+  const Place place = {11, {0, 0, 0}, 10, 0.3, 3};
+  std::vector<Arrangement> result;
+  for (const std::size_t count : {1U, 2U, 7U, 8U, 9U, 15U, 16U, 17U, 33U, 257U})
+    result.push_back({std::to_string(count), random_disks(place, count)});
+  result.push_back({"all equal", std::vector<Disk>(300, Disk{{1, 2, 3}, 2, {0, 0, 1}})});
+  auto line = random_disks(place, 500);
+  for (std::size_t i = 0; i < line.size(); ++i)
+    line[i].center = {0.04F * static_cast<float>(i) - 10, 0, 0};
+  result.push_back({"in a line", line});
+  auto one_giant = random_disks({12, {0, 0, 0}, 10, 0.01, 0.5}, 500);
+  one_giant[77] = {{0, 0, 0}, 1e6F, normalized(Vec3f{0.1F, 0.2F, 1})};
+  result.push_back({"one giant", one_giant});
+  auto far_apart = random_disks(place, 300);
+  for (std::size_t i = 0; i < 20; ++i) far_apart[i].center = {1e17F, -1e12F, 1e6F};
+  far_apart[50] = {{0, 0, 0}, 3e18F, {0, 0, 1}};
+  result.push_back({"far apart", far_apart});
+  auto other_normals = random_disks(place, 300);
+  for (std::size_t i = 0; i < other_normals.size(); i += 3)
+    other_normals[i].normal = 1.5F * other_normals[i].normal;
+  result.push_back({"normals of other lengths", other_normals});
+  auto points = random_disks(place, 300);
+  for (std::size_t i = 0; i < points.size(); i += 2) points[i].radius = 0;
+  result.push_back({"radius 0", points});
+  return result;
+}
+
+// Oracle: brute force, for single rays, packets and lists. (Embree leaves out what is beyond 1e18.)
+TEST(Tracer, WideTreesOfOddScenesAreHitAsByBruteForce) {
+  const Executor executor(2);
+  for (const Arrangement& scene : arrangements()) {
+    SCOPED_TRACE(scene.name);
+    const SceneView view = {scene.disks, nullptr};
+    std::vector<Ray> rays = random_rays({11, {0, 0, 0}, 10, 0.3, 3}, scene.disks, 3000);
+    for (const Ray& ray : laser_rows(4, 500, 0.0126, 0)) rays.push_back(ray);
+    constexpr int kDepth = 12;
+    std::vector<Hit> expected(kDepth * rays.size()), nearest, found(expected.size());
+    make_brute_force_tracer(view)->nearest_hits(rays, kDepth, expected, executor);
+    for (std::size_t i = 0; i < rays.size(); ++i) nearest.push_back(expected[kDepth * i]);
+    EXPECT_GT(count_valid(nearest), 0U);
+    for (const detail::WideVersion& version : detail::wide_versions()) {
+      const auto tracer = detail::make_wide_tracer(view, version, executor);
+      tracer->nearest_hits(rays, kDepth, found, executor);
+      expect_equal_hits(found, expected);
+      std::vector<Hit> found_nearest(rays.size());
+      tracer->nearest(rays, found_nearest, executor);
+      expect_equal_hits(found_nearest, nearest);
+    }
+  }
+}
+
+class AnyTracer : public testing::TestWithParam<Backend> {
  protected:
   std::unique_ptr<Tracer> make(const SceneView& scene) const {
-    return GetParam() ? make_embree_tracer(scene, executor_) : make_brute_force_tracer(scene);
+    return GetParam().make(scene, executor_);
   }
   std::vector<Hit> nearest(const SceneView& scene, const std::vector<Ray>& rays) const {
     std::vector<Hit> hits(rays.size(), Hit{1.0F, 7});
@@ -343,27 +471,101 @@ TEST_P(AnyTracer, AWrongNumberOfHitsIsABug) {
   EXPECT_THROW(tracer->nearest_hits({}, 0, {}, executor_), std::logic_error);
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, AnyTracer, testing::Bool(), [](const auto& backend) {
-  return backend.param ? "Embree" : "BruteForce";
-});
+INSTANTIATE_TEST_SUITE_P(Backends, AnyTracer, testing::ValuesIn(all_backends()),
+                         [](const auto& backend) { return backend.param.name; });
 
 // Oracle: one thread.
 TEST(Tracer, HitsDoNotDependOnTheNumberOfThreads) {
   const Place place = {8, {0, 0, 0}, 30, 0.2, 4};
   const auto disks = random_disks(place, 20'000);
   const auto rays = random_rays(place, disks, 30'000);
-  const auto trace = [&](int threads) {
+  const auto trace = [&](const Backend& backend, int threads) {
     const Executor executor(threads);
-    const auto tracer = make_cpu_tracer({disks, nullptr}, executor);
+    const auto tracer = backend.make({disks, nullptr}, executor);
     std::vector<Hit> hits(4 * rays.size());
     tracer->nearest(rays, std::span(hits).first(rays.size()), executor);
     tracer->nearest_hits(rays, 3, std::span(hits).subspan(rays.size()), executor);
     return hits;
   };
-  const std::vector<Hit> expected = trace(1);
-  EXPECT_GT(count_valid(expected), rays.size());
-  expect_equal_hits(trace(2), expected);
-  expect_equal_hits(trace(3), expected);
+  for (const Backend& backend : fast_backends()) {
+    SCOPED_TRACE(backend.name);
+    const std::vector<Hit> expected = trace(backend, 1);
+    EXPECT_GT(count_valid(expected), rays.size());
+    expect_equal_hits(trace(backend, 2), expected);
+    expect_equal_hits(trace(backend, 3), expected);
+  }
+}
+
+// Oracle: the tree that one thread builds, byte for byte; large enough for splits in parallel.
+TEST(WideBvh, DoesNotDependOnTheNumberOfThreads) {
+  const auto disks = random_disks({13, {0, 0, 0}, 30, 0.02, 0.4}, 150'000);
+  const auto mesh = random_mesh({13, {0, 0, 0}, 30, 0.02, 0.4}, 20'000);
+  const auto bytes_of = [](const auto& items) {
+    return std::string(reinterpret_cast<const char*>(items.data()),
+                       items.size() * sizeof(items[0]));
+  };
+  const WideBvh one = build_wide_bvh({disks, &mesh}, Executor(1));
+  for (const int threads : {2, 3}) {
+    const WideBvh other = build_wide_bvh({disks, &mesh}, Executor(threads));
+    EXPECT_EQ(other.root.bits, one.root.bits);
+    EXPECT_TRUE(bytes_of(other.nodes) == bytes_of(one.nodes));
+    EXPECT_TRUE(bytes_of(other.disks) == bytes_of(one.disks));
+    EXPECT_TRUE(bytes_of(other.triangles) == bytes_of(one.triangles));
+  }
+}
+
+// Oracle: every primitive is in one leaf, in the boxes of all nodes above it.
+TEST(WideBvh, HoldsEveryPrimitiveOnceWithinItsBoxes) {
+  const auto disks = random_disks({14, {0, 0, 0}, 30, 0.02, 2}, 70'000);
+  const auto mesh = random_mesh({14, {0, 0, 0}, 30, 0.02, 2}, 3'000);
+  const WideBvh bvh = build_wide_bvh({disks, &mesh}, Executor(2));
+  std::vector<int> seen(disks.size() + mesh.triangles.size());
+  const auto visit = [&](const auto& self, WideRef ref, Vec3f low, Vec3f high) -> void {
+    const auto expect_within = [&](Vec3f p) {
+      ASSERT_TRUE(min(p, low) == low && max(p, high) == high);
+    };
+    if (ref.kind() == WideRef::Kind::node) {
+      const WideNode& node = bvh.nodes[ref.index()];
+      for (unsigned child = 0; child < kWide; ++child) {
+        if (node.children[child].kind() == WideRef::Kind::nothing) continue;
+        const auto end = [&](int e) {
+          return Vec3f{node.bounds[e][0][child], node.bounds[e][1][child],
+                       node.bounds[e][2][child]};
+        };
+        expect_within(end(0));
+        expect_within(end(1));
+        self(self, node.children[child], end(0), end(1));
+      }
+      return;
+    }
+    for (unsigned lane = 0; lane < kWide; ++lane) {
+      const bool is_disk = ref.kind() == WideRef::Kind::disks;
+      const std::uint32_t primitive = is_disk ? bvh.disks[ref.index()].primitive[lane]
+                                              : bvh.triangles[ref.index()].primitive[lane];
+      if (primitive == Hit::kNone) continue;
+      ++seen[primitive];
+      if (is_disk) {
+        const Vec3f half = disk_half_extent(disks[primitive]);
+        expect_within(disks[primitive].center - half);
+        expect_within(disks[primitive].center + half);
+      } else {
+        const Triangle triangle = mesh.triangle(primitive - disks.size());
+        for (const Vec3f corner : {triangle.a, triangle.b, triangle.c}) expect_within(corner);
+      }
+    }
+  };
+  visit(visit, bvh.root, {-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity});
+  EXPECT_EQ(std::ranges::count(seen, 1), static_cast<std::ptrdiff_t>(seen.size()));
+}
+
+// The choice: meshes stay with Embree, which is as fast there on any machine.
+TEST(Tracer, TheCpuTracerDependsOnTheScene) {
+  const Executor executor(1);
+  const std::vector<Disk> disks = {{{2, 0, 0}, 1, {1, 0, 0}}};
+  const TriangleMesh mesh = random_mesh({15, {0, 0, 0}, 30, 0.2, 4}, 10);
+  const bool has_vectors = detail::wide_versions().front().name != "portable";
+  EXPECT_EQ(make_cpu_tracer({disks, nullptr}, executor)->name(), has_vectors ? "wide" : "embree");
+  EXPECT_EQ(make_cpu_tracer({disks, &mesh}, executor)->name(), "embree");
 }
 
 // Two tracers of different scenes in one process, built while the other lives.

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/trace/wide_kernel.h"
+
+#if defined(__x86_64__)
+
+#include <immintrin.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "adasplats/trace/castable.h"
+#include "adasplats/trace/hit_list.h"
+
+// Only what follows is compiled for AVX-512; headers above stay at the baseline, so that no shared
+// inline function of theirs is emitted with instructions an older CPU lacks.
+#pragma GCC push_options
+#if !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // gcc 12 gives it for its own header
+#endif
+#pragma GCC target("avx512f,avx512vl,avx512bw,avx512dq,fma,bmi,bmi2,popcnt,prefer-vector-width=512")
+
+namespace adasplats::detail {
+namespace {
+
+using F16 = __m512;
+using U16 = __m512i;
+inline F16 load(const float* p) { return _mm512_load_ps(p); }
+inline F16 all(float v) { return _mm512_set1_ps(v); }
+inline void store(float* p, F16 v) { _mm512_store_ps(p, v); }
+inline F16 fma(F16 a, F16 b, F16 c) { return _mm512_fmadd_ps(a, b, c); }
+inline F16 min(F16 a, F16 b) { return _mm512_min_ps(a, b); }
+inline F16 max(F16 a, F16 b) { return _mm512_max_ps(a, b); }
+inline unsigned less(F16 a, F16 b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
+inline unsigned at_most(F16 a, F16 b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
+inline unsigned equal(F16 a, F16 b) { return _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ); }
+inline F16 choose(unsigned mask, F16 a, F16 b) {
+  return _mm512_mask_blend_ps(static_cast<__mmask16>(mask), a, b);
+}
+inline float largest(F16 v) { return _mm512_reduce_max_ps(v); }
+inline float smallest(F16 v) { return _mm512_reduce_min_ps(v); }
+inline U16 load(const std::uint32_t* p) { return _mm512_load_si512(p); }
+inline U16 all(std::uint32_t v) { return _mm512_set1_epi32(static_cast<int>(v)); }
+inline void store(std::uint32_t* p, U16 v) { _mm512_store_si512(p, v); }
+inline unsigned less(U16 a, U16 b) { return _mm512_cmplt_epu32_mask(a, b); }
+inline U16 choose(unsigned mask, U16 a, U16 b) {
+  return _mm512_mask_blend_epi32(static_cast<__mmask16>(mask), a, b);
+}
+
+inline unsigned push(const WideNode& node, unsigned octant, unsigned mask, F16 from, float* to_from,
+                     WideRef* to_refs) {
+  const U16 order = _mm512_cvtepu8_epi32(
+      _mm_load_si128(reinterpret_cast<const __m128i*>(node.far_first[octant])));
+  const F16 ordered = _mm512_permutexvar_ps(order, choose(mask, all(HUGE_VALF), from));
+  const U16 refs = _mm512_permutexvar_epi32(order, _mm512_load_si512(node.children));
+  const __mmask16 kept = _mm512_cmp_ps_mask(ordered, all(HUGE_VALF), _CMP_LT_OQ);
+  _mm512_storeu_ps(to_from, _mm512_maskz_compress_ps(kept, ordered));
+  _mm512_storeu_si512(to_refs, _mm512_maskz_compress_epi32(kept, refs));
+  return static_cast<unsigned>(__builtin_popcount(kept));
+}
+
+#include "adasplats/trace/wide_kernel.inc"
+
+}  // namespace
+
+WideCast avx512_wide_cast() { return cast_rays; }
+
+}  // namespace adasplats::detail
+
+#pragma GCC pop_options
+#endif

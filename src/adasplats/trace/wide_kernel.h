@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "adasplats/core/ray.h"
+#include "adasplats/trace/tracer.h"
+#include "adasplats/trace/wide_bvh.h"
+
+namespace adasplats::detail {
+
+/// Private to trace/. The nearest `slots` hits of every ray, hits[i * slots + k]; `hits` is clear.
+using WideCast = void (*)(const WideBvh& bvh, std::span<const Ray> rays, std::size_t slots,
+                          std::span<Hit> hits);
+
+WideCast portable_wide_cast();
+#if defined(__x86_64__)
+WideCast avx2_wide_cast();
+WideCast avx512_wide_cast();
+#endif
+
+/// A traversal compiled for one kind of vectors.
+struct WideVersion {
+  std::string_view name;
+  WideCast cast;
+};
+
+/// Those that this machine can run, the fastest first. All give the same bits.
+std::vector<WideVersion> wide_versions();
+
+/// make_wide_tracer with a version of the caller's choice.
+std::unique_ptr<Tracer> make_wide_tracer(const SceneView& scene, const WideVersion& version,
+                                         const Executor& executor);
+
+}  // namespace adasplats::detail

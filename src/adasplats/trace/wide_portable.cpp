@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "adasplats/trace/castable.h"
+#include "adasplats/trace/hit_list.h"
+#include "adasplats/trace/wide_kernel.h"
+
+namespace adasplats::detail {
+namespace {
+
+template <class T>
+struct Lanes {
+  T v[16];
+};
+using F16 = Lanes<float>;
+using U16 = Lanes<std::uint32_t>;
+
+template <class T, class F>
+inline Lanes<T> lanewise(const Lanes<T>& a, const Lanes<T>& b, F f) {
+  Lanes<T> result;
+  for (unsigned i = 0; i < 16; ++i) result.v[i] = f(a.v[i], b.v[i]);
+  return result;
+}
+template <class T, class F>
+inline unsigned mask_of(const Lanes<T>& a, const Lanes<T>& b, F f) {
+  unsigned mask = 0;
+  for (unsigned i = 0; i < 16; ++i) mask |= static_cast<unsigned>(f(a.v[i], b.v[i])) << i;
+  return mask;
+}
+inline F16 operator+(const F16& a, const F16& b) {
+  return lanewise(a, b, [](float x, float y) { return x + y; });
+}
+inline F16 operator-(const F16& a, const F16& b) {
+  return lanewise(a, b, [](float x, float y) { return x - y; });
+}
+inline F16 operator*(const F16& a, const F16& b) {
+  return lanewise(a, b, [](float x, float y) { return x * y; });
+}
+inline F16 operator/(const F16& a, const F16& b) {
+  return lanewise(a, b, [](float x, float y) { return x / y; });
+}
+inline F16 min(const F16& a, const F16& b) {
+  return lanewise(a, b, [](float x, float y) { return x < y ? x : y; });
+}
+inline F16 max(const F16& a, const F16& b) {
+  return lanewise(a, b, [](float x, float y) { return x > y ? x : y; });
+}
+inline F16 fma(const F16& a, const F16& b, const F16& c) { return a * b + c; }
+template <class T>
+inline unsigned less(const Lanes<T>& a, const Lanes<T>& b) {
+  return mask_of(a, b, [](T x, T y) { return x < y; });
+}
+inline unsigned at_most(const F16& a, const F16& b) {
+  return mask_of(a, b, [](float x, float y) { return x <= y; });
+}
+inline unsigned equal(const F16& a, const F16& b) {
+  return mask_of(a, b, [](float x, float y) { return x == y; });
+}
+template <class T>
+inline Lanes<T> load(const T* p) {
+  Lanes<T> result;
+  for (unsigned i = 0; i < 16; ++i) result.v[i] = p[i];
+  return result;
+}
+template <class T>
+inline Lanes<T> filled(T v) {
+  Lanes<T> result;
+  for (T& lane : result.v) lane = v;
+  return result;
+}
+inline F16 all(float v) { return filled(v); }
+inline U16 all(std::uint32_t v) { return filled(v); }
+template <class T>
+inline void store(T* p, const Lanes<T>& v) {
+  for (unsigned i = 0; i < 16; ++i) p[i] = v.v[i];
+}
+template <class T>
+inline Lanes<T> choose(unsigned mask, const Lanes<T>& a, const Lanes<T>& b) {
+  Lanes<T> result;
+  for (unsigned i = 0; i < 16; ++i) result.v[i] = (mask >> i & 1U) != 0 ? b.v[i] : a.v[i];
+  return result;
+}
+inline float largest(const F16& v) {
+  float result = v.v[0];
+  for (const float x : v.v) result = x > result ? x : result;
+  return result;
+}
+inline float smallest(const F16& v) {
+  float result = v.v[0];
+  for (const float x : v.v) result = x < result ? x : result;
+  return result;
+}
+
+/// Without branches that depend on the mask: each child is written, and the next one over it where
+/// it does not count.
+inline unsigned push(const WideNode& node, unsigned octant, unsigned mask, const F16& from,
+                     float* to_from, WideRef* to_refs) {
+  alignas(64) float begin[kWide];
+  store(begin, from);
+  unsigned count = 0;
+  for (unsigned i = 0; i < kWide; ++i) {
+    const unsigned child = node.far_first[octant][i];
+    to_from[count] = begin[child];
+    to_refs[count] = node.children[child];
+    count += mask >> child & 1U;
+  }
+  return count;
+}
+
+#include "adasplats/trace/wide_kernel.inc"
+
+}  // namespace
+
+WideCast portable_wide_cast() { return cast_rays; }
+
+}  // namespace adasplats::detail

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+
+#include "adasplats/core/error.h"
+#include "adasplats/trace/clear_hits.h"
+#include "adasplats/trace/tracer.h"
+#include "adasplats/trace/wide_bvh.h"
+#include "adasplats/trace/wide_kernel.h"
+
+namespace adasplats {
+
+namespace {
+
+constexpr std::size_t kRaysPerChunk = 4096;
+
+class WideTracer final : public Tracer {
+ public:
+  WideTracer(const SceneView& scene, detail::WideCast cast, const Executor& executor)
+      : cast_(cast) {
+    if (scene.primitive_count() >= Hit::kNone)
+      throw Error(ErrorKind::data, "a scene of " + std::to_string(scene.primitive_count()) +
+                                       " primitives; at most 2^32 - 2 can be told apart");
+    bvh_ = build_wide_bvh(scene, executor);
+  }
+
+  std::string_view name() const override { return "wide"; }
+
+  void nearest(std::span<const Ray> rays, std::span<Hit> hits,
+               const Executor& executor) const override {
+    nearest_hits(rays, 1, hits, executor);
+  }
+
+  void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
+                    const Executor& executor) const override {
+    clear_hits(rays, depth, hits);
+    if (bvh_.root.kind() == WideRef::Kind::nothing) return;
+    const auto slots = static_cast<std::size_t>(depth);
+    executor.for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
+      cast_(bvh_, rays.subspan(begin, end - begin), slots,
+            hits.subspan(begin * slots, (end - begin) * slots));
+    });
+  }
+
+ private:
+  detail::WideCast cast_;
+  WideBvh bvh_;
+};
+
+}  // namespace
+
+std::vector<detail::WideVersion> detail::wide_versions() {
+  std::vector<WideVersion> versions;
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq"))
+    versions.push_back({"avx512", avx512_wide_cast()});
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+      __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2"))
+    versions.push_back({"avx2", avx2_wide_cast()});
+#endif
+  versions.push_back({"portable", portable_wide_cast()});
+  return versions;
+}
+
+std::unique_ptr<Tracer> detail::make_wide_tracer(const SceneView& scene, const WideVersion& version,
+                                                 const Executor& executor) {
+  return std::make_unique<WideTracer>(scene, version.cast, executor);
+}
+
+std::unique_ptr<Tracer> make_wide_tracer(const SceneView& scene, const Executor& executor) {
+  return detail::make_wide_tracer(scene, detail::wide_versions().front(), executor);
+}
+
+}  // namespace adasplats
