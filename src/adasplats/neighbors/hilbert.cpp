@@ -11,7 +11,7 @@
 namespace adasplats {
 namespace {
 
-constexpr int kBits = 21;
+constexpr int kBits = kHilbertBits;
 constexpr std::size_t kGrain = 1 << 16;
 
 /// Spreads the low 21 bits to every third bit.
@@ -25,48 +25,17 @@ constexpr std::uint64_t spread(std::uint64_t v) {
   return v;
 }
 
-/// Skilling's algorithm level by level, from the top bit down. What the levels above did to the
-/// axes of this one is a permutation with inversions. His last step inverts all three bits of the
-/// key at once; since the Gray code passes an inversion of the first axis on to all three, that is
-/// one more inversion of the first axis.
-struct Turn {
-  std::array<std::uint8_t, 3> axis = {0, 1, 2};  ///< which coordinate stands on the i-th axis
-  std::array<bool, 3> inverted{};
-
-  constexpr bool operator==(const Turn&) const = default;
-
-  /// Takes one bit of x, y and z (x is the highest of the three) and gives three bits of the key.
-  constexpr std::uint32_t step(std::uint32_t bits) {
-    std::array<bool, 3> set{};
-    for (std::size_t i = 0; i < 3; ++i) set[i] = ((bits >> (2 - axis[i]) & 1U) != 0) != inverted[i];
-    // Inverse undo of excess work: changes the levels below.
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (set[i]) {
-        inverted[0] = !inverted[0];
-      } else {
-        std::swap(axis[0], axis[i]);
-        std::swap(inverted[0], inverted[i]);
-      }
-    }
-    // Gray encode.
-    set[1] = set[1] != set[0];
-    set[2] = set[2] != set[1];
-    inverted[0] = inverted[0] != set[2];
-    return set[0] * 4U + set[1] * 2U + set[2] * 1U;
-  }
-};
-
 /// For each of the turns that occur and one bit of x, y and z: next turn << 3 | bits of the key.
 constexpr std::size_t kTurns = 24;
 using LevelTable = std::array<std::array<std::uint16_t, 8>, kTurns>;
 
 constexpr LevelTable level_table() {
   LevelTable table{};
-  std::array<Turn, kTurns> turns{};
+  std::array<HilbertTurn, kTurns> turns{};
   std::size_t known = 1;
   for (std::size_t from = 0; from < known; ++from) {
     for (std::uint32_t bits = 0; bits < 8; ++bits) {
-      Turn turn = turns[from];
+      HilbertTurn turn = turns[from];
       const std::uint32_t key = turn.step(bits);
       std::size_t to = 0;
       while (to < known && !(turns[to] == turn)) ++to;
@@ -144,19 +113,12 @@ std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
 
 std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const Executor& executor) {
   const Extent extent = extent_of(points, executor);
-  const Vec3f size = extent.high - extent.low;
-  const float side = std::max({size.x, size.y, size.z});
-  constexpr float kCells = static_cast<float>(1U << kBits) - 1.0F;
-  const float cells_per_m = side > 0.0F ? kCells / side : 0.0F;
-  const auto cell = [&](float v, float low) {
-    return static_cast<std::uint32_t>(std::min((v - low) * cells_per_m, kCells));
-  };
+  const HilbertGrid grid(extent.low, extent.high);
   std::vector<std::uint64_t> keys(points.size());
   executor.for_chunks(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec3f p = points[i];
-      keys[i] =
-          hilbert_key(cell(p.x, extent.low.x), cell(p.y, extent.low.y), cell(p.z, extent.low.z));
+      const Vec3<std::uint32_t> cell = grid.cell(points[i]);
+      keys[i] = hilbert_key(cell.x, cell.y, cell.z);
     }
   });
   std::vector<std::uint32_t> order;

@@ -2,14 +2,82 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/vec3.h"
 
 namespace adasplats {
+
+inline constexpr int kHilbertBits = 21;  ///< of a cell's number along one axis
+
+/// Skilling's algorithm level by level, from the top bit down. What the levels above did to the
+/// axes of this one is a permutation with inversions. His last step inverts all three bits of the
+/// key at once; since the Gray code passes an inversion of the first axis on to all three, that is
+/// one more inversion of the first axis.
+struct HilbertTurn {
+  std::array<std::uint8_t, 3> axis = {0, 1, 2};  ///< which coordinate stands on the i-th axis
+  std::array<bool, 3> inverted{};
+
+  constexpr bool operator==(const HilbertTurn&) const = default;
+
+  /// Takes one bit of x, y and z (x is the highest of the three) and gives three bits of the key.
+  ADASPLATS_HD constexpr std::uint32_t step(std::uint32_t bits) {
+    std::array<bool, 3> set{};
+    for (std::size_t i = 0; i < 3; ++i) set[i] = ((bits >> (2 - axis[i]) & 1U) != 0) != inverted[i];
+    // Inverse undo of excess work: changes the levels below.
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (set[i]) {
+        inverted[0] = !inverted[0];
+      } else {
+        std::swap(axis[0], axis[i]);
+        std::swap(inverted[0], inverted[i]);
+      }
+    }
+    // Gray encode.
+    set[1] = set[1] != set[0];
+    set[2] = set[2] != set[1];
+    inverted[0] = inverted[0] != set[2];
+    return set[0] * 4U + set[1] * 2U + set[2] * 1U;
+  }
+};
+
+/// hilbert_key() without its table, for GPUs.
+ADASPLATS_HD constexpr std::uint64_t hilbert_key_by_turns(std::uint32_t x, std::uint32_t y,
+                                                          std::uint32_t z) {
+  HilbertTurn turn;
+  std::uint64_t key = 0;
+  for (int bit = kHilbertBits - 1; bit >= 0; --bit)
+    key = key << 3 | turn.step((x >> bit & 1U) << 2 | (y >> bit & 1U) << 1 | (z >> bit & 1U));
+  return key;
+}
+
+/// The cells of the curve over a bounding box: those of the cube over its longest side.
+struct HilbertGrid {
+  static constexpr float kCells = static_cast<float>(1U << kHilbertBits) - 1.0F;
+  Vec3f low;
+  float cells_per_m = 0;
+
+  ADASPLATS_HD HilbertGrid(Vec3f box_low, Vec3f box_high) : low(box_low) {
+    const Vec3f size = box_high - box_low;
+    const float xy = size.x < size.y ? size.y : size.x;
+    const float side = xy < size.z ? size.z : xy;
+    cells_per_m = side > 0.0F ? kCells / side : 0.0F;
+  }
+  ADASPLATS_HD Vec3<std::uint32_t> cell(Vec3f p) const {
+    return {along(p.x, low.x), along(p.y, low.y), along(p.z, low.z)};
+  }
+
+ private:
+  ADASPLATS_HD std::uint32_t along(float v, float from) const {
+    const float at = (v - from) * cells_per_m;
+    return static_cast<std::uint32_t>(kCells < at ? kCells : at);
+  }
+};
 
 /// Position of a cell along the Hilbert curve of 2^21 cells a side (63 bits). Skilling 2004,
 /// "Programming the Hilbert curve": transpose form, then the bits of the axes interleaved.

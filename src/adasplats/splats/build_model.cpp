@@ -4,12 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <numeric>
 
 #include "adasplats/core/error.h"
-#include "adasplats/splats/canonical_order.h"
-#include "adasplats/splats/generation.h"
-#include "adasplats/splats/resample.h"
+#include "adasplats/splats/model_engine.h"
 
 namespace adasplats {
 namespace {
@@ -109,50 +106,29 @@ bool is_removed(const SemanticClass& semantic_class, DynamicRemoval removal) {
 
 /// One table entry for each of the 65,536 ids, so that 12 M points need no search.
 template <class T, class F>
-std::vector<T> table_by_id(const PointCloud& cloud, F&& value_of) {
-  std::vector<bool> used(1 << 16);
-  for (const std::uint16_t id : cloud.classes) used[id] = true;
-  std::vector<T> table(1 << 16);
+std::vector<T> table_by_id(const std::vector<bool>& used, F&& value_of) {
+  std::vector<T> table(used.size());
   for (std::size_t id = 0; id < used.size(); ++id)
     if (used[id]) table[id] = value_of(static_cast<std::uint16_t>(id));
   return table;
 }
 
-/// Ranks of the points that stay, then the cloud of those in canonical order.
-PointCloud static_points_in_order(PointCloud cloud, const LabelScheme* labels,
-                                  DynamicRemoval removal, const Executor& executor) {
-  std::vector<std::uint32_t> order = canonical_order(cloud, executor);
-  if (labels != nullptr && !cloud.classes.empty() && removal != DynamicRemoval::none) {
-    const auto removed = table_by_id<std::uint8_t>(cloud, [&](std::uint16_t id) {
-      return static_cast<std::uint8_t>(is_removed(class_of(*labels, id), removal));
+ClassTables class_tables(const PointCloud& cloud, const LabelScheme* labels,
+                         const BuildOptions& options) {
+  ClassTables tables;
+  if (labels == nullptr || cloud.classes.empty()) return tables;
+  std::vector<bool> used(1 << 16);
+  for (const std::uint16_t id : cloud.classes) used[id] = true;
+  if (options.remove != DynamicRemoval::none) {
+    tables.removed = table_by_id<std::uint8_t>(used, [&](std::uint16_t id) {
+      return static_cast<std::uint8_t>(is_removed(class_of(*labels, id), options.remove));
     });
-    std::erase_if(order, [&](std::uint32_t i) { return removed[cloud.classes[i]] != 0; });
   }
-  return gather(cloud, order);
-}
-
-/// Paper section "Splat-Based Resampling and Denoising", first paragraph.
-PointCloud without_noise(PointCloud cloud, const BuildOptions& options, const Executor& executor) {
-  std::vector<std::uint32_t> kept;
-  {
-    const PointIndex index = PointIndex::from_sorted(cloud.positions, executor);
-    const BaseNeighborhoods base = base_neighborhoods(
-        cloud.positions, index,
-        {static_cast<std::uint32_t>(options.neighbors), options.radius_m, options.denoise_sigmas},
-        executor);
-    for (std::uint32_t i = 0; i < cloud.size(); ++i)
-      if (base.votes[i] == 0 || base.votes[i] < options.denoise_votes * base.memberships[i])
-        kept.push_back(i);
+  if (options.method == SplatMethod::semantic) {
+    tables.groups = table_by_id<SemanticGroup>(
+        used, [&](std::uint16_t id) { return class_of(*labels, id).group; });
   }
-  return kept.size() == cloud.size() ? std::move(cloud) : gather(cloud, kept);
-}
-
-std::vector<SemanticGroup> groups_by_label(const PointCloud& cloud, const LabelScheme& labels) {
-  const auto table = table_by_id<SemanticGroup>(
-      cloud, [&](std::uint16_t id) { return class_of(labels, id).group; });
-  std::vector<SemanticGroup> groups(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) groups[i] = table[cloud.classes[i]];
-  return groups;
+  return tables;
 }
 
 std::string_view method_name(SplatMethod method) {
@@ -165,131 +141,109 @@ std::string_view method_name(SplatMethod method) {
   return "";
 }
 
-SplatModel to_model(const PointCloud& cloud, Generation generation, const LabelScheme* labels,
-                    SplatMethod method) {
-  SplatModel model;
-  model.origin = cloud.origin;
-  model.disks = std::move(generation.disks);
-  model.method = std::string(method_name(method));
-  const bool has_classes = !cloud.classes.empty();
-  if (has_classes && labels != nullptr) model.label_scheme = labels->name();
-  for (const std::uint32_t seed : generation.seeds) {
-    if (has_classes) model.classes.push_back(cloud.classes[seed]);
-    if (!generation.groups.empty()) model.groups.push_back(generation.groups[seed]);
-    if (!cloud.intensities.empty()) model.intensities.push_back(cloud.intensities[seed]);
-  }
-  return model;
+void require_points(std::size_t points) {
+  if (points == 0) throw Error(ErrorKind::data, "no points are left to model");
 }
 
-/// The class that most of the points have; of several the smallest.
-std::uint16_t majority_class(const PointCloud& cloud, std::span<const std::uint32_t> points) {
-  std::vector<std::uint16_t> classes;
-  classes.reserve(points.size());
-  for (const std::uint32_t i : points) classes.push_back(cloud.classes[i]);
-  std::sort(classes.begin(), classes.end());
-  std::uint16_t best = 0;
-  std::ptrdiff_t most = 0;
-  for (auto first = classes.begin(); first != classes.end();) {
-    const auto last = std::upper_bound(first, classes.end(), *first);
-    if (last - first > most) {
-      most = last - first;
-      best = *first;
-    }
-    first = last;
-  }
-  return best;
-}
-
-float mean_intensity(const PointCloud& cloud, std::span<const std::uint32_t> points) {
-  double sum = 0;
-  for (const std::uint32_t i : points) sum += static_cast<double>(cloud.intensities[i]);
-  return static_cast<float>(sum / static_cast<double>(points.size()));
-}
-
-SplatModel to_model(const PointCloud& cloud, ConsistentDisks made, const LabelScheme* labels) {
-  SplatModel model;
-  model.origin = cloud.origin;
+/// Moves what steps made into a model.
+void put_splats(PaperSplats made, SplatModel& model, BuildReport& report) {
   model.disks = std::move(made.disks);
-  model.method = std::string(method_name(SplatMethod::consistent));
-  if (!cloud.classes.empty() && labels != nullptr) model.label_scheme = labels->name();
-  for (const std::uint32_t cell : made.cells) {
-    const auto points = made.fused.points_of(cell);
-    if (!cloud.classes.empty()) model.classes.push_back(majority_class(cloud, points));
-    if (!cloud.intensities.empty()) model.intensities.push_back(mean_intensity(cloud, points));
-  }
-  return model;
+  model.classes = std::move(made.classes);
+  model.groups = std::move(made.groups);
+  model.intensities = std::move(made.intensities);
+  report.radius_m = made.radius_m;
+  report.error_m = made.error_m;
 }
 
-/// A resampled cloud brought into canonical order, its groups along.
-std::pair<PointCloud, std::vector<SemanticGroup>> in_order(ResampledCloud resampled,
-                                                           const Executor& executor) {
-  const std::vector<std::uint32_t> order = canonical_order(resampled.cloud, executor);
-  std::vector<SemanticGroup> groups;
-  if (!resampled.groups.empty())
-    for (const std::uint32_t i : order) groups.push_back(resampled.groups[i]);
-  return {gather(resampled.cloud, order), std::move(groups)};
+void put_splats(ConsistentSplats made, SplatModel& model) {
+  model.disks = std::move(made.disks);
+  model.classes = std::move(made.classes);
+  model.intensities = std::move(made.intensities);
+}
+
+/// The paper's methods.
+void run(PaperSteps& steps, PointCloud cloud, const ClassTables& tables,
+         const BuildOptions& options, StepSink step, SplatModel& model, BuildReport& report) {
+  step("order");
+  report.points_used = steps.load(std::move(cloud), tables);
+  report.points_dynamic = report.points_in - report.points_used;
+  if (options.denoise) {
+    step("denoising");
+    const std::size_t before = report.points_used;
+    report.points_used = steps.denoise(options);
+    report.points_noise = before - report.points_used;
+  }
+  require_points(report.points_used);
+  const std::size_t splats = steps.generate(options, step);
+  if (options.resample && options.method != SplatMethod::basic && splats > 0) {
+    step("resampling");
+    const PaperSteps::Resampled resampled = steps.resample(options);
+    report.points_used = resampled.points;
+    report.points_resampled = resampled.new_points;
+    steps.generate(options, step);
+  }
+  put_splats(steps.take_splats(), model, report);
+}
+
+/// Ours.
+void run(ConsistentSteps& steps, PointCloud cloud, const ClassTables& tables,
+         const BuildOptions& options, StepSink step, SplatModel& model, BuildReport& report) {
+  step("order");
+  report.points_used = steps.load(std::move(cloud), tables);
+  report.points_dynamic = report.points_in - report.points_used;
+  require_points(report.points_used);
+  report.ray_checked = consistent_disks(steps, report.oriented, options.consistent, step);
+  put_splats(steps.take_splats(), model);
+}
+
+std::string_view warning_without_sensors(SplatMethod method) {
+  return method == SplatMethod::consistent
+             ? "no sensor positions: splats are not checked against measured rays (give a "
+               "viewpoint "
+               "or a trajectory)"
+             : "no sensor positions: normals are not oriented (give a viewpoint or a "
+               "trajectory to orient them)";
 }
 
 }  // namespace
 
 std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelScheme* labels,
                                                const BuildOptions& options,
-                                               const Executor& executor, ProgressSink& progress) {
+                                               const Executor& executor, ProgressSink& progress,
+                                               const ModelEngine* engine) {
   check(options);
   if (cloud.empty()) throw Error(ErrorKind::data, "no points: there is nothing to model");
   if (options.method == SplatMethod::semantic && (labels == nullptr || cloud.classes.empty()))
     throw Error(ErrorKind::data,
                 "the semantic method needs labels, and the input has none; "
                 "the descriptors method does without");
-  BuildReport report;
+  std::pair<SplatModel, BuildReport> result;
+  auto& [model, report] = result;
   report.points_in = cloud.size();
   report.oriented = !cloud.sensor_positions.empty();
-  if (!report.oriented)
-    progress.warn(
-        options.method == SplatMethod::consistent
-            ? "no sensor positions: splats are not checked against measured rays (give a viewpoint "
-              "or a trajectory)"
-            : "no sensor positions: normals are not oriented (give a viewpoint or a "
-              "trajectory to orient them)");
-  StepClock clock(report.steps, progress);
-  const auto step = [&](std::string_view name) { clock.begin(name); };
+  if (!report.oriented) progress.warn(warning_without_sensors(options.method));
+  model.origin = cloud.origin;
+  model.method = std::string(method_name(options.method));
+  if (!cloud.classes.empty() && labels != nullptr) model.label_scheme = labels->name();
 
-  step("order");
-  cloud = static_points_in_order(std::move(cloud), labels, options.remove, executor);
-  report.points_dynamic = report.points_in - cloud.size();
-  if (options.method == SplatMethod::consistent && !cloud.empty()) {
-    ConsistentDisks made = consistent_disks(cloud, options.consistent, executor, step);
+  std::unique_ptr<ModelEngine> cpu;
+  if (engine == nullptr) {
+    cpu = make_cpu_model_engine(executor);
+    engine = cpu.get();
+  }
+  const ClassTables tables = class_tables(cloud, labels, options);
+  {
+    StepClock clock(report.steps, progress);
+    const auto step = [&](std::string_view name) { clock.begin(name); };
+    if (options.method == SplatMethod::consistent) {
+      run(*engine->consistent_steps(), std::move(cloud), tables, options, step, model, report);
+    } else {
+      run(*engine->paper_steps(), std::move(cloud), tables, options, step, model, report);
+    }
     clock.end();
-    report.points_used = cloud.size();
-    report.primitives = made.disks.size();
-    report.ray_checked = made.checked;
-    return {to_model(cloud, std::move(made), labels), report};
   }
-  if (options.denoise) {
-    step("denoising");
-    const std::size_t before = cloud.size();
-    cloud = without_noise(std::move(cloud), options, executor);
-    report.points_noise = before - cloud.size();
-  }
-  if (cloud.empty()) throw Error(ErrorKind::data, "no points are left to model");
-
-  std::vector<SemanticGroup> groups;
-  if (options.method == SplatMethod::semantic) groups = groups_by_label(cloud, *labels);
-  Generation generation = generate_splats(cloud, groups, options, executor, step);
-  const bool adaptive = options.method != SplatMethod::basic;
-  if (options.resample && adaptive && !generation.disks.empty()) {
-    step("resampling");
-    ResampledCloud resampled = resample(cloud, generation, options, executor);
-    report.points_resampled = resampled.new_points;
-    std::tie(cloud, groups) = in_order(std::move(resampled), executor);
-    generation = generate_splats(cloud, groups, options, executor, step);
-  }
-  clock.end();
-  report.points_used = cloud.size();
-  report.primitives = generation.disks.size();
-  report.radius_m = generation.radius_m;
-  report.error_m = generation.error_m;
-  return {to_model(cloud, std::move(generation), labels, options.method), report};
+  report.primitives = model.size();
+  return result;
 }
 
 }  // namespace adasplats

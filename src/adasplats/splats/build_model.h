@@ -92,13 +92,16 @@ struct BuildReport {
   std::vector<StepTime> steps;
 };
 
+class ModelEngine;
+
 /// Point cloud in, splat model out. The result depends on the set of points alone: not on their
 /// order, the threads or the machine. Semantic needs `labels` and cloud.classes; dynamic removal
-/// is skipped without them.
-/// Errors: data ("no points"; no labels for `semantic`; an id that the scheme does not know),
-/// usage (options out of range).
+/// is skipped without them. `engine` does the steps (model_engine.h; nullptr: `executor`'s
+/// threads); engines agree up to rounding. Errors: data ("no points"; no labels for `semantic`; an
+/// id that the scheme does not know), usage (options out of range).
 std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelScheme* labels,
                                                const BuildOptions& options,
-                                               const Executor& executor, ProgressSink& progress);
+                                               const Executor& executor, ProgressSink& progress,
+                                               const ModelEngine* engine = nullptr);
 
 }  // namespace adasplats

@@ -2,17 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string_view>
-#include <vector>
 
-#include "adasplats/cloud/point_cloud.h"
-#include "adasplats/core/executor.h"
-#include "adasplats/scene/intersect.h"
+#include "adasplats/splats/disk_evidence.h"
+#include "adasplats/splats/disk_shift.h"
 #include "adasplats/splats/measured_rays.h"
-#include "adasplats/splats/ray_check.h"
-#include "adasplats/splats/surface_cover.h"
-#include "adasplats/surface/adaptive_planes.h"
+#include "adasplats/splats/seed_growth.h"
+#include "adasplats/surface/plane_fit.h"
 
 namespace adasplats {
 
@@ -44,19 +43,26 @@ struct ConsistentOptions {
   SettleOptions settle;
   bool fill = true;        ///< where rays fall between splats, seeds are put back...
   float missed_m = 0.15F;  ///< ...if there is nothing up to so far behind the rays' ends
+
+  /// Cells are split up to `split_scale`: planes at larger scales than the first that decides need
+  /// not be looked at.
+  AdaptivePlaneOptions planes_for_splitting() const;
+  /// Largest radius of a seed in median spacings; `has_rays`: clouds with sensor positions.
+  double largest_seed(bool has_rays) const {
+    return has_rays ? largest_spacing : unchecked_largest_spacing;
+  }
+  /// As many rays as a round needs, of so many; other ones every round.
+  EvidenceOptions evidence_of_round(int round, std::size_t rays) const;
+  /// Of growing disks; `checked`: rays tell where surfaces end.
+  CoverOptions cover_options(bool checked) const;
 };
 
-struct ConsistentDisks {
-  std::vector<Disk> disks;
-  std::vector<std::uint32_t> cells;  ///< of each disk, in `fused`
-  FusedPoints fused;
-  bool checked = false;  ///< against measured rays
-};
+class ConsistentSteps;
 
-/// Fuses, fits planes, checks, covers, settles. `cloud` in canonical order; without sensor
-/// positions the steps with rays are left out. `begin_step` hears the name of every step.
-ConsistentDisks consistent_disks(const PointCloud& cloud, const ConsistentOptions& options,
-                                 const Executor& executor,
-                                 const std::function<void(std::string_view)>& begin_step);
+/// Fuses, fits planes, checks, covers, settles what `steps` have loaded. Without sensor positions
+/// (`has_rays` false) or with no balance rounds the steps with rays are left out. `begin_step`
+/// hears the name of every step. Gives whether measured rays checked the disks.
+bool consistent_disks(ConsistentSteps& steps, bool has_rays, const ConsistentOptions& options,
+                      const std::function<void(std::string_view)>& begin_step);
 
 }  // namespace adasplats

@@ -14,7 +14,11 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/random.h"
 #include "adasplats/splats/build_model.h"
+#include "adasplats/splats/canonical_order.h"
+#include "adasplats/splats/consistent_state.h"
+#include "adasplats/splats/consistent_steps.h"
 #include "adasplats/splats/scanned_room_test.h"
+#include "adasplats/surface/adaptive_planes.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {
@@ -322,32 +326,73 @@ TEST(ConsistentModel, DegenerateCloudsFinish) {
   }
 }
 
+/// What the recipe makes of a cloud in canonical order.
+struct Made {
+  std::vector<Disk> disks;
+  std::vector<std::uint32_t> cells;  ///< of each disk, in `fused`
+  FusedPoints fused;
+  bool checked = false;
+  std::vector<std::string> steps;
+};
+
+Made disks_of(const PointCloud& cloud, const ConsistentOptions& options) {
+  const Executor executor(2);
+  const auto steps = make_cpu_consistent_steps(executor);
+  EXPECT_EQ(steps->load(cloud, {}), cloud.size());
+  Made made;
+  made.checked = consistent_disks(*steps, !cloud.sensor_positions.empty(), options,
+                                  [&](std::string_view name) { made.steps.emplace_back(name); });
+  ConsistentState state = dynamic_cast<const ShowsConsistentState&>(*steps).state();
+  for (std::uint32_t i = 0; i < state.chosen.size(); ++i) {
+    if (!(state.chosen[i].radius > 0)) continue;
+    made.disks.push_back(state.chosen[i]);
+    made.cells.push_back(i);
+  }
+  made.fused = std::move(state.fused);
+  EXPECT_TRUE(same_bytes(steps->take_splats().disks, made.disks));
+  return made;
+}
+
+PointCloud ordered(const PointCloud& cloud) {
+  return gather(cloud, canonical_order(cloud, Executor(2)));
+}
+
 TEST(ConsistentDisks, CellsBelongToTheirDisks) {
   // Every disk stands on its cell: off its mean by the shifts to the plane and to the rays at most.
-  const PointCloud cloud = thin_room();
-  std::vector<std::string> steps;
+  const PointCloud cloud = ordered(thin_room());
   const ConsistentOptions options = quick_options().consistent;
-  const ConsistentDisks made = consistent_disks(
-      cloud, options, Executor(2), [&](std::string_view name) { steps.emplace_back(name); });
+  const Made made = disks_of(cloud, options);
   EXPECT_TRUE(made.checked);
   ASSERT_EQ(made.cells.size(), made.disks.size());
-  EXPECT_TRUE(std::is_sorted(made.cells.begin(), made.cells.end()));
   const double most_m = options.planes.most_shift_m + options.settle.most_shift_m;
   for (std::size_t i = 0; i < made.disks.size(); ++i) {
     const Vec3f mean = made.fused.positions[made.cells[i]];
     EXPECT_LE(length(made.disks[i].center - mean), most_m + 1e-5);
   }
-  EXPECT_EQ(std::unique(steps.begin(), steps.end()), steps.end());
-  EXPECT_GE(steps.size(), 4U);
+  const std::vector<std::string> expected = {
+      "fusion",   "planes", "ray check of seeds", "cover", "ray check of splats",
+      "settling", "filling"};
+  EXPECT_EQ(made.steps, expected);
 }
 
-ConsistentDisks disks_of(const PointCloud& cloud, const ConsistentOptions& options) {
-  return consistent_disks(cloud, options, Executor(2), [](std::string_view) {});
+TEST(ConsistentDisks, StepsWithRaysAreLeftOutWithoutThem) {
+  const std::vector<std::string> expected = {"fusion", "planes", "cover"};
+  const PointCloud cloud = ordered(thin_room());
+  ConsistentOptions options = quick_options().consistent;
+  options.balance_rounds = 0;
+  const Made without_rounds = disks_of(cloud, options);
+  EXPECT_EQ(without_rounds.steps, expected);
+  EXPECT_FALSE(without_rounds.checked);
+  PointCloud without_sensors = cloud;
+  without_sensors.sensor_positions.clear();
+  const Made made = disks_of(without_sensors, quick_options().consistent);
+  EXPECT_EQ(made.steps, expected);
+  EXPECT_FALSE(made.checked);
 }
 
 /// Which points' rays meet no disk up to `beyond_m` behind their ends.
-std::vector<bool> points_missed(const PointCloud& cloud, const ConsistentDisks& made,
-                                double least_range_m, float beyond_m) {
+std::vector<bool> points_missed(const PointCloud& cloud, const Made& made, double least_range_m,
+                                float beyond_m) {
   const Executor executor(2);
   const MeasuredRays rays(cloud, least_range_m, executor);
   const auto tracer = make_cpu_tracer({made.disks, nullptr}, executor);
@@ -361,13 +406,13 @@ std::vector<bool> points_missed(const PointCloud& cloud, const ConsistentDisks& 
 }
 
 TEST(ConsistentDisks, FillingAddsSplatsWhereRaysFallBetweenAndChangesNoOther) {
-  const PointCloud cloud = thin_room();
+  const PointCloud cloud = ordered(thin_room());
   ConsistentOptions options = quick_options().consistent;
   options.cover.overlap = 0.95;  // leaves gaps between disks
   options.fill = false;
-  const ConsistentDisks bare = disks_of(cloud, options);
+  const Made bare = disks_of(cloud, options);
   options.fill = true;
-  const ConsistentDisks filled = disks_of(cloud, options);
+  const Made filled = disks_of(cloud, options);
   const auto missed = points_missed(cloud, bare, options.least_range_m, options.missed_m);
   std::size_t i = 0, added = 0;
   for (std::size_t k = 0; k < filled.disks.size(); ++k) {
@@ -388,11 +433,11 @@ TEST(ConsistentDisks, FillingAddsSplatsWhereRaysFallBetweenAndChangesNoOther) {
 }
 
 TEST(ConsistentDisks, SmallCellsAreWhereNothingIsFlat) {
-  const PointCloud cloud = thin_room();
+  const PointCloud cloud = ordered(thin_room());
   ConsistentOptions options = quick_options().consistent;
   const FusedPoints large = fuse_points(cloud.positions, options.cell_m, Executor(1));
   options.small_cell_m = 0;
-  const ConsistentDisks whole = disks_of(cloud, options);
+  const Made whole = disks_of(cloud, options);
   EXPECT_EQ(whole.fused.positions, large.positions);
   EXPECT_EQ(whole.fused.members, large.members);
   options.small_cell_m = 0.02;
@@ -427,7 +472,7 @@ TEST(ConsistentDisks, WithoutSensorPositionsDisksEndWhereAFlatPatchEnds) {
           {0.05F * static_cast<float>(x) + 0.02F, 0.05F * static_cast<float>(y) + 0.02F, 0.02F});
   constexpr float kEnd_m = 0.05F * 49 + 0.02F;
   ConsistentOptions options = consistent_options().consistent;
-  const auto farthest_over_border = [](const ConsistentDisks& made) {
+  const auto farthest_over_border = [](const Made& made) {
     float farthest_m = 0;
     for (const Disk& disk : made.disks)
       for (const float c : {disk.center.x, disk.center.y})
@@ -436,7 +481,7 @@ TEST(ConsistentDisks, WithoutSensorPositionsDisksEndWhereAFlatPatchEnds) {
   };
   for (const int sectors : {8, 16}) {
     options.unchecked_sectors = sectors;
-    const ConsistentDisks made = disks_of(cloud, options);
+    const Made made = disks_of(cloud, options);
     EXPECT_FALSE(made.checked);
     ASSERT_GT(made.disks.size(), 50U);
     float least_m = 1, largest_m = 0;

@@ -12,49 +12,8 @@ namespace {
 
 constexpr std::uint32_t kGrain = 4096;
 
-SemanticGroup group_of(ShapeKind kind) {
-  // "Ground and surface using the planarity descriptor; linear using linearity; non-surface using
-  // sphericity." Planar points are kept as `surface`.
-  switch (kind) {
-    case ShapeKind::linear: return SemanticGroup::linear;
-    case ShapeKind::planar: return SemanticGroup::surface;
-    case ShapeKind::spherical: return SemanticGroup::non_surface;
-  }
-  return SemanticGroup::surface;
-}
-
-/// Neighbourhood and growing of one group, in numbers ready for use.
-struct GroupRules {
-  NeighborLimit limit;
-  GrowRules grow;
-  bool like_base;  ///< its neighbourhood is the base neighbourhood
-};
-
 std::uint32_t scaled_count(int neighbors, double scale) {
   return static_cast<std::uint32_t>(std::max(1.0, std::round(neighbors * scale)));
-}
-
-std::array<GroupRules, kSemanticGroups> group_rules(const BuildOptions& options, double radius_m,
-                                                    double error_m, bool is_oriented) {
-  std::array<GroupRules, kSemanticGroups> rules;
-  for (std::size_t g = 0; g < kSemanticGroups; ++g) {
-    GroupScale scale;
-    if (options.method == SplatMethod::semantic) scale = options.semantic_scales[g];
-    if (options.method == SplatMethod::descriptors) {
-      const bool planar = static_cast<SemanticGroup>(g) == SemanticGroup::surface ||
-                          static_cast<SemanticGroup>(g) == SemanticGroup::ground;
-      scale = planar ? options.planar_scale : options.semantic_scales[g];
-    }
-    const float radius = static_cast<float>(radius_m * scale.radius);
-    const bool adaptive = options.method != SplatMethod::basic;
-    rules[g] = {{scaled_count(options.neighbors, scale.neighbors), radius * radius},
-                {static_cast<float>(error_m * scale.error),
-                 // Basic splats stop at the error bound alone.
-                 adaptive ? static_cast<float>(options.smoothness) : -2.0F,
-                 options.method == SplatMethod::semantic, is_oriented},
-                scale.neighbors == 1 && scale.radius == 1};
-  }
-  return rules;
 }
 
 /// Turns normals to the sensor, or gives them a sign that depends on the data alone.
@@ -117,6 +76,29 @@ std::vector<SurfacePoint> surface_points(const PointCloud& cloud, std::span<cons
 
 }  // namespace
 
+std::array<GroupRules, kSemanticGroups> group_rules(const BuildOptions& options, double radius_m,
+                                                    double error_m, bool is_oriented) {
+  std::array<GroupRules, kSemanticGroups> rules;
+  for (std::size_t g = 0; g < kSemanticGroups; ++g) {
+    GroupScale scale;
+    if (options.method == SplatMethod::semantic) scale = options.semantic_scales[g];
+    if (options.method == SplatMethod::descriptors) {
+      const bool planar = static_cast<SemanticGroup>(g) == SemanticGroup::surface ||
+                          static_cast<SemanticGroup>(g) == SemanticGroup::ground;
+      scale = planar ? options.planar_scale : options.semantic_scales[g];
+    }
+    const float radius = static_cast<float>(radius_m * scale.radius);
+    const bool adaptive = options.method != SplatMethod::basic;
+    rules[g] = {{scaled_count(options.neighbors, scale.neighbors), radius * radius},
+                {static_cast<float>(error_m * scale.error),
+                 // Basic splats stop at the error bound alone.
+                 adaptive ? static_cast<float>(options.smoothness) : -2.0F,
+                 options.method == SplatMethod::semantic, is_oriented},
+                scale.neighbors == 1 && scale.radius == 1};
+  }
+  return rules;
+}
+
 Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGroup> groups,
                            const BuildOptions& options, const Executor& executor, StepSink step) {
   step("neighbourhoods");
@@ -158,9 +140,9 @@ Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGrou
   result.disks.resize(result.seeds.size());
   executor.for_chunks(result.seeds.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      const SurfacePoint& seed = points[result.seeds[s]];
-      result.disks[s] = {seed.position + candidates.shifts[result.seeds[s]] * seed.normal,
-                         candidates.radii[result.seeds[s]], seed.normal};
+      const std::uint32_t seed = result.seeds[s];
+      const GrownSplat splat{candidates.radii[seed], candidates.shifts[seed]};
+      result.disks[s] = splat.disk(points[seed]);
     }
   });
   return result;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -16,6 +17,28 @@
 #include "adasplats/surface/base_neighborhoods.h"
 
 namespace adasplats {
+
+/// "Ground and surface using the planarity descriptor; linear using linearity; non-surface using
+/// sphericity." Planar points are kept as `surface`.
+ADASPLATS_HD inline SemanticGroup group_of(ShapeKind kind) {
+  switch (kind) {
+    case ShapeKind::linear: return SemanticGroup::linear;
+    case ShapeKind::planar: return SemanticGroup::surface;
+    case ShapeKind::spherical: return SemanticGroup::non_surface;
+  }
+  return SemanticGroup::surface;
+}
+
+/// Neighbourhood and growing of one group, in numbers ready for use.
+struct GroupRules {
+  NeighborLimit limit;
+  GrowRules grow;
+  bool like_base;  ///< its neighbourhood is the base neighbourhood
+};
+
+/// Those of the four groups for R and E. `is_oriented`: normals face the sensors.
+std::array<GroupRules, kSemanticGroups> group_rules(const BuildOptions& options, double radius_m,
+                                                    double error_m, bool is_oriented);
 
 /// Splats of one pass over a cloud, each with the rank of the point it was grown from.
 struct Generation {

@@ -9,6 +9,7 @@
 
 #include "adasplats/core/vec3.h"
 #include "adasplats/neighbors/point_index.h"
+#include "adasplats/scene/intersect.h"
 
 namespace adasplats {
 
@@ -33,7 +34,18 @@ struct GrowRules {
 struct GrownSplat {
   float radius_m = 0;  ///< 0: no point but the seed was included, no splat
   float shift_m = 0;   ///< mean signed point-to-plane distance of the points included
+
+  ADASPLATS_HD Disk disk(const SurfacePoint& seed) const {
+    return {seed.position + shift_m * seed.normal, radius_m, seed.normal};
+  }
 };
+
+/// Section "Adaptive Splatting": neighbouring normals belong to one smooth surface. With unknown
+/// sides of the normals their signs say nothing.
+ADASPLATS_HD inline bool is_smooth(Vec3f a, Vec3f b, float least, bool oriented) {
+  const float smooth = dot(a, b);
+  return (oriented ? smooth : std::fabs(smooth)) > least;
+}
 
 /// True where a neighbour stops the growing.
 ADASPLATS_HD inline bool stops(const SurfacePoint& seed, const SurfacePoint& other,
@@ -41,8 +53,15 @@ ADASPLATS_HD inline bool stops(const SurfacePoint& seed, const SurfacePoint& oth
   const float error = dot(seed.normal, other.position - seed.position);  // eq. point-to-plane
   if (std::fabs(error) > rules.error_m) return true;
   if (rules.same_label && other.label != seed.label) return true;
-  const float smooth = dot(seed.normal, other.normal);
-  return !((rules.oriented ? smooth : std::fabs(smooth)) > rules.smoothness);
+  return !is_smooth(seed.normal, other.normal, rules.smoothness, rules.oriented);
+}
+
+/// eq. splat radius, of the last point included: the center is on the normal through the seed, so
+/// both project alike.
+ADASPLATS_HD inline float splat_radius(const SurfacePoint& seed, Vec3f last) {
+  const Vec3f to_last = last - seed.position;
+  const float along = dot(seed.normal, to_last);
+  return length(to_last - along * seed.normal);
 }
 
 /// THE growing of one splat, for every backend. Neighbours need no order: growing in ascending
@@ -66,10 +85,7 @@ ADASPLATS_HD inline GrownSplat grow_splat(const SurfacePoint& seed, const Neighb
     last = key > last ? key : last;
   }
   if (included == 0) return {};
-  const Vec3f to_last = points[static_cast<std::uint32_t>(last)].position - seed.position;
-  const float along = dot(seed.normal, to_last);
-  // eq. splat radius: the center is on the normal through the seed, so both project alike.
-  const float radius = length(to_last - along * seed.normal);
+  const float radius = splat_radius(seed, points[static_cast<std::uint32_t>(last)].position);
   return {radius, static_cast<float>(sum / included)};
 }
 

@@ -10,6 +10,7 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/ray.h"
 #include "adasplats/scene/intersect.h"
+#include "adasplats/splats/disk_evidence.h"
 
 namespace adasplats {
 
@@ -37,7 +38,7 @@ class MeasuredRays {
 /// How measured rays bear disks out, by how far from a disk's middle they cross it: bin b holds
 /// squared distances from b to b + 1 of kBins parts of the squared radius (rings of equal area).
 struct RayEvidence {
-  static constexpr int kBins = 16;
+  static constexpr int kBins = DiskEvidence::kBins;
   std::vector<std::uint32_t> confirmed;     ///< rays that end at the disk: [disk * kBins + bin]
   std::vector<std::uint32_t> contradicted;  ///< rays that go on behind it
 };
@@ -48,6 +49,8 @@ struct EvidenceOptions {
   std::uint32_t phase = 0;   ///< begins with this one
   int depth = 48;            ///< disks that a ray crosses, at most; those behind are not seen
 };
+
+DiskEvidence evidence_of(const RayEvidence& evidence, std::size_t disk);
 
 /// Counts, for every disk that `rays` cross; disks with no radius are not there. Whole numbers: the
 /// same on any number of threads.

@@ -2,16 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/core/function_ref.h"
 #include "adasplats/scene/intersect.h"
+#include "adasplats/splats/measured_rays.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {
+
+/// Which of some measured rays are cast, and how.
+struct RayCasting {
+  std::size_t first = 0;
+  std::size_t stride = 1;  ///< every n-th ray
+  float beyond_m = 0;      ///< so much farther than the points
+  int depth = 1;           ///< hits of a ray, at most
+};
 
 /// Those of some disks that have a radius, ready to cast rays at.
 class PresentDisks {
@@ -19,13 +30,16 @@ class PresentDisks {
   PresentDisks(std::span<const Disk> disks, const Executor& executor);
 
   bool empty() const { return disks_.empty(); }
-  const Tracer& tracer() const { return *tracer_; }
-  /// Which of all disks a hit's primitive is.
-  std::uint32_t id(std::uint32_t primitive) const { return ids_[primitive]; }
+
+  /// Calls body(i, ray, hits) for rays of `rays`, in any order and on any thread: `hits` are the
+  /// nearest of ray i, ascending, their primitives the numbers of the disks. Without disks nothing
+  /// is cast and the body is not called.
+  void cast(const MeasuredRays& rays, const RayCasting& casting, const Executor& executor,
+            FunctionRef<void(std::size_t i, const Ray& ray, std::span<const Hit> hits)> body) const;
 
  private:
   std::vector<Disk> disks_;
-  std::vector<std::uint32_t> ids_;
+  std::vector<std::uint32_t> ids_;  ///< numbers of the disks among all
   std::unique_ptr<Tracer> tracer_;
 };
 

@@ -14,11 +14,6 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
-/// Things that fewer points than measured would no longer show.
-bool is_thin(SemanticGroup group) {
-  return group == SemanticGroup::linear || group == SemanticGroup::non_surface;
-}
-
 /// A point half way between two splats, and the splat it takes its attributes from.
 struct NewPoint {
   Vec3f position;
@@ -44,13 +39,6 @@ double mean_density(std::span<const std::uint32_t> densities,
   return count > 0 ? sum / count : 0;
 }
 
-/// How many of the points that a neighbourhood lacks one splat of it makes. The paper works through
-/// the splats one after another, and each new point raises the density of all splats around it.
-/// Here every splat works alone, so the `density` splats of a neighbourhood share what is missing.
-int share_of_missing(double wanted, std::uint32_t density) {
-  return static_cast<int>(std::lround((wanted - density) / density));
-}
-
 /// New points around one splat: with its farthest neighbours first, until it has made its share.
 void fill_around(std::uint32_t splat, int missing, std::vector<std::uint64_t>& neighbors,
                  const std::vector<Disk>& disks,
@@ -61,7 +49,7 @@ void fill_around(std::uint32_t splat, int missing, std::vector<std::uint64_t>& n
     if (missing <= 0) return;
     const auto other = static_cast<std::uint32_t>(key);
     if (other == splat || !alike(splat, other)) continue;
-    new_points.push_back({0.5F * (disks[splat].center + disks[other].center), splat});
+    new_points.push_back({midpoint(disks[splat], disks[other]), splat});
     missing -= 1;
   }
 }
@@ -74,10 +62,9 @@ std::vector<NewPoint> interpolate_points(const PointCloud& centers, const std::v
   const std::vector<std::uint32_t> densities = index.count_within(radius, executor);
   const double wanted = options.resample_density * mean_density(densities, groups);
   const bool is_oriented = !centers.sensor_positions.empty();
+  const auto smoothness = static_cast<float>(options.smoothness);
   const auto alike = [&](std::uint32_t a, std::uint32_t b) {
-    const float smooth = dot(disks[a].normal, disks[b].normal);
-    if (!((is_oriented ? smooth : std::fabs(smooth)) > static_cast<float>(options.smoothness)))
-      return false;
+    if (!is_smooth(disks[a].normal, disks[b].normal, smoothness, is_oriented)) return false;
     if (options.method == SplatMethod::semantic) return centers.classes[a] == centers.classes[b];
     return groups.empty() || groups[a] == groups[b];
   };

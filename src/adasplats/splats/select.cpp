@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/splats/select.h"
 
-#include <bit>
-
-#include "adasplats/core/random.h"
-
 namespace adasplats {
 namespace {
 
@@ -15,23 +11,13 @@ constexpr std::size_t kGrain = 1 << 16;
 std::vector<std::uint32_t> visiting_order(std::span<const float> radii,
                                           const DiscardLists& discards, SelectionOrder order,
                                           const Executor& executor) {
-  const auto key_of = [&](std::uint32_t rank) -> std::uint64_t {
-    // Radii are not negative, so their bits sort as they do; inverted, the largest come first.
-    const std::uint32_t by_radius = ~std::bit_cast<std::uint32_t>(radii[rank]);
-    switch (order) {
-      case SelectionOrder::most_discards_first: {
-        const auto count = static_cast<std::uint32_t>(discards.of(rank).size());
-        return std::uint64_t{~count} << 32 | by_radius;
-      }
-      case SelectionOrder::largest_first: return by_radius;
-      case SelectionOrder::curve: return rank;
-      case SelectionOrder::scattered: return Random::mix(rank + 1U) >> 32;
-    }
-    return rank;
-  };
   std::vector<std::uint64_t> keys(radii.size());
   executor.for_chunks(radii.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) keys[i] = key_of(static_cast<std::uint32_t>(i));
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto rank = static_cast<std::uint32_t>(i);
+      keys[i] = visiting_key(order, rank, radii[rank],
+                             static_cast<std::uint32_t>(discards.of(rank).size()));
+    }
   });
   std::vector<std::uint32_t> visiting;
   executor.sort_keys(keys, visiting);

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/core/random.h"
 
 namespace adasplats {
 
@@ -26,6 +28,20 @@ enum class SelectionOrder : std::uint8_t {
   curve,                ///< by rank: along the Hilbert curve
   scattered,            ///< by a hash of the rank
 };
+
+/// Candidates are taken by ascending key, equal ones by rank.
+ADASPLATS_HD inline std::uint64_t visiting_key(SelectionOrder order, std::uint32_t rank,
+                                               float radius_m, std::uint32_t discards) {
+  // Radii are not negative, so their bits sort as they do; inverted, the largest come first.
+  const std::uint32_t by_radius = ~std::bit_cast<std::uint32_t>(radius_m);
+  switch (order) {
+    case SelectionOrder::most_discards_first: return std::uint64_t{~discards} << 32 | by_radius;
+    case SelectionOrder::largest_first: return by_radius;
+    case SelectionOrder::curve: return rank;
+    case SelectionOrder::scattered: return Random::mix(rank + 1U) >> 32;
+  }
+  return rank;
+}
 
 /// The greedy selection of paper section "Basic Splatting": in the given order, a candidate that
 /// no selected one has discarded is selected and discards its list. Candidates of radius 0 are

@@ -9,22 +9,9 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/neighbors/point_index.h"
 #include "adasplats/scene/intersect.h"
+#include "adasplats/splats/seed_growth.h"
 
 namespace adasplats {
-
-struct CoverOptions {
-  std::uint32_t neighbors = 160;     ///< seeds that a disk can grow over, at most
-  double tolerance_m = 0.02;         ///< a disk grows over seeds this near to its plane
-  double least_normal_cosine = 0.9;  ///< and turned like it
-  double edge_m = 0.25;              ///< seeds farther from the plane are other things: no edge
-  double largest_radius_m = 0.5;
-  /// A disk reaches no farther than the seeds it grows over do in every one of so many directions
-  /// (and half a seed beyond): nothing hangs over edges. 0: no such limit, for clouds in which
-  /// measured rays tell where surfaces end and what merely nobody looked at.
-  int sectors = 0;
-  double overlap = 0.6;            ///< a disk covers the seeds within this share of its radius
-  double covered_within_m = 0.04;  ///< and this near to its plane
-};
 
 /// Few large disks where the surface is flat, the small seeds where it is not: every seed is
 /// covered by a disk that was chosen.
@@ -42,6 +29,8 @@ class SurfaceCover {
   /// From now on disk `i` is no larger than this; with 0 it is not there at all.
   void limit(std::size_t i, float radius_m);
   float seed_radius(std::size_t i) const { return seeds_[i].radius; }
+  /// How large disk `i` may be: what it grew to, or its limit.
+  float radius_m(std::size_t i) const { return radii_m_[i]; }
 
  private:
   /// The seeds that disk `i` may cover, whatever its radius.

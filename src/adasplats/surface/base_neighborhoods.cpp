@@ -11,13 +11,6 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
-ShapeKind kind_of(const LocalShape& shape) {
-  const double linear = shape.linearity(), planar = shape.planarity(),
-               spherical = shape.sphericity();
-  if (planar >= linear && planar >= spherical) return ShapeKind::planar;
-  return linear >= spherical ? ShapeKind::linear : ShapeKind::spherical;
-}
-
 LocalShape shape_of(std::span<const Vec3f> points, std::uint32_t rank,
                     const NeighborList& neighbors) {
   Moments moments;
@@ -26,34 +19,12 @@ LocalShape shape_of(std::span<const Vec3f> points, std::uint32_t rank,
   return local_shape(moments);
 }
 
-/// |eq. point-to-plane|: distance of a neighbour to the plane through the point.
-float distance_to_plane(std::span<const Vec3f> points, std::uint32_t rank, std::uint32_t neighbor,
-                        Vec3f normal) {
-  return std::fabs(dot(normal, points[neighbor] - points[rank]));
-}
-
-/// Mean and spread of the distances of a neighbourhood to its plane.
-struct PlaneDistances {
-  double sum = 0;
-  double sum_of_squares = 0;
-  double count = 0;
-
-  /// Paper section "Splat-Based Resampling and Denoising": the standard deviation of the unsigned
-  /// distances.
-  double sigma() const {
-    const double mean = sum / count;
-    return std::sqrt(std::max(0.0, sum_of_squares / count - mean * mean));
-  }
-};
-
 PlaneDistances plane_distances(std::span<const Vec3f> points, std::uint32_t rank,
                                const NeighborList& neighbors, Vec3f normal) {
   PlaneDistances distances;
   for (std::uint32_t k = 0; k < neighbors.size; ++k) {
-    const double d = distance_to_plane(points, rank, neighbors.ranks[k], normal);
-    distances.sum += d;
-    distances.sum_of_squares += d * d;
-    distances.count += 1;
+    const Vec3f offset = points[neighbors.ranks[k]] - points[rank];
+    distances.add(static_cast<double>(distance_to_plane(offset, normal)));
   }
   return distances;
 }
@@ -121,7 +92,8 @@ class Pass {
     for (std::uint32_t k = 0; k < neighbors.size; ++k) {
       const std::uint32_t neighbor = neighbors.ranks[k];
       add_relaxed(result_.memberships[neighbor], weight);
-      if (distance_to_plane(points_, rank, neighbor, normal) > limit)
+      const Vec3f offset = points_[neighbor] - points_[rank];
+      if (static_cast<double>(distance_to_plane(offset, normal)) > limit)
         add_relaxed(result_.votes[neighbor], weight);
     }
   }

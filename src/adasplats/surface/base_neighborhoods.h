@@ -13,9 +13,6 @@
 
 namespace adasplats {
 
-/// Which descriptor is the largest (paper section "Adaptive Splatting Using Local Descriptors").
-enum class ShapeKind : std::uint8_t { linear, planar, spherical };
-
 struct BaseNeighborhoodOptions {
   std::uint32_t neighbors = 40;    ///< K; the point itself is one of them
   std::optional<double> radius_m;  ///< R instead of the mean distance to the K-th neighbour
@@ -34,6 +31,12 @@ struct BaseNeighborhoods {
   std::vector<std::uint32_t> memberships;
   std::vector<std::uint32_t> votes;
 };
+
+/// Whether so large a share of a point's neighbourhoods votes against it.
+ADASPLATS_HD inline bool is_noise(std::uint32_t votes, std::uint32_t memberships,
+                                  double removing_share) {
+  return votes > 0 && !(votes < removing_share * memberships);
+}
 
 /// `points` are those of the index, by rank.
 BaseNeighborhoods base_neighborhoods(std::span<const Vec3f> points, const PointIndex& index,

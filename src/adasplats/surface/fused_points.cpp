@@ -3,21 +3,14 @@
 #include "adasplats/surface/fused_points.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "adasplats/neighbors/hilbert.h"
+#include "adasplats/surface/fusion_cell.h"
 
 namespace adasplats {
 namespace {
 
 constexpr std::size_t kGrain = 65536;
-constexpr double kMostCells = 1048575;  // 2^20 - 1 on either side of zero: 21 bits an axis
-
-std::uint64_t axis_key(float value, double cell_m) {
-  const double cell = std::floor(static_cast<double>(value) / cell_m);
-  return static_cast<std::uint64_t>(std::clamp(cell, -kMostCells, kMostCells) + kMostCells);
-}
-
 /// Points sorted by cell, and where each cell begins.
 struct Cells {
   std::vector<std::uint32_t> begins;  ///< one more than cells
@@ -33,8 +26,7 @@ Cells sort_into_cells(std::span<const Vec3f> points, double cell_m, const Execut
   std::vector<std::uint64_t> keys(points.size());
   executor.for_chunks(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      keys[i] = axis_key(points[i].x, cell_m) << 42 | axis_key(points[i].y, cell_m) << 21 |
-                axis_key(points[i].z, cell_m);
+      keys[i] = fusion_key(points[i], cell_m);
     }
   });
   Cells cells;
@@ -46,18 +38,12 @@ Cells sort_into_cells(std::span<const Vec3f> points, double cell_m, const Execut
   return cells;
 }
 
-Vec3f mean_of(std::span<const Vec3f> points, std::span<const std::uint32_t> members) {
-  Vec3d sum;
-  for (const std::uint32_t i : members) sum = sum + vec_cast<double>(points[i]);
-  return vec_cast<float>(sum / static_cast<double>(members.size()));
-}
-
 std::vector<Vec3f> means_of(std::span<const Vec3f> points, const Cells& cells,
                             const Executor& executor) {
   std::vector<Vec3f> means(cells.size());
   executor.for_chunks(means.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) {
-      means[cell] = mean_of(points, cells.points_of(cell));
+      means[cell] = mean_position(points.data(), cells.points_of(cell));
     }
   });
   return means;

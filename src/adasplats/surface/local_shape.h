@@ -62,6 +62,42 @@ ADASPLATS_HD inline LocalShape local_shape(const Moments& m) {
   return shape;
 }
 
+/// Which descriptor is the largest (paper section "Adaptive Splatting Using Local Descriptors").
+enum class ShapeKind : std::uint8_t { linear, planar, spherical };
+
+ADASPLATS_HD inline ShapeKind kind_of(const LocalShape& shape) {
+  const double linear = shape.linearity(), planar = shape.planarity(),
+               spherical = shape.sphericity();
+  if (planar >= linear && planar >= spherical) return ShapeKind::planar;
+  return linear >= spherical ? ShapeKind::linear : ShapeKind::spherical;
+}
+
+/// |eq. point-to-plane|: distance of a neighbour, `offset` away from a point, to the plane through
+/// that point.
+ADASPLATS_HD inline float distance_to_plane(Vec3f offset, Vec3f normal) {
+  return std::fabs(dot(normal, offset));
+}
+
+/// Mean and spread of the distances of a neighbourhood to its plane.
+struct PlaneDistances {
+  double sum = 0;
+  double sum_of_squares = 0;
+  double count = 0;
+
+  ADASPLATS_HD void add(double distance_m) {
+    sum += distance_m;
+    sum_of_squares += distance_m * distance_m;
+    count += 1;
+  }
+  /// Paper section "Splat-Based Resampling and Denoising": the standard deviation of the unsigned
+  /// distances.
+  ADASPLATS_HD double sigma() const {
+    const double mean = sum / count;
+    const double variance = sum_of_squares / count - mean * mean;
+    return std::sqrt(variance > 0.0 ? variance : 0.0);
+  }
+};
+
 /// The normal turned to the side of `to_sensor` (a vector from the point to the sensor).
 ADASPLATS_HD inline Vec3f oriented(Vec3f normal, Vec3f to_sensor) {
   return dot(normal, to_sensor) < 0.0F ? -normal : normal;

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "adasplats/core/host_device.h"
+#include "adasplats/scene/intersect.h"
+
+namespace adasplats {
+
+struct SettleOptions {
+  double reach_m = 0.4;       ///< rays whose range is farther from the disk say nothing of it
+  double scale_m = 0.08;      ///< of the Cauchy weights on range errors
+  double prior_rays = 3;      ///< as many rays say that the disk is right as it is
+  double least_cosine = 0.1;  ///< grazing rays count no more than at this cosine
+  std::uint32_t least_rays = 4;
+  double most_shift_m = 0.1;
+};
+
+/// Sums over the rays of one disk, in units of kUnit: whole numbers, the same in every order.
+struct ShiftSums {
+  static constexpr double kUnit = 1.0 / (1 << 20);  // 1e-6 of a ray, 1e-6 m
+  std::int64_t weight = 0;
+  std::int64_t shift = 0;
+  std::uint32_t rays = 0;
+};
+
+/// What one ray, of measured range `range_m`, says of the disk that it meets first, at `hit_t`.
+ADASPLATS_HD inline ShiftSums shift_of_ray(const Disk& disk, const Ray& ray, float hit_t,
+                                           float range_m, const SettleOptions& options) {
+  const double error_m = static_cast<double>(hit_t) - static_cast<double>(range_m);
+  if (std::fabs(error_m) > options.reach_m) return {};
+  const double cosine = std::max(options.least_cosine,
+                                 std::fabs(static_cast<double>(dot(disk.normal, ray.direction))));
+  const double relative = error_m / options.scale_m;
+  const double weight = 1.0 / ((1.0 + relative * relative) * cosine * cosine);
+  const Vec3f point = ray.origin + range_m * ray.direction;
+  const auto shift_m = static_cast<double>(dot(point - disk.center, disk.normal));
+  return {static_cast<std::int64_t>(std::llround(weight / ShiftSums::kUnit)),
+          static_cast<std::int64_t>(std::llround(weight * shift_m / ShiftSums::kUnit)), 1};
+}
+
+/// The disk moved along its normal to where its rays say the surface is.
+ADASPLATS_HD inline Disk settled(Disk disk, const ShiftSums& sums, const SettleOptions& options) {
+  if (sums.rays < options.least_rays) return disk;
+  const double weight = ShiftSums::kUnit * static_cast<double>(sums.weight);
+  const double prior = options.prior_rays * weight / sums.rays;
+  const double shift_m =
+      std::clamp(ShiftSums::kUnit * static_cast<double>(sums.shift) / (weight + prior),
+                 -options.most_shift_m, options.most_shift_m);
+  disk.center = disk.center + static_cast<float>(shift_m) * disk.normal;
+  return disk;
+}
+
+}  // namespace adasplats

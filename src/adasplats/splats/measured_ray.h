@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "adasplats/core/host_device.h"
+#include "adasplats/core/ray.h"
+
+namespace adasplats {
+
+/// Interleaves the low 16 bits of two numbers.
+ADASPLATS_HD inline std::uint32_t morton_key(std::uint32_t x, std::uint32_t y) {
+  const auto spread = [](std::uint32_t v) {
+    v = (v | (v << 8)) & 0x00ff00ffU;
+    v = (v | (v << 4)) & 0x0f0f0f0fU;
+    v = (v | (v << 2)) & 0x33333333U;
+    return (v | (v << 1)) & 0x55555555U;
+  };
+  return spread(x & 0xffffU) | (spread(y & 0xffffU) << 1);
+}
+
+/// A direction as a place on the unfolded octahedron, along a Morton curve.
+ADASPLATS_HD inline std::uint32_t direction_key(Vec3f d) {
+  const float size = std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z);
+  if (!(size > 0)) return 0;
+  float u = d.x / size, v = d.y / size;
+  if (d.z < 0) {
+    const float folded_u = (1 - std::fabs(v)) * (u < 0 ? -1.0F : 1.0F);
+    v = (1 - std::fabs(u)) * (v < 0 ? -1.0F : 1.0F);
+    u = folded_u;
+  }
+  const auto cell = [](float w) {
+    return static_cast<std::uint32_t>(std::clamp((w + 1) * 0.5F * 65535.0F, 0.0F, 65535.0F));
+  };
+  return morton_key(cell(u), cell(v));
+}
+
+/// A sensor position as a hash of the half metre around it, which counts as one place.
+ADASPLATS_HD inline std::uint32_t place_key(Vec3f sensor) {
+  constexpr float kCell_m = 0.5F;
+  std::uint32_t hash = 2166136261U;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto cell = static_cast<std::int32_t>(std::floor(sensor[axis] / kCell_m));
+    hash = (hash ^ static_cast<std::uint32_t>(cell)) * 16777619U;
+  }
+  return hash;
+}
+
+/// Rays in the order of these start and point like their neighbours.
+ADASPLATS_HD inline std::uint64_t measured_ray_key(Vec3f sensor, Vec3f point) {
+  return std::uint64_t{place_key(sensor)} << 32 | direction_key(point - sensor);
+}
+
+/// From the sensor through the point and `beyond_m` farther.
+ADASPLATS_HD inline Ray measured_ray(Vec3f sensor, Vec3f point, float beyond_m) {
+  const Vec3f along = point - sensor;
+  const float range_m = length(along);
+  Ray ray;
+  ray.origin = sensor;
+  ray.direction = along / range_m;
+  ray.t_max = range_m + beyond_m;
+  return ray;
+}
+
+/// Whether a point is so far from its sensor that it has a ray: nearer ones are the vehicle.
+ADASPLATS_HD inline bool has_measured_ray(Vec3f sensor, Vec3f point, double least_range_m) {
+  return static_cast<double>(length(point - sensor)) >= least_range_m;
+}
+
+}  // namespace adasplats

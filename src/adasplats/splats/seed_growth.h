@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "adasplats/core/host_device.h"
+#include "adasplats/scene/intersect.h"
+
+namespace adasplats {
+
+struct CoverOptions {
+  std::uint32_t neighbors = 160;     ///< seeds that a disk can grow over, at most
+  double tolerance_m = 0.02;         ///< a disk grows over seeds this near to its plane
+  double least_normal_cosine = 0.9;  ///< and turned like it
+  double edge_m = 0.25;              ///< seeds farther from the plane are other things: no edge
+  double largest_radius_m = 0.5;
+  /// A disk reaches no farther than the seeds it grows over do in every one of so many directions
+  /// (and half a seed beyond): nothing hangs over edges. 0: no such limit, for clouds in which
+  /// measured rays tell where surfaces end and what merely nobody looked at.
+  int sectors = 0;
+  double overlap = 0.6;            ///< a disk covers the seeds within this share of its radius
+  double covered_within_m = 0.04;  ///< and this near to its plane
+};
+
+/// Where a point is as seen from a disk.
+struct PlaceAtDisk {
+  float height_m;  ///< above or below the plane, not negative
+  float along_m;   ///< from the middle, in the plane
+};
+
+ADASPLATS_HD inline PlaceAtDisk place_at_disk(const Disk& disk, Vec3f point) {
+  const Vec3f offset = point - disk.center;
+  const float height_m = dot(offset, disk.normal);
+  return {std::fabs(height_m),
+          std::sqrt(std::max(0.0F, dot(offset, offset) - height_m * height_m))};
+}
+
+/// Whether a disk may grow over another seed.
+ADASPLATS_HD inline bool grows_over(const Disk& disk, const Disk& other, const PlaceAtDisk& place,
+                                    const CoverOptions& options) {
+  const auto height_m = static_cast<double>(place.height_m);
+  const auto cosine = static_cast<double>(std::fabs(dot(other.normal, disk.normal)));
+  return height_m < options.tolerance_m && cosine > options.least_normal_cosine;
+}
+
+/// Whether a disk must end before another seed.
+ADASPLATS_HD inline bool ends_at(const Disk& disk, const Disk& other, const PlaceAtDisk& place,
+                                 const CoverOptions& options) {
+  return !grows_over(disk, other, place, options) &&
+         static_cast<double>(place.height_m) < options.edge_m;
+}
+
+/// Whether a disk of which this much covers what is below it covers a seed.
+ADASPLATS_HD inline bool may_cover(const PlaceAtDisk& place, float covered_m,
+                                   const CoverOptions& options) {
+  return place.along_m <= covered_m &&
+         static_cast<double>(place.height_m) < options.covered_within_m;
+}
+
+/// How far seeds reach from a disk's middle in each of some equal sectors of its plane.
+class SectorReach {
+ public:
+  static constexpr int kMostSectors = 16;
+
+  ADASPLATS_HD SectorReach(const Disk& disk, int sectors)
+      : center_(disk.center), sectors_(sectors) {
+    for (float& reach_m : reach_m_) reach_m = 0;
+    if (sectors_ == 0) return;
+    const Vec3f axis = std::fabs(disk.normal.z) < 0.9F ? Vec3f{0, 0, 1} : Vec3f{1, 0, 0};
+    right_ = normalized(cross(disk.normal, axis));
+    up_ = cross(disk.normal, right_);
+  }
+
+  ADASPLATS_HD void add(Vec3f point, float along_m) {
+    if (sectors_ == 0) return;
+    constexpr float kTurn = 2 * 3.14159265358979323846F;
+    const Vec3f offset = point - center_;
+    const float turn = std::atan2(dot(offset, up_), dot(offset, right_)) / kTurn + 0.5F;
+    const int sector =
+        std::clamp(static_cast<int>(turn * static_cast<float>(sectors_)), 0, sectors_ - 1);
+    reach_m_[sector] = std::max(reach_m_[sector], along_m);
+  }
+
+  ADASPLATS_HD int sectors() const { return sectors_; }
+  ADASPLATS_HD float& reach_m(int sector) { return reach_m_[sector]; }
+
+  /// Of the sector with the least; without sectors there is no limit.
+  ADASPLATS_HD float least_m() const {
+    float least_m = std::numeric_limits<float>::max();
+    for (int i = 0; i < sectors_; ++i) least_m = std::min(least_m, reach_m_[i]);
+    return least_m;
+  }
+
+ private:
+  Vec3f center_, right_, up_;
+  float reach_m_[kMostSectors];
+  int sectors_;
+};
+
+/// The radius of a disk that grew over seeds up to `reach_m` from its middle.
+ADASPLATS_HD inline float grown_radius(const Disk& disk, float reach_m,
+                                       const SectorReach& sectors) {
+  return std::max(disk.radius, std::min(reach_m, sectors.least_m() + 0.5F * disk.radius));
+}
+
+/// What a disk of this radius covers.
+ADASPLATS_HD inline float covered_reach(double overlap, float radius_m) {
+  return static_cast<float>(overlap) * radius_m;
+}
+
+}  // namespace adasplats

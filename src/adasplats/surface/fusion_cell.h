@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "adasplats/core/host_device.h"
+#include "adasplats/core/vec3.h"
+
+namespace adasplats {
+
+/// Which cell of a grid of side `cell_m` a coordinate lies in: 21 bits an axis, 2^20 - 1 cells on
+/// either side of zero.
+ADASPLATS_HD inline std::uint64_t fusion_axis_key(float value, double cell_m) {
+  constexpr double kMostCells = 1048575;
+  const double cell = std::floor(static_cast<double>(value) / cell_m);
+  return static_cast<std::uint64_t>(std::clamp(cell, -kMostCells, kMostCells) + kMostCells);
+}
+
+ADASPLATS_HD inline std::uint64_t fusion_key(Vec3f point, double cell_m) {
+  return fusion_axis_key(point.x, cell_m) << 42 | fusion_axis_key(point.y, cell_m) << 21 |
+         fusion_axis_key(point.z, cell_m);
+}
+
+/// Mean of points[i] for i of `members`, added in their order.
+ADASPLATS_HD inline Vec3f mean_position(const Vec3f* points,
+                                        std::span<const std::uint32_t> members) {
+  Vec3d sum;
+  for (const std::uint32_t i : members) sum = sum + vec_cast<double>(points[i]);
+  return vec_cast<float>(sum / static_cast<double>(members.size()));
+}
+
+}  // namespace adasplats
