@@ -18,22 +18,17 @@ Mat3d rotation_from_axes(Vec3d forward, Vec3d left, Vec3d up) {
 
 }  // namespace
 
-Ray Camera::ray(double u, double v, Vec3d origin) const {
-  const double right = u - 0.5 * width;  // pixels from the image's centre
-  const double down = v - 0.5 * height;
-  Vec3d eye;
-  Vec3d direction = {1, 0, 0};
+CameraRays Camera::rays(Vec3d origin) const {
+  CameraRays rays;
+  rays.local_from_camera = {world_from_camera.rotation, world_from_camera.translation - origin};
+  rays.center_u = 0.5 * width;
+  rays.center_v = 0.5 * height;
   if (orthographic_width_m > 0) {
-    const double pixel_m = orthographic_width_m / width;
-    eye = {0, -right * pixel_m, -down * pixel_m};
+    rays.pixel_m = orthographic_width_m / width;
   } else {
-    const double focal_px = 0.5 * width / std::tan(0.5 * horizontal_fov_rad);
-    direction = {focal_px, -right, -down};
+    rays.focal_px = 0.5 * width / std::tan(0.5 * horizontal_fov_rad);
   }
-  Ray ray;
-  ray.origin = vec_cast<float>(world_from_camera * eye - origin);
-  ray.direction = vec_cast<float>(normalized(world_from_camera.rotation * direction));
-  return ray;
+  return rays;
 }
 
 Camera look_at(Vec3d eye, Vec3d target) {

@@ -7,6 +7,32 @@
 
 namespace adasplats {
 
+/// The rays of a camera in numbers ready for use, on any device.
+struct CameraRays {
+  RigidTransform local_from_camera;
+  double center_u = 0, center_v = 0;  ///< middle of the image, pixels
+  double focal_px = 1;                ///< pinhole
+  double pixel_m = 0;                 ///< > 0: parallel rays so far apart instead
+
+  /// Ray through the point (u, v) of the image, in pixels from the top left corner. Pixel (i, j)
+  /// has its centre at (i + 0.5, j + 0.5).
+  ADASPLATS_HD Ray ray(double u, double v) const {
+    const double right = u - center_u;
+    const double down = v - center_v;
+    Vec3d eye;
+    Vec3d direction = {1, 0, 0};
+    if (pixel_m > 0) {
+      eye = {0, -right * pixel_m, -down * pixel_m};
+    } else {
+      direction = {focal_px, -right, -down};
+    }
+    Ray ray;
+    ray.origin = vec_cast<float>(local_from_camera * eye);
+    ray.direction = vec_cast<float>(normalized(local_from_camera.rotation * direction));
+    return ray;
+  }
+};
+
 /// Pinhole or orthographic camera. Camera frame: x forward, y left, z up, as sensors have it.
 struct Camera {
   RigidTransform world_from_camera;
@@ -15,9 +41,9 @@ struct Camera {
   double horizontal_fov_rad = 1.2;  ///< pinhole
   double orthographic_width_m = 0;  ///< > 0: parallel rays over that width instead
 
-  /// Ray through the point (u, v) of the image, in pixels from the top left corner; relative to
-  /// `origin` (the scene's). Pixel (i, j) has its centre at (i + 0.5, j + 0.5).
-  Ray ray(double u, double v, Vec3d origin) const;
+  /// Rays relative to `origin` (the scene's).
+  CameraRays rays(Vec3d origin) const;
+  Ray ray(double u, double v, Vec3d origin) const { return rays(origin).ray(u, v); }
 };
 
 /// A camera at `eye` that looks at `target`, z up. Errors: usage where both are the same point.

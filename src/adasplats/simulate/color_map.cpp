@@ -8,23 +8,6 @@
 
 namespace adasplats {
 
-Vec3f viridis(float share) {
-  constexpr std::array<std::array<std::uint8_t, 3>, 9> kPlaces = {{{68, 1, 84},
-                                                                   {71, 44, 122},
-                                                                   {59, 81, 139},
-                                                                   {44, 113, 142},
-                                                                   {33, 144, 141},
-                                                                   {39, 173, 129},
-                                                                   {92, 200, 99},
-                                                                   {170, 220, 50},
-                                                                   {253, 231, 37}}};
-  const float clamped = share > 0.0F ? std::min(share, 1.0F) : 0.0F;  // NaN: 0
-  const float place = clamped * static_cast<float>(kPlaces.size() - 1);
-  const auto before = std::min(static_cast<std::size_t>(place), kPlaces.size() - 2);
-  const float weight = place - static_cast<float>(before);
-  return (1.0F - weight) * color_of(kPlaces[before]) + weight * color_of(kPlaces[before + 1]);
-}
-
 ValueRange quantile_range(std::span<const float> values, double low_quantile,
                           double high_quantile) {
   std::vector<float> finite;

@@ -10,9 +10,9 @@
 
 namespace adasplats {
 
-/// Private to simulate/: colours as floats, 0..1.
+/// Colours as floats, 0..1.
 
-inline Vec3f color_of(std::array<std::uint8_t, 3> rgb) {
+ADASPLATS_HD inline Vec3f color_of(std::array<std::uint8_t, 3> rgb) {
   return {static_cast<float>(rgb[0]) / 255.0F, static_cast<float>(rgb[1]) / 255.0F,
           static_cast<float>(rgb[2]) / 255.0F};
 }
@@ -20,7 +20,19 @@ inline Vec3f color_of(std::array<std::uint8_t, 3> rgb) {
 /// From dark violet over green to yellow with even steps of lightness, also in greyscale and for
 /// the colour-blind: Smith and van der Walt's "viridis" (2015, CC0) at 9 places, straight between
 /// them. `share` is clamped to 0..1; NaN gives the first colour.
-Vec3f viridis(float share);
+ADASPLATS_HD inline Vec3f viridis(float share) {
+  constexpr int kPlaces = 9;
+  constexpr std::uint8_t kColors[kPlaces][3] = {{68, 1, 84},    {71, 44, 122},  {59, 81, 139},
+                                                {44, 113, 142}, {33, 144, 141}, {39, 173, 129},
+                                                {92, 200, 99},  {170, 220, 50}, {253, 231, 37}};
+  const float clamped = share > 0.0F ? (share < 1.0F ? share : 1.0F) : 0.0F;  // NaN: 0
+  const float place = clamped * static_cast<float>(kPlaces - 1);
+  const int floor = static_cast<int>(place);
+  const int before = floor < kPlaces - 2 ? floor : kPlaces - 2;
+  const float weight = place - static_cast<float>(before);
+  const auto color = [&](int k) { return color_of({kColors[k][0], kColors[k][1], kColors[k][2]}); };
+  return (1.0F - weight) * color(before) + weight * color(before + 1);
+}
 
 /// The values at two quantiles of what is finite in `values`; {0, 1} where nothing is, and high >
 /// low always.

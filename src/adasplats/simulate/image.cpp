@@ -36,25 +36,6 @@ std::vector<Sample> samples_of_tile(Sample first, int columns, int rows) {
   return samples;
 }
 
-std::uint8_t to_byte(float value) {
-  return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
-}
-
-void check(const Camera& camera, const ImageOptions& options) {
-  constexpr int kMost = 1 << 15;
-  const auto outside = [](int value) { return value < 1 || value > kMost; };
-  if (outside(camera.width) || outside(camera.height))
-    throw Error(ErrorKind::usage, "an image of " + std::to_string(camera.width) + " x " +
-                                      std::to_string(camera.height) +
-                                      " pixels; expected 1 to 32768 each");
-  if (options.samples_per_axis < 1 || options.samples_per_axis > 16)
-    throw Error(ErrorKind::usage, std::to_string(options.samples_per_axis) +
-                                      " samples per axis of a pixel; expected 1 to 16");
-  const bool parallel = camera.orthographic_width_m > 0;
-  if (!parallel && !(camera.horizontal_fov_rad > 0 && camera.horizontal_fov_rad < std::numbers::pi))
-    throw Error(ErrorKind::usage, "a camera's field of view must be above 0 and below 180 degrees");
-}
-
 /// Renders tiles into the image's pixels; one object serves all threads.
 class Renderer {
  public:
@@ -63,6 +44,7 @@ class Renderer {
       : tracer_(tracer),
         scene_(scene),
         camera_(camera),
+        camera_rays_(camera.rays(scene.origin)),
         options_(options),
         executor_(executor),
         shading_(scene, options) {}
@@ -93,7 +75,7 @@ class Renderer {
     std::vector<Ray> rays;
     rays.reserve(samples.size());
     for (const Sample& sample : samples)
-      rays.push_back(camera_.ray((sample.x + 0.5) / axis, (sample.y + 0.5) / axis, scene_.origin));
+      rays.push_back(camera_rays_.ray((sample.x + 0.5) / axis, (sample.y + 0.5) / axis));
     std::vector<Hit> hits(rays.size());
     tracer_.nearest(rays, hits, executor_);
 
@@ -102,7 +84,7 @@ class Renderer {
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const auto x = static_cast<std::size_t>(samples[i].x / axis - corner.x);
       const auto y = static_cast<std::size_t>(samples[i].y / axis - corner.y);
-      sums[y * width + x] = sums[y * width + x] + shading_.color(rays[i], hits[i]);
+      sums[y * width + x] = sums[y * width + x] + shade(shading_.tables(), rays[i], hits[i]);
     }
     store(sums, corner, width, image);
   }
@@ -123,6 +105,7 @@ class Renderer {
   const Tracer& tracer_;
   const ImageScene& scene_;
   const Camera& camera_;
+  CameraRays camera_rays_;
   const ImageOptions& options_;
   const Executor& executor_;
   Shading shading_;
@@ -130,9 +113,24 @@ class Renderer {
 
 }  // namespace
 
+void check_image(const Camera& camera, const ImageOptions& options) {
+  constexpr int kMost = 1 << 15;
+  const auto outside = [](int value) { return value < 1 || value > kMost; };
+  if (outside(camera.width) || outside(camera.height))
+    throw Error(ErrorKind::usage, "an image of " + std::to_string(camera.width) + " x " +
+                                      std::to_string(camera.height) +
+                                      " pixels; expected 1 to 32768 each");
+  if (options.samples_per_axis < 1 || options.samples_per_axis > 16)
+    throw Error(ErrorKind::usage, std::to_string(options.samples_per_axis) +
+                                      " samples per axis of a pixel; expected 1 to 16");
+  const bool parallel = camera.orthographic_width_m > 0;
+  if (!parallel && !(camera.horizontal_fov_rad > 0 && camera.horizontal_fov_rad < std::numbers::pi))
+    throw Error(ErrorKind::usage, "a camera's field of view must be above 0 and below 180 degrees");
+}
+
 Image render_image(const Tracer& tracer, const ImageScene& scene, const Camera& camera,
                    const ImageOptions& options, const Executor& executor) {
-  check(camera, options);
+  check_image(camera, options);
   return Renderer(tracer, scene, camera, options, executor).render();
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "adasplats/core/random.h"
+#include "adasplats/simulate/scan_ray.h"
 
 namespace adasplats {
 
@@ -48,32 +49,28 @@ std::vector<T> gathered(std::span<const T> values, std::span<const Hit> hits,
 std::vector<Ray> scan_rays(const LidarModel& sensor, std::span<const Firing> firings,
                            const RigidTransform& world_from_sensor, Vec3d scene_origin,
                            const Executor& executor) {
-  Ray start;
-  start.origin = vec_cast<float>(world_from_sensor.translation - scene_origin);
-  start.t_min = static_cast<float>(sensor.min_range_m);
-  start.t_max = static_cast<float>(sensor.max_range_m);
-  std::vector<Ray> rays(firings.size(), start);
+  const ScanPose pose = scan_pose(world_from_sensor, scene_origin);
+  const auto t_min = static_cast<float>(sensor.min_range_m);
+  const auto t_max = static_cast<float>(sensor.max_range_m);
+  std::vector<Ray> rays(firings.size());
   executor.for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      // In double and made a unit again: a rotation from a file is orthonormal to 1e-3 only.
-      const Vec3d direction = world_from_sensor.rotation * vec_cast<double>(firings[i].direction);
-      rays[i].direction = vec_cast<float>(normalized(direction));
-    }
+    for (std::size_t i = begin; i < end; ++i)
+      rays[i] = scan_ray(pose, firings[i].direction, t_min, t_max);
   });
   return rays;
 }
 
-Scan simulate_scan(const Tracer& tracer, const PrimitiveAttributes& attributes, Vec3d scene_origin,
-                   const LidarModel& sensor, std::span<const Firing> firings, const TimedPose& pose,
-                   std::uint64_t scan_index, const SimulateOptions& options,
-                   const Executor& executor) {
-  const std::vector<Ray> rays =
-      scan_rays(sensor, firings, pose.world_from_sensor, scene_origin, executor);
-  std::vector<Hit> hits(rays.size());
-  tracer.nearest(rays, hits, executor);
-  if (options.range_noise && sensor.range_noise_m > 0)
-    add_range_noise(hits, sensor, scan_index, options.seed, executor);
-
+Scan scan_of_hits(std::span<const Hit> hits, const PrimitiveAttributes& attributes,
+                  const LidarModel& sensor, std::span<const Firing> firings, const TimedPose& pose,
+                  std::uint64_t scan_index, const SimulateOptions& options,
+                  const Executor& executor) {
+  if (hits.size() != firings.size()) throw std::logic_error("a scan needs one hit a firing");
+  std::vector<Hit> noisy;
+  if (options.range_noise && sensor.range_noise_m > 0) {
+    noisy.assign(hits.begin(), hits.end());
+    add_range_noise(noisy, sensor, scan_index, options.seed, executor);
+    hits = noisy;
+  }
   std::vector<std::uint32_t> returns;
   returns.reserve(hits.size());
   for (std::uint32_t i = 0; i < hits.size(); ++i)
@@ -82,7 +79,7 @@ Scan simulate_scan(const Tracer& tracer, const PrimitiveAttributes& attributes, 
   Scan scan;
   scan.world_from_sensor = pose.world_from_sensor;
   scan.time_s = pose.time_s;
-  scan.rays = rays.size();
+  scan.rays = hits.size();
   scan.positions.reserve(returns.size());
   scan.ranges_m.reserve(returns.size());
   scan.rings.reserve(returns.size());
@@ -97,6 +94,17 @@ Scan simulate_scan(const Tracer& tracer, const PrimitiveAttributes& attributes, 
   scan.classes = gathered(attributes.classes, hits, returns);
   scan.instances = gathered(attributes.instances, hits, returns);
   return scan;
+}
+
+Scan simulate_scan(const Tracer& tracer, const PrimitiveAttributes& attributes, Vec3d scene_origin,
+                   const LidarModel& sensor, std::span<const Firing> firings, const TimedPose& pose,
+                   std::uint64_t scan_index, const SimulateOptions& options,
+                   const Executor& executor) {
+  const std::vector<Ray> rays =
+      scan_rays(sensor, firings, pose.world_from_sensor, scene_origin, executor);
+  std::vector<Hit> hits(rays.size());
+  tracer.nearest(rays, hits, executor);
+  return scan_of_hits(hits, attributes, sensor, firings, pose, scan_index, options, executor);
 }
 
 }  // namespace adasplats

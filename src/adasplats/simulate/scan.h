@@ -48,8 +48,17 @@ std::vector<Ray> scan_rays(const LidarModel& sensor, std::span<const Firing> fir
                            const RigidTransform& world_from_sensor, Vec3d scene_origin,
                            const Executor& executor);
 
+/// What the sensor measures where its rays met the scene: hits[i] of firings[i], in the sensor's
+/// range. Adds its noise and gathers what the primitives carry. `scan_index` names the noise.
+/// Throws std::logic_error where there is not one hit a firing, or an attribute has fewer values
+/// than the scene has primitives.
+Scan scan_of_hits(std::span<const Hit> hits, const PrimitiveAttributes& attributes,
+                  const LidarModel& sensor, std::span<const Firing> firings, const TimedPose& pose,
+                  std::uint64_t scan_index, const SimulateOptions& options,
+                  const Executor& executor);
+
 /// Casts one revolution in a scene whose local origin is `scene_origin`. Paper section "Firing
-/// Sequence Simulation": all rays leave from the pose.
+/// Sequence Simulation": all rays leave from the pose. For many scans see scan_caster.h.
 Scan simulate_scan(const Tracer& tracer, const PrimitiveAttributes& attributes, Vec3d scene_origin,
                    const LidarModel& sensor, std::span<const Firing> firings, const TimedPose& pose,
                    std::uint64_t scan_index, const SimulateOptions& options,

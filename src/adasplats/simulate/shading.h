@@ -2,33 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <vector>
 
-#include "adasplats/simulate/color_map.h"
 #include "adasplats/simulate/image.h"
+#include "adasplats/simulate/shading_maths.h"
 
 namespace adasplats {
 
-/// Private to simulate/: the colour that a ray sees.
+/// What shade() reads, for a scene and options, in host memory.
 class Shading {
  public:
-  /// Views of the scene and the options, which must outlive it.
+  /// Views of the scene, which must outlive it.
   /// Throws std::logic_error where an attribute has another size than the scene.
   Shading(const ImageScene& scene, const ImageOptions& options);
 
-  Vec3f color(const Ray& ray, const Hit& hit) const;
+  const ShadingTables& tables() const { return tables_; }
 
  private:
-  Vec3f background(Vec3f direction) const;
-  Vec3f normal_towards(const Ray& ray, std::uint32_t primitive) const;
-  Vec3f semantic_color(std::uint32_t primitive) const;
-  Vec3f intensity_color(std::uint32_t primitive) const;
-
-  const ImageScene& scene_;
-  const ImageOptions& options_;
-  std::vector<std::optional<Vec3f>> class_colors_;  ///< by class id
-  ValueRange intensities_;
+  ShadingTables tables_;
+  std::vector<Vec3f> class_colors_;  ///< by class id; negative: none
 };
+
+/// Checks what render_image() is asked for. Errors: usage.
+void check_image(const Camera& camera, const ImageOptions& options);
 
 }  // namespace adasplats
