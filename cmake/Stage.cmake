@@ -3,48 +3,57 @@
 
 # What every target of ours is compiled with.
 add_library(adasplats_options INTERFACE)
-target_compile_options(
-  adasplats_options
-  INTERFACE # The same bits on every machine and backend: no fused multiply-add behind our back.
-            -ffp-contract=off
-            # Neither changes a value; both let loops with sqrt and divisions be vectorised.
-            -fno-math-errno -fno-trapping-math
-            -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
-            -Wold-style-cast -Woverloaded-virtual -Wno-missing-field-initializers)
+# Of host code: nvcc has options of its own (cmake/Cuda.cmake).
+function(adasplats_host_options)
+  foreach(option ${ARGN})
+    target_compile_options(adasplats_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:${option}>)
+  endforeach()
+endfunction()
+adasplats_host_options(
+  # The same bits on every machine and backend: no fused multiply-add behind our back.
+  -ffp-contract=off
+  # Neither changes a value; both let loops with sqrt and divisions be vectorised.
+  -fno-math-errno -fno-trapping-math
+  -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast
+  -Woverloaded-virtual -Wno-missing-field-initializers)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(adasplats_options INTERFACE -Wno-psabi)
+  adasplats_host_options(-Wno-psabi)
   if(CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
     # gcc 13 and 14 see writes past the end in std::vector::insert, for sizes that cannot occur.
-    target_compile_options(adasplats_options INTERFACE -Wno-stringop-overflow)
+    adasplats_host_options(-Wno-stringop-overflow)
   endif()
 endif()
 if(CMAKE_BUILD_TYPE STREQUAL "Release")
-  target_compile_options(adasplats_options INTERFACE -O3)
+  adasplats_host_options(-O3)
 endif()
 if(ADASPLATS_WERROR)
-  target_compile_options(adasplats_options INTERFACE -Werror)
+  adasplats_host_options(-Werror)
 endif()
 if(ADASPLATS_SANITIZE)
-  target_compile_options(adasplats_options INTERFACE -fsanitize=${ADASPLATS_SANITIZE}
-                                                     -fno-sanitize-recover=all
-                                                     -fno-omit-frame-pointer)
+  adasplats_host_options(-fsanitize=${ADASPLATS_SANITIZE} -fno-sanitize-recover=all
+                         -fno-omit-frame-pointer)
   target_link_options(adasplats_options INTERFACE -fsanitize=${ADASPLATS_SANITIZE})
   target_compile_definitions(adasplats_options INTERFACE ADASPLATS_SANITIZED)
 endif()
 
 set(ADASPLATS_STAGES "")
 
-# adasplats_stage(NAME [DEPENDS stages...] [LINK PRIVATE|PUBLIC libs...] [DEFINE macros...])
+# adasplats_stage(NAME [DEPENDS stages...] [LINK PRIVATE|PUBLIC libs...] [DEFINE macros...] [CUDA])
 # LINK takes imported targets of packages only, which adasplatsConfig.cmake finds again for a
-# consumer; DEFINE is seen by NAME's own sources alone.
+# consumer; DEFINE is seen by NAME's own sources alone. CUDA: its *.cu are compiled, too, where
+# there is a CUDA compiler.
 # The library of src/adasplats/NAME: its *.cpp but *_test.cpp, which become NAME's test program.
 function(adasplats_stage name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;LINK;DEFINE" ${ARGN})
+  cmake_parse_arguments(ARG "CUDA" "" "DEPENDS;LINK;DEFINE" ${ARGN})
   set(folder ${PROJECT_SOURCE_DIR}/src/adasplats/${name})
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   file(GLOB tests CONFIGURE_DEPENDS ${folder}/*_test.cpp)
   if(tests)
     list(REMOVE_ITEM sources ${tests})
+  endif()
+  if(ARG_CUDA AND ADASPLATS_CUDA)
+    file(GLOB cuda_sources CONFIGURE_DEPENDS ${folder}/*.cu)
+    list(APPEND sources ${cuda_sources})
   endif()
   set(target adasplats_${name})
   set(dependencies ${ARG_DEPENDS})
@@ -61,6 +70,9 @@ function(adasplats_stage name)
       target_link_libraries(${target} ${ARG_LINK})
     endif()
     target_link_libraries(${target} PUBLIC ${dependencies})
+    if(ARG_CUDA AND ADASPLATS_CUDA)
+      adasplats_use_cuda(${target})
+    endif()
   else()
     add_library(${target} INTERFACE)
     target_include_directories(
@@ -74,6 +86,9 @@ function(adasplats_stage name)
   set(ADASPLATS_STAGES ${ADASPLATS_STAGES} ${target} PARENT_SCOPE)
   if(tests AND ADASPLATS_BUILD_TESTS)
     adasplats_test(${name} ${tests})
+    if(ARG_CUDA AND ADASPLATS_CUDA)
+      adasplats_use_cuda(adasplats_${name}_test)  # its tests see the private side of the stage
+    endif()
   endif()
 endfunction()
 

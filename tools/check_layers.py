@@ -24,10 +24,10 @@ import sys
 import tempfile
 
 HEAVY = ("nlohmann/", "toml++/", "CLI/", "tbb/", "oneapi/", "embree", "Eigen/", "png.h", "laszip/",
-         "nanoflann", "gtest/", "benchmark/")
+         "nanoflann", "gtest/", "benchmark/", "cuda", "cub/", "thrust/")
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 STAGE = re.compile(r"^[ \t]*adasplats_stage\(([^)]*)\)", re.MULTILINE)
-STAGE_KEYWORDS = ("DEPENDS", "LINK", "DEFINE")
+STAGE_KEYWORDS = ("DEPENDS", "LINK", "DEFINE", "CUDA")
 SOURCE_SUFFIXES = (".h", ".cpp", ".cu", ".cuh")
 OUTSIDE = ("apps", "examples", "python")  # what uses the stages from outside
 

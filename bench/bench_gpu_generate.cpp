@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+// Time of every step of build_model on a GPU, from host memory to the model in host memory; the
+// median of several runs, as one line of JSON.
+//   bench_gpu_generate POINTS|INPUT [METHOD] [resample|no-resample] [RUNS] [cpu]
+// POINTS makes a procedural street of about so many points. "cpu" does the same on the CPU after
+// that, once, and tells how many splats have other bytes.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/core/error.h"
+#include "adasplats/gpu/device.h"
+#include "adasplats/gpu/gpu_model.h"
+#include "adasplats/splats/build_model.h"
+#include "adasplats/synth/street.h"
+
+namespace {
+
+using namespace adasplats;
+
+PointCloud street_cloud(std::size_t points, const Executor& executor, ProgressSink& progress) {
+  StreetOptions options;
+  options.length_m = street_length_for(points);
+  StreetScanOptions scan;
+  scan.points = points;
+  scan.driving_spacing_m = 0;
+  return scan_street(
+             make_street(options), scan, [](std::size_t, const Scan&) {}, executor, progress)
+      .mapping;
+}
+
+PointCloud input_cloud(const std::string& input, const Executor& executor, ProgressSink& progress) {
+  if (!std::filesystem::exists(input)) {
+    const auto points = static_cast<std::size_t>(std::strtoull(input.c_str(), nullptr, 10));
+    return street_cloud(points, executor, progress);
+  }
+  const std::vector<std::filesystem::path> inputs = {input};
+  return load_cloud(inputs, {}, executor, progress).first;
+}
+
+SplatMethod method_of(const std::string& name) {
+  if (name == "basic") return SplatMethod::basic;
+  if (name == "descriptors") return SplatMethod::descriptors;
+  if (name == "consistent") return SplatMethod::consistent;
+  return SplatMethod::semantic;
+}
+
+struct Run {
+  double seconds;
+  SplatModel model;
+  BuildReport report;
+};
+
+Run timed_build(const PointCloud& cloud, const BuildOptions& options, const Executor& executor,
+                const ModelEngine* engine) {
+  ProgressSink quiet;
+  PointCloud copy = cloud;
+  const auto start = std::chrono::steady_clock::now();
+  auto [model, report] =
+      build_model(std::move(copy), &semantickitti_labels(), options, executor, quiet, engine);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  return {seconds.count(), std::move(model), std::move(report)};
+}
+
+void print_run(const char* device, const Run& run) {
+  std::fprintf(stderr, "%s: %.3f s, %zu points, %zu noise, %zu new, %zu used, %zu splats\n", device,
+               run.seconds, run.report.points_in, run.report.points_noise,
+               run.report.points_resampled, run.report.points_used, run.report.primitives);
+  for (const StepTime& step : run.report.steps)
+    std::fprintf(stderr, "  %-18s %8.4f s\n", step.name.c_str(), step.seconds);
+}
+
+/// Splats of a model that the other one has not in the same bytes.
+std::size_t different(const SplatModel& model, const SplatModel& other) {
+  const auto less = [](const Disk& a, const Disk& b) {
+    return std::memcmp(&a, &b, sizeof(Disk)) < 0;
+  };
+  std::vector<Disk> own = model.disks, others = other.disks, missing;
+  std::sort(own.begin(), own.end(), less);
+  std::sort(others.begin(), others.end(), less);
+  std::set_difference(own.begin(), own.end(), others.begin(), others.end(),
+                      std::back_inserter(missing), less);
+  return missing.size();
+}
+
+int run(int argc, char** argv) {
+  const auto argument = [&](int i, const char* otherwise) {
+    return std::string(argc > i ? argv[i] : otherwise);
+  };
+  const Executor executor;
+  ProgressSink quiet;
+  const PointCloud cloud = input_cloud(argv[1], executor, quiet);
+  BuildOptions options;
+  options.method = method_of(argument(2, "semantic"));
+  options.resample = argument(3, "resample") != "no-resample";
+  const auto engine = make_cuda_model_engine(0, executor);
+  std::vector<Run> runs;
+  for (int i = 0; i < std::max(1, std::atoi(argument(4, "3").c_str())); ++i) {
+    runs.push_back(timed_build(cloud, options, executor, engine.get()));
+    print_run("cuda", runs.back());
+  }
+  std::sort(runs.begin(), runs.end(),
+            [](const Run& a, const Run& b) { return a.seconds < b.seconds; });
+  const Run& median = runs[runs.size() / 2];
+  std::printf(
+      "{\"device\": \"%s\", \"points\": %zu, \"method\": \"%s\", \"resample\": %s, "
+      "\"splats\": %zu, \"seconds\": %.4f, \"fastest_s\": %.4f, \"slowest_s\": %.4f}\n",
+      find_gpus().devices[0].name.c_str(), cloud.size(), argument(2, "semantic").c_str(),
+      options.resample ? "true" : "false", median.report.primitives, median.seconds,
+      runs.front().seconds, runs.back().seconds);
+  if (argument(5, "") == "cpu") {
+    const Run cpu = timed_build(cloud, options, executor, nullptr);
+    print_run("cpu", cpu);
+    std::printf("%zu of %zu splats differ from the CPU's\n", different(median.model, cpu.model),
+                median.model.size());
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr,
+                 "usage: bench_gpu_generate POINTS|INPUT [basic|descriptors|semantic|consistent] "
+                 "[resample|no-resample] [RUNS] [cpu]\n");
+    return 64;
+  }
+  try {
+    return run(argc, argv);
+  } catch (const adasplats::Error& error) {
+    std::fprintf(stderr, "bench_gpu_generate: error: %s\n", error.what());
+    return adasplats::exit_code(error.kind());
+  }
+}

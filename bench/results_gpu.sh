@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Measures what docs/performance.md says of GPUs and writes it as JSON.
+# usage: bench/results_gpu.sh BIN_DIR OUT.json [SEQUENCE]
+#   BIN_DIR   folder of the built programs (build/release/bin)
+#   SEQUENCE  kitti-0005/sequences/00; without it that figure is left out
+# With two GPUs or more the batched scans are measured on one and on two of them.
+# ADASPLATS_COMMIT names the version where this is no clone. Needs about 3 GB in TMPDIR.
+set -euo pipefail
+
+[[ $# -ge 2 ]] || {
+  sed -n '6,11p' "${BASH_SOURCE[0]}" | cut -c3- >&2
+  exit 64
+}
+bin=$1
+out=$2
+sequence=${3:-}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+commit=${ADASPLATS_COMMIT:-$(git -C "$root" rev-parse HEAD)}
+gpus=$(nvidia-smi --query-gpu=name --format=csv,noheader | wc -l)
+
+# street NAME POINTS: a street and its basic splats.
+street() {
+  "$bin/adasplats" synth street --points "$2" -o "$work/$1" >"$work/log"
+  "$bin/adasplats" model "$work/$1/mapping.ply" -o "$work/$1.ply" --method basic \
+    >"$work/log" 2>&1
+}
+
+# trace NAME ARGUMENTS...: one run of bench_gpu_trace in the street NAME.
+trace() {
+  local name=$1 street=$2
+  shift 2
+  "$bin/bench_gpu_trace" "$work/$street.ply" "$work/$street/true_driving_trajectory.csv" \
+    --json "$work/$name.json" "$@" >"$work/log"
+}
+
+street 2m 3300000
+street 8m 13000000
+trace cuda_2m 2m --backend cuda
+trace optix_2m 2m --backend optix || echo '{}' >"$work/optix_2m.json"
+trace cuda_8m 8m --backend cuda --quick
+trace optix_8m 8m --backend optix --quick || echo '{}' >"$work/optix_8m.json"
+if ((gpus > 1)); then
+  trace one_gpu 2m --quick --gpus 0
+  trace two_gpus 2m --quick --gpus 0,1
+fi
+"$bin/bench_gpu_generate" 12300000 semantic resample 3 >"$work/generate_12m.json"
+if [[ -n $sequence ]]; then
+  "$bin/bench_gpu_generate" "$sequence" consistent resample 3 >"$work/generate_kitti0005.json"
+fi
+
+python3 - "$work" "$out" "$commit" "bench/results_gpu.sh BIN_DIR OUT.json ${sequence:+SEQUENCE}" <<'PYTHON'
+import json, pathlib, subprocess, sys
+
+work, out, commit, command = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3], sys.argv[4]
+
+
+def read(name):
+    file = work / f"{name}.json"
+    if not file.exists():
+        return {}
+    return json.loads(file.read_text().strip().splitlines()[-1] if name.startswith("generate")
+                      else file.read_text())
+
+
+def query(field):
+    return subprocess.run(["nvidia-smi", f"--query-gpu={field}", "--format=csv,noheader"],
+                          capture_output=True, text=True, check=True).stdout.splitlines()[0]
+
+
+cuda, optix = read("cuda_2m"), read("optix_2m")
+best = max((cuda, optix), key=lambda run: run.get("batched_per_s", 0))
+result = {
+    "device": query("name"), "driver": query("driver_version"), "commit": commit,
+    "command": command,
+    "hdl64_single_per_s": max(cuda["single_per_s"], optix.get("single_per_s", 0)),
+    "hdl64_batched_per_s": best["batched_per_s"],
+    "hdl64_batched_8m_per_s": max(read("cuda_8m")["batched_per_s"],
+                                  read("optix_8m").get("batched_per_s", 0)),
+    "render_1440p_per_s": max(cuda["render_1440p_per_s"], optix.get("render_1440p_per_s", 0)),
+    "d5_over_nearest": best["d5_over_nearest"],
+    "generate_12m_s": read("generate_12m")["seconds"],
+}
+if read("generate_kitti0005"):
+    result["generate_kitti0005_s"] = read("generate_kitti0005")["seconds"]
+if read("two_gpus"):
+    result["two_gpu_speedup"] = (read("two_gpus")["batched_per_s"] /
+                                 read("one_gpu")["batched_per_s"])
+result["runs"] = {name: read(name) for name in
+                  ("cuda_2m", "optix_2m", "cuda_8m", "optix_8m", "one_gpu", "two_gpus",
+                   "generate_12m", "generate_kitti0005") if read(name)}
+pathlib.Path(out).write_text(json.dumps(result, indent=2) + "\n")
+print(json.dumps({k: v for k, v in result.items() if k != "runs"}, indent=2))
+PYTHON

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/splats/consistent_steps.h"
+
+namespace adasplats::gpu {
+
+/// The steps of the ray-consistent method in the memory of one GPU: the cloud goes there in load(),
+/// the splats come back in take_splats(). The steps also show their state (consistent_state.h).
+/// Everything is the CPU's bit by bit, but the limits of disks in clouds without sensor positions,
+/// whose sectors depend on the last bit of an arc tangent. `executor` would do what is left on the
+/// CPU; nothing is. Errors: unavailable (no such GPU, not enough memory), usage (neighbourhoods of
+/// more than 512 cells, more hits of a ray than the GPU keeps), with what helps; after one, the
+/// steps can only be destroyed.
+std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int device, const Executor& executor);
+
+}  // namespace adasplats::gpu

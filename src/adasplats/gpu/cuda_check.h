@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <string_view>
+
+namespace adasplats::gpu {
+
+/// Private to gpu/: throws an Error (`unavailable`) where a CUDA call failed. `doing` says what was
+/// being done ("copy the rays to the GPU"). Out of memory is told with what is free and with what
+/// helps. Also used after a kernel launch: cuda_check(cudaGetLastError(), "sort the points").
+void cuda_check(cudaError_t status, std::string_view doing);
+
+/// Makes a device the current one of this thread and restores the former one.
+class DeviceGuard {
+ public:
+  explicit DeviceGuard(int device);
+  ~DeviceGuard();
+  DeviceGuard(const DeviceGuard&) = delete;
+  DeviceGuard& operator=(const DeviceGuard&) = delete;
+
+ private:
+  int before_ = 0;
+};
+
+}  // namespace adasplats::gpu

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#if defined(ADASPLATS_HAVE_CUDA)
+#include "adasplats/core/error.h"
+#include "adasplats/gpu/consistent_cuda.h"
+#include "adasplats/gpu/cuda_check.h"
+#include "adasplats/gpu/device.h"
+#include "adasplats/gpu/gpu_model.h"
+#include "adasplats/gpu/paper_cuda_steps.h"
+
+namespace adasplats {
+namespace {
+
+class CudaModelEngine final : public ModelEngine {
+ public:
+  CudaModelEngine(int device, const Executor& executor) : device_(device), executor_(executor) {
+    const GpuSearch found = find_gpus();
+    if (found.devices.empty())
+      throw Error(ErrorKind::unavailable, "cannot build models on a GPU: " + found.reason);
+    const gpu::DeviceGuard guard(device);  // says so now where there is no such GPU
+  }
+
+  std::string_view name() const override { return "cuda"; }
+  std::unique_ptr<PaperSteps> paper_steps() const override {
+    return gpu::make_cuda_paper_steps(device_);
+  }
+  std::unique_ptr<ConsistentSteps> consistent_steps() const override {
+    return gpu::make_cuda_consistent_steps(device_, executor_);
+  }
+
+ private:
+  int device_;
+  const Executor& executor_;
+};
+
+}  // namespace
+
+std::unique_ptr<ModelEngine> make_cuda_model_engine(int device, const Executor& executor) {
+  return std::make_unique<CudaModelEngine>(device, executor);
+}
+
+}  // namespace adasplats
+#endif

@@ -1,0 +1,286 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#if defined(ADASPLATS_HAVE_CUDA)
+#include "adasplats/gpu/gpu_scanner.h"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+#include <tuple>
+
+#include "adasplats/core/error.h"
+#include "adasplats/gpu/point_hits.h"
+
+namespace adasplats {
+
+namespace gpu {
+namespace {
+
+/// Scans in one launch hold about so many rays: enough to fill a GPU several times over, so that
+/// its end, when only long rays are left, does not count.
+constexpr std::size_t kRaysAtOnce = std::size_t{1} << 23;
+constexpr int kSlots = 2;  // under way on each device
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The order in which firings are cast: by tiles of two rings and 16 columns, a warp's rays, which
+/// meet more of the same things than those of one ring. A free pattern has rings or columns that
+/// say little; then this is as good as its own order.
+std::vector<std::uint32_t> casting_order(std::span<const Firing> firings) {
+  constexpr std::uint32_t kTileRings = 2, kTileColumns = 16;
+  std::vector<std::uint32_t> order(firings.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto key = [&](std::uint32_t i) {
+    const Firing& firing = firings[i];
+    return std::tuple(firing.ring / kTileRings, firing.column / kTileColumns,
+                      firing.ring % kTileRings, firing.column % kTileColumns, i);
+  };
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  return order;
+}
+
+}  // namespace
+
+/// One launch that is under way.
+struct ScanBatch {
+  Stream stream;
+  Event begin, end;
+  PinnedBuffer<ScanPose> poses;
+  DeviceBuffer<ScanPose> device_poses;
+  PinnedBuffer<std::uint8_t> results;
+  DeviceBuffer<Hit> device_hits;
+  DeviceBuffer<PointHit> device_points;
+  std::size_t first = 0, count = 0;  ///< poses; none: idle
+};
+
+/// A sensor on one device.
+struct DeviceScanner {
+  explicit DeviceScanner(const DevicePart& scene_part) : part(&scene_part) {}
+  ~DeviceScanner() {
+    const DeviceGuard guard(part->device);
+    for (auto& batch : batches) {
+      // An exception may have left a launch under way that still writes to what is freed here.
+      if (batch != nullptr) cudaStreamSynchronize(batch->stream.get());
+      batch.reset();
+    }
+    firings = {};
+    directions = {};
+    order = {};
+  }
+  DeviceScanner(const DeviceScanner&) = delete;
+  DeviceScanner& operator=(const DeviceScanner&) = delete;
+
+  const DevicePart* part;
+  Stream stream;  ///< of the directions, of single scans and of those that stay on the device
+  DeviceBuffer<Vec3f> firings;        ///< directions as they are numbered...
+  DeviceBuffer<Vec3f> directions;     ///< ...and in casting order
+  DeviceBuffer<std::uint32_t> order;  ///< of the firings
+  std::array<std::unique_ptr<ScanBatch>, kSlots> batches;
+};
+
+}  // namespace gpu
+
+using namespace gpu;
+
+GpuScanner::Impl::Impl(const SceneParts& scene, const LidarModel& sensor,
+                       std::span<const Firing> firings)
+    : scene_(scene), firings_(firings.size()) {
+  if (firings.empty()) throw Error(ErrorKind::usage, "a sensor without a single firing");
+  source_.kind = RaySource::Kind::scans;
+  source_.firings = static_cast<std::uint32_t>(firings.size());
+  source_.t_min = static_cast<float>(sensor.min_range_m);
+  source_.t_max = static_cast<float>(sensor.max_range_m);
+  const std::vector<std::uint32_t> order = casting_order(firings);
+  std::vector<Vec3f> numbered(firings.size()), directions(firings.size());
+  std::transform(firings.begin(), firings.end(), numbered.begin(),
+                 [](const Firing& firing) { return firing.direction; });
+  std::transform(order.begin(), order.end(), directions.begin(),
+                 [&](std::uint32_t i) { return numbered[i]; });
+  for (const DevicePart& part : scene.parts) {
+    const DeviceGuard guard(part.device);
+    auto device = std::make_unique<DeviceScanner>(part);
+    device->firings = DeviceBuffer<Vec3f>(std::span<const Vec3f>(numbered), device->stream.get());
+    device->directions =
+        DeviceBuffer<Vec3f>(std::span<const Vec3f>(directions), device->stream.get());
+    device->order =
+        DeviceBuffer<std::uint32_t>(std::span<const std::uint32_t>(order), device->stream.get());
+    device->stream.wait("copy a sensor to the GPU");
+    devices_.push_back(std::move(device));
+  }
+}
+
+GpuScanner::Impl::~Impl() {
+  const DeviceGuard guard(scene_.first().device);
+  kept_poses_ = {};
+  kept_hits_ = {};
+}
+
+std::span<const Hit> GpuScanner::Impl::scan(const TimedPose& pose) {
+  DeviceScanner& device = *devices_.front();
+  const DeviceGuard guard(device.part->device);
+  if (single_.size() == 0) single_ = PinnedBuffer<Hit>(firings_);
+  RaySource source = source_;
+  source.directions = device.directions.data();
+  source.order = device.order.data();
+  source.pose = scan_pose(pose.world_from_sensor, scene_.origin);
+  // The kernel writes across the bus itself: the copy happens while other rays are traced.
+  device.part->scene->cast(source, firings_, 1, single_.data(), device.stream.get());
+  device.stream.wait("cast a scan on the GPU");
+  return single_.span();
+}
+
+DeviceHits GpuScanner::Impl::cast_on_device(std::span<const TimedPose> poses, int depth) {
+  DeviceScanner& device = *devices_.front();
+  const DeviceGuard guard(device.part->device);
+  const cudaStream_t stream = device.stream.get();
+  std::vector<ScanPose> scan_poses;
+  for (const TimedPose& pose : poses)
+    scan_poses.push_back(scan_pose(pose.world_from_sensor, scene_.origin));
+  const std::size_t hits = poses.size() * firings_ * static_cast<std::size_t>(depth);
+  if (kept_hits_.size() < hits) {
+    kept_hits_ = {};  // before the larger one
+    kept_hits_ = DeviceBuffer<Hit>(hits, stream);
+  }
+  kept_poses_ = DeviceBuffer<ScanPose>(std::span<const ScanPose>(scan_poses), stream);
+  RaySource source = source_;
+  source.directions = device.directions.data();
+  source.order = device.order.data();
+  source.poses = kept_poses_.data();
+  device.part->scene->cast(source, poses.size() * firings_, depth, kept_hits_.data(), stream);
+  return {kept_hits_.data(), poses.size(), firings_, device.part->device, stream};
+}
+
+void GpuScanner::Impl::reserve(ScanBatch& batch, std::size_t scans, std::size_t result_bytes,
+                               bool points) const {
+  const std::size_t hits = scans * firings_;
+  const cudaStream_t stream = batch.stream.get();
+  if (batch.poses.size() < scans) {
+    batch.poses = PinnedBuffer<ScanPose>(scans);
+    batch.device_poses = DeviceBuffer<ScanPose>(scans, stream);
+  }
+  if (batch.device_hits.size() < hits) batch.device_hits = DeviceBuffer<Hit>(hits, stream);
+  if (points && batch.device_points.size() < hits)
+    batch.device_points = DeviceBuffer<PointHit>(hits, stream);
+  if (batch.results.size() < hits * result_bytes)
+    batch.results = PinnedBuffer<std::uint8_t>(hits * result_bytes);
+}
+
+void GpuScanner::Impl::launch(DeviceScanner& device, ScanBatch& batch,
+                              std::span<const TimedPose> poses, bool points) const {
+  const cudaStream_t stream = batch.stream.get();
+  for (std::size_t i = 0; i < batch.count; ++i)
+    batch.poses.data()[i] = scan_pose(poses[batch.first + i].world_from_sensor, scene_.origin);
+  batch.device_poses.upload(batch.poses.span().first(batch.count));
+  RaySource source = source_;
+  source.directions = device.directions.data();
+  source.order = device.order.data();
+  source.poses = batch.device_poses.data();
+  const std::uint64_t rays = batch.count * firings_;
+  batch.begin.record(stream);
+  device.part->scene->cast(source, rays, 1, batch.device_hits.data(), stream);
+  const void* results = batch.device_hits.data();
+  std::size_t bytes = rays * sizeof(Hit);
+  if (points) {
+    queue_point_hits(batch.device_hits.data(), device.firings.data(), source.firings, rays,
+                     batch.device_points.data(), stream);
+    results = batch.device_points.data();
+    bytes = rays * sizeof(PointHit);
+  }
+  batch.end.record(stream);
+  cuda_check(cudaMemcpyAsync(batch.results.data(), results, bytes, cudaMemcpyDeviceToHost, stream),
+             "copy the hits from the GPU");
+}
+
+CastTimes GpuScanner::Impl::cast(std::span<const TimedPose> poses, bool points,
+                                 FunctionRef<void(std::size_t, const std::uint8_t*)> sink) {
+  const std::size_t result_bytes = points ? sizeof(PointHit) : sizeof(Hit);
+  const std::size_t lanes = devices_.size() * kSlots;
+  const std::size_t most = std::clamp<std::size_t>(kRaysAtOnce / firings_, 1, 256);
+  const std::size_t scans =
+      std::max<std::size_t>(1, std::min(most, (poses.size() + lanes - 1) / lanes));
+  // Batch k runs in lane k % lanes, so batches come back in their order.
+  for (std::size_t lane = 0; lane < std::min(lanes, (poses.size() + scans - 1) / scans); ++lane) {
+    DeviceScanner& device = *devices_[lane % devices_.size()];
+    const DeviceGuard guard(device.part->device);
+    auto& batch = device.batches[lane / devices_.size()];
+    if (batch == nullptr) batch = std::make_unique<ScanBatch>();
+    reserve(*batch, scans, result_bytes, points);
+    batch->stream.wait("prepare scans on the GPU");  // what an exception left there
+    batch->count = 0;
+  }
+
+  CastTimes times;
+  double in_sink_s = 0;
+  const auto start = Clock::now();
+  const auto begin_batch = [&](std::size_t k) {
+    DeviceScanner& device = *devices_[k % lanes % devices_.size()];
+    const DeviceGuard guard(device.part->device);
+    ScanBatch& batch = *device.batches[k % lanes / devices_.size()];
+    batch.first = k * scans;
+    batch.count = std::min(scans, poses.size() - batch.first);
+    launch(device, batch, poses, points);
+  };
+  const auto end_batch = [&](std::size_t k) {
+    DeviceScanner& device = *devices_[k % lanes % devices_.size()];
+    const DeviceGuard guard(device.part->device);
+    ScanBatch& batch = *device.batches[k % lanes / devices_.size()];
+    batch.stream.wait("cast scans on the GPU");
+    times.traced_s += batch.end.seconds_since(batch.begin);
+    const auto sink_start = Clock::now();
+    for (std::size_t i = 0; i < batch.count; ++i)
+      sink(batch.first + i, batch.results.data() + i * firings_ * result_bytes);
+    in_sink_s += seconds_since(sink_start);
+  };
+  const std::size_t batches = (poses.size() + scans - 1) / scans;
+  for (std::size_t k = 0; k < std::min(lanes, batches); ++k) begin_batch(k);
+  for (std::size_t k = 0; k < batches; ++k) {
+    end_batch(k);
+    if (k + lanes < batches) begin_batch(k + lanes);
+  }
+  times.returned_s = seconds_since(start) - in_sink_s;
+  return times;
+}
+
+void wait_for(const DeviceHits& hits) {
+  const DeviceGuard guard(hits.device);
+  cuda_check(cudaStreamSynchronize(static_cast<cudaStream_t>(hits.stream)),
+             "cast scans on the GPU");
+}
+
+std::vector<Hit> download(const DeviceHits& hits, int depth) {
+  const DeviceGuard guard(hits.device);
+  std::vector<Hit> values(hits.scans * hits.rays_per_scan * static_cast<std::size_t>(depth));
+  cuda_check(cudaMemcpyAsync(values.data(), hits.hits, values.size() * sizeof(Hit),
+                             cudaMemcpyDeviceToHost, static_cast<cudaStream_t>(hits.stream)),
+             "copy the hits from the GPU");
+  wait_for(hits);
+  return values;
+}
+
+GpuScanner::GpuScanner(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+GpuScanner::~GpuScanner() = default;
+
+std::span<const Hit> GpuScanner::scan(const TimedPose& pose) { return impl_->scan(pose); }
+
+CastTimes GpuScanner::cast(std::span<const TimedPose> poses, ScanCaster::Sink sink) {
+  return impl_->cast(poses, false, [&](std::size_t pose, const std::uint8_t* results) {
+    sink(pose, {reinterpret_cast<const Hit*>(results), impl_->firings()});
+  });
+}
+
+CastTimes GpuScanner::cast_points(std::span<const TimedPose> poses, PointSink sink) {
+  return impl_->cast(poses, true, [&](std::size_t pose, const std::uint8_t* results) {
+    sink(pose, {reinterpret_cast<const PointHit*>(results), impl_->firings()});
+  });
+}
+
+DeviceHits GpuScanner::cast_on_device(std::span<const TimedPose> poses, int depth) {
+  return impl_->cast_on_device(poses, depth);
+}
+
+}  // namespace adasplats
+#endif

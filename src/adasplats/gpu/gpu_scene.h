@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "adasplats/scene/scene.h"
+#include "adasplats/sensors/camera.h"
+#include "adasplats/simulate/image.h"
+#include "adasplats/simulate/scan_caster.h"
+#include "adasplats/trace/tracer.h"
+
+namespace adasplats {
+
+/// Who traces on a GPU.
+enum class GpuBackend : std::uint8_t {
+  cuda,   ///< our own wide tree, on any GPU
+  optix,  ///< OptiX of the driver: uses the ray tracing units of RTX cards
+};
+
+/// Hits that stayed on the GPU: hits[scan * rays_per_scan + firing], in device memory of `device`.
+/// Valid until the scanner's next call, or until it ends.
+struct DeviceHits {
+  const Hit* hits = nullptr;
+  std::size_t scans = 0;
+  std::size_t rays_per_scan = 0;
+  int device = 0;
+  void* stream = nullptr;  ///< cudaStream_t on which they are complete
+};
+
+/// Waits until they are complete. Errors: unavailable (a kernel failed).
+void wait_for(const DeviceHits& hits);
+/// The same hits in host memory, when they are complete.
+std::vector<Hit> download(const DeviceHits& hits, int depth = 1);
+
+/// A hit as a point, 16 bytes.
+struct PointHit {
+  Vec3f position;                        ///< sensor frame, m; {0, 0, 0} where there is none
+  std::uint32_t primitive = Hit::kNone;  ///< as in Hit
+};
+static_assert(sizeof(PointHit) == 16);
+
+/// A sensor in a GpuScene, ready to scan: its firings are on the GPUs, and rays are made there. The
+/// scene must outlive it. One thread at a time.
+class GpuScanner {
+ public:
+  ~GpuScanner();
+  GpuScanner(const GpuScanner&) = delete;
+  GpuScanner& operator=(const GpuScanner&) = delete;
+
+  /// One scan, now: hits[i] of firing i, valid until the next call.
+  std::span<const Hit> scan(const TimedPose& pose);
+
+  /// Many scans a launch; hits are copied while the next ones are traced. Several devices share the
+  /// scans. `sink` as in ScanCaster.
+  CastTimes cast(std::span<const TimedPose> poses, ScanCaster::Sink sink);
+
+  /// The same with points instead of distances.
+  using PointSink = FunctionRef<void(std::size_t pose, std::span<const PointHit> hits)>;
+  CastTimes cast_points(std::span<const TimedPose> poses, PointSink sink);
+
+  /// Without copying anything back, on the first device; the `depth` nearest hits of every ray
+  /// (then there are depth times as many hits). Asynchronous: whoever reads them does it on
+  /// `stream`, or waits for it.
+  DeviceHits cast_on_device(std::span<const TimedPose> poses, int depth = 1);
+
+  struct Impl;  ///< private to gpu/
+
+ private:
+  friend class GpuScene;
+  explicit GpuScanner(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Pictures of a GpuScene: what colours need is on the first device. The scene must outlive it. One
+/// thread at a time.
+class GpuRenderer {
+ public:
+  ~GpuRenderer();
+  GpuRenderer(const GpuRenderer&) = delete;
+  GpuRenderer& operator=(const GpuRenderer&) = delete;
+
+  /// The picture that render_image() makes, to one part in 255.
+  Image render(const Camera& camera);
+
+  /// Calls `sink` with the pixels (8-bit RGB, rows from the top) of every camera, in their order;
+  /// they are valid during the call only and copied while the next picture is made. All cameras
+  /// have the same width and height.
+  using Sink = FunctionRef<void(std::size_t camera, std::span<const std::uint8_t> pixels)>;
+  void render_all(std::span<const Camera> cameras, Sink sink);
+
+  struct Impl;  ///< private to gpu/
+
+ private:
+  friend class GpuScene;
+  explicit GpuRenderer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A scene on one GPU, or the same scene on each of several GPUs of one machine. Copies what it
+/// needs: the scene may end before it. One thread at a time.
+class GpuScene {
+ public:
+  /// Builds the structures. `origin`: world coordinates of the scene's local origin, m. `devices`:
+  /// CUDA's numbers, at least one.
+  /// Errors: unavailable (no such GPU, OptiX not there, not enough memory), with what helps.
+  GpuScene(const SceneView& scene, Vec3d origin, GpuBackend backend, std::vector<int> devices);
+  ~GpuScene();
+  GpuScene(GpuScene&&) noexcept;
+  GpuScene& operator=(GpuScene&&) noexcept;
+
+  std::string_view name() const;  ///< "cuda" or "optix"
+  /// Time that building the structures took on the first device, s (copying the scene included).
+  double build_seconds() const;
+
+  /// For rays made by the caller; on the first device.
+  const Tracer& tracer() const;
+
+  /// A GpuScanner behind the interface that the CPU has, too.
+  const ScanCaster& scan_caster() const;
+  std::unique_ptr<GpuScanner> scanner(const LidarModel& sensor,
+                                      std::span<const Firing> firings) const;
+
+  /// `scene.view` must be what the GpuScene was made from.
+  std::unique_ptr<GpuRenderer> renderer(const ImageScene& scene, const ImageOptions& options) const;
+  /// render_image() on the first device.
+  Image render(const ImageScene& scene, const Camera& camera, const ImageOptions& options) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace adasplats

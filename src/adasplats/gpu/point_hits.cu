@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/gpu/launch.cuh"
+#include "adasplats/gpu/point_hits.h"
+
+namespace adasplats::gpu {
+
+void queue_point_hits(const Hit* hits, const Vec3f* directions, std::uint32_t firings,
+                      std::uint64_t count, PointHit* points, cudaStream_t stream) {
+  for_each(count, stream, "turn hits into points on the GPU", [=] __device__(std::uint64_t i) {
+    const Hit hit = hits[i];
+    const Vec3f direction = directions[i % firings];
+    points[i] = {hit.valid() ? hit.t * direction : Vec3f{}, hit.primitive};
+  });
+}
+
+}  // namespace adasplats::gpu

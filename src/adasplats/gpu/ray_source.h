@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "adasplats/core/ray.h"
+#include "adasplats/core/rigid_transform.h"
+#include "adasplats/sensors/camera.h"
+#include "adasplats/simulate/scan_ray.h"
+
+namespace adasplats::gpu {
+
+/// Private to gpu/: where the rays of a launch come from, by value into a kernel. Pointers are
+/// device memory. Rays are made where they are cast: nothing is copied but poses.
+struct RaySource {
+  enum class Kind : std::uint32_t {
+    given,  ///< rays[i]
+    scans,  ///< ray i is firing i % firings of scan i / firings
+    image,  ///< ray i is sample i of a picture, tile by tile (see sample_of)
+  };
+  Kind kind = Kind::given;
+
+  const Ray* rays = nullptr;
+
+  const Vec3f* directions = nullptr;     ///< of the firings, sensor frame, in casting order
+  const std::uint32_t* order = nullptr;  ///< which firing the i-th of a scan is; null: the i-th
+  const ScanPose* poses = nullptr;       ///< one a scan; null: `pose` for all
+  ScanPose pose;
+  std::uint32_t firings = 1;
+  float t_min = 0, t_max = 0;
+
+  CameraRays camera;
+  std::int32_t columns = 1, rows = 1;  ///< samples of the picture, both multiples of the tile
+  std::int32_t samples_per_axis = 1;
+};
+
+/// A picture's samples in the order of rays: tiles of 8 x 4, which is what a warp casts.
+struct SamplePlace {
+  static constexpr std::int32_t kTileColumns = 8, kTileRows = 4;
+  std::int32_t x, y;
+};
+
+ADASPLATS_HD inline SamplePlace sample_of(std::uint64_t ray, std::int32_t columns) {
+  constexpr std::uint32_t kTile = SamplePlace::kTileColumns * SamplePlace::kTileRows;
+  const std::uint64_t tile = ray / kTile;
+  const auto within = static_cast<std::int32_t>(ray % kTile);
+  const auto tiles_a_row = static_cast<std::uint64_t>(columns / SamplePlace::kTileColumns);
+  return {static_cast<std::int32_t>(tile % tiles_a_row) * SamplePlace::kTileColumns +
+              within % SamplePlace::kTileColumns,
+          static_cast<std::int32_t>(tile / tiles_a_row) * SamplePlace::kTileRows +
+              within / SamplePlace::kTileColumns};
+}
+
+/// The index of the ray that sample_of() turns into (x, y).
+ADASPLATS_HD inline std::uint64_t ray_of_sample(SamplePlace at, std::int32_t columns) {
+  const auto tiles_a_row = static_cast<std::uint64_t>(columns / SamplePlace::kTileColumns);
+  const std::uint64_t tile =
+      static_cast<std::uint64_t>(at.y / SamplePlace::kTileRows) * tiles_a_row +
+      static_cast<std::uint64_t>(at.x / SamplePlace::kTileColumns);
+  return tile * (SamplePlace::kTileColumns * SamplePlace::kTileRows) +
+         static_cast<std::uint64_t>(at.y % SamplePlace::kTileRows * SamplePlace::kTileColumns +
+                                    at.x % SamplePlace::kTileColumns);
+}
+
+/// Where the hits of ray i go, in rays: the order of casting is the backend's, that of hits not.
+ADASPLATS_HD inline std::uint64_t place_of_ray(const RaySource& source, std::uint64_t i) {
+  if (source.order == nullptr) return i;
+  const std::uint64_t within = i % source.firings;
+  return i - within + source.order[within];
+}
+
+ADASPLATS_HD inline Ray ray_of(const RaySource& source, std::uint64_t i) {
+  switch (source.kind) {
+    case RaySource::Kind::given: return source.rays[i];
+    case RaySource::Kind::scans: {
+      const auto scan = i / source.firings;
+      return scan_ray(source.poses == nullptr ? source.pose : source.poses[scan],
+                      source.directions[i - scan * source.firings], source.t_min, source.t_max);
+    }
+    case RaySource::Kind::image: {
+      const SamplePlace at = sample_of(i, source.columns);
+      return source.camera.ray((at.x + 0.5) / source.samples_per_axis,
+                               (at.y + 0.5) / source.samples_per_axis);
+    }
+  }
+  return {};
+}
+
+}  // namespace adasplats::gpu

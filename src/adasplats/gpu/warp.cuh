@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace adasplats::gpu {
+
+/// Private to gpu/: what the 32 threads of a warp work out together. All lanes call these, and all
+/// get the same bits.
+
+inline constexpr std::uint32_t kWarpLanes = 32;
+inline constexpr std::uint32_t kAllLanes = 0xffffffffU;
+
+__device__ inline std::uint32_t lane_of_thread() { return threadIdx.x % kWarpLanes; }
+
+/// How many lanes before this one are set.
+__device__ inline std::uint32_t lanes_before(std::uint32_t mask) {
+  return __popc(mask & ((1U << lane_of_thread()) - 1U));
+}
+
+/// Added in pairs that stand 16, 8, 4, 2 and 1 apart: always the same order.
+__device__ inline double warp_sum(double value) {
+  for (int apart = kWarpLanes / 2; apart > 0; apart /= 2)
+    value += __shfl_xor_sync(kAllLanes, value, apart);
+  return value;
+}
+
+__device__ inline std::uint32_t warp_sum(std::uint32_t value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_add_sync(kAllLanes, value);
+#else
+  for (int apart = kWarpLanes / 2; apart > 0; apart /= 2)
+    value += __shfl_xor_sync(kAllLanes, value, apart);
+  return value;
+#endif
+}
+
+__device__ inline std::uint32_t warp_min(std::uint32_t value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_min_sync(kAllLanes, value);
+#else
+  for (int apart = kWarpLanes / 2; apart > 0; apart /= 2)
+    value = ::min(value, __shfl_xor_sync(kAllLanes, value, apart));
+  return value;
+#endif
+}
+
+__device__ inline std::uint32_t warp_max(std::uint32_t value) { return ~warp_min(~value); }
+
+__device__ inline std::uint64_t warp_min(std::uint64_t value) {
+  const std::uint32_t high = warp_min(static_cast<std::uint32_t>(value >> 32));
+  const bool is_low = value >> 32 == high;
+  const std::uint32_t low = warp_min(is_low ? static_cast<std::uint32_t>(value) : ~0U);
+  return std::uint64_t{high} << 32 | low;
+}
+
+__device__ inline std::uint64_t warp_max(std::uint64_t value) { return ~warp_min(~value); }
+
+}  // namespace adasplats::gpu
