@@ -4,10 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common_options.h"
+#include "device_option.h"
 #include "session.h"
 
 namespace adasplats::app {
@@ -29,6 +31,8 @@ class Command {
 
   CLI::App& options() { return *app_; }
   const CommonOptions& common() const { return common_; }
+  /// Nothing where the subcommand has no --device.
+  const std::optional<DeviceOptions>& device() const { return device_; }
   /// Names from the program down: "evaluate c2c".
   std::string full_name() const;
   /// Throws a usage Error naming the first required option that has no value.
@@ -39,10 +43,15 @@ class Command {
  protected:
   /// Makes an option required; a configuration file may give it, too.
   void require(CLI::Option* option) { required_.push_back(option); }
+  /// Adds --device; to be called once, behind the subcommand's own options.
+  void add_device_options(GpuCount count = GpuCount::one) {
+    app::add_device_options(*app_, device_.emplace(), count);
+  }
 
  private:
   CLI::App* app_;
   CommonOptions common_;
+  std::optional<DeviceOptions> device_;
   std::vector<CLI::Option*> required_;
 };
 

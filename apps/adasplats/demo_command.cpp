@@ -40,6 +40,7 @@ class DemoCommand final : public Command {
         ->capture_default_str();
     app.add_option("--driving-spacing", job_.driving_spacing_m, "Between the held-out scans, m")
         ->capture_default_str();
+    add_device_options();
   }
 
   void run(Session& session) override {

@@ -40,6 +40,7 @@ class EvaluatePresenceCommand final : public Command {
     app.add_option("--max-range", options_.max_range_m, "Farther points are left out, m")
         ->capture_default_str();
     add_load_options(app, load_);
+    add_device_options();
   }
 
   void run(Session& session) override {

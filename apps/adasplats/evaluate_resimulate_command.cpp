@@ -63,6 +63,7 @@ class EvaluateResimulateCommand final : public Command {
            [this](const std::string& text) { job_.scans = parse_scan_range("--scans", text); },
            "Which scans of the sequence")
         ->type_name("FIRST:COUNT[:STRIDE]");
+    add_device_options();
   }
 
   void run(Session& session) override {

@@ -72,6 +72,7 @@ class EvaluateTruthCommand final : public Command {
     app.add_flag("--keep-moving", keep_moving_, "Count rays on moving objects");
     app.add_flag("--drop-movable", job_.options.drop_movable,
                  "Leave out rays on movable objects (parked cars)");
+    add_device_options();
   }
 
   void run(Session& session) override {

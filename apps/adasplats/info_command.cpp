@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include "adasplats/gpu/device.h"
 #include "commands.h"
 #include "info_job.h"
 #include "load_options.h"
@@ -12,7 +13,44 @@ namespace {
 
 constexpr const char* kExamples =
     "  adasplats info street/mapping.ply\n"
-    "  adasplats info model.ply sequences/00 --labels semantickitti --report facts.json\n";
+    "  adasplats info model.ply sequences/00 --labels semantickitti --report facts.json\n"
+    "  adasplats info --devices\n";
+
+constexpr double kBytesPerGiB = 1024.0 * 1024 * 1024;
+
+std::string compute_capability(const GpuDevice& gpu) {
+  return std::to_string(gpu.compute_major) + "." + std::to_string(gpu.compute_minor);
+}
+
+/// "driver" is the CUDA version that it supports.
+nlohmann::ordered_json to_json(const GpuSearch& search) {
+  nlohmann::ordered_json json = {{"devices", nlohmann::ordered_json::array()},
+                                 {"driver", search.driver},
+                                 {"reason", search.reason},
+                                 {"built_with_cuda", built_with_cuda()}};
+  for (const GpuDevice& gpu : search.devices) {
+    json["devices"].push_back({{"number", gpu.index},
+                               {"name", gpu.name},
+                               {"memory_bytes", gpu.memory_bytes},
+                               {"free_bytes", free_memory_bytes(gpu.index)},
+                               {"compute_capability", compute_capability(gpu)}});
+  }
+  return json;
+}
+
+std::string table_of(const GpuSearch& search) {
+  if (search.devices.empty()) return "no GPU: " + search.reason + "\n";
+  TextTable table({"GPU", "name", "memory", "free", "compute capability", "CUDA of the driver"});
+  for (const GpuDevice& gpu : search.devices) {
+    const auto gibibytes = [](std::size_t bytes) {
+      return fixed(static_cast<double>(bytes) / kBytesPerGiB, 1) + " GiB";
+    };
+    table.add_row({std::to_string(gpu.index), gpu.name, gibibytes(gpu.memory_bytes),
+                   gibibytes(free_memory_bytes(gpu.index)), compute_capability(gpu),
+                   search.driver});
+  }
+  return table.text();
+}
 
 std::string table_of(const std::filesystem::path& input, const FileFacts& facts) {
   // Values are texts of any length: flush left, unlike a TextTable's numbers.
@@ -31,16 +69,18 @@ std::string table_of(const std::filesystem::path& input, const FileFacts& facts)
 class InfoCommand final : public Command {
  public:
   explicit InfoCommand(CLI::App& program)
-      : Command(program, "info", "Say what point clouds, models, meshes and sequences hold",
+      : Command(program, "info",
+                "Say what point clouds, models, meshes and sequences hold, or which GPUs there are",
                 kExamples) {
     CLI::App& app = options();
-    require(app.add_option_function<std::vector<std::string>>(
-                   "FILE",
-                   [this](const std::vector<std::string>& names) {
-                     inputs_.assign(names.begin(), names.end());
-                   },
-                   "Files and sequence folders")
-                ->type_name("PATH"));
+    app.add_option_function<std::vector<std::string>>(
+           "FILE",
+           [this](const std::vector<std::string>& names) {
+             inputs_.assign(names.begin(), names.end());
+           },
+           "Files and sequence folders; without any: as --devices")
+        ->type_name("PATH");
+    app.add_flag("--devices", devices_, "List the GPUs of this machine, or why there are none");
     app.add_option("--labels", labels_,
                    "Names the classes: semantickitti, paris-carla-3d or a TOML file")
         ->type_name("SCHEME");
@@ -50,6 +90,11 @@ class InfoCommand final : public Command {
   void run(Session& session) override {
     session.report["files"] = nlohmann::ordered_json::array();
     std::string text;
+    if (devices_ || inputs_.empty()) {
+      const GpuSearch search = find_gpus();
+      session.report["gpus"] = to_json(search);
+      text = table_of(search);
+    }
     for (const std::filesystem::path& input : inputs_) {
       const FileFacts facts = run_info(input, labels_, load_, session);
       nlohmann::ordered_json json = {{"path", input.string()}, {"kind", facts.kind}};
@@ -62,6 +107,7 @@ class InfoCommand final : public Command {
 
  private:
   std::vector<std::filesystem::path> inputs_;
+  bool devices_ = false;
   std::string labels_;
   LoadOptions load_;
 };

@@ -130,7 +130,9 @@ void run_command(Program& program, Command& command) {
   const Executor executor(common.threads);
   ProgressBar progress;
   nlohmann::ordered_json report;
-  Session session{executor, progress, common.seed, report};
+  DeviceChoice device;
+  if (command.device()) device = choose_device(*command.device());
+  Session session{executor, progress, common.seed, device, report};
   command.run(session);
   if (!common.report.empty()) write_report(command, session);
 }

@@ -36,9 +36,12 @@ class ModelCommand final : public Command {
         ->type_name("SCHEME");
     add_build_options(app, job_.build);
     add_load_options(app, job_.load);
+    add_device_options();
   }
 
   void run(Session& session) override {
+    // OptiX casts rays; models are made with CUDA alone.
+    if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
     const ModelResult result = run_model(job_, session);
     session.report.update(to_json(result));
     TextTable table({"step", "seconds"});

@@ -3,6 +3,7 @@
 #include "model_job.h"
 
 #include "adasplats/core/error.h"
+#include "adasplats/gpu/gpu_model.h"
 #include "inputs.h"
 #include "output_path.h"
 #include "stopwatch.h"
@@ -19,6 +20,39 @@ std::optional<LabelScheme> scheme_of(const ModelJob& job) {
   return scheme;
 }
 
+using Built = std::pair<SplatModel, BuildReport>;
+
+/// `engine`: nothing for the CPU.
+Built build(PointCloud cloud, const std::optional<LabelScheme>& scheme, const ModelJob& job,
+            const ModelEngine* engine, Session& session) {
+  return build_model(std::move(cloud), scheme ? &*scheme : nullptr, job.build, session.executor,
+                     session.progress, engine);
+}
+
+/// Loads the points and adds the time to `steps`.
+std::pair<PointCloud, LoadReport> load(const ModelJob& job, std::vector<StepTime>& steps,
+                                       Session& session) {
+  const Stopwatch watch;
+  auto loaded = load_cloud(job.inputs, job.load, session.executor, session.progress);
+  steps.push_back({"load", watch.seconds()});
+  return loaded;
+}
+
+/// On the session's device. Where a GPU fails that the CPU may stand in for, the points are gone:
+/// they are loaded again rather than kept twice.
+Built build_on_device(PointCloud cloud, const std::optional<LabelScheme>& scheme,
+                      const ModelJob& job, std::vector<StepTime>& steps, Session& session) {
+  const bool tries_gpu = session.device.on_gpu();
+  Built built;
+  const bool on_gpu = try_on_gpu(session.device, session.progress, [&] {
+    const auto engine = make_cuda_model_engine(session.device.gpus.front().index, session.executor);
+    built = build(std::move(cloud), scheme, job, engine.get(), session);
+  });
+  if (on_gpu) return built;
+  if (tries_gpu) cloud = load(job, steps, session).first;
+  return build(std::move(cloud), scheme, job, nullptr, session);
+}
+
 }  // namespace
 
 ModelResult run_model(const ModelJob& job, Session& session) {
@@ -28,23 +62,20 @@ ModelResult run_model(const ModelJob& job, Session& session) {
   const std::optional<LabelScheme> scheme = scheme_of(job);
 
   ModelResult result;
-  Stopwatch step;
-  auto [cloud, loaded] = load_cloud(job.inputs, job.load, session.executor, session.progress);
+  auto [cloud, loaded] = load(job, result.steps, session);
   result.loaded = loaded;
-  result.steps.push_back({"load", step.seconds()});
   if (!scheme && !cloud.classes.empty() && job.build.remove != DynamicRemoval::none) {
     session.progress.warn(
         "the points have labels but --labels does not say what they mean; nothing is removed");
   }
 
-  auto [model, built] = build_model(std::move(cloud), scheme ? &*scheme : nullptr, job.build,
-                                    session.executor, session.progress);
+  auto [model, built] = build_on_device(std::move(cloud), scheme, job, result.steps, session);
   if (scheme) model.label_scheme = scheme_reference(job.labels, *scheme);
   result.steps.insert(result.steps.end(), built.steps.begin(), built.steps.end());
   result.built = std::move(built);
 
   session.progress.begin_step("save", 0);
-  step = Stopwatch();
+  const Stopwatch step;
   save_model(job.output, model);
   session.progress.end_step();
   result.steps.push_back({"save", step.seconds()});

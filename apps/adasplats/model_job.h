@@ -28,7 +28,7 @@ struct ModelResult {
   double seconds = 0;
 };
 
-/// Loads, builds and saves.
+/// Loads, builds on the session's device and saves.
 ModelResult run_model(const ModelJob& job, Session& session);
 
 /// The keys of a model's --report.

@@ -11,7 +11,8 @@
 namespace adasplats::app {
 
 ModelScene::ModelScene(const std::filesystem::path& file, const std::string& labels,
-                       Session& session) {
+                       Session& session)
+    : executor_(session.executor) {
   require_input(file);
   if (!labels.empty()) labels_ = load_label_scheme(labels);
   session.progress.begin_step("load " + file.filename().string(), 0);
@@ -26,8 +27,19 @@ ModelScene::ModelScene(const std::filesystem::path& file, const std::string& lab
     }
   }
   session.progress.begin_step("build the ray index", 0);
-  tracer_ = make_cpu_tracer(view(), session.executor);
+  make_tracers(session);
   session.progress.end_step();
+}
+
+void ModelScene::make_tracers(Session& session) {
+  const bool on_gpu = try_on_gpu(session.device, session.progress, [&] {
+    const bool use_optix = session.device.kind == DeviceKind::optix;
+    gpu_.emplace(view(), origin(), use_optix ? GpuBackend::optix : GpuBackend::cuda,
+                 session.device.gpu_numbers());
+  });
+  if (on_gpu) return;
+  tracer_ = make_cpu_tracer(view(), executor_);
+  caster_ = make_cpu_scan_caster(*tracer_, origin(), executor_);
 }
 
 void ModelScene::load(const std::filesystem::path& file) {
@@ -58,6 +70,11 @@ ImageScene ModelScene::image_scene() const {
   scene.labels = labels_ ? &*labels_ : nullptr;
   scene.origin = origin();
   return scene;
+}
+
+Image ModelScene::render(const Camera& camera, const ImageOptions& options) const {
+  return gpu_ ? gpu_->render(image_scene(), camera, options)
+              : render_image(*tracer_, image_scene(), camera, options, executor_);
 }
 
 std::pair<Vec3d, Vec3d> ModelScene::middle_box() const {

@@ -8,15 +8,18 @@
 #include <string>
 #include <utility>
 
+#include "adasplats/gpu/gpu_scene.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/simulate/image.h"
+#include "adasplats/simulate/scan_caster.h"
 #include "adasplats/splats/splat_model.h"
 #include "adasplats/trace/tracer.h"
 #include "session.h"
 
 namespace adasplats::app {
 
-/// A splat model or a triangle mesh from a file with what is needed to cast rays into it.
+/// A splat model or a triangle mesh from a file with what is needed to cast rays into it, on
+/// the session's device.
 class ModelScene {
  public:
   /// `labels` as load_label_scheme takes it names the classes; empty: what the model's file says.
@@ -28,22 +31,29 @@ class ModelScene {
   SceneView view() const;
   /// World coordinates of the view's local origin, m.
   Vec3d origin() const { return is_mesh_ ? mesh_.origin : splats_.origin; }
-  const Tracer& tracer() const { return *tracer_; }
+  const Tracer& tracer() const { return gpu_ ? gpu_->tracer() : *tracer_; }
+  const ScanCaster& scan_caster() const { return gpu_ ? gpu_->scan_caster() : *caster_; }
   PrimitiveAttributes attributes() const;
   /// For pictures: geometry, attributes and the colours of the classes.
   ImageScene image_scene() const;
+  /// A picture of image_scene().
+  Image render(const Camera& camera, const ImageOptions& options) const;
   /// World box of the middle 98 % of the splats or vertices along each axis: far outliers must not
   /// decide what a picture shows.
   std::pair<Vec3d, Vec3d> middle_box() const;
 
  private:
   void load(const std::filesystem::path& file);
+  void make_tracers(Session& session);
 
+  const Executor& executor_;
   bool is_mesh_ = false;
   SplatModel splats_;
   MeshModel mesh_;
   std::optional<LabelScheme> labels_;
-  std::unique_ptr<Tracer> tracer_;
+  std::optional<GpuScene> gpu_;
+  std::unique_ptr<Tracer> tracer_;      ///< where there is no `gpu_`
+  std::unique_ptr<ScanCaster> caster_;  ///< likewise
 };
 
 }  // namespace adasplats::app

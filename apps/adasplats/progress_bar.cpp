@@ -40,6 +40,8 @@ void ProgressBar::end_step() {
 }
 
 void ProgressBar::warn(std::string_view message) {
+  // Work that is done again on another device says the same again.
+  if (std::find(warnings_.begin(), warnings_.end(), message) != warnings_.end()) return;
   clear();
   warnings_.emplace_back(message);
   print_message("warning: " + warnings_.back());

@@ -13,7 +13,7 @@
 namespace adasplats::app {
 
 /// Shows steps as a bar on stderr where both stderr and stdout are terminals, prints warnings in
-/// any case, and cancels the work on Ctrl-C (by throwing Interrupted).
+/// any case (each once), and cancels the work on Ctrl-C (by throwing Interrupted).
 class ProgressBar final : public ProgressSink {
  public:
   ProgressBar();

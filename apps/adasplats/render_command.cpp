@@ -62,6 +62,7 @@ class RenderCommand final : public Command {
     add_path(app, "--trajectory", job_.view.trajectory,
              "Look ahead from a pose: a pose file or a sequence folder");
     app.add_option("--pose", job_.view.pose, "Number of that pose, from 0")->capture_default_str();
+    add_device_options();
   }
 
   void run(Session& session) override {

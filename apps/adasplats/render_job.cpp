@@ -82,18 +82,16 @@ void check(const RenderJob& job) {
   if (job.repeat < 1) throw Error(ErrorKind::usage, "--repeat must be at least 1");
 }
 
-Image image_of(const ModelScene& model, const Camera& camera, const RenderJob& job,
-               Session& session) {
-  const ImageScene scene = model.image_scene();
+Image image_of(const ModelScene& model, const Camera& camera, const RenderJob& job) {
   ImageOptions options;
-  options.color = color_of(job, scene);
+  options.color = color_of(job, model.image_scene());
   options.samples_per_axis = job.samples_per_axis;
-  return render_image(model.tracer(), scene, camera, options, session.executor);
+  return model.render(camera, options);
 }
 
 Image image_of(const Subject& subject, const Camera& camera, const RenderJob& job,
                Session& session) {
-  if (subject.model) return image_of(*subject.model, camera, job, session);
+  if (subject.model) return image_of(*subject.model, camera, job);
   const PointCloud& cloud = subject.cloud;
   const std::vector<Rgb> colors = point_colors(cloud, subject.labels ? &*subject.labels : nullptr,
                                                job.color, camera.world_from_camera.translation);

@@ -59,6 +59,7 @@ void write_report(Command& command, const Session& session) {
   report["command"] = command.full_name();
   report["parameters"] = parameters_of(command.options());
   report["threads"] = session.executor.threads();
+  if (command.device()) report["device"] = to_json(session.device);
   report.update(session.report);
   report["warnings"] = session.progress.warnings();
   report["peak_memory_bytes"] = peak_memory_bytes();

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/executor.h"
+#include "device_choice.h"
 #include "progress_bar.h"
 
 namespace adasplats::app {
@@ -15,6 +16,7 @@ struct Session {
   const Executor& executor;
   ProgressBar& progress;
   std::uint64_t seed;
+  DeviceChoice& device;            ///< of scenes and models; the CPU where there is no --device
   nlohmann::ordered_json& report;  ///< keys that the subcommand adds to its --report
 };
 

@@ -13,7 +13,11 @@ namespace {
 constexpr const char* kExamples =
     "  adasplats simulate street.ply --trajectory street/sequences/00 -o scans\n"
     "  adasplats simulate street.ply --sensor hdl-32-paper --trajectory poses.csv \\\n"
-    "      --offset 1,1,-0.5 -o scans --format npy\n";
+    "      --offset 1,1,-0.5 -o scans --format npy\n"
+    "  adasplats simulate street.ply --trajectory poses.csv -o scans --device cuda --gpus 0,1\n"
+    "Rates: traced, in the tracer or in the kernels of all GPUs; returned, until the hits were in\n"
+    "host memory; assembled, until they were points with noise, classes and times; written, until\n"
+    "the scans were on disk. Each one holds those before it.\n";
 
 std::string known_sensors() {
   std::string names;
@@ -51,6 +55,7 @@ class SimulateCommand final : public Command {
                             {"npy", ScanFormat::npy}},
                            "Of the scans; semantickitti writes OUTPUT/sequences/00");
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
+    add_device_options(GpuCount::several);
   }
 
   void run(Session& session) override {

@@ -16,31 +16,6 @@
 namespace adasplats::app {
 namespace {
 
-/// Passes rays on and adds up the time that the tracer behind it takes.
-class TimedTracer final : public Tracer {
- public:
-  explicit TimedTracer(const Tracer& tracer) : tracer_(tracer) {}
-
-  std::string_view name() const override { return tracer_.name(); }
-  void nearest(std::span<const Ray> rays, std::span<Hit> hits,
-               const Executor& executor) const override {
-    const Stopwatch watch;
-    tracer_.nearest(rays, hits, executor);
-    seconds_ += watch.seconds();
-  }
-  void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
-                    const Executor& executor) const override {
-    const Stopwatch watch;
-    tracer_.nearest_hits(rays, depth, hits, executor);
-    seconds_ += watch.seconds();
-  }
-  double seconds() const { return seconds_; }
-
- private:
-  const Tracer& tracer_;
-  mutable double seconds_ = 0;  // simulate_scan calls from one thread
-};
-
 /// Writes scans in one of the formats.
 class ScanWriter {
  public:
@@ -96,30 +71,32 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   OutputFolder folder(job.output, job.overwrite, "simulate", content_of(job, session.seed));
   const ModelScene scene(job.model, job.labels, session);
 
-  const TimedTracer tracer(scene.tracer());
   const std::vector<Firing> firings = firings_of(sensor);
+  const PrimitiveAttributes attributes = scene.attributes();
   const SimulateOptions options{session.seed, job.range_noise};
   ScanWriter writer(folder.path(), job.format);
   SimulateResult result;
   session.progress.begin_step("simulate", poses.size());
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Stopwatch returned;
-    const Scan scan = simulate_scan(tracer, scene.attributes(), scene.origin(), sensor, firings,
-                                    poses[i], i, options, session.executor);
-    result.seconds_returned += returned.seconds();
+  const Stopwatch all;
+  const auto take_scan = [&](std::size_t i, std::span<const Hit> hits) {
+    const Stopwatch assembling;
+    const Scan scan =
+        scan_of_hits(hits, attributes, sensor, firings, poses[i], i, options, session.executor);
+    result.seconds_assembled += assembling.seconds();
     writer.write(i, scan);
-    result.seconds_written += returned.seconds();
     ++result.scans;
     result.rays += scan.rays;
     result.hits += scan.size();
     session.progress.advance(i + 1);
-  }
-  const Stopwatch finishing;
+  };
+  const CastTimes times = scene.scan_caster().cast(sensor, firings, poses, take_scan);
   writer.finish();
   session.progress.end_step();
   folder.commit();
-  result.seconds_written += finishing.seconds();
-  result.seconds_traced = tracer.seconds();
+  result.seconds_traced = times.traced_s;
+  result.seconds_returned = times.returned_s;
+  result.seconds_assembled += times.returned_s;
+  result.seconds_written = all.seconds();
   result.seconds = total.seconds();
   return result;
 }
@@ -132,10 +109,12 @@ nlohmann::ordered_json to_json(const SimulateResult& result) {
   json["hits"] = result.hits;
   json["scans_per_second"] = {{"traced", scans / result.seconds_traced},
                               {"returned", scans / result.seconds_returned},
+                              {"assembled", scans / result.seconds_assembled},
                               {"written", scans / result.seconds_written}};
   json["seconds"] = {{"total", result.seconds},
                      {"traced", result.seconds_traced},
                      {"returned", result.seconds_returned},
+                     {"assembled", result.seconds_assembled},
                      {"written", result.seconds_written}};
   return json;
 }

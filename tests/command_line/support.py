@@ -24,6 +24,7 @@ SUBCOMMANDS = [
     ["evaluate", "c2c"],
     ["evaluate", "resimulate"],
     ["evaluate", "truth"],
+    ["evaluate", "presence"],
     ["compare"],
     ["demo"],
 ]

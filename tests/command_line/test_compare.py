@@ -143,9 +143,30 @@ class Street(CompareTest):
             self.assertGreater(entry["generate"]["primitives"], 100)
             self.assertGreater(entry["render"]["images_per_second"], 0)
             self.assertEqual(set(entry["simulate"]["scans_per_second"]),
-                             {"traced", "returned", "written"})
+                             {"traced", "returned", "assembled", "written"})
             self.assertEqual(set(entry["c2c"]["f_score"]), {"0.05", "0.10", "0.224"})
             self.assertIn("road", entry["c2c"]["by_class"])
+
+    def test_device(self):
+        device = results_of(self.output)["device"]
+        basic = rows_of(self.output)["basic"]
+        for part in ["generate", "render", "simulate", "resimulate", "truth"]:
+            self.assertEqual(basic[part]["device"], device["kind"])
+            if "command" in basic[part]:
+                self.assertNotIn("--device", basic[part]["command"])
+        # Only what has a choice is done again on another device; and what is made from that.
+        before = states(self.output)
+        self.compare(*self.BOTH, "--device", "cpu")
+        chosen = set(CHILD_STEPS) - {"c2c"}
+        again = {step for step in self.run_again(before) if not step.endswith("/c2c")}
+        self.assertEqual(again, {f"basic/{step}" for step in chosen} |
+                         {f"imls/{step}" for step in chosen - {"generate"}})
+        self.assertEqual(results_of(self.output)["device"]["kind"], "cpu")
+        rows = rows_of(self.output)
+        for part in ["generate", "simulate", "resimulate", "truth"]:
+            self.assertIn("--device cpu", rows["basic"][part]["command"])
+        self.assertNotIn("--device", rows["imls"]["generate"]["command"])
+        self.refuse(64, *self.BOTH, "--device", "cpus", says=["did you mean 'cpu'"])
 
     def test_files(self):
         self.assertEqual(sorted(p.name for p in self.output.iterdir()),

@@ -105,11 +105,15 @@ class CompareCommand final : public Command {
         ->type_name("NAME=FILE");
     add_data_options(app);
     add_limit_options(app);
+    add_device_options();
   }
 
   void run(Session& session) override {
     job_.steps.limits.memory_bytes = memory_limit_bytes();
     job_.steps.common_arguments = common_arguments();
+    if (device()->kind != DeviceKind::automatic) {
+      job_.device_arguments = {"--device", device_word(device()->kind)};
+    }
     job_.command = own_command();
     const nlohmann::ordered_json results = run_compare(job_, session);
     session.report["results"] = results;

@@ -74,7 +74,8 @@ PictureView view_along(const Trajectory& trajectory, Vec3d offset_m) {
 
 /// What every competitor is asked with: data, poses, camera, limits.
 CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
-                          const PointFacts& facts, const WorkFolder& folder) {
+                          const PointFacts& facts, const WorkFolder& folder,
+                          const DeviceChoice& device) {
   CompetitionRules rules;
   rules.data = data;
   rules.original = facts.original;
@@ -96,6 +97,8 @@ CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
   rules.every = job.every > 0 ? job.every : (trajectory.size() + kMostPoses - 1) / kMostPoses;
   rules.view = view_along(trajectory, rules.offset_m);
   rules.pictures = folder.pictures();
+  rules.device_arguments = job.device_arguments;
+  rules.device = device_key(device);
   return rules;
 }
 
@@ -137,7 +140,7 @@ Json run_compare(const CompareJob& job, Session& session) {
   const std::vector<Competitor> chosen = chosen_competitors(job.methods, job.meshes);
   const WorkFolder folder(job.output, data.title);
   const PointFacts facts = look_at_points(data, folder.work() / "original.ply", session);
-  const CompetitionRules rules = rules_of(job, data, facts, folder);
+  const CompetitionRules rules = rules_of(job, data, facts, folder, session.device);
 
   Json results = {
       {"program", "adasplats"},
@@ -146,6 +149,7 @@ Json run_compare(const CompareJob& job, Session& session) {
       {"title", data.title},
       {"data", data_json(rules, facts, job.preset)},
       {"machine", machine_json(session.executor.threads())},
+      {"device", to_json(session.device)},
       {"limits",
        {{"seconds", job.steps.limits.seconds}, {"memory_bytes", job.steps.limits.memory_bytes}}},
       {"command", job.command},

@@ -30,7 +30,8 @@ struct CompareJob {
   int poisson_depth = 13;
   int picture_width = 960;  ///< pixels; the height is 9/16 of it
   StepRules steps;
-  std::string command;  ///< as the user typed it
+  std::vector<std::string> device_arguments;  ///< --device, where it is given
+  std::string command;                        ///< as the user typed it
 };
 
 /// The words of --methods.

@@ -87,6 +87,19 @@ class Run {
     return result;
   }
 
+  /// Runs a step that makes or asks a model on the device of the rules.
+  StepResult run_on_device(Step step) {
+    add(step.arguments, rules_.device_arguments);
+    step.device = rules_.device;
+    return run(std::move(step));
+  }
+
+  /// What a step computed on in the end, where it had a choice.
+  void note_device(const char* key, const StepResult& result) {
+    if (!result.done() || !result.report.contains("device")) return;
+    entry_[key]["device"] = result.report["device"].value("kind", Json());
+  }
+
   /// In place of generate() for a ready-made mesh.
   bool look_at_mesh() {
     entry_["generate"] = {{"command", nullptr}, {"seconds", nullptr}};
@@ -117,7 +130,8 @@ class Run {
     if (!rules_.data.labels.empty()) add(words, {"--labels", rules_.data.labels});
     if (!rules_.data.scans.empty()) add(words, {"--scans", rules_.data.scans});
     add(words, {"--remove", rules_.remove});
-    const StepResult made = run({"generate", words, rules_.data.inputs, {model_}});
+    const Step step = {"generate", words, rules_.data.inputs, {model_}};
+    const StepResult made = competitor_.is_mesh ? run(step) : run_on_device(step);
     entry_["generate"] = {{"command", made.command},
                           {"seconds", made.child.seconds},
                           {"peak_memory_bytes", made.child.peak_memory_bytes}};
@@ -125,6 +139,7 @@ class Run {
       if (made.done()) entry_["generate"][key] = made.report.value(key, Json());
     }
     if (made.done()) entry_["generate"]["step_seconds"] = made.report.value("seconds", Json());
+    note_device("generate", made);
     return made.done();
   }
 
@@ -134,9 +149,10 @@ class Run {
     Words words = {"render", model_.string(), "-o", picture.string(), "--samples",
                    "1",      "--repeat",      "3"};
     add(words, camera(rules_, 2560));
-    const StepResult timed = run({"render", words, {model_}, {picture}});
+    const StepResult timed = run_on_device({"render", words, {model_}, {picture}});
     if (timed.done()) {
       entry_["render"]["images_per_second"] = timed.report.value("images_per_second", Json());
+      note_device("render", timed);
     }
   }
 
@@ -144,7 +160,7 @@ class Run {
     const fs::path picture = rules_.pictures / (competitor_.name + ".png");
     Words words = {"render", model_.string(), "-o", picture.string()};
     add(words, camera(rules_, rules_.picture_width));
-    if (run({"picture", words, {model_}, {picture}}).done()) {
+    if (run_on_device({"picture", words, {model_}, {picture}}).done()) {
       entry_["render"]["picture"] = relative_to_report(picture);
     }
   }
@@ -163,13 +179,15 @@ class Run {
     scans_ = runner_.folder() / "scans";
     Words words = {"simulate", model_.string(), "-o", scans_.string(), "--overwrite"};
     add(words, drive());
-    const StepResult driven = run({"simulate", words, {model_, rules_.data.trajectory}, {scans_}});
+    const StepResult driven =
+        run_on_device({"simulate", words, {model_, rules_.data.trajectory}, {scans_}});
     if (!driven.done()) return false;
     for (const char* key : {"scans", "rays", "hits", "scans_per_second"}) {
       entry_["simulate"][key] = driven.report.value(key, Json());
     }
     entry_["simulate"]["sensor"] = rules_.sensor;
     entry_["simulate"]["command"] = driven.command;
+    note_device("simulate", driven);
     return true;
   }
 
@@ -192,8 +210,8 @@ class Run {
     if (!rules_.data.held_out_scans.empty()) add(words, {"--scans", rules_.data.held_out_scans});
     if (!rules_.data.labels.empty()) add(words, {"--labels", rules_.data.labels});
     if (rules_.remove == "movable") words.push_back("--drop-movable");
-    store("resimulate", run({"resimulate", words, {model_, rules_.data.held_out}, {picture}}),
-          picture);
+    store("resimulate",
+          run_on_device({"resimulate", words, {model_, rules_.data.held_out}, {picture}}), picture);
   }
 
   void compare_with_truth() {
@@ -201,7 +219,8 @@ class Run {
     add(words, drive());
     if (!rules_.data.labels.empty()) add(words, {"--labels", rules_.data.labels});
     if (rules_.remove == "movable") words.push_back("--drop-movable");
-    store("truth", run({"truth", words, {model_, rules_.data.truth, rules_.data.trajectory}, {}}),
+    store("truth",
+          run_on_device({"truth", words, {model_, rules_.data.truth, rules_.data.trajectory}, {}}),
           {});
   }
 
@@ -214,6 +233,7 @@ class Run {
       part.erase(common);
     }
     part["command"] = result.command;
+    note_device(key, result);
     if (!picture.empty()) part["picture"] = relative_to_report(picture);
   }
 

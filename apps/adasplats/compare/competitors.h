@@ -41,7 +41,9 @@ struct CompetitionRules {
   Vec3d offset_m;
   std::size_t every = 1;
   PictureView view;
-  std::filesystem::path pictures;  ///< folder
+  std::filesystem::path pictures;             ///< folder
+  std::vector<std::string> device_arguments;  ///< of steps that know --device
+  std::string device;                         ///< what these then compute on
 };
 
 /// Every method that this program has, in the order of the tables.

@@ -47,8 +47,10 @@ std::uint64_t usable_memory_bytes() {
   return bytes;
 }
 
+Json cpu_name() { return value_in("/proc/cpuinfo", "model name", ':'); }
+
 Json machine_json(int threads) {
-  return {{"cpu", value_in("/proc/cpuinfo", "model name", ':')},
+  return {{"cpu", cpu_name()},
           {"cores", threads},
           {"memory_bytes", machine_memory_bytes()},
           {"system", value_in("/etc/os-release", "PRETTY_NAME", '=')}};

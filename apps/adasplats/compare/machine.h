@@ -7,6 +7,9 @@
 
 namespace adasplats::app {
 
+/// The processor's name; null where the system does not tell.
+nlohmann::ordered_json cpu_name();
+
 /// What figures were measured on: {"cpu", "cores", "memory_bytes", "system"}; null where the system
 /// does not tell.
 nlohmann::ordered_json machine_json(int threads);

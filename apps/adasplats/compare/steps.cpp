@@ -59,6 +59,7 @@ Json key_of(const Step& step, const std::vector<std::string>& arguments) {
   std::error_code failure;
   Json key = {{"program", stamp_of(fs::read_symlink(kOwnProgram, failure))},
               {"arguments", arguments}};
+  if (!step.device.empty()) key["device"] = step.device;
   for (const fs::path& input : step.inputs) key["inputs"].push_back(stamp_of(input));
   return key;
 }

@@ -17,6 +17,7 @@ struct Step {
   std::vector<std::string> arguments;          ///< of the program, without --report
   std::vector<std::filesystem::path> inputs;   ///< done again where one of them changes
   std::vector<std::filesystem::path> outputs;  ///< done again where one is not there
+  std::string device = {};                     ///< done again where it is another one
 };
 
 struct StepResult {

@@ -33,6 +33,10 @@ std::string machine_text(const Json& results) {
   if (const auto memory = number_at(results, {"machine", "memory_bytes"})) {
     add(bytes_text(*memory));
   }
+  if (const std::string kind = text_at(results, {"device", "kind"});
+      !kind.empty() && kind != "cpu") {
+    add(text_at(results, {"device", "name"}) + " (" + kind + ")");
+  }
   if (const std::string system = text_at(results, {"machine", "system"}); !system.empty()) {
     add(system);
   }

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "device_choice.h"
+
+#include <algorithm>
+
+#include "adasplats/core/error.h"
+#include "compare/machine.h"
+
+namespace adasplats::app {
+namespace {
+
+/// Whether the user wants a GPU and nothing else.
+bool asks_for_gpu(const DeviceOptions& options) {
+  return options.kind == DeviceKind::cuda || options.kind == DeviceKind::optix ||
+         !options.gpus.empty();
+}
+
+std::string asked_for(const DeviceOptions& options) {
+  return options.gpus.empty() ? "--device " + device_word(options.kind) : "--gpus";
+}
+
+std::string numbers_of(const std::vector<GpuDevice>& gpus) {
+  std::string text;
+  for (const GpuDevice& gpu : gpus) text += (text.empty() ? "" : ", ") + std::to_string(gpu.index);
+  return text;
+}
+
+GpuDevice gpu_of_number(const std::vector<GpuDevice>& found, int number) {
+  const auto gpu = std::find_if(found.begin(), found.end(),
+                                [number](const GpuDevice& g) { return g.index == number; });
+  if (gpu == found.end()) {
+    throw Error(ErrorKind::usage, "--gpus: there is no GPU " + std::to_string(number) +
+                                      "; usable are " + numbers_of(found));
+  }
+  return *gpu;
+}
+
+std::vector<GpuDevice> chosen_gpus(const DeviceOptions& options,
+                                   const std::vector<GpuDevice>& found) {
+  if (options.all_gpus) return found;
+  if (options.gpus.empty()) return {found.front()};
+  std::vector<GpuDevice> gpus;
+  for (const int number : options.gpus) gpus.push_back(gpu_of_number(found, number));
+  return gpus;
+}
+
+std::string names_of(const std::vector<GpuDevice>& gpus) {
+  std::string text;
+  for (const GpuDevice& gpu : gpus) text += (text.empty() ? "" : ", ") + gpu.name;
+  return text;
+}
+
+}  // namespace
+
+std::vector<int> DeviceChoice::gpu_numbers() const {
+  std::vector<int> numbers;
+  numbers.reserve(gpus.size());
+  for (const GpuDevice& gpu : gpus) numbers.push_back(gpu.index);
+  return numbers;
+}
+
+DeviceChoice choose_device(const DeviceOptions& options) {
+  DeviceChoice choice;
+  if (options.kind == DeviceKind::cpu) {
+    if (options.all_gpus || !options.gpus.empty()) {
+      throw Error(ErrorKind::usage, "--gpus and --device cpu exclude each other");
+    }
+    return choice;
+  }
+  const GpuSearch search = find_gpus();
+  choice.is_automatic = !asks_for_gpu(options);
+  if (search.devices.empty()) {
+    choice.reason = search.reason;
+    if (choice.is_automatic) return choice;
+    throw Error(ErrorKind::unavailable,
+                asked_for(options) + ": " + search.reason + ", or use --device cpu");
+  }
+  choice.kind = options.kind == DeviceKind::automatic ? DeviceKind::cuda : options.kind;
+  choice.gpus = chosen_gpus(options, search.devices);
+  choice.driver = search.driver;
+  return choice;
+}
+
+bool try_on_gpu(DeviceChoice& device, ProgressSink& progress, FunctionRef<void()> work) {
+  if (!device.on_gpu()) return false;
+  try {
+    work();
+    return true;
+  } catch (const Error& error) {
+    if (!device.is_automatic || error.kind() != ErrorKind::unavailable) throw;
+    device = DeviceChoice();
+    device.is_automatic = true;
+    device.reason = error.what();
+    progress.warn("the CPU does the work of the GPU: " + device.reason);
+    return false;
+  }
+}
+
+nlohmann::ordered_json to_json(const DeviceChoice& device) {
+  nlohmann::ordered_json json = {{"kind", device_word(device.kind)}};
+  if (device.on_gpu()) {
+    json["name"] = names_of(device.gpus);
+    json["driver"] = device.driver;
+    json["gpus"] = device.gpu_numbers();
+  } else {
+    json["name"] = cpu_name();
+    json["driver"] = nullptr;
+    if (!device.reason.empty()) json["reason"] = device.reason;
+  }
+  return json;
+}
+
+std::string device_key(const DeviceChoice& device) {
+  return device.on_gpu() ? device_word(device.kind) + " " + names_of(device.gpus)
+                         : device_word(device.kind);
+}
+
+}  // namespace adasplats::app

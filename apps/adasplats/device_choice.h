@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/function_ref.h"
+#include "adasplats/core/progress.h"
+#include "adasplats/gpu/device.h"
+#include "device_option.h"
+
+namespace adasplats::app {
+
+/// What a run computes on.
+struct DeviceChoice {
+  DeviceKind kind = DeviceKind::cpu;  ///< never automatic
+  bool is_automatic = false;          ///< nobody asked for it: the CPU will do as well
+  std::vector<GpuDevice> gpus;        ///< at least one where it is not the CPU
+  std::string driver;                 ///< CUDA version that the driver supports; empty: none
+  std::string reason;                 ///< where auto came to the CPU: why
+
+  bool on_gpu() const { return kind != DeviceKind::cpu; }
+  /// CUDA's numbers of the GPUs.
+  std::vector<int> gpu_numbers() const;
+};
+
+/// Looks for what the options name. Errors: usage (--gpus with --device cpu, or a number that no
+/// GPU has), unavailable (cuda, optix or GPUs by number are asked for and there is no GPU), with
+/// what helps.
+DeviceChoice choose_device(const DeviceOptions& options);
+
+/// Does `work` where a GPU is chosen, and says whether it was done; false: it is the CPU's. Where a
+/// GPU that nobody asked for fails (not enough memory, say), warns and chooses the CPU from then
+/// on; the failure of one that was asked for is the caller's.
+bool try_on_gpu(DeviceChoice& device, ProgressSink& progress, FunctionRef<void()> work);
+
+/// "device" of a --report: "kind", "name", and of GPUs "driver" and "gpus", of the CPU "reason".
+nlohmann::ordered_json to_json(const DeviceChoice& device);
+
+/// One key a choice, for what was computed on another one.
+std::string device_key(const DeviceChoice& device);
+
+}  // namespace adasplats::app

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "device_option.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "option_types.h"
+
+namespace adasplats::app {
+namespace {
+
+const Choices<DeviceKind>& device_words() {
+  static const Choices<DeviceKind> words = {{"auto", DeviceKind::automatic},
+                                            {"cpu", DeviceKind::cpu},
+                                            {"cuda", DeviceKind::cuda},
+                                            {"optix", DeviceKind::optix}};
+  return words;
+}
+
+[[noreturn]] void refuse(const std::string& why, const std::string& text) {
+  throw CLI::ValidationError("--gpus", why + ", found '" + text + "'");
+}
+
+/// "0,2": different numbers, not negative.
+std::vector<int> parse_gpus(const std::string& text) {
+  std::vector<int> gpus;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (;;) {
+    int gpu = 0;
+    const auto [stop, failure] = std::from_chars(at, end, gpu);
+    if (failure != std::errc() || gpu < 0 || (stop != end && *stop != ',')) {
+      refuse("expected numbers of GPUs with commas between them, or all", text);
+    }
+    if (std::find(gpus.begin(), gpus.end(), gpu) != gpus.end()) {
+      refuse("expected every GPU once", text);
+    }
+    gpus.push_back(gpu);
+    if (stop == end) return gpus;
+    at = stop + 1;
+  }
+}
+
+}  // namespace
+
+void add_device_options(CLI::App& app, DeviceOptions& options, GpuCount count) {
+  constexpr const char* kGroup = "Device options";
+  add_choice<DeviceKind>(app, "--device", options.kind, device_words(),
+                         "What computes: cuda and optix need an NVIDIA GPU; auto takes cuda where "
+                         "there is one, else cpu")
+      ->group(kGroup);
+  if (count == GpuCount::one) return;
+  app.add_option_function<std::string>(
+         "--gpus",
+         [&options](const std::string& text) {
+           options.all_gpus = text == "all";
+           options.gpus = options.all_gpus ? std::vector<int>() : parse_gpus(text);
+         },
+         "GPUs that share the work, as info --devices numbers them (0,1), or all; the default is "
+         "the first")
+      ->type_name("LIST|all")
+      ->group(kGroup);
+}
+
+std::string device_word(DeviceKind kind) {
+  for (const auto& [word, value] : device_words()) {
+    if (value == kind) return word;
+  }
+  return "";
+}
+
+}  // namespace adasplats::app
