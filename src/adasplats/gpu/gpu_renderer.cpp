@@ -47,26 +47,30 @@ RaySource source_of(const Camera& camera, const ImageOptions& options, Vec3d ori
 }  // namespace
 }  // namespace gpu
 
-using namespace gpu;
+using gpu::cuda_check;
+using gpu::DeviceGuard;
+using gpu::RaySource;
+using gpu::RenderSlot;
+using gpu::SceneParts;
 
 GpuRenderer::Impl::Impl(const SceneParts& parts, const ImageScene& scene,
                         const ImageOptions& options)
     : part_(parts.first()), origin_(parts.origin), options_(options) {
   const DeviceGuard guard(part_.device);
-  stream_ = Stream();  // on this device
+  stream_ = gpu::Stream();  // on this device
   const Shading shading(scene, options);
   tables_ = shading.tables();
   const cudaStream_t stream = stream_.get();
   const std::size_t primitives = scene.view.primitive_count();
-  disks_ = moved_table(tables_.disks, scene.view.disk_count(), stream);
+  disks_ = gpu::moved_table(tables_.disks, scene.view.disk_count(), stream);
   if (scene.view.mesh != nullptr) {
-    vertices_ = moved_table(tables_.vertices, scene.view.mesh->vertices.size(), stream);
-    triangles_ = moved_table(tables_.triangles, scene.view.mesh->triangles.size(), stream);
+    vertices_ = gpu::moved_table(tables_.vertices, scene.view.mesh->vertices.size(), stream);
+    triangles_ = gpu::moved_table(tables_.triangles, scene.view.mesh->triangles.size(), stream);
   }
-  classes_ = moved_table(tables_.classes, primitives, stream);
-  groups_ = moved_table(tables_.groups, primitives, stream);
-  intensities_ = moved_table(tables_.intensities, primitives, stream);
-  class_colors_ = moved_table(tables_.class_colors, tables_.class_color_count, stream);
+  classes_ = gpu::moved_table(tables_.classes, primitives, stream);
+  groups_ = gpu::moved_table(tables_.groups, primitives, stream);
+  intensities_ = gpu::moved_table(tables_.intensities, primitives, stream);
+  class_colors_ = gpu::moved_table(tables_.class_colors, tables_.class_color_count, stream);
   stream_.wait("copy the colours of the scene to the GPU");
 }
 
@@ -81,12 +85,12 @@ GpuRenderer::Impl::~Impl() {
 
 void GpuRenderer::Impl::launch(RenderSlot& slot, const Camera& camera) const {
   const cudaStream_t stream = slot.stream.get();
-  const RaySource source = source_of(camera, options_, origin_);
+  const RaySource source = gpu::source_of(camera, options_, origin_);
   const auto rays =
       static_cast<std::uint64_t>(source.columns) * static_cast<std::uint64_t>(source.rows);
   part_.scene->cast(source, rays, 1, slot.hits.data(), stream);
-  queue_shading(tables_, source, slot.hits.data(), camera.width, camera.height,
-                slot.device_pixels.data(), stream);
+  gpu::queue_shading(tables_, source, slot.hits.data(), camera.width, camera.height,
+                     slot.device_pixels.data(), stream);
   const std::size_t bytes =
       3 * static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   cuda_check(cudaMemcpyAsync(slot.pixels.data(), slot.device_pixels.data(), bytes,
@@ -103,7 +107,7 @@ void GpuRenderer::Impl::render_all(std::span<const Camera> cameras, GpuRenderer:
       throw Error(ErrorKind::usage, "the cameras of one call have pictures of different sizes");
   }
   const DeviceGuard guard(part_.device);
-  const RaySource source = source_of(cameras.front(), options_, origin_);
+  const RaySource source = gpu::source_of(cameras.front(), options_, origin_);
   const std::size_t rays =
       static_cast<std::size_t>(source.columns) * static_cast<std::size_t>(source.rows);
   const std::size_t bytes = 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -112,10 +116,10 @@ void GpuRenderer::Impl::render_all(std::span<const Camera> cameras, GpuRenderer:
     auto& slot = slots_[lane];
     if (slot == nullptr) slot = std::make_unique<RenderSlot>();
     slot->stream.wait("prepare pictures on the GPU");  // what an exception left there
-    if (slot->hits.size() < rays) slot->hits = DeviceBuffer<Hit>(rays, slot->stream.get());
+    if (slot->hits.size() < rays) slot->hits = gpu::DeviceBuffer<Hit>(rays, slot->stream.get());
     if (slot->pixels.size() < bytes) {
-      slot->device_pixels = DeviceBuffer<std::uint8_t>(bytes, slot->stream.get());
-      slot->pixels = PinnedBuffer<std::uint8_t>(bytes);
+      slot->device_pixels = gpu::DeviceBuffer<std::uint8_t>(bytes, slot->stream.get());
+      slot->pixels = gpu::PinnedBuffer<std::uint8_t>(bytes);
     }
   }
   for (std::size_t k = 0; k < lanes; ++k) launch(*slots_[k], cameras[k]);

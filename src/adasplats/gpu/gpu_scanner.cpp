@@ -84,7 +84,13 @@ struct DeviceScanner {
 
 }  // namespace gpu
 
-using namespace gpu;
+using gpu::cuda_check;
+using gpu::DeviceGuard;
+using gpu::DevicePart;
+using gpu::DeviceScanner;
+using gpu::RaySource;
+using gpu::ScanBatch;
+using gpu::SceneParts;
 
 GpuScanner::Impl::Impl(const SceneParts& scene, const LidarModel& sensor,
                        std::span<const Firing> firings)
@@ -94,7 +100,7 @@ GpuScanner::Impl::Impl(const SceneParts& scene, const LidarModel& sensor,
   source_.firings = static_cast<std::uint32_t>(firings.size());
   source_.t_min = static_cast<float>(sensor.min_range_m);
   source_.t_max = static_cast<float>(sensor.max_range_m);
-  const std::vector<std::uint32_t> order = casting_order(firings);
+  const std::vector<std::uint32_t> order = gpu::casting_order(firings);
   std::vector<Vec3f> numbered(firings.size()), directions(firings.size());
   std::transform(firings.begin(), firings.end(), numbered.begin(),
                  [](const Firing& firing) { return firing.direction; });
@@ -103,11 +109,12 @@ GpuScanner::Impl::Impl(const SceneParts& scene, const LidarModel& sensor,
   for (const DevicePart& part : scene.parts) {
     const DeviceGuard guard(part.device);
     auto device = std::make_unique<DeviceScanner>(part);
-    device->firings = DeviceBuffer<Vec3f>(std::span<const Vec3f>(numbered), device->stream.get());
+    device->firings =
+        gpu::DeviceBuffer<Vec3f>(std::span<const Vec3f>(numbered), device->stream.get());
     device->directions =
-        DeviceBuffer<Vec3f>(std::span<const Vec3f>(directions), device->stream.get());
-    device->order =
-        DeviceBuffer<std::uint32_t>(std::span<const std::uint32_t>(order), device->stream.get());
+        gpu::DeviceBuffer<Vec3f>(std::span<const Vec3f>(directions), device->stream.get());
+    device->order = gpu::DeviceBuffer<std::uint32_t>(std::span<const std::uint32_t>(order),
+                                                     device->stream.get());
     device->stream.wait("copy a sensor to the GPU");
     devices_.push_back(std::move(device));
   }
@@ -122,7 +129,7 @@ GpuScanner::Impl::~Impl() {
 std::span<const Hit> GpuScanner::Impl::scan(const TimedPose& pose) {
   DeviceScanner& device = *devices_.front();
   const DeviceGuard guard(device.part->device);
-  if (single_.size() == 0) single_ = PinnedBuffer<Hit>(firings_);
+  if (single_.size() == 0) single_ = gpu::PinnedBuffer<Hit>(firings_);
   RaySource source = source_;
   source.directions = device.directions.data();
   source.order = device.order.data();
@@ -143,9 +150,9 @@ DeviceHits GpuScanner::Impl::cast_on_device(std::span<const TimedPose> poses, in
   const std::size_t hits = poses.size() * firings_ * static_cast<std::size_t>(depth);
   if (kept_hits_.size() < hits) {
     kept_hits_ = {};  // before the larger one
-    kept_hits_ = DeviceBuffer<Hit>(hits, stream);
+    kept_hits_ = gpu::DeviceBuffer<Hit>(hits, stream);
   }
-  kept_poses_ = DeviceBuffer<ScanPose>(std::span<const ScanPose>(scan_poses), stream);
+  kept_poses_ = gpu::DeviceBuffer<ScanPose>(std::span<const ScanPose>(scan_poses), stream);
   RaySource source = source_;
   source.directions = device.directions.data();
   source.order = device.order.data();
@@ -159,14 +166,14 @@ void GpuScanner::Impl::reserve(ScanBatch& batch, std::size_t scans, std::size_t 
   const std::size_t hits = scans * firings_;
   const cudaStream_t stream = batch.stream.get();
   if (batch.poses.size() < scans) {
-    batch.poses = PinnedBuffer<ScanPose>(scans);
-    batch.device_poses = DeviceBuffer<ScanPose>(scans, stream);
+    batch.poses = gpu::PinnedBuffer<ScanPose>(scans);
+    batch.device_poses = gpu::DeviceBuffer<ScanPose>(scans, stream);
   }
-  if (batch.device_hits.size() < hits) batch.device_hits = DeviceBuffer<Hit>(hits, stream);
+  if (batch.device_hits.size() < hits) batch.device_hits = gpu::DeviceBuffer<Hit>(hits, stream);
   if (points && batch.device_points.size() < hits)
-    batch.device_points = DeviceBuffer<PointHit>(hits, stream);
+    batch.device_points = gpu::DeviceBuffer<PointHit>(hits, stream);
   if (batch.results.size() < hits * result_bytes)
-    batch.results = PinnedBuffer<std::uint8_t>(hits * result_bytes);
+    batch.results = gpu::PinnedBuffer<std::uint8_t>(hits * result_bytes);
 }
 
 void GpuScanner::Impl::launch(DeviceScanner& device, ScanBatch& batch,
@@ -185,8 +192,8 @@ void GpuScanner::Impl::launch(DeviceScanner& device, ScanBatch& batch,
   const void* results = batch.device_hits.data();
   std::size_t bytes = rays * sizeof(Hit);
   if (points) {
-    queue_point_hits(batch.device_hits.data(), device.firings.data(), source.firings, rays,
-                     batch.device_points.data(), stream);
+    gpu::queue_point_hits(batch.device_hits.data(), device.firings.data(), source.firings, rays,
+                          batch.device_points.data(), stream);
     results = batch.device_points.data();
     bytes = rays * sizeof(PointHit);
   }
@@ -198,8 +205,8 @@ void GpuScanner::Impl::launch(DeviceScanner& device, ScanBatch& batch,
 CastTimes GpuScanner::Impl::cast(std::span<const TimedPose> poses, bool points,
                                  FunctionRef<void(std::size_t, const std::uint8_t*)> sink) {
   const std::size_t result_bytes = points ? sizeof(PointHit) : sizeof(Hit);
-  const std::size_t lanes = devices_.size() * kSlots;
-  const std::size_t most = std::clamp<std::size_t>(kRaysAtOnce / firings_, 1, 256);
+  const std::size_t lanes = devices_.size() * gpu::kSlots;
+  const std::size_t most = std::clamp<std::size_t>(gpu::kRaysAtOnce / firings_, 1, 256);
   const std::size_t scans =
       std::max<std::size_t>(1, std::min(most, (poses.size() + lanes - 1) / lanes));
   // Batch k runs in lane k % lanes, so batches come back in their order.
@@ -215,7 +222,7 @@ CastTimes GpuScanner::Impl::cast(std::span<const TimedPose> poses, bool points,
 
   CastTimes times;
   double in_sink_s = 0;
-  const auto start = Clock::now();
+  const auto start = gpu::Clock::now();
   const auto begin_batch = [&](std::size_t k) {
     DeviceScanner& device = *devices_[k % lanes % devices_.size()];
     const DeviceGuard guard(device.part->device);
@@ -230,10 +237,10 @@ CastTimes GpuScanner::Impl::cast(std::span<const TimedPose> poses, bool points,
     ScanBatch& batch = *device.batches[k % lanes / devices_.size()];
     batch.stream.wait("cast scans on the GPU");
     times.traced_s += batch.end.seconds_since(batch.begin);
-    const auto sink_start = Clock::now();
+    const auto sink_start = gpu::Clock::now();
     for (std::size_t i = 0; i < batch.count; ++i)
       sink(batch.first + i, batch.results.data() + i * firings_ * result_bytes);
-    in_sink_s += seconds_since(sink_start);
+    in_sink_s += gpu::seconds_since(sink_start);
   };
   const std::size_t batches = (poses.size() + scans - 1) / scans;
   for (std::size_t k = 0; k < std::min(lanes, batches); ++k) begin_batch(k);
@@ -241,7 +248,7 @@ CastTimes GpuScanner::Impl::cast(std::span<const TimedPose> poses, bool points,
     end_batch(k);
     if (k + lanes < batches) begin_batch(k + lanes);
   }
-  times.returned_s = seconds_since(start) - in_sink_s;
+  times.returned_s = gpu::seconds_since(start) - in_sink_s;
   return times;
 }
 

@@ -15,7 +15,10 @@
 
 namespace adasplats {
 
-using namespace gpu;
+using gpu::cuda_check;
+using gpu::DeviceGuard;
+using gpu::DevicePart;
+using gpu::SceneParts;
 
 namespace {
 
@@ -70,7 +73,7 @@ struct GpuScene::Impl {
 };
 
 GpuScene::GpuScene(const SceneView& scene, Vec3d origin, GpuBackend backend,
-                   std::vector<int> devices)
+                   const std::vector<int>& devices)
     : impl_(std::make_unique<Impl>()) {
   check_devices(devices);
   impl_->parts.origin = origin;
@@ -78,12 +81,13 @@ GpuScene::GpuScene(const SceneView& scene, Vec3d origin, GpuBackend backend,
     const DeviceGuard guard(device);
     cuda_check(cudaFree(nullptr), "start CUDA");  // its start is not part of the building
     const auto start = std::chrono::steady_clock::now();
-    impl_->parts.parts.push_back(
-        {device, backend == GpuBackend::optix ? make_optix_scene(scene) : make_cuda_scene(scene)});
+    impl_->parts.parts.push_back({device, backend == GpuBackend::optix
+                                              ? gpu::make_optix_scene(scene)
+                                              : gpu::make_cuda_scene(scene)});
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     if (impl_->parts.parts.size() == 1) impl_->build_seconds = took.count();
   }
-  impl_->tracer = make_gpu_tracer(*impl_->parts.first().scene, impl_->parts.first().device);
+  impl_->tracer = gpu::make_gpu_tracer(*impl_->parts.first().scene, impl_->parts.first().device);
   impl_->caster = std::make_unique<SceneScanCaster>(impl_->parts);
 }
 

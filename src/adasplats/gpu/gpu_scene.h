@@ -109,7 +109,8 @@ class GpuScene {
   /// Builds the structures. `origin`: world coordinates of the scene's local origin, m. `devices`:
   /// CUDA's numbers, at least one.
   /// Errors: unavailable (no such GPU, OptiX not there, not enough memory), with what helps.
-  GpuScene(const SceneView& scene, Vec3d origin, GpuBackend backend, std::vector<int> devices);
+  GpuScene(const SceneView& scene, Vec3d origin, GpuBackend backend,
+           const std::vector<int>& devices);
   ~GpuScene();
   GpuScene(GpuScene&&) noexcept;
   GpuScene& operator=(GpuScene&&) noexcept;

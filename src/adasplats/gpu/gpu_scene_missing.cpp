@@ -18,7 +18,9 @@ namespace {
 
 }  // namespace
 
-GpuScene::GpuScene(const SceneView&, Vec3d, GpuBackend, std::vector<int>) { throw_missing(); }
+GpuScene::GpuScene(const SceneView&, Vec3d, GpuBackend, const std::vector<int>&) {
+  throw_missing();
+}
 GpuScene::~GpuScene() = default;
 GpuScene::GpuScene(GpuScene&&) noexcept = default;
 GpuScene& GpuScene::operator=(GpuScene&&) noexcept = default;

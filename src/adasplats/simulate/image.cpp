@@ -42,7 +42,6 @@ class Renderer {
   Renderer(const Tracer& tracer, const ImageScene& scene, const Camera& camera,
            const ImageOptions& options, const Executor& executor)
       : tracer_(tracer),
-        scene_(scene),
         camera_(camera),
         camera_rays_(camera.rays(scene.origin)),
         options_(options),
@@ -103,7 +102,6 @@ class Renderer {
   }
 
   const Tracer& tracer_;
-  const ImageScene& scene_;
   const Camera& camera_;
   CameraRays camera_rays_;
   const ImageOptions& options_;

@@ -104,26 +104,27 @@ ADASPLATS_HD inline Vec3f background_color(const ShadingTables& tables, Vec3f di
 
 /// THE colour that a ray sees, for every backend: 0..1, or above.
 ADASPLATS_HD inline Vec3f shade(const ShadingTables& tables, const Ray& ray, const Hit& hit) {
-  using namespace shading;
-  if (!hit.valid()) return background_color(tables, ray.direction);
-  const Vec3f normal = normal_towards(tables, ray, hit.primitive);
+  if (!hit.valid()) return shading::background_color(tables, ray.direction);
+  const Vec3f normal = shading::normal_towards(tables, ray, hit.primitive);
   switch (tables.color) {
-    case ImageColor::shading: return light(normal, ray.direction) * Vec3f{0.92F, 0.92F, 0.92F};
+    case ImageColor::shading:
+      return shading::light(normal, ray.direction) * Vec3f{0.92F, 0.92F, 0.92F};
     case ImageColor::semantic:
-      return light(normal, ray.direction) * semantic_color(tables, hit.primitive);
+      return shading::light(normal, ray.direction) * shading::semantic_color(tables, hit.primitive);
     case ImageColor::normal: return 0.5F * (normal + Vec3f{1, 1, 1});
     case ImageColor::intensity:
       // The colour itself is the message: only a hint of the shape.
-      return (0.5F + 0.5F * light(normal, ray.direction)) * intensity_color(tables, hit.primitive);
+      return (0.5F + 0.5F * shading::light(normal, ray.direction)) *
+             shading::intensity_color(tables, hit.primitive);
     case ImageColor::range: return viridis(1.0F - 0.5F * std::log10(hit.t));
   }
-  return kNeutral;
+  return shading::kNeutral;
 }
 
 /// A channel of a pixel: 0..1 to 0..255, to the nearest.
 ADASPLATS_HD inline std::uint8_t to_byte(float value) {
   const float clamped = value > 0.0F ? (value < 1.0F ? value : 1.0F) : 0.0F;
-  return static_cast<std::uint8_t>(255.0F * clamped + 0.5F);
+  return static_cast<std::uint8_t>(std::lround(255.0F * clamped));
 }
 
 }  // namespace adasplats

@@ -110,7 +110,10 @@ struct Split {
 };
 
 /// Primitives are tested 16 at a time, so it is blocks that cost.
-float blocks(std::size_t count) { return static_cast<float>((count + kWide - 1) / kWide); }
+float blocks(std::size_t count) {
+  const std::size_t whole = (count + kWide - 1) / kWide;
+  return static_cast<float>(whole);
+}
 
 /// The split with the least surface area heuristic; the first of equal ones.
 Split best_split(const Bins& bins, unsigned used) {
