@@ -153,6 +153,13 @@ int main(int argc, char** argv) try {
     double sum = 0;
     for (const double s : seconds) sum += s;
     json["single_per_s"] = static_cast<double>(seconds.size()) / sum;
+    // The same launches without anybody waiting for each: what the kernel alone takes.
+    const double kernel_s = median_seconds(5, [&] {
+      DeviceHits last;
+      for (std::size_t i = 0; i < 64; ++i) last = scanner->cast_on_device({&poses[i], 1});
+      wait_for(last);
+    });
+    json["single_kernel_per_s"] = 64 / kernel_s;
   }
   {
     std::size_t hits = 0;

@@ -73,8 +73,13 @@ ImageScene ModelScene::image_scene() const {
 }
 
 Image ModelScene::render(const Camera& camera, const ImageOptions& options) const {
-  return gpu_ ? gpu_->render(image_scene(), camera, options)
-              : render_image(*tracer_, image_scene(), camera, options, executor_);
+  if (!gpu_) return render_image(*tracer_, image_scene(), camera, options, executor_);
+  // The colours of the scene go to the GPU once for all pictures.
+  if (!renderer_ || !(renderer_options_ == options)) {
+    renderer_ = gpu_->renderer(image_scene(), options);
+    renderer_options_ = options;
+  }
+  return renderer_->render(camera);
 }
 
 std::pair<Vec3d, Vec3d> ModelScene::middle_box() const {

@@ -52,6 +52,8 @@ class ModelScene {
   MeshModel mesh_;
   std::optional<LabelScheme> labels_;
   std::optional<GpuScene> gpu_;
+  mutable std::unique_ptr<GpuRenderer> renderer_;  ///< of the last options on a GPU
+  mutable ImageOptions renderer_options_;
   std::unique_ptr<Tracer> tracer_;      ///< where there is no `gpu_`
   std::unique_ptr<ScanCaster> caster_;  ///< likewise
 };

@@ -12,8 +12,8 @@ void queue_shading(const ShadingTables& tables, const RaySource& source, const H
   const int axis = source.samples_per_axis;
   const float weight = 1.0F / static_cast<float>(axis * axis);
   for_each(count, stream, "colour a picture on the GPU", [=] __device__(std::uint64_t i) {
-    const int x = static_cast<int>(i % static_cast<std::uint64_t>(width));
-    const int y = static_cast<int>(i / static_cast<std::uint64_t>(width));
+    const Quotient at_pixel = divide(i, static_cast<std::uint32_t>(width));
+    const int x = static_cast<int>(at_pixel.rest), y = static_cast<int>(at_pixel.whole);
     Vec3f sum;
     for (int v = 0; v < axis; ++v) {
       for (int u = 0; u < axis; ++u) {

@@ -35,6 +35,19 @@ struct RaySource {
   std::int32_t samples_per_axis = 1;
 };
 
+/// i / n and i % n.
+struct Quotient {
+  std::uint64_t whole;
+  std::uint32_t rest;
+};
+
+ADASPLATS_HD inline Quotient divide(std::uint64_t i, std::uint32_t n) {
+  // A GPU divides 64 bits in some hundred instructions; few launches are that large.
+  const auto low = static_cast<std::uint32_t>(i);
+  if (low == i) return {low / n, low % n};
+  return {i / n, static_cast<std::uint32_t>(i % n)};
+}
+
 /// A picture's samples in the order of rays: tiles of 8 x 4, which is what a warp casts.
 struct SamplePlace {
   static constexpr std::int32_t kTileColumns = 8, kTileRows = 4;
@@ -43,12 +56,12 @@ struct SamplePlace {
 
 ADASPLATS_HD inline SamplePlace sample_of(std::uint64_t ray, std::int32_t columns) {
   constexpr std::uint32_t kTile = SamplePlace::kTileColumns * SamplePlace::kTileRows;
-  const std::uint64_t tile = ray / kTile;
+  const Quotient tile =
+      divide(ray / kTile, static_cast<std::uint32_t>(columns / SamplePlace::kTileColumns));
   const auto within = static_cast<std::int32_t>(ray % kTile);
-  const auto tiles_a_row = static_cast<std::uint64_t>(columns / SamplePlace::kTileColumns);
-  return {static_cast<std::int32_t>(tile % tiles_a_row) * SamplePlace::kTileColumns +
+  return {static_cast<std::int32_t>(tile.rest) * SamplePlace::kTileColumns +
               within % SamplePlace::kTileColumns,
-          static_cast<std::int32_t>(tile / tiles_a_row) * SamplePlace::kTileRows +
+          static_cast<std::int32_t>(tile.whole) * SamplePlace::kTileRows +
               within / SamplePlace::kTileColumns};
 }
 
@@ -66,7 +79,7 @@ ADASPLATS_HD inline std::uint64_t ray_of_sample(SamplePlace at, std::int32_t col
 /// Where the hits of ray i go, in rays: the order of casting is the backend's, that of hits not.
 ADASPLATS_HD inline std::uint64_t place_of_ray(const RaySource& source, std::uint64_t i) {
   if (source.order == nullptr) return i;
-  const std::uint64_t within = i % source.firings;
+  const std::uint32_t within = divide(i, source.firings).rest;
   return i - within + source.order[within];
 }
 
@@ -74,9 +87,9 @@ ADASPLATS_HD inline Ray ray_of(const RaySource& source, std::uint64_t i) {
   switch (source.kind) {
     case RaySource::Kind::given: return source.rays[i];
     case RaySource::Kind::scans: {
-      const auto scan = i / source.firings;
-      return scan_ray(source.poses == nullptr ? source.pose : source.poses[scan],
-                      source.directions[i - scan * source.firings], source.t_min, source.t_max);
+      const Quotient at = divide(i, source.firings);  // the scan, the firing
+      return scan_ray(source.poses == nullptr ? source.pose : source.poses[at.whole],
+                      source.directions[at.rest], source.t_min, source.t_max);
     }
     case RaySource::Kind::image: {
       const SamplePlace at = sample_of(i, source.columns);

@@ -40,6 +40,9 @@ TEST(RaySource, HitsOfScansGoToTheirFirings) {
   EXPECT_EQ(place_of_ray(source, 0), 2U);
   EXPECT_EQ(place_of_ray(source, 1), 0U);
   EXPECT_EQ(place_of_ray(source, 3 + 2), 3U + 1U);
+  const std::uint64_t far = std::uint64_t{3} << 33;  // beyond 32 bits
+  EXPECT_EQ(place_of_ray(source, far + 1), far);
+  EXPECT_EQ(divide(far + 1, 3).whole, far / 3);
 }
 
 }  // namespace

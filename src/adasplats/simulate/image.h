@@ -37,6 +37,8 @@ struct ImageOptions {
   int samples_per_axis = 1;  ///< rays a pixel: the square of this
   std::array<std::uint8_t, 3> background = {255, 255, 255};
   bool sky = true;  ///< above the horizon the background turns into a light blue
+
+  friend bool operator==(const ImageOptions&, const ImageOptions&) = default;
 };
 
 /// What a picture needs to know of the scene besides the tracer.
