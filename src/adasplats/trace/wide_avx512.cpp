@@ -20,7 +20,9 @@
 // inline function of theirs is emitted with instructions an older CPU lacks.
 #pragma GCC push_options
 #if !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // gcc 12 gives it for its own header
+// gcc 12 gives these for its own header, the second one with its sanitizers.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
 #endif
 #pragma GCC target("avx512f,avx512vl,avx512bw,avx512dq,fma,bmi,bmi2,popcnt,prefer-vector-width=512")
 
