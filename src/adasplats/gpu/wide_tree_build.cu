@@ -57,13 +57,17 @@ __device__ inline Box box_of(const Triangle& t) {
   return {tight.low - Vec3f{margin, margin, margin}, tight.high + Vec3f{margin, margin, margin}};
 }
 
-/// What is not finite is never hit, and has no box.
-__device__ inline bool is_there(const Disk& disk) {
-  return disk.radius > 0.0F && disk.radius < HUGE_VALF && is_finite(disk.center) &&
-         is_finite(disk.normal);
+/// What has no finite box is never hit: values that are not finite, a normal of zero. One NaN would
+/// spread to all boxes above it.
+__device__ inline bool is_finite(const Box& box) {
+  return adasplats::is_finite(box.low) && adasplats::is_finite(box.high);
 }
-__device__ inline bool is_there(const Triangle& triangle) {
-  return is_finite(triangle.a) && is_finite(triangle.b) && is_finite(triangle.c);
+__device__ inline bool is_there(const Disk& disk) {
+  return disk.radius > 0.0F && is_finite(box_of(disk));
+}
+__device__ inline bool is_there(const Triangle& t) {
+  return adasplats::is_finite(t.a) && adasplats::is_finite(t.b) && adasplats::is_finite(t.c) &&
+         is_finite(box_of(t));
 }
 
 __device__ inline LeafDisk leaf_of(const Disk& disk, std::uint32_t primitive) {
