@@ -14,15 +14,17 @@ namespace {
 
 /// Small blocks: a long ray holds back few others.
 constexpr unsigned kCastBlock = 64;
-/// On an SM: so that all rays of one HDL-64 scan are under way at once on an H100.
+/// On an SM, which bounds the registers of a ray.
 constexpr unsigned kLeastBlocks = 18;
 /// Of a warp's rays, so many percent must have primitives to test, or they wait. Measured on an
-/// H100: 20 traces 1.3 times as many scans as 0; where all rays of a launch are under way at once
-/// and the longest ones decide, 30 is better by 1 to 2 %.
-constexpr int kPostpone = 20;
-constexpr int kPostponeInSmallLaunches = 30;
-constexpr std::uint64_t kSmallLaunch = std::uint64_t{1} << 19;
+/// H100: 10 traces 1.3 times as many scans as 0.
+constexpr int kPostpone = 10;
 constexpr int kMostHits = 64;
+
+/// The same for launches of fewer rays than kSmallLaunch: more registers make each ray faster, and
+/// so does waiting a little more often.
+constexpr unsigned kLeastBlocksOfSmall = 12;
+constexpr int kPostponeInSmall = 20;
 
 struct Trees {
   TreeView<LeafDisk> disks;
@@ -38,8 +40,8 @@ __device__ void cast_one(const Trees& trees, Ray ray, Best& best) {
   walk<kWait>(trees.triangles, ray, boxes, best);
 }
 
-template <int kWait>
-__global__ void __launch_bounds__(kCastBlock, kLeastBlocks)
+template <int kWait, unsigned kBlocks>
+__global__ void __launch_bounds__(kCastBlock, kBlocks)
     cast_nearest_kernel(Trees trees, RaySource source, std::uint64_t count, Hit* hits) {
   const std::uint64_t i = std::uint64_t{blockIdx.x} * kCastBlock + threadIdx.x;
   if (i >= count) return;
@@ -93,10 +95,11 @@ class CudaScene final : public DeviceScene {
     const Trees trees = {disks_.view(), triangles_.view()};
     const auto blocks = static_cast<unsigned>((count + kCastBlock - 1) / kCastBlock);
     if (depth == 1 && count < kSmallLaunch) {
-      cast_nearest_kernel<kPostponeInSmallLaunches>
+      cast_nearest_kernel<kPostponeInSmall, kLeastBlocksOfSmall>
           <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
     } else if (depth == 1) {
-      cast_nearest_kernel<kPostpone><<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
+      cast_nearest_kernel<kPostpone, kLeastBlocks>
+          <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
     } else if (depth <= 5) {
       launch_few(depth, blocks, trees, source, count, hits, stream);
     } else if (depth <= kMostHits) {

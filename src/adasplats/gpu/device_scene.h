@@ -14,6 +14,10 @@
 
 namespace adasplats::gpu {
 
+/// Where a launch has fewer rays than this, all of them are under way at once: how long it takes is
+/// up to the slowest ones, not to how many a GPU can trace.
+inline constexpr std::uint64_t kSmallLaunch = std::uint64_t{1} << 19;
+
 /// Private to gpu/: a scene in the memory of one GPU that casts what a RaySource describes. The one
 /// thing that the two backends (own tree, OptiX) do differently; tracer, scans and pictures are
 /// written on top of it once.

@@ -552,7 +552,8 @@ TEST_P(GpuDeviceScene, HitsMayGoToPageLockedMemory) {
   const auto rays_there = on_device(some, scene.stream());
   const auto directions_there = on_device(directions, scene.stream());
   const auto order_there = on_device(order, scene.stream());
-  const auto poses_there = on_device(std::vector<ScanPose>(300), scene.stream());
+  const std::vector<ScanPose> poses(300, scan_pose(RigidTransform{}, {}));
+  const auto poses_there = on_device(poses, scene.stream());
   gpu::RaySource scans;
   scans.kind = gpu::RaySource::Kind::scans;
   scans.firings = 1000;

@@ -16,9 +16,9 @@ namespace adasplats {
 namespace gpu {
 namespace {
 
-/// Scans in one launch hold about so many rays: enough to fill a GPU several times over, so that
-/// its end, when only long rays are left, does not count.
-constexpr std::size_t kRaysAtOnce = std::size_t{1} << 23;
+/// Scans in one launch hold about so many rays: enough to fill a GPU several times over, and few
+/// enough that copying the last launch's hits, which nothing overlaps, does not count.
+constexpr std::size_t kRaysAtOnce = std::size_t{1} << 21;
 constexpr int kSlots = 2;  // under way on each device
 
 using Clock = std::chrono::steady_clock;
@@ -26,21 +26,44 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The order in which firings are cast: by tiles of two rings and 16 columns, a warp's rays, which
-/// meet more of the same things than those of one ring. A free pattern has rings or columns that
-/// say little; then this is as good as its own order.
-std::vector<std::uint32_t> casting_order(std::span<const Firing> firings) {
-  constexpr std::uint32_t kTileRings = 2, kTileColumns = 16;
-  std::vector<std::uint32_t> order(firings.size());
+/// Which firing is cast when: a warp's 32 rays stand one after another.
+using CastingOrder = std::vector<std::uint32_t>;
+
+template <class Key>
+CastingOrder ascending(std::span<const Firing> firings, const Key& key) {
+  CastingOrder order(firings.size());
   std::iota(order.begin(), order.end(), 0U);
-  const auto key = [&](std::uint32_t i) {
-    const Firing& firing = firings[i];
-    return std::tuple(firing.ring / kTileRings, firing.column / kTileColumns,
-                      firing.ring % kTileRings, firing.column % kTileColumns, i);
-  };
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::tuple_cat(key(firings[a]), std::tuple(a)) <
+           std::tuple_cat(key(firings[b]), std::tuple(b));
+  });
   return order;
+}
+
+/// For many scans a launch: by tiles of two rings and 16 columns, which meet more of the same
+/// things than one ring's. A free pattern has rings or columns that say little; then this is as
+/// good as its own order.
+CastingOrder coherent_order(std::span<const Firing> firings) {
+  constexpr std::uint32_t kTileRings = 2, kTileColumns = 16;
+  return ascending(firings, [](const Firing& firing) {
+    return std::tuple(firing.ring / kTileRings, firing.column / kTileColumns,
+                      firing.ring % kTileRings, firing.column % kTileColumns);
+  });
+}
+
+/// For a single scan, which takes as long as its slowest warp: the rays along a street take long,
+/// and a warp full of them, each with other boxes to visit, takes far longer. So a warp's rays are
+/// four columns each of eight directions all around.
+CastingOrder spread_order(std::span<const Firing> firings) {
+  constexpr std::uint32_t kRunColumns = 4, kDirections = 8;
+  std::uint32_t columns = 0;
+  for (const Firing& firing : firings) columns = std::max(columns, firing.column + 1);
+  const std::uint32_t columns_a_direction = (columns + kDirections - 1) / kDirections;
+  return ascending(firings, [&](const Firing& firing) {
+    const std::uint32_t direction = firing.column / columns_a_direction;
+    const std::uint32_t column = firing.column % columns_a_direction;
+    return std::tuple(firing.ring, column / kRunColumns, direction, column % kRunColumns);
+  });
 }
 
 }  // namespace
@@ -57,6 +80,21 @@ struct ScanBatch {
   std::size_t first = 0, count = 0;  ///< poses; none: idle
 };
 
+/// A sensor's firings in the order in which they are cast.
+struct OrderedFirings {
+  OrderedFirings() = default;
+  OrderedFirings(std::span<const Firing> firings, const CastingOrder& casting_order,
+                 cudaStream_t stream)
+      : order(std::span<const std::uint32_t>(casting_order), stream) {
+    std::vector<Vec3f> in_order(firings.size());
+    std::transform(casting_order.begin(), casting_order.end(), in_order.begin(),
+                   [&](std::uint32_t i) { return firings[i].direction; });
+    directions = DeviceBuffer<Vec3f>(std::span<const Vec3f>(in_order), stream);
+  }
+  DeviceBuffer<Vec3f> directions;
+  DeviceBuffer<std::uint32_t> order;
+};
+
 /// A sensor on one device.
 struct DeviceScanner {
   explicit DeviceScanner(const DevicePart& scene_part) : part(&scene_part) {}
@@ -68,17 +106,17 @@ struct DeviceScanner {
       batch.reset();
     }
     firings = {};
-    directions = {};
-    order = {};
+    coherent = {};
+    spread = {};
   }
   DeviceScanner(const DeviceScanner&) = delete;
   DeviceScanner& operator=(const DeviceScanner&) = delete;
 
   const DevicePart* part;
   Stream stream;  ///< of the directions, of single scans and of those that stay on the device
-  DeviceBuffer<Vec3f> firings;        ///< directions as they are numbered...
-  DeviceBuffer<Vec3f> directions;     ///< ...and in casting order
-  DeviceBuffer<std::uint32_t> order;  ///< of the firings
+  DeviceBuffer<Vec3f> firings;  ///< directions as they are numbered
+  OrderedFirings coherent;      ///< for launches that fill the GPU
+  OrderedFirings spread;        ///< for smaller ones
   std::array<std::unique_ptr<ScanBatch>, kSlots> batches;
 };
 
@@ -100,21 +138,18 @@ GpuScanner::Impl::Impl(const SceneParts& scene, const LidarModel& sensor,
   source_.firings = static_cast<std::uint32_t>(firings.size());
   source_.t_min = static_cast<float>(sensor.min_range_m);
   source_.t_max = static_cast<float>(sensor.max_range_m);
-  const std::vector<std::uint32_t> order = gpu::casting_order(firings);
-  std::vector<Vec3f> numbered(firings.size()), directions(firings.size());
-  std::transform(firings.begin(), firings.end(), numbered.begin(),
+  std::vector<Vec3f> directions(firings.size());
+  std::transform(firings.begin(), firings.end(), directions.begin(),
                  [](const Firing& firing) { return firing.direction; });
-  std::transform(order.begin(), order.end(), directions.begin(),
-                 [&](std::uint32_t i) { return numbered[i]; });
+  const gpu::CastingOrder coherent = gpu::coherent_order(firings);
+  const gpu::CastingOrder spread = gpu::spread_order(firings);
   for (const DevicePart& part : scene.parts) {
     const DeviceGuard guard(part.device);
     auto device = std::make_unique<DeviceScanner>(part);
-    device->firings =
-        gpu::DeviceBuffer<Vec3f>(std::span<const Vec3f>(numbered), device->stream.get());
-    device->directions =
-        gpu::DeviceBuffer<Vec3f>(std::span<const Vec3f>(directions), device->stream.get());
-    device->order = gpu::DeviceBuffer<std::uint32_t>(std::span<const std::uint32_t>(order),
-                                                     device->stream.get());
+    const cudaStream_t stream = device->stream.get();
+    device->firings = gpu::DeviceBuffer<Vec3f>(std::span<const Vec3f>(directions), stream);
+    device->coherent = gpu::OrderedFirings(firings, coherent, stream);
+    device->spread = gpu::OrderedFirings(firings, spread, stream);
     device->stream.wait("copy a sensor to the GPU");
     devices_.push_back(std::move(device));
   }
@@ -126,13 +161,20 @@ GpuScanner::Impl::~Impl() {
   kept_hits_ = {};
 }
 
+RaySource GpuScanner::Impl::source_of(const DeviceScanner& device, std::size_t scans) const {
+  RaySource source = source_;
+  const bool small = scans * firings_ < gpu::kSmallLaunch;
+  const gpu::OrderedFirings& firings = small ? device.spread : device.coherent;
+  source.directions = firings.directions.data();
+  source.order = firings.order.data();
+  return source;
+}
+
 std::span<const Hit> GpuScanner::Impl::scan(const TimedPose& pose) {
   DeviceScanner& device = *devices_.front();
   const DeviceGuard guard(device.part->device);
   if (single_.size() == 0) single_ = gpu::PinnedBuffer<Hit>(firings_);
-  RaySource source = source_;
-  source.directions = device.directions.data();
-  source.order = device.order.data();
+  RaySource source = source_of(device, 1);
   source.pose = scan_pose(pose.world_from_sensor, scene_.origin);
   // The kernel writes across the bus itself: the copy happens while other rays are traced.
   device.part->scene->cast(source, firings_, 1, single_.data(), device.stream.get());
@@ -153,9 +195,7 @@ DeviceHits GpuScanner::Impl::cast_on_device(std::span<const TimedPose> poses, in
     kept_hits_ = gpu::DeviceBuffer<Hit>(hits, stream);
   }
   kept_poses_ = gpu::DeviceBuffer<ScanPose>(std::span<const ScanPose>(scan_poses), stream);
-  RaySource source = source_;
-  source.directions = device.directions.data();
-  source.order = device.order.data();
+  RaySource source = source_of(device, poses.size());
   source.poses = kept_poses_.data();
   device.part->scene->cast(source, poses.size() * firings_, depth, kept_hits_.data(), stream);
   return {kept_hits_.data(), poses.size(), firings_, device.part->device, stream};
@@ -182,9 +222,7 @@ void GpuScanner::Impl::launch(DeviceScanner& device, ScanBatch& batch,
   for (std::size_t i = 0; i < batch.count; ++i)
     batch.poses.data()[i] = scan_pose(poses[batch.first + i].world_from_sensor, scene_.origin);
   batch.device_poses.upload(batch.poses.span().first(batch.count));
-  RaySource source = source_;
-  source.directions = device.directions.data();
-  source.order = device.order.data();
+  RaySource source = source_of(device, batch.count);
   source.poses = batch.device_poses.data();
   const std::uint64_t rays = batch.count * firings_;
   batch.begin.record(stream);

@@ -35,6 +35,8 @@ struct GpuScanner::Impl {
                  FunctionRef<void(std::size_t pose, const std::uint8_t* results)> sink);
 
  private:
+  /// What a launch of so many scans casts, without poses.
+  gpu::RaySource source_of(const gpu::DeviceScanner& device, std::size_t scans) const;
   void reserve(gpu::ScanBatch& batch, std::size_t scans, std::size_t result_bytes,
                bool points) const;
   void launch(gpu::DeviceScanner& device, gpu::ScanBatch& batch, std::span<const TimedPose> poses,

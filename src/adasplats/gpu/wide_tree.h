@@ -19,7 +19,7 @@ struct alignas(16) WideNode {
   float origin[3];                ///< low corner of the grid, m
   std::uint32_t first_child;      ///< nodes among the children stand one after another from here...
   std::uint32_t first_primitive;  ///< ...and primitives from here, both in the order of slots
-  /// Upper halves of floats: cell sizes of the grid along the axes, m, times kGridSteps.
+  /// Upper halves of floats: cell sizes of the grid along the axes, m.
   std::uint16_t scale[3];
   std::uint8_t nodes;       ///< bit s: the child in slot s is a node
   std::uint8_t primitives;  ///< bit s: it is a primitive
@@ -29,8 +29,6 @@ struct alignas(16) WideNode {
 };
 static_assert(sizeof(WideNode) == 80);
 inline constexpr int kWidth = 8;
-/// A byte b of the grid becomes the float 1 + b / kGridSteps in one instruction.
-inline constexpr float kGridSteps = 32768.0F;
 
 /// A disk in a leaf: two 16-byte loads.
 struct alignas(16) LeafDisk {

@@ -508,8 +508,8 @@ WideTree<Leaf> Builder<Primitive, Leaf>::widen() {
         node.origin[axis] = own.low[axis];
         const int exponent = grid_exponent(own.low[axis], own.high[axis]);
         cells[axis] = ldexp(1.0, exponent);
-        const float scale = static_cast<float>(cells[axis]) * kGridSteps;
-        node.scale[axis] = static_cast<std::uint16_t>(__float_as_uint(scale) >> 16);
+        const auto cell = static_cast<float>(cells[axis]);
+        node.scale[axis] = static_cast<std::uint16_t>(__float_as_uint(cell) >> 16);
       }
       std::uint32_t inner = 0, written = 0;
       for (int s = 0; s < kWidth; ++s) {
