@@ -87,11 +87,11 @@ Arguments parse(int argc, char** argv) {
   return arguments;
 }
 
-/// Poses spread over the trajectory, again from its start where there are fewer.
-std::vector<TimedPose> poses_for(const Trajectory& trajectory, std::size_t count) {
-  std::vector<TimedPose> poses;
+/// Scans spread over the trajectory, again from its start where there are fewer.
+std::vector<ScanMotion> scans_for(const Trajectory& trajectory, std::size_t count) {
+  std::vector<ScanMotion> poses;
   const std::size_t step = std::max<std::size_t>(1, trajectory.size() / 64);
-  for (std::size_t i = 0; i < count; ++i) poses.push_back(trajectory[i * step % trajectory.size()]);
+  for (std::size_t i = 0; i < count; ++i) poses.push_back({trajectory[i * step % trajectory.size()], {}});
   return poses;
 }
 
@@ -102,10 +102,10 @@ void compare_with_cpu(const SplatModel& model, GpuScanner& scanner, const LidarM
                       nlohmann::ordered_json& json) {
   const Executor executor;
   const auto tracer = make_cpu_tracer(model.view(), executor);
-  const auto rays = scan_rays(sensor, firings, pose.world_from_sensor, model.origin, executor);
+  const auto rays = scan_rays(sensor, firings, {pose, {}}, model.origin, executor);
   std::vector<Hit> expected(rays.size());
   tracer->nearest(rays, expected, executor);
-  const auto hits = scanner.scan(pose);
+  const auto hits = scanner.scan({pose, {}});
   std::size_t differ = 0, found = 0;
   double largest_m = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -142,7 +142,7 @@ int main(int argc, char** argv) try {
   json["build_s"] = scene.build_seconds();
   compare_with_cpu(model, *scanner, sensor, firings, trajectory[trajectory.size() / 2], json);
 
-  const auto poses = poses_for(trajectory, 1024 * arguments.gpus.size());
+  const auto poses = scans_for(trajectory, 1024 * arguments.gpus.size());
   {
     std::vector<double> seconds;
     for (std::size_t i = 0; i < 320; ++i) {
@@ -164,7 +164,7 @@ int main(int argc, char** argv) try {
   {
     std::size_t hits = 0;
     const auto count = [&](std::size_t, std::span<const Hit> scan) { hits += scan[0].valid(); };
-    const double seconds = median_seconds(5, [&] { scanner->cast(poses, count); });
+    const double seconds = median_seconds(5, [&] { scanner->cast(poses, 1, count); });
     json["batched_per_s"] = static_cast<double>(poses.size()) / seconds;
     const auto count_points = [&](std::size_t, std::span<const PointHit> scan) {
       hits += scan[0].primitive != Hit::kNone;
@@ -174,7 +174,7 @@ int main(int argc, char** argv) try {
     json["batched_points_per_s"] = static_cast<double>(poses.size()) / point_seconds;
   }
   const auto on_device_s = [&](int depth) {
-    const std::span<const TimedPose> some(poses.data(), 64);
+    const std::span<const ScanMotion> some(poses.data(), 64);
     std::vector<double> seconds;
     for (int run = 0; run < 7; ++run) {
       const auto start = Clock::now();
@@ -200,7 +200,7 @@ int main(int argc, char** argv) try {
     const auto renderer = scene.renderer(image_scene, options);
     std::vector<Camera> cameras;
     for (std::size_t i = 0; i < 200; ++i) {
-      const TimedPose& pose = poses[i % 64];
+      const TimedPose& pose = poses[i % 64].reference;
       const Vec3d eye = pose.world_from_sensor.translation;
       Camera camera = look_at(eye, pose.world_from_sensor * Vec3d{10, 0, -0.5});
       camera.width = 2560;

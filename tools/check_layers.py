@@ -11,7 +11,7 @@ adasplats_stage(NAME DEPENDS ...). From that this script proves:
    (*_test.cpp, *_test.h) may include every stage above its own.
 3. Public headers do not include heavy third-party headers, directly or through other headers:
    everybody who includes them would pay. Public is what another stage, the program or an example
-   includes; a stage's own sources and the headers that only they (or tests and benchmarks, which
+   includes; a stage's own sources and the headers that only they (or any tests and benchmarks, which
    look inside) include may use what they like.
 4. Includes of our own headers are written in full: "adasplats/STAGE/FILE.h".
 
@@ -112,7 +112,8 @@ def check_public_headers(root, inside, outside):
         if not is_test(path):
             make_public(includes, path, path.relative_to(root / "src" / "adasplats").parts[0])
     for path, includes in outside.items():
-        make_public(includes, path, None)
+        if not is_test(path):
+            make_public(includes, path, None)
     for header, user in users.items():
         for line, _, target in inside[header]:
             if target.startswith(HEAVY):

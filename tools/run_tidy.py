@@ -69,9 +69,9 @@ def stamp_of(source, command, version):
 
 
 def without_precompiled_header(entry):
-    """A compile command that clang can follow: it cannot read what GCC has precompiled, and every
-    source includes what it needs itself."""
-    command = entry["command"].replace("-Winvalid-pch ", "")
+    """A compile command that clang can follow: it cannot read what GCC has precompiled, every
+    source includes what it needs itself, and not all of GCC's warnings are its own."""
+    command = entry["command"].replace("-Winvalid-pch ", "").replace("-Wno-restrict ", "")
     return {**entry, "command": re.sub(r"-include \S*cmake_pch\.hxx ", "", command)}
 
 

@@ -37,8 +37,8 @@ DemoRow run_method(const std::string& name, SplatMethod method, const fs::path& 
 
   SimulateJob simulation;
   simulation.model = model.output;
-  simulation.trajectory = street / "sequences" / "00";
-  simulation.offset_m = kShift_m;
+  simulation.drive.trajectory = street / "sequences" / "00";
+  simulation.drive.offset_m = kShift_m;
   simulation.output = folder / (name + "-scans");
   row.simulation = run_simulate(simulation, session);
 

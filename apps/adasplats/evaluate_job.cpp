@@ -35,6 +35,8 @@ KittiSequence chosen_scans(KittiSequence all, const ScanRange& range) {
     if (!all.labels.empty()) chosen.labels.push_back(all.labels[i]);
     chosen.trajectory.push_back(all.trajectory[i]);
     if (!all.beams.sweeps_m.empty()) chosen.beams.sweeps_m.push_back(all.beams.sweeps_m[i]);
+    if (!all.beams.raw_motions.empty())
+      chosen.beams.raw_motions.push_back(all.beams.raw_motions[i]);
   }
   if (chosen.scans.empty()) {
     throw Error(ErrorKind::usage, "--scans: " + all.folder.string() + " has only " +
@@ -80,6 +82,12 @@ ResimulateResult run_resimulate(const ResimulateJob& job, Session& session) {
   const LabelScheme labels = load_label_scheme(job.labels);
   KittiSequence all_scans = open_kitti_sequence(resolve_cloud_input(job.sequence));
   if (!job.beams_from_poses) all_scans.beams = recognize_beams(all_scans);
+  if (!job.motion.empty()) {
+    if (!all_scans.beams.sweeps_m.empty())
+      throw Error(ErrorKind::usage, "--motion is for scans as they were measured; those of " +
+                                        all_scans.folder.string() + " are motion-compensated");
+    set_raw_motions(all_scans.beams, all_scans.trajectory, load_trajectory(job.motion));
+  }
   const KittiSequence sequence = chosen_scans(std::move(all_scans), job.scans);
   const ModelScene scene(job.model, "", session);
   ResimulateResult result = resimulate(scene.tracer(), scene.view(), scene.origin(), sequence,

@@ -39,6 +39,7 @@ struct ResimulateJob {
   std::filesystem::path sequence;
   ScanRange scans;                ///< of the sequence
   bool beams_from_poses = false;  ///< even where the sensor is recognised
+  std::filesystem::path motion;   ///< poses that tell how the sensor of raw scans moved, or empty
   std::string labels = "semantickitti";
   ResimulateOptions options;
   std::filesystem::path picture;  ///< PNG of the middle scan's beams by error; empty: none

@@ -49,6 +49,7 @@ struct Program {
                             "  adasplats synth street -o street\n");
     commands.push_back(make_synth_street_command(synth));
     commands.push_back(make_info_command(app));
+    commands.push_back(make_sensors_command(app));
     commands.push_back(make_model_command(app));
     commands.push_back(make_mesh_command(app));
     commands.push_back(make_simulate_command(app));
@@ -60,6 +61,10 @@ struct Program {
     commands.push_back(make_evaluate_resimulate_command(evaluate));
     commands.push_back(make_evaluate_truth_command(evaluate));
     commands.push_back(make_evaluate_presence_command(evaluate));
+    commands.push_back(make_evaluate_echoes_command(evaluate));
+    commands.push_back(make_evaluate_labels_command(evaluate));
+    commands.push_back(make_fit_drop_command(app));
+    commands.push_back(make_simkitti32_command(app));
     commands.push_back(make_compare_command(app));
     commands.push_back(make_demo_command(app));
     for (const auto& command : commands) command->add_common_options();  // last in the help

@@ -35,6 +35,9 @@ class ModelCommand final : public Command {
                    "semantickitti for sequence folders, else none")
         ->type_name("SCHEME");
     add_build_options(app, job_.build);
+    add_switch(app, "--reflectance,!--no-reflectance", job_.reflectance,
+               "Make reflectances of intensities: without what range and incidence did to them, "
+               "which simulate applies again");
     add_load_options(app, job_.load);
     add_device_options();
   }

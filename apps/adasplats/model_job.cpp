@@ -4,6 +4,8 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/gpu_model.h"
+#include "adasplats/splats/reflectance.h"
+#include "adasplats/trace/tracer.h"
 #include "inputs.h"
 #include "output_path.h"
 #include "stopwatch.h"
@@ -53,6 +55,23 @@ Built build_on_device(PointCloud cloud, const std::optional<LabelScheme>& scheme
   return build(std::move(cloud), scheme, job, nullptr, session);
 }
 
+/// Makes reflectances of the model's intensities; false: too few points tell them. The points are
+/// loaded again, as building a model takes the memory that they would stand in.
+bool add_reflectances(SplatModel& model, const ModelJob& job, std::vector<StepTime>& steps,
+                      Session& session) {
+  const PointCloud cloud = load(job, steps, session).first;
+  const Stopwatch watch;
+  session.progress.begin_step("measure reflectances", 0);
+  const auto tracer = make_cpu_tracer(model.view(), session.executor);
+  Reflectances measured = measure_reflectances(model.disks, *tracer, cloud, model.origin,
+                                               model.intensities, session.executor);
+  model.intensities = std::move(measured.values);
+  model.response = std::move(measured.response);
+  session.progress.end_step();
+  steps.push_back({"reflectances", watch.seconds()});
+  return !model.response.empty();
+}
+
 }  // namespace
 
 ModelResult run_model(const ModelJob& job, Session& session) {
@@ -69,10 +88,13 @@ ModelResult run_model(const ModelJob& job, Session& session) {
         "the points have labels but --labels does not say what they mean; nothing is removed");
   }
 
+  const bool tells_reflectance = !cloud.sensor_positions.empty() && !cloud.intensities.empty();
   auto [model, built] = build_on_device(std::move(cloud), scheme, job, result.steps, session);
   if (scheme) model.label_scheme = scheme_reference(job.labels, *scheme);
   result.steps.insert(result.steps.end(), built.steps.begin(), built.steps.end());
   result.built = std::move(built);
+  if (job.reflectance && tells_reflectance && !model.intensities.empty())
+    result.reflectance_measured = add_reflectances(model, job, result.steps, session);
 
   session.progress.begin_step("save", 0);
   const Stopwatch step;
@@ -100,6 +122,7 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
   json["error_m"] = built.error_m;
   json["oriented"] = built.oriented;
   json["ray_checked"] = built.ray_checked;
+  json["reflectance_measured"] = result.reflectance_measured;
   json["seconds"]["total"] = result.seconds;
   for (const StepTime& step : result.steps) {
     // The second generation has the same steps: their times add up.

@@ -19,11 +19,15 @@ struct ModelJob {
   std::string labels;  ///< as label_scheme_for takes it
   LoadOptions load;
   BuildOptions build;
+  /// Intensities become reflectances with the sensor's response, where points have sensor positions
+  /// and intensities (measure_reflectances); else they stay as measured.
+  bool reflectance = true;
 };
 
 struct ModelResult {
   LoadReport loaded;
   BuildReport built;
+  bool reflectance_measured = false;
   std::vector<StepTime> steps;  ///< of loading, building and saving
   double seconds = 0;
 };

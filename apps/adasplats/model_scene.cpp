@@ -10,13 +10,31 @@
 
 namespace adasplats::app {
 
+namespace {
+
+/// A world file that stands in a model's place.
+WorldFile place_with_objects(const std::filesystem::path& file, WorldFiles world_files) {
+  if (world_files == WorldFiles::refused)
+    throw Error(ErrorKind::usage, file.string() +
+                                      ": a world file is for 'adasplats simulate' alone; name the "
+                                      "model that it names");
+  WorldFile world = read_world_file(file);
+  if (world.model.empty())
+    throw Error(ErrorKind::config, file.string() + ": names no model (model = \"street.ply\")");
+  return world;
+}
+
+}  // namespace
+
 ModelScene::ModelScene(const std::filesystem::path& file, const std::string& labels,
-                       Session& session)
+                       Session& session, WorldFiles world_files)
     : executor_(session.executor) {
   require_input(file);
+  std::optional<WorldFile> world_file;
+  if (file.extension() == ".toml") world_file = place_with_objects(file, world_files);
   if (!labels.empty()) labels_ = load_label_scheme(labels);
   session.progress.begin_step("load " + file.filename().string(), 0);
-  load(file);
+  load(world_file ? world_file->model : file);
   const std::string& known = is_mesh_ ? mesh_.label_scheme : splats_.label_scheme;
   if (!labels_ && !known.empty()) {
     try {
@@ -28,7 +46,13 @@ ModelScene::ModelScene(const std::filesystem::path& file, const std::string& lab
   }
   session.progress.begin_step("build the ray index", 0);
   make_tracers(session);
+  if (world_file) make_world(*world_file);
   session.progress.end_step();
+}
+
+void ModelScene::make_world(const WorldFile& file) {
+  world_.emplace(static_cast<std::uint32_t>(view().primitive_count()), origin(), executor_);
+  add_objects(*world_, file, labels_ ? *labels_ : LabelScheme("", {}));
 }
 
 void ModelScene::make_tracers(Session& session) {
@@ -55,17 +79,23 @@ void ModelScene::load(const std::filesystem::path& file) {
 
 SceneView ModelScene::view() const { return is_mesh_ ? mesh_.view() : splats_.view(); }
 
-PrimitiveAttributes ModelScene::attributes() const {
+PrimitiveAttributes ModelScene::attributes() {
+  return world_ ? world_->attributes(place_attributes()) : place_attributes();
+}
+
+PrimitiveAttributes ModelScene::place_attributes() const {
   PrimitiveAttributes attributes;
   attributes.classes = is_mesh_ ? mesh_.mesh.classes : splats_.classes;
   attributes.intensities = splats_.intensities;
+  attributes.view = view();
+  if (!splats_.response.empty()) attributes.response = &splats_.response;
   return attributes;
 }
 
 ImageScene ModelScene::image_scene() const {
   ImageScene scene;
   scene.view = view();
-  scene.attributes = attributes();
+  scene.attributes = place_attributes();
   scene.groups = splats_.groups;
   scene.labels = labels_ ? &*labels_ : nullptr;
   scene.origin = origin();

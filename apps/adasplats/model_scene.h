@@ -12,18 +12,25 @@
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/simulate/image.h"
 #include "adasplats/simulate/scan_caster.h"
+#include "adasplats/simulate/world.h"
+#include "adasplats/simulate/world_file.h"
 #include "adasplats/splats/splat_model.h"
 #include "adasplats/trace/tracer.h"
 #include "session.h"
 
 namespace adasplats::app {
 
+/// Whether a world file (simulate/world_file.h) may stand in a model's place.
+enum class WorldFiles : std::uint8_t { refused, taken };
+
 /// A splat model or a triangle mesh from a file with what is needed to cast rays into it, on
-/// the session's device.
+/// the session's device. A world file: its place, and what was put there as `world`.
 class ModelScene {
  public:
   /// `labels` as load_label_scheme takes it names the classes; empty: what the model's file says.
-  ModelScene(const std::filesystem::path& file, const std::string& labels, Session& session);
+  /// Errors: usage (a world file where they are refused, or that names no model).
+  ModelScene(const std::filesystem::path& file, const std::string& labels, Session& session,
+             WorldFiles world_files = WorldFiles::refused);
   ModelScene(const ModelScene&) = delete;  // the tracer and the views look into it
   ModelScene& operator=(const ModelScene&) = delete;
 
@@ -32,8 +39,14 @@ class ModelScene {
   /// World coordinates of the view's local origin, m.
   Vec3d origin() const { return is_mesh_ ? mesh_.origin : splats_.origin; }
   const Tracer& tracer() const { return gpu_ ? gpu_->tracer() : *tracer_; }
+  /// Of the place without its objects.
   const ScanCaster& scan_caster() const { return gpu_ ? gpu_->scan_caster() : *caster_; }
-  PrimitiveAttributes attributes() const;
+  /// Of the place and, behind it, its objects.
+  PrimitiveAttributes attributes();
+  /// What was put into the place; null where nothing was.
+  const World* world() const { return world_ ? &*world_ : nullptr; }
+  /// What the classes mean; null where that is not known.
+  const LabelScheme* labels() const { return labels_ ? &*labels_ : nullptr; }
   /// For pictures: geometry, attributes and the colours of the classes.
   ImageScene image_scene() const;
   /// A picture of image_scene().
@@ -45,6 +58,8 @@ class ModelScene {
  private:
   void load(const std::filesystem::path& file);
   void make_tracers(Session& session);
+  void make_world(const WorldFile& file);
+  PrimitiveAttributes place_attributes() const;
 
   const Executor& executor_;
   bool is_mesh_ = false;
@@ -56,6 +71,7 @@ class ModelScene {
   mutable ImageOptions renderer_options_;
   std::unique_ptr<Tracer> tracer_;      ///< where there is no `gpu_`
   std::unique_ptr<ScanCaster> caster_;  ///< likewise
+  std::optional<World> world_;
 };
 
 }  // namespace adasplats::app

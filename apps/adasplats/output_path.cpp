@@ -70,16 +70,6 @@ void check_replaceable(const fs::path& folder, bool overwrite, const std::string
   }
 }
 
-std::string content_text(const std::string& command, const Json& content) {
-  Json json;
-  json["program"] = "adasplats";
-  json["version"] = ADASPLATS_VERSION;
-  json["command"] = command;
-  json.update(content);
-  // Names of files need not be UTF-8; JSON must be.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
 }  // namespace
 
 void check_output_file(const fs::path& file) {
@@ -91,29 +81,64 @@ void check_output_file(const fs::path& file) {
   }
 }
 
-OutputFolder::OutputFolder(const fs::path& folder, bool overwrite, const std::string& command,
-                           const Json& content)
-    : folder_(without_slash(folder)) {
-  if (folder_.empty() || folder_.filename() == "." || folder_.filename() == "..") {
+fs::path checked_output_folder(const fs::path& folder, bool overwrite, const std::string& command) {
+  fs::path named = without_slash(folder);
+  if (named.empty() || named.filename() == "." || named.filename() == "..") {
     throw cannot_create(folder, "give the folder a name of its own");
   }
-  check_parent(folder_);
-  check_replaceable(folder_, overwrite, command);
-  partial_ = parent_of(folder_) / ("." + folder_.filename().string() + ".partial");
+  check_parent(named);
+  check_replaceable(named, overwrite, command);
+  return named;
+}
+
+int create_and_lock(const fs::path& partial, const fs::path& folder) {
   std::error_code failure;
-  fs::create_directory(partial_, failure);
-  lock_ = open(partial_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ < 0) throw system_error(ErrorKind::cannot_create, partial_, "cannot create", errno);
-  if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-    close(lock_);
-    throw cannot_create(folder_, "another process is writing it (" + partial_.string() + ")");
+  fs::create_directory(partial, failure);
+  const int lock = open(partial.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock < 0) throw system_error(ErrorKind::cannot_create, partial, "cannot create", errno);
+  if (flock(lock, LOCK_EX | LOCK_NB) != 0) {
+    close(lock);
+    throw cannot_create(folder, "another process is writing it (" + partial.string() + ")");
   }
+  return lock;
+}
+
+std::string content_text(const std::string& command, const Json& content) {
+  Json json;
+  json["program"] = "adasplats";
+  json["version"] = ADASPLATS_VERSION;
+  json["command"] = command;
+  json.update(content);
+  // Names of files need not be UTF-8; JSON must be.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void put_in_place(const fs::path& partial, const fs::path& folder) {
+  const fs::path old = parent_of(folder) / ("." + folder.filename().string() + ".replaced");
+  std::error_code failure;
+  fs::remove_all(old, failure);
+  fs::rename(folder, old, failure);  // fails where there is no older folder
+  fs::rename(partial, folder, failure);
+  if (failure) {
+    const int reason = failure.value();
+    fs::rename(old, folder, failure);
+    throw system_error(ErrorKind::cannot_create, folder, "cannot create", reason);
+  }
+  fs::remove_all(old, failure);
+}
+
+OutputFolder::OutputFolder(const fs::path& folder, bool overwrite, const std::string& command,
+                           const Json& content)
+    : folder_(checked_output_folder(folder, overwrite, command)),
+      partial_(parent_of(folder_) / ("." + folder_.filename().string() + ".partial")),
+      lock_(create_and_lock(partial_, folder_)) {
   try {
     for (const fs::directory_entry& left_over : fs::directory_iterator(partial_)) {
       fs::remove_all(left_over.path());
     }
     write_file(partial_ / kContentFile, content_text(command, content));
   } catch (...) {
+    std::error_code failure;
     fs::remove_all(partial_, failure);
     close(lock_);
     throw;
@@ -128,17 +153,7 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::commit() {
-  const fs::path old = parent_of(folder_) / ("." + folder_.filename().string() + ".replaced");
-  std::error_code failure;
-  fs::remove_all(old, failure);
-  fs::rename(folder_, old, failure);  // fails where there is no older folder
-  fs::rename(partial_, folder_, failure);
-  if (failure) {
-    const int reason = failure.value();
-    fs::rename(old, folder_, failure);
-    throw system_error(ErrorKind::cannot_create, folder_, "cannot create", reason);
-  }
-  fs::remove_all(old, failure);
+  put_in_place(partial_, folder_);
   close(lock_);
   lock_ = -1;
 }

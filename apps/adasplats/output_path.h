@@ -12,6 +12,21 @@ namespace adasplats::app {
 /// permission, a folder or a device in its place. To be called before long work.
 void check_output_file(const std::filesystem::path& file);
 
+/// `folder` without a trailing slash. Throws cannot_create where it must not be written: no such
+/// parent, or something is there that is not, with `overwrite`, earlier output of `command`.
+std::filesystem::path checked_output_folder(const std::filesystem::path& folder, bool overwrite,
+                                            const std::string& command);
+
+/// Creates `partial`, where `folder` is filled, and locks it against other processes; gives the
+/// descriptor that holds the lock. Errors: cannot_create.
+int create_and_lock(const std::filesystem::path& partial, const std::filesystem::path& folder);
+
+/// The text of adasplats.json: program, version, command and `content`.
+std::string content_text(const std::string& command, const nlohmann::ordered_json& content);
+
+/// Gives the whole folder `partial` the name `folder`; an older one of that name is removed.
+void put_in_place(const std::filesystem::path& partial, const std::filesystem::path& folder);
+
 /// An output folder that appears whole or not at all: filled beside its place under the name
 /// ".NAME.partial" and renamed by commit(). Without commit() what was written is removed.
 class OutputFolder {

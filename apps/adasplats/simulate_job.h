@@ -4,24 +4,29 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 
-#include "adasplats/core/vec3.h"
+#include "adasplats/dataset/scan_writer.h"
+#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/weather.h"
+#include "drive.h"
 #include "session.h"
 
 namespace adasplats::app {
 
-enum class ScanFormat : std::uint8_t { semantickitti, ply, npy };
-
 /// Paper section "New Trajectory Simulation": a sensor along a shifted trajectory.
 struct SimulateJob {
-  std::filesystem::path model;  ///< splats or a mesh
+  std::filesystem::path model;  ///< splats, a mesh, or a world file
   std::string labels;           ///< scheme of the classes; empty: what the model says
   std::string sensor = "hdl-64-paper";
-  std::filesystem::path trajectory;  ///< pose file or sequence folder
-  Vec3d offset_m;
-  std::size_t every = 1;  ///< takes every n-th pose
-  bool range_noise = true;
+  DriveOptions drive;
+  std::optional<double> range_noise_m;  ///< instead of the sensor's
+  BeamOptions beam;
+  bool noise = true;
+  PointFrame frame = PointFrame::raw;
+  std::filesystem::path ray_drop;  ///< fitted model; empty: every echo is told
+  Weather weather;
   std::filesystem::path output;
   ScanFormat format = ScanFormat::semantickitti;
   bool overwrite = false;

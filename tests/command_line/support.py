@@ -17,6 +17,11 @@ PROGRAM = os.environ.get("ADASPLATS_PROGRAM", "adasplats")
 SUBCOMMANDS = [
     ["synth", "street"],
     ["info"],
+    ["sensors"],
+    ["fit-drop"],
+    ["evaluate", "echoes"],
+    ["evaluate", "labels"],
+    ["simkitti32"],
     ["model"],
     ["mesh"],
     ["simulate"],

@@ -6,7 +6,8 @@ import unittest
 from support import SUBCOMMANDS, ProgramTest, tree_digest
 
 WITH_DEVICE = [["model"], ["simulate"], ["render"], ["evaluate", "resimulate"],
-               ["evaluate", "truth"], ["evaluate", "presence"], ["compare"], ["demo"]]
+               ["evaluate", "truth"], ["evaluate", "presence"], ["evaluate", "echoes"],
+               ["fit-drop"], ["simkitti32"], ["compare"], ["demo"]]
 
 
 class DeviceTest(ProgramTest):

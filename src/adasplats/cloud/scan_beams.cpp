@@ -74,22 +74,43 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-Vec3d ScanBeams::origin_of(std::size_t scan, Vec3d point) const {
-  Vec3d origin;
-  if (scan < sweeps_m.size()) origin = sweep_phase(point) * sweeps_m[scan];
+MeasuredBeam ScanBeams::beam_of(std::size_t scan, Vec3d point) const {
+  MeasuredBeam beam{{}, point};
   if (from_hdl64) {
     // From the middle between the blocks the two parts of the fan are told apart well enough.
     constexpr double kBetween_m = 0.165;
     const double elevation_deg =
         std::atan2(point.z - kBetween_m, std::hypot(point.x, point.y)) / kRadians;
-    origin.z += block_height_m(elevation_deg);
+    beam.origin.z = block_height_m(elevation_deg);
   }
-  return origin;
+  const double phase = sweep_phase(point);
+  if (scan < sweeps_m.size()) beam.origin = beam.origin + phase * sweeps_m[scan];
+  if (scan < raw_motions.size()) {
+    const SweepMotion& motion = raw_motions[scan];
+    const Trajectory sweep = {
+        {-0.5, motion.frame_from_begin}, {0, {}}, {0.5, motion.frame_from_end}};
+    const RigidTransform frame_from_sensor = interpolate(sweep, phase);
+    beam = {frame_from_sensor * beam.origin, frame_from_sensor * beam.end};
+  }
+  return beam;
 }
 
 std::string ScanBeams::description() const {
-  if (!from_hdl64) return "frame origin";
-  return sweeps_m.empty() ? "HDL-64E blocks" : "HDL-64E blocks, moving";
+  const std::string origin = from_hdl64 ? "HDL-64E blocks" : "frame origin";
+  if (!raw_motions.empty()) return origin + ", rolling";
+  return from_hdl64 && !sweeps_m.empty() ? origin + ", moving" : origin;
+}
+
+void set_raw_motions(ScanBeams& beams, const Trajectory& poses, const Trajectory& motion,
+                     double revolution_s) {
+  beams.raw_motions.clear();
+  for (const TimedPose& pose : poses) {
+    const RigidTransform frame_from_world = interpolate(motion, pose.time_s).inverse();
+    const auto moved = [&](double after_s) {
+      return frame_from_world * interpolate(motion, pose.time_s + after_s);
+    };
+    beams.raw_motions.push_back({moved(-0.5 * revolution_s), moved(0.5 * revolution_s)});
+  }
 }
 
 ScanBeams recognize_beams(const KittiSequence& sequence) {
@@ -99,7 +120,7 @@ ScanBeams recognize_beams(const KittiSequence& sequence) {
   constexpr std::size_t kLeastPoints = 500;
   constexpr double kMostDistance_m = 0.01;
 
-  ScanBeams moving{true, sweeps_of(sequence.trajectory)};
+  ScanBeams moving{true, sweeps_of(sequence.trajectory), {}};
   std::vector<double> as_measured_m, compensated_m;
   const std::size_t scans = std::min(kScans, sequence.scans.size());
   for (std::size_t k = 0; k < scans; ++k) {

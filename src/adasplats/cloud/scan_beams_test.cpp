@@ -355,5 +355,30 @@ TEST(LoadCloud, SensorPositionsAreWhereBeamsStart) {
   EXPECT_EQ(i, plain.size());
 }
 
+// Oracle: analytic. The beam to the front is in the middle of the sweep, that to the rear at its
+// ends, those to the left and right a quarter before and behind.
+TEST(RawMotions, PointsAreBroughtToTheFrameOfTheMiddle) {
+  Trajectory motion;
+  for (int i = 0; i < 30; ++i) {
+    const double time_s = 0.1 * i;
+    motion.push_back({time_s, {rotation_from_yaw_pitch_roll(0.5, 0, 0), {10 * time_s, 0, 0}}});
+  }
+  ScanBeams beams;
+  set_raw_motions(beams, {{1.0, {}}}, motion, 0.1);
+  ASSERT_EQ(beams.raw_motions.size(), 1U);
+  const Vec3d ahead = {std::cos(0.5), -std::sin(0.5), 0};  // the drive's direction in the frame
+  const auto expect_moved = [&](Vec3d point, double metres) {
+    const MeasuredBeam beam = beams.beam_of(0, point);
+    EXPECT_LT(length(beam.origin - metres * ahead), 1e-12) << metres;
+    EXPECT_LT(length(beam.end - (point + metres * ahead)), 1e-12) << metres;
+  };
+  expect_moved({7, 0, 1}, 0.0);
+  expect_moved({0, 7, 1}, -0.25);
+  expect_moved({0, -7, 1}, 0.25);
+  expect_moved({-7, 1e-12, 1}, -0.5);
+  expect_moved({-7, -1e-12, 1}, 0.5);
+  EXPECT_EQ(beams.description(), "frame origin, rolling");
+}
+
 }  // namespace
 }  // namespace adasplats

@@ -39,4 +39,16 @@ RigidTransform interpolate(const Trajectory& trajectory, double time_s);
 /// Every pose shifted by `offset` in world axes (paper section "New Trajectory Simulation").
 Trajectory shifted(Trajectory trajectory, Vec3d offset_m);
 
+/// The poses of a sensor that sits on what drives along `trajectory`: world_from_vehicle *
+/// `vehicle_from_sensor`.
+Trajectory mounted(Trajectory trajectory, const RigidTransform& vehicle_from_sensor);
+
+/// Poses every 1 / `rate_hz` seconds from the first one on, up to the last (interpolate()).
+/// Errors: usage (a rate that is not positive, more than 10 million poses).
+Trajectory resampled_by_time(const Trajectory& trajectory, double rate_hz);
+
+/// Poses every `spacing_m` of the way from the first one on. A vehicle that stands gives none.
+/// Errors: usage (a distance that is not positive, more than 10 million poses).
+Trajectory resampled_by_distance(const Trajectory& trajectory, double spacing_m);
+
 }  // namespace adasplats

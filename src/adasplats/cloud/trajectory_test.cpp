@@ -217,6 +217,47 @@ TEST(Shifted, MovesEveryPose) {
   EXPECT_TRUE(shifted({}, {1, 1, 1}).empty());
 }
 
+// Oracle: the composition of transforms.
+TEST(Mounted, PosesAreThoseOfTheSensor) {
+  const RigidTransform mount = yawed(kPi / 2, {1, 0, 1.5});
+  const Trajectory moved = mounted({{0, yawed(kPi / 2, {10, 0, 0})}}, mount);
+  EXPECT_LT(pose_distance(moved[0].world_from_sensor, yawed(kPi, {10, 1, 1.5})), 1e-14);
+  EXPECT_TRUE(mounted({}, mount).empty());
+}
+
+TEST(Resampled, ByTimeFromTheFirstToTheLastPose) {
+  const Trajectory drive = {{5, yawed(0, {0, 0, 0})}, {6, yawed(0.2, {4, 0, 0})}};
+  const Trajectory poses = resampled_by_time(drive, 4);
+  ASSERT_EQ(poses.size(), 5U) << "both ends";
+  EXPECT_EQ(poses.front().time_s, 5);
+  EXPECT_EQ(poses.back().time_s, 6);
+  EXPECT_LT(pose_distance(poses[1].world_from_sensor, yawed(0.05, {1, 0, 0})), 1e-14);
+  EXPECT_EQ(resampled_by_time(drive, 0.3).size(), 1U);
+  EXPECT_TRUE(resampled_by_time({}, 1).empty());
+  for (const double rate : {0.0, -1.0, std::nan(""), 1e12})
+    EXPECT_THROW(resampled_by_time(drive, rate), Error) << rate;
+}
+
+// A sensor that stands for a while and then drives on: the way counts, not the time.
+TEST(Resampled, ByDistanceAlongTheWay) {
+  const Trajectory drive = {{0, yawed(0, {0, 0, 0})},
+                            {1, yawed(0, {2, 0, 0})},
+                            {9, yawed(0, {2, 0, 0})},
+                            {10, yawed(0, {2, 3, 0})}};
+  const Trajectory poses = resampled_by_distance(drive, 0.5);
+  ASSERT_EQ(poses.size(), 11U);
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    EXPECT_GT(poses[i].time_s, poses[i - 1].time_s);
+    EXPECT_NEAR(
+        length(poses[i].world_from_sensor.translation - poses[i - 1].world_from_sensor.translation),
+        0.5, 1e-12);
+  }
+  EXPECT_EQ(resampled_by_distance({{3, yawed(0, {1, 1, 1})}}, 1).size(), 1U);
+  EXPECT_TRUE(resampled_by_distance({}, 1).empty());
+  for (const double spacing : {0.0, -1.0, std::nan(""), 1e-9})
+    EXPECT_THROW(resampled_by_distance(drive, spacing), Error) << spacing;
+}
+
 // Oracle: rotation_from_quaternion, over rotations where each component is the largest.
 TEST(Rotation, QuaternionRoundTrip) {
   for (const double yaw : {0.0, 0.1, kPi / 2, kPi, -3.0})

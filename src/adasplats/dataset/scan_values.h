@@ -2,17 +2,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <string>
 #include <vector>
 
+#include "adasplats/io/table.h"
 #include "adasplats/simulate/scan.h"
 
 namespace adasplats {
 
-/// x, y, z (sensor frame, m) and intensity of each point; intensity 0 where the scan has none.
+/// x, y, z (sensor frame, m) and intensity of each point; intensity 0 where it is not known.
 std::vector<float> points_with_intensity(const Scan& scan);
 
 /// instance << 16 | class of each point, 0 for what the scan does not have.
 std::vector<std::uint32_t> packed_labels(const Scan& scan);
+
+/// How many returns the firing of each point has; points of one firing stand side by side.
+std::vector<std::uint8_t> returns_of_firings(const Scan& scan);
+
+/// What the scan has, as columns of a file: x y z [intensity] [label] [instance] [ring] [column]
+/// [time] [range] [return_index]. They are views of `scan`. Attributes with another number of
+/// values than points are left out.
+std::vector<ColumnView> scan_columns(const Scan& scan);
+
+/// "000042": how data sets name scan `index`.
+std::string scan_name(std::size_t index);
+
+/// Creates a folder and those above it. Errors: cannot_create.
+void create_folder(const std::filesystem::path& folder);
 
 }  // namespace adasplats

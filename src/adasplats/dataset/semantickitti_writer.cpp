@@ -3,9 +3,7 @@
 #include "adasplats/dataset/semantickitti_writer.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <charconv>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,6 +11,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/io/atomic_file.h"
+#include "adasplats/io/number_text.h"
 
 namespace adasplats {
 
@@ -23,14 +22,6 @@ static_assert(std::endian::native == std::endian::little, "KITTI files are littl
 // Camera axes (x right, y down, z forward) against LiDAR axes (x forward, y left, z up). A change
 // of axes alone is exact in floating point, so poses read back as they were.
 constexpr RigidTransform kCameraFromVelodyne = {{{{0, -1, 0}, {0, 0, -1}, {1, 0, 0}}}, {}};
-
-/// The shortest text that reads back as the same bits.
-std::string exact_text(double value) {
-  std::array<char, 32> buffer;
-  // Adding zero makes of the -0 that axis changes leave a 0.
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0).ptr;
-  return std::string(buffer.data(), end);
-}
 
 /// Twelve numbers: the upper 3x4 of the matrix by rows.
 std::string matrix_text(const RigidTransform& transform) {
@@ -45,16 +36,13 @@ std::string matrix_text(const RigidTransform& transform) {
   return text;
 }
 
-std::string scan_name(std::size_t index) {
-  const std::string digits = std::to_string(index);
-  return std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits;
-}
+constexpr std::size_t kPointBytes = 4 * sizeof(float);
 
-void create_folder(const std::filesystem::path& folder) {
+std::size_t size_of(const std::filesystem::path& path) {
   std::error_code problem;
-  std::filesystem::create_directories(folder, problem);
-  if (problem)
-    throw system_error(ErrorKind::cannot_create, folder, "cannot be created", problem.value());
+  const auto bytes = std::filesystem::file_size(path, problem);
+  if (problem) throw system_error(ErrorKind::io, path, "cannot be looked at", problem.value());
+  return static_cast<std::size_t>(bytes);
 }
 
 template <class T>
@@ -111,12 +99,29 @@ void SemanticKittiWriter::write_scan(std::size_t index, const Scan& scan) {
   const std::string name = scan_name(index);
   write_values(folder_ / "velodyne" / (name + ".bin"), points_with_intensity(scan));
   if (!scan.classes.empty()) write_values(labels / (name + ".label"), packed_labels(scan));
+  note(index, {scan.time_s, scan.world_from_sensor}, scan.size());
+}
+
+void SemanticKittiWriter::keep_scan(std::size_t index, const TimedPose& pose) {
+  const std::filesystem::path points = folder_ / "velodyne" / (scan_name(index) + ".bin");
+  const std::filesystem::path labels = folder_ / "labels" / (scan_name(index) + ".label");
+  const std::size_t count = size_of(points) / kPointBytes;
+  const bool labelled = std::filesystem::exists(labels);
+  if (labelled && size_of(labels) != count * sizeof(std::uint32_t))
+    throw Error(ErrorKind::io, labels.string() + ": has another number of points than " +
+                                   points.string() + "; remove both");
+  has_labels_ = has_labels_ || labelled;
+  has_unlabelled_ = has_unlabelled_ || (!labelled && count != 0);
+  note(index, pose, count);
+}
+
+void SemanticKittiWriter::note(std::size_t index, const TimedPose& pose, std::size_t points) {
   if (trajectory_.size() <= index) {
     trajectory_.resize(index + 1);
     point_counts_.resize(index + 1);
   }
-  trajectory_[index] = {scan.time_s, scan.world_from_sensor};
-  point_counts_[index] = scan.size();
+  trajectory_[index] = pose;
+  point_counts_[index] = points;
 }
 
 void SemanticKittiWriter::finish() {

@@ -25,22 +25,20 @@ class SemanticKittiWriter {
   /// Writes scan number `index`; the pose is kept for finish(). One call at a time. Scans have
   /// classes all or none (std::logic_error otherwise; empty ones fit both).
   void write_scan(std::size_t index, const Scan& scan);
+  /// Scan number `index` was written before an interruption: keeps its pose for finish(). Throws
+  /// Errors of kind io where its files are missing or have other numbers of points.
+  void keep_scan(std::size_t index, const TimedPose& pose);
   /// Every index from 0 to the largest must have been written (std::logic_error otherwise).
   void finish();
 
  private:
+  void note(std::size_t index, const TimedPose& pose, std::size_t points);
+
   std::filesystem::path folder_;
   Trajectory trajectory_;                                 ///< by index
   std::vector<std::optional<std::size_t>> point_counts_;  ///< by index; nothing: not written yet
   bool has_labels_ = false;
   bool has_unlabelled_ = false;
 };
-
-/// One scan as a PLY in the sensor frame: x y z [intensity] [label] [instance] ring time range.
-void write_scan_ply(const std::filesystem::path& path, const Scan& scan);
-
-/// One scan as .npy: PATH (float32, N x 4: x y z intensity) and PATH with "_label" before the
-/// extension (uint32, N: instance << 16 | class). Zeros for what the scan does not have.
-void write_scan_npy(const std::filesystem::path& path, const Scan& scan);
 
 }  // namespace adasplats

@@ -4,40 +4,15 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <stdexcept>
 
 #include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/cloud/temporary_folder_test.h"
-#include "adasplats/core/random.h"
+#include "adasplats/dataset/numbered_scan_test.h"
 #include "adasplats/io/atomic_file.h"
-#include "adasplats/io/ply.h"
 
 namespace adasplats {
 namespace {
-
-/// A scan with all attributes, different for each number.
-Scan scan_number(std::uint64_t number, std::size_t points) {
-  Random random(11, 0, number);
-  Scan scan;
-  scan.time_s = 0.1 * static_cast<double>(number) + 1.0 / 3;
-  scan.world_from_sensor = {
-      rotation_from_yaw_pitch_roll(random.uniform(-3, 3), random.uniform(-1, 1),
-                                   random.uniform(-3, 3)),
-      {448262 + random.uniform(), 5411932 + random.uniform(), random.uniform(-50, 50)}};
-  scan.rays = 2 * points;
-  for (std::size_t i = 0; i < points; ++i) {
-    const Vec3d p{random.uniform(-90, 90), random.uniform(-90, 90), random.uniform(-3, 9)};
-    scan.positions.push_back(vec_cast<float>(p));
-    scan.ranges_m.push_back(length(scan.positions.back()));
-    scan.intensities.push_back(static_cast<float>(random.uniform()));
-    scan.classes.push_back(static_cast<std::uint16_t>(random.next_bits()));
-    scan.instances.push_back(static_cast<std::uint16_t>(random.next_bits()));
-    scan.rings.push_back(static_cast<std::uint16_t>(i % 64));
-    scan.times_s.push_back(0.001F * static_cast<float>(i));
-  }
-  return scan;
-}
 
 void expect_same_points(const KittiScan& read, const Scan& written) {
   ASSERT_EQ(read.positions.size(), written.size());
@@ -131,63 +106,35 @@ TEST(SemanticKittiWriter, MissingScansAndForeignFolders) {
                [&] { SemanticKittiWriter below(folder.path() / "file"); });
 }
 
-std::vector<double> column(const Table& table, std::string_view name) {
-  std::vector<double> values;
-  const Column* found = table.find(name);
-  if (found == nullptr) return values;
-  for (std::size_t i = 0; i < table.rows; ++i) values.push_back(found->as_double(i));
-  return values;
-}
-
-// Oracle: round trip through read_ply.
-TEST(WriteScanPly, RoundTrip) {
+// Oracle: the same scans written without a break.
+TEST(SemanticKittiWriter, KeptScansGiveTheSameFiles) {
   const TemporaryFolder folder;
-  const Scan scan = scan_number(3, 20);
-  write_scan_ply(folder.path() / "scan.ply", scan);
-  const Table table = read_ply(folder.path() / "scan.ply");
-  ASSERT_EQ(table.rows, scan.size());
-  EXPECT_EQ(table.columns.size(), 9U);
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    EXPECT_EQ(column(table, "y")[i], static_cast<double>(scan.positions[i].y));
-    EXPECT_EQ(column(table, "intensity")[i], static_cast<double>(scan.intensities[i]));
-    EXPECT_EQ(column(table, "label")[i], scan.classes[i]);
-    EXPECT_EQ(column(table, "instance")[i], scan.instances[i]);
-    EXPECT_EQ(column(table, "ring")[i], scan.rings[i]);
-    EXPECT_EQ(column(table, "time")[i], static_cast<double>(scan.times_s[i]));
-    EXPECT_EQ(column(table, "range")[i], static_cast<double>(scan.ranges_m[i]));
+  const Scan scans[] = {scan_number(0, 10), scan_number(1, 0), scan_number(2, 7)};
+  SemanticKittiWriter whole(folder.path() / "whole");
+  for (std::size_t i = 0; i < 3; ++i) whole.write_scan(i, scans[i]);
+  whole.finish();
+  {
+    SemanticKittiWriter interrupted(folder.path() / "s");
+    for (std::size_t i = 0; i < 2; ++i) interrupted.write_scan(i, scans[i]);
   }
+  SemanticKittiWriter resumed(folder.path() / "s");
+  for (std::size_t i = 0; i < 2; ++i)
+    resumed.keep_scan(i, {scans[i].time_s, scans[i].world_from_sensor});
+  resumed.write_scan(2, scans[2]);
+  resumed.finish();
+  for (const char* name : {"poses.txt", "calib.txt", "times.txt", "labels/000001.label",
+                           "labels/000000.label", "velodyne/000000.bin", "velodyne/000002.bin"})
+    EXPECT_EQ(read_file(folder.path() / "s" / name), read_file(folder.path() / "whole" / name))
+        << name;
 }
 
-TEST(WriteScanPly, EmptyScan) {
+TEST(SemanticKittiWriter, KeptScansMustBeThere) {
   const TemporaryFolder folder;
-  write_scan_ply(folder.path() / "scan.ply", {});
-  EXPECT_EQ(read_ply(folder.path() / "scan.ply").columns.size(), 6U);
-}
-
-// Oracle: the .npy format, version 1.0: magic, header length at byte 8, then the values.
-template <class T>
-std::vector<T> npy_values(const std::filesystem::path& path, const std::string& shape) {
-  const std::string bytes = read_file(path);
-  std::uint16_t header_length = 0;
-  std::memcpy(&header_length, bytes.data() + 8, sizeof(header_length));
-  EXPECT_NE(bytes.substr(10, header_length).find(shape), std::string::npos);
-  const std::size_t begin = 10U + header_length;
-  std::vector<T> values((bytes.size() - begin) / sizeof(T));
-  std::memcpy(values.data(), bytes.data() + begin, values.size() * sizeof(T));
-  return values;
-}
-
-TEST(WriteScanNpy, PointsAndLabels) {
-  const TemporaryFolder folder;
-  const Scan scan = scan_number(4, 5);
-  write_scan_npy(folder.path() / "scan.npy", scan);
-  const auto points = npy_values<float>(folder.path() / "scan.npy", "(5, 4)");
-  const auto labels = npy_values<std::uint32_t>(folder.path() / "scan_label.npy", "(5,)");
-  ASSERT_EQ(points.size(), 20U);
-  ASSERT_EQ(labels.size(), 5U);
-  EXPECT_EQ(points[4 * 3 + 2], scan.positions[3].z);
-  EXPECT_EQ(points[4 * 3 + 3], scan.intensities[3]);
-  EXPECT_EQ(labels[2], scan.instances[2] * 65536U + scan.classes[2]);
+  SemanticKittiWriter writer(folder.path() / "s");
+  expect_error(ErrorKind::io, {"000004.bin"}, [&] { writer.keep_scan(4, {}); });
+  writer.write_scan(0, scan_number(0, 3));
+  folder.write("s/labels/000000.label", "1234");
+  expect_error(ErrorKind::io, {"000000.label"}, [&] { writer.keep_scan(0, {}); });
 }
 
 }  // namespace

@@ -101,25 +101,22 @@ std::vector<std::uint32_t> select_points(const KittiScan& scan, const std::files
   return selected;
 }
 
-/// A measured beam in the sensor's frame.
-struct MeasuredBeam {
-  Vec3d origin;
-  Vec3d direction;  ///< unit
-  double range_m;
+/// A measured beam as it is cast again.
+struct BeamToCast {
+  Ray ray;
+  double range_m = 0;
+  double elevation_rad = 0;  ///< in the scan's frame
 };
 
-MeasuredBeam measured_beam(const ScanBeams& beams, std::size_t scan, Vec3f measured) {
-  const Vec3d point = vec_cast<double>(measured);
-  const Vec3d origin = beams.origin_of(scan, point);
-  const double range_m = length(point - origin);
-  return {origin, (point - origin) / range_m, range_m};
-}
-
-Ray ray_of(const MeasuredBeam& beam, const RigidTransform& scene_from_sensor) {
-  Ray ray;
-  ray.origin = vec_cast<float>(scene_from_sensor * beam.origin);
-  ray.direction = vec_cast<float>(scene_from_sensor.rotation * beam.direction);
-  return ray;
+BeamToCast beam_to_cast(const MeasuredBeam& beam, const RigidTransform& scene_from_sensor) {
+  BeamToCast cast;
+  const Vec3d way = beam.end - beam.origin;
+  cast.range_m = length(way);
+  const Vec3d direction = way / cast.range_m;
+  cast.elevation_rad = std::asin(std::clamp(direction.z, -1.0, 1.0));
+  cast.ray.origin = vec_cast<float>(scene_from_sensor * beam.origin);
+  cast.ray.direction = vec_cast<float>(scene_from_sensor.rotation * direction);
+  return cast;
 }
 
 /// Everything the beams of all scans are cast and sorted with.
@@ -145,30 +142,33 @@ CastScan cast_scan(const Setting& setting, const KittiSequence& sequence, std::s
   result.beams.resize(selected.size());
   result.measured.positions.resize(selected.size());
   std::vector<MeasuredBeam> measured(selected.size());
+  std::vector<BeamToCast> cast(selected.size());
   std::vector<Ray> rays(selected.size());
   std::vector<Hit> hits(selected.size());
   executor.for_chunks(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      result.measured.positions[k] = scan.positions[selected[k]];
-      measured[k] = measured_beam(sequence.beams, index, result.measured.positions[k]);
-      rays[k] = ray_of(measured[k], scene_from_sensor);
+      const Vec3d point = vec_cast<double>(scan.positions[selected[k]]);
+      measured[k] = sequence.beams.beam_of(index, point);
+      result.measured.positions[k] = vec_cast<float>(measured[k].end);
+      cast[k] = beam_to_cast(measured[k], scene_from_sensor);
+      rays[k] = cast[k].ray;
     }
   });
   setting.tracer.nearest(rays, hits, executor);
   for (std::size_t k = 0; k < selected.size(); ++k) {
-    const double range_m = measured[k].range_m;
+    const double range_m = cast[k].range_m;
     Beam& beam = result.beams[k];
     beam.range_bin = setting.ranges.bin_of(length(vec_cast<double>(result.measured.positions[k])));
-    beam.elevation_deg = static_cast<std::int8_t>(
-        std::floor(std::asin(std::clamp(measured[k].direction.z, -1.0, 1.0)) * kDegreesPerRadian));
+    beam.elevation_deg =
+        static_cast<std::int8_t>(std::floor(cast[k].elevation_rad * kDegreesPerRadian));
     if (!scan.classes.empty()) beam.class_id = scan.classes[selected[k]];
     if (!hits[k].valid()) continue;
     const double predicted_m = static_cast<double>(hits[k].t);
     beam.error_m = static_cast<float>(predicted_m - range_m);
     beam.incidence_bin =
         setting.incidences.bin_of(incidence_deg(setting.scene, rays[k], hits[k].primitive));
-    result.predicted.positions.push_back(
-        vec_cast<float>(measured[k].origin + predicted_m * measured[k].direction));
+    result.predicted.positions.push_back(vec_cast<float>(
+        measured[k].origin + predicted_m / range_m * (measured[k].end - measured[k].origin)));
   }
   return result;
 }

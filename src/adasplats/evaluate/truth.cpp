@@ -57,7 +57,7 @@ class TruthCaster {
   /// The rays of one revolution that take part.
   std::vector<TruthBeam> cast(const TimedPose& pose) const {
     const auto rays_at = [&](Vec3d origin) {
-      return scan_rays(sensor_, firings_, pose.world_from_sensor, origin, executor_);
+      return scan_rays(sensor_, firings_, {pose, {}}, origin, executor_);
     };
     const std::vector<Ray> rays = rays_at(truth_.origin);
     std::vector<Hit> true_hits(rays.size());

@@ -40,13 +40,13 @@ __device__ void cast_one(const Trees& trees, Ray ray, Best& best) {
   walk<kWait>(trees.triangles, ray, boxes, best);
 }
 
-template <int kWait, unsigned kBlocks>
+template <int kWait, unsigned kBlocks, Sensors kSensors>
 __global__ void __launch_bounds__(kCastBlock, kBlocks)
     cast_nearest_kernel(Trees trees, RaySource source, std::uint64_t count, Hit* hits) {
   const std::uint64_t i = std::uint64_t{blockIdx.x} * kCastBlock + threadIdx.x;
   if (i >= count) return;
   NearestHit best;
-  cast_one<kWait>(trees, ray_of(source, i), best);
+  cast_one<kWait>(trees, ray_of<kSensors>(source, i), best);
   best.store(hits + place_of_ray(source, i), 1);
 }
 
@@ -94,12 +94,11 @@ class CudaScene final : public DeviceScene {
     if (count == 0) return;
     const Trees trees = {disks_.view(), triangles_.view()};
     const auto blocks = static_cast<unsigned>((count + kCastBlock - 1) / kCastBlock);
-    if (depth == 1 && count < kSmallLaunch) {
-      cast_nearest_kernel<kPostponeInSmall, kLeastBlocksOfSmall>
-          <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
+    const bool still = source.first_poses == nullptr;
+    if (depth == 1 && still) {
+      launch_nearest<Sensors::still>(blocks, trees, source, count, hits, stream);
     } else if (depth == 1) {
-      cast_nearest_kernel<kPostpone, kLeastBlocks>
-          <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
+      launch_nearest<Sensors::may_move>(blocks, trees, source, count, hits, stream);
     } else if (depth <= 5) {
       launch_few(depth, blocks, trees, source, count, hits, stream);
     } else if (depth <= kMostHits) {
@@ -113,6 +112,18 @@ class CudaScene final : public DeviceScene {
   }
 
  private:
+  template <Sensors kSensors>
+  static void launch_nearest(unsigned blocks, const Trees& trees, const RaySource& source,
+                             std::uint64_t count, Hit* hits, cudaStream_t stream) {
+    if (count < kSmallLaunch) {
+      cast_nearest_kernel<kPostponeInSmall, kLeastBlocksOfSmall, kSensors>
+          <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
+    } else {
+      cast_nearest_kernel<kPostpone, kLeastBlocks, kSensors>
+          <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
+    }
+  }
+
   static void launch_few(int depth, unsigned blocks, const Trees& trees, const RaySource& source,
                          std::uint64_t count, Hit* hits, cudaStream_t stream) {
     switch (depth) {

@@ -491,36 +491,43 @@ gpu::DeviceBuffer<T> on_device(const std::vector<T>& values, cudaStream_t stream
 TEST_P(GpuDeviceScene, ScansAreMadeOnTheGpu) {
   const GpuCaster scene = caster(500);
   constexpr std::uint32_t kFirings = 999;
-  std::vector<Vec3f> directions;
+  std::vector<FiringRay> firings;
   std::vector<std::uint32_t> order;
   std::vector<ScanPose> poses;
+  const std::vector<std::uint32_t> first_poses = {0, 1, 3, 7};  // 1, 2 and 4 knots
   for (std::uint32_t i = 0; i < kFirings; ++i) {
     Random random(7, 0, i);
-    directions.push_back(vec_cast<float>(random_unit(random)));
+    firings.push_back({vec_cast<float>(random_unit(random)),
+                       static_cast<float>(i) / kFirings,
+                       {0, 0.01F * static_cast<float>(i % 7), 0.2F},
+                       0});
     order.push_back(i * 500 % kFirings);
   }
   for (const double i : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0})
     poses.push_back(
         scan_pose({rotation_from_yaw_pitch_roll(i, 0.1, 0.2), {0.1 * i, 0, -0.2 * i}}, {}));
-  const auto directions_there = on_device(directions, scene.stream());
+  const auto firings_there = on_device(firings, scene.stream());
+  const auto first_poses_there = on_device(first_poses, scene.stream());
   const auto order_there = on_device(order, scene.stream());
   const auto poses_there = on_device(poses, scene.stream());
   for (const bool ordered : {false, true}) {
-    for (const bool one_pose : {false, true}) {
+    for (const std::size_t scans : {std::size_t{1}, std::size_t{3}, poses.size()}) {
       gpu::RaySource on_cpu;
       on_cpu.kind = gpu::RaySource::Kind::scans;
-      on_cpu.firings = kFirings;
+      on_cpu.firing_count = kFirings;
       on_cpu.t_min = 0.5F;
       on_cpu.t_max = 6;
       on_cpu.pose = poses[2];
       gpu::RaySource on_gpu = on_cpu;
-      on_cpu.directions = directions.data();
-      on_gpu.directions = directions_there.data();
+      on_cpu.firings = firings.data();
+      on_gpu.firings = firings_there.data();
       on_cpu.order = ordered ? order.data() : nullptr;
       on_gpu.order = ordered ? order_there.data() : nullptr;
-      on_cpu.poses = one_pose ? nullptr : poses.data();
-      on_gpu.poses = one_pose ? nullptr : poses_there.data();
-      expect_source(scene, on_gpu, on_cpu, kFirings * (one_pose ? 1 : poses.size()));
+      on_cpu.poses = scans == 1 ? nullptr : poses.data();
+      on_gpu.poses = scans == 1 ? nullptr : poses_there.data();
+      on_cpu.first_poses = scans == 3 ? first_poses.data() : nullptr;
+      on_gpu.first_poses = scans == 3 ? first_poses_there.data() : nullptr;
+      expect_source(scene, on_gpu, on_cpu, kFirings * scans);
     }
   }
 }
@@ -543,22 +550,22 @@ TEST_P(GpuDeviceScene, PicturesAreMadeOnTheGpu) {
 TEST_P(GpuDeviceScene, HitsMayGoToPageLockedMemory) {
   const GpuCaster scene = caster(500);
   const auto some = rays(300'000);
-  std::vector<Vec3f> directions;
+  std::vector<FiringRay> firings;
   std::vector<std::uint32_t> order;
   for (std::uint32_t i = 0; i < 1000; ++i) {
-    directions.push_back(some[8 * i].direction);
+    firings.push_back({some[8 * i].direction, 0, {}, 0});
     order.push_back(999 - i);
   }
   const auto rays_there = on_device(some, scene.stream());
-  const auto directions_there = on_device(directions, scene.stream());
+  const auto firings_there = on_device(firings, scene.stream());
   const auto order_there = on_device(order, scene.stream());
   const std::vector<ScanPose> poses(300, scan_pose(RigidTransform{}, {}));
   const auto poses_there = on_device(poses, scene.stream());
   gpu::RaySource scans;
   scans.kind = gpu::RaySource::Kind::scans;
-  scans.firings = 1000;
+  scans.firing_count = 1000;
   scans.t_max = 100;
-  scans.directions = directions_there.data();
+  scans.firings = firings_there.data();
   scans.order = order_there.data();
   scans.poses = poses_there.data();
   for (const auto& source : {given(rays_there), scans}) {

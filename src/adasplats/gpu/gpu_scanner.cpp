@@ -68,12 +68,51 @@ CastingOrder spread_order(std::span<const Firing> firings) {
 
 }  // namespace
 
+/// The poses of some scans on a device: the knots of all of them, and where each one's begin.
+struct BatchPoses {
+  PinnedBuffer<ScanPose> poses;
+  PinnedBuffer<std::uint32_t> first_poses;
+  DeviceBuffer<ScanPose> device_poses;
+  DeviceBuffer<std::uint32_t> device_first_poses;
+
+  /// Queues the copy, once an earlier one is over.
+  void upload(std::span<const ScanMotion> scans, Vec3d scene_origin, cudaStream_t stream) {
+    uploaded.wait("copy poses to the GPU");
+    std::size_t knots = 0;
+    for (const ScanMotion& scan : scans) knots += scan.knot_count();
+    if (poses.size() < knots) {
+      poses = PinnedBuffer<ScanPose>(knots);
+      device_poses = DeviceBuffer<ScanPose>(knots, stream);
+    }
+    if (first_poses.size() < scans.size() + 1) {
+      first_poses = PinnedBuffer<std::uint32_t>(scans.size() + 1);
+      device_first_poses = DeviceBuffer<std::uint32_t>(scans.size() + 1, stream);
+    }
+    std::uint32_t filled = 0;
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+      first_poses.data()[i] = filled;
+      for (const ScanPose& pose : scan_poses(scans[i], scene_origin)) poses.data()[filled++] = pose;
+    }
+    first_poses.data()[scans.size()] = filled;
+    moving = knots > scans.size();
+    device_poses.upload(poses.span().first(knots));
+    if (moving) device_first_poses.upload(first_poses.span().first(scans.size() + 1));
+    uploaded.record(stream);
+  }
+  void set(RaySource& source) const {
+    source.poses = device_poses.data();
+    source.first_poses = moving ? device_first_poses.data() : nullptr;
+  }
+
+  Event uploaded;
+  bool moving = false;
+};
+
 /// One launch that is under way.
 struct ScanBatch {
   Stream stream;
   Event begin, end;
-  PinnedBuffer<ScanPose> poses;
-  DeviceBuffer<ScanPose> device_poses;
+  BatchPoses poses;
   PinnedBuffer<std::uint8_t> results;
   DeviceBuffer<Hit> device_hits;
   DeviceBuffer<PointHit> device_points;
@@ -83,15 +122,15 @@ struct ScanBatch {
 /// A sensor's firings in the order in which they are cast.
 struct OrderedFirings {
   OrderedFirings() = default;
-  OrderedFirings(std::span<const Firing> firings, const CastingOrder& casting_order,
+  OrderedFirings(std::span<const FiringRay> firings, const CastingOrder& casting_order,
                  cudaStream_t stream)
       : order(std::span<const std::uint32_t>(casting_order), stream) {
-    std::vector<Vec3f> in_order(firings.size());
+    std::vector<FiringRay> in_order(firings.size());
     std::transform(casting_order.begin(), casting_order.end(), in_order.begin(),
-                   [&](std::uint32_t i) { return firings[i].direction; });
-    directions = DeviceBuffer<Vec3f>(std::span<const Vec3f>(in_order), stream);
+                   [&](std::uint32_t i) { return firings[i]; });
+    rays = DeviceBuffer<FiringRay>(std::span<const FiringRay>(in_order), stream);
   }
-  DeviceBuffer<Vec3f> directions;
+  DeviceBuffer<FiringRay> rays;
   DeviceBuffer<std::uint32_t> order;
 };
 
@@ -113,15 +152,16 @@ struct DeviceScanner {
   DeviceScanner& operator=(const DeviceScanner&) = delete;
 
   const DevicePart* part;
-  Stream stream;  ///< of the directions, of single scans and of those that stay on the device
-  DeviceBuffer<Vec3f> firings;  ///< directions as they are numbered
-  OrderedFirings coherent;      ///< for launches that fill the GPU
-  OrderedFirings spread;        ///< for smaller ones
+  Stream stream;  ///< of the firings, of single scans and of those that stay on the device
+  DeviceBuffer<FiringRay> firings;  ///< as they are numbered
+  OrderedFirings coherent;          ///< for launches that fill the GPU
+  OrderedFirings spread;            ///< for smaller ones
   std::array<std::unique_ptr<ScanBatch>, kSlots> batches;
 };
 
 }  // namespace gpu
 
+using gpu::BatchPoses;
 using gpu::cuda_check;
 using gpu::DeviceGuard;
 using gpu::DevicePart;
@@ -135,21 +175,19 @@ GpuScanner::Impl::Impl(const SceneParts& scene, const LidarModel& sensor,
     : scene_(scene), firings_(firings.size()) {
   if (firings.empty()) throw Error(ErrorKind::usage, "a sensor without a single firing");
   source_.kind = RaySource::Kind::scans;
-  source_.firings = static_cast<std::uint32_t>(firings.size());
+  source_.firing_count = static_cast<std::uint32_t>(firings.size());
   source_.t_min = static_cast<float>(sensor.min_range_m);
   source_.t_max = static_cast<float>(sensor.max_range_m);
-  std::vector<Vec3f> directions(firings.size());
-  std::transform(firings.begin(), firings.end(), directions.begin(),
-                 [](const Firing& firing) { return firing.direction; });
+  const std::vector<FiringRay> rays = firing_rays(sensor, firings);
   const gpu::CastingOrder coherent = gpu::coherent_order(firings);
   const gpu::CastingOrder spread = gpu::spread_order(firings);
   for (const DevicePart& part : scene.parts) {
     const DeviceGuard guard(part.device);
     auto device = std::make_unique<DeviceScanner>(part);
     const cudaStream_t stream = device->stream.get();
-    device->firings = gpu::DeviceBuffer<Vec3f>(std::span<const Vec3f>(directions), stream);
-    device->coherent = gpu::OrderedFirings(firings, coherent, stream);
-    device->spread = gpu::OrderedFirings(firings, spread, stream);
+    device->firings = gpu::DeviceBuffer<FiringRay>(std::span<const FiringRay>(rays), stream);
+    device->coherent = gpu::OrderedFirings(rays, coherent, stream);
+    device->spread = gpu::OrderedFirings(rays, spread, stream);
     device->stream.wait("copy a sensor to the GPU");
     devices_.push_back(std::move(device));
   }
@@ -157,7 +195,8 @@ GpuScanner::Impl::Impl(const SceneParts& scene, const LidarModel& sensor,
 
 GpuScanner::Impl::~Impl() {
   const DeviceGuard guard(scene_.first().device);
-  kept_poses_ = {};
+  kept_poses_.reset();
+  single_poses_.reset();
   kept_hits_ = {};
 }
 
@@ -165,95 +204,98 @@ RaySource GpuScanner::Impl::source_of(const DeviceScanner& device, std::size_t s
   RaySource source = source_;
   const bool small = scans * firings_ < gpu::kSmallLaunch;
   const gpu::OrderedFirings& firings = small ? device.spread : device.coherent;
-  source.directions = firings.directions.data();
+  source.firings = firings.rays.data();
   source.order = firings.order.data();
   return source;
 }
 
-std::span<const Hit> GpuScanner::Impl::scan(const TimedPose& pose) {
+std::span<const Hit> GpuScanner::Impl::scan(const ScanMotion& motion) {
   DeviceScanner& device = *devices_.front();
   const DeviceGuard guard(device.part->device);
+  const cudaStream_t stream = device.stream.get();
   if (single_.size() == 0) single_ = gpu::PinnedBuffer<Hit>(firings_);
   RaySource source = source_of(device, 1);
-  source.pose = scan_pose(pose.world_from_sensor, scene_.origin);
+  if (motion.knots.empty()) {
+    source.pose = scan_pose(motion.reference.world_from_sensor, scene_.origin);
+  } else {
+    if (single_poses_ == nullptr) single_poses_ = std::make_unique<BatchPoses>();
+    single_poses_->upload({&motion, 1}, scene_.origin, stream);
+    single_poses_->set(source);
+  }
   // The kernel writes across the bus itself: the copy happens while other rays are traced.
-  device.part->scene->cast(source, firings_, 1, single_.data(), device.stream.get());
+  device.part->scene->cast(source, firings_, 1, single_.data(), stream);
   device.stream.wait("cast a scan on the GPU");
   return single_.span();
 }
 
-DeviceHits GpuScanner::Impl::cast_on_device(std::span<const TimedPose> poses, int depth) {
+DeviceHits GpuScanner::Impl::cast_on_device(std::span<const ScanMotion> scans, int depth) {
   DeviceScanner& device = *devices_.front();
   const DeviceGuard guard(device.part->device);
   const cudaStream_t stream = device.stream.get();
-  std::vector<ScanPose> scan_poses;
-  for (const TimedPose& pose : poses)
-    scan_poses.push_back(scan_pose(pose.world_from_sensor, scene_.origin));
-  const std::size_t hits = poses.size() * firings_ * static_cast<std::size_t>(depth);
+  const std::size_t hits = scans.size() * firings_ * static_cast<std::size_t>(depth);
   if (kept_hits_.size() < hits) {
     kept_hits_ = {};  // before the larger one
     kept_hits_ = gpu::DeviceBuffer<Hit>(hits, stream);
   }
-  kept_poses_ = gpu::DeviceBuffer<ScanPose>(std::span<const ScanPose>(scan_poses), stream);
-  RaySource source = source_of(device, poses.size());
-  source.poses = kept_poses_.data();
-  device.part->scene->cast(source, poses.size() * firings_, depth, kept_hits_.data(), stream);
-  return {kept_hits_.data(), poses.size(), firings_, device.part->device, stream};
+  if (kept_poses_ == nullptr) kept_poses_ = std::make_unique<BatchPoses>();
+  kept_poses_->upload(scans, scene_.origin, stream);
+  RaySource source = source_of(device, scans.size());
+  kept_poses_->set(source);
+  device.part->scene->cast(source, scans.size() * firings_, depth, kept_hits_.data(), stream);
+  return {kept_hits_.data(), scans.size(), firings_, device.part->device, stream};
 }
 
-void GpuScanner::Impl::reserve(ScanBatch& batch, std::size_t scans, std::size_t result_bytes,
-                               bool points) const {
-  const std::size_t hits = scans * firings_;
+void GpuScanner::Impl::reserve(ScanBatch& batch, std::size_t scans, int depth,
+                               Results results) const {
+  const std::size_t firings = scans * firings_;
+  const std::size_t hits = firings * static_cast<std::size_t>(depth);
   const cudaStream_t stream = batch.stream.get();
-  if (batch.poses.size() < scans) {
-    batch.poses = gpu::PinnedBuffer<ScanPose>(scans);
-    batch.device_poses = gpu::DeviceBuffer<ScanPose>(scans, stream);
-  }
   if (batch.device_hits.size() < hits) batch.device_hits = gpu::DeviceBuffer<Hit>(hits, stream);
-  if (points && batch.device_points.size() < hits)
-    batch.device_points = gpu::DeviceBuffer<PointHit>(hits, stream);
-  if (batch.results.size() < hits * result_bytes)
-    batch.results = gpu::PinnedBuffer<std::uint8_t>(hits * result_bytes);
+  if (results == Results::points && batch.device_points.size() < firings)
+    batch.device_points = gpu::DeviceBuffer<PointHit>(firings, stream);
+  const std::size_t bytes =
+      results == Results::points ? firings * sizeof(PointHit) : hits * sizeof(Hit);
+  if (batch.results.size() < bytes) batch.results = gpu::PinnedBuffer<std::uint8_t>(bytes);
 }
 
 void GpuScanner::Impl::launch(DeviceScanner& device, ScanBatch& batch,
-                              std::span<const TimedPose> poses, bool points) const {
+                              std::span<const ScanMotion> scans, int depth, Results results) const {
   const cudaStream_t stream = batch.stream.get();
-  for (std::size_t i = 0; i < batch.count; ++i)
-    batch.poses.data()[i] = scan_pose(poses[batch.first + i].world_from_sensor, scene_.origin);
-  batch.device_poses.upload(batch.poses.span().first(batch.count));
+  batch.poses.upload(scans.subspan(batch.first, batch.count), scene_.origin, stream);
   RaySource source = source_of(device, batch.count);
-  source.poses = batch.device_poses.data();
+  batch.poses.set(source);
   const std::uint64_t rays = batch.count * firings_;
   batch.begin.record(stream);
-  device.part->scene->cast(source, rays, 1, batch.device_hits.data(), stream);
-  const void* results = batch.device_hits.data();
-  std::size_t bytes = rays * sizeof(Hit);
-  if (points) {
-    gpu::queue_point_hits(batch.device_hits.data(), device.firings.data(), source.firings, rays,
-                          batch.device_points.data(), stream);
-    results = batch.device_points.data();
+  device.part->scene->cast(source, rays, depth, batch.device_hits.data(), stream);
+  const void* values = batch.device_hits.data();
+  std::size_t bytes = rays * static_cast<std::uint64_t>(depth) * sizeof(Hit);
+  if (results == Results::points) {
+    gpu::queue_point_hits(batch.device_hits.data(), device.firings.data(), source.firing_count,
+                          rays, batch.device_points.data(), stream);
+    values = batch.device_points.data();
     bytes = rays * sizeof(PointHit);
   }
   batch.end.record(stream);
-  cuda_check(cudaMemcpyAsync(batch.results.data(), results, bytes, cudaMemcpyDeviceToHost, stream),
+  cuda_check(cudaMemcpyAsync(batch.results.data(), values, bytes, cudaMemcpyDeviceToHost, stream),
              "copy the hits from the GPU");
 }
 
-CastTimes GpuScanner::Impl::cast(std::span<const TimedPose> poses, bool points,
+CastTimes GpuScanner::Impl::cast(std::span<const ScanMotion> motions, Results results, int depth,
                                  FunctionRef<void(std::size_t, const std::uint8_t*)> sink) {
-  const std::size_t result_bytes = points ? sizeof(PointHit) : sizeof(Hit);
+  const std::size_t hits_a_scan = firings_ * static_cast<std::size_t>(depth);
+  const std::size_t scan_bytes =
+      results == Results::points ? firings_ * sizeof(PointHit) : hits_a_scan * sizeof(Hit);
   const std::size_t lanes = devices_.size() * gpu::kSlots;
-  const std::size_t most = std::clamp<std::size_t>(gpu::kRaysAtOnce / firings_, 1, 256);
+  const std::size_t most = std::clamp<std::size_t>(gpu::kRaysAtOnce / hits_a_scan, 1, 256);
   const std::size_t scans =
-      std::max<std::size_t>(1, std::min(most, (poses.size() + lanes - 1) / lanes));
+      std::max<std::size_t>(1, std::min(most, (motions.size() + lanes - 1) / lanes));
   // Batch k runs in lane k % lanes, so batches come back in their order.
-  for (std::size_t lane = 0; lane < std::min(lanes, (poses.size() + scans - 1) / scans); ++lane) {
+  for (std::size_t lane = 0; lane < std::min(lanes, (motions.size() + scans - 1) / scans); ++lane) {
     DeviceScanner& device = *devices_[lane % devices_.size()];
     const DeviceGuard guard(device.part->device);
     auto& batch = device.batches[lane / devices_.size()];
     if (batch == nullptr) batch = std::make_unique<ScanBatch>();
-    reserve(*batch, scans, result_bytes, points);
+    reserve(*batch, scans, depth, results);
     batch->stream.wait("prepare scans on the GPU");  // what an exception left there
     batch->count = 0;
   }
@@ -266,8 +308,8 @@ CastTimes GpuScanner::Impl::cast(std::span<const TimedPose> poses, bool points,
     const DeviceGuard guard(device.part->device);
     ScanBatch& batch = *device.batches[k % lanes / devices_.size()];
     batch.first = k * scans;
-    batch.count = std::min(scans, poses.size() - batch.first);
-    launch(device, batch, poses, points);
+    batch.count = std::min(scans, motions.size() - batch.first);
+    launch(device, batch, motions, depth, results);
   };
   const auto end_batch = [&](std::size_t k) {
     DeviceScanner& device = *devices_[k % lanes % devices_.size()];
@@ -277,10 +319,10 @@ CastTimes GpuScanner::Impl::cast(std::span<const TimedPose> poses, bool points,
     times.traced_s += batch.end.seconds_since(batch.begin);
     const auto sink_start = gpu::Clock::now();
     for (std::size_t i = 0; i < batch.count; ++i)
-      sink(batch.first + i, batch.results.data() + i * firings_ * result_bytes);
+      sink(batch.first + i, batch.results.data() + i * scan_bytes);
     in_sink_s += gpu::seconds_since(sink_start);
   };
-  const std::size_t batches = (poses.size() + scans - 1) / scans;
+  const std::size_t batches = (motions.size() + scans - 1) / scans;
   for (std::size_t k = 0; k < std::min(lanes, batches); ++k) begin_batch(k);
   for (std::size_t k = 0; k < batches; ++k) {
     end_batch(k);
@@ -309,22 +351,25 @@ std::vector<Hit> download(const DeviceHits& hits, int depth) {
 GpuScanner::GpuScanner(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 GpuScanner::~GpuScanner() = default;
 
-std::span<const Hit> GpuScanner::scan(const TimedPose& pose) { return impl_->scan(pose); }
+std::span<const Hit> GpuScanner::scan(const ScanMotion& motion) { return impl_->scan(motion); }
 
-CastTimes GpuScanner::cast(std::span<const TimedPose> poses, ScanCaster::Sink sink) {
-  return impl_->cast(poses, false, [&](std::size_t pose, const std::uint8_t* results) {
-    sink(pose, {reinterpret_cast<const Hit*>(results), impl_->firings()});
-  });
+CastTimes GpuScanner::cast(std::span<const ScanMotion> scans, int depth, ScanCaster::Sink sink) {
+  const std::size_t hits = impl_->firings() * static_cast<std::size_t>(depth);
+  return impl_->cast(scans, Impl::Results::hits, depth,
+                     [&](std::size_t scan, const std::uint8_t* results) {
+                       sink(scan, {reinterpret_cast<const Hit*>(results), hits});
+                     });
 }
 
-CastTimes GpuScanner::cast_points(std::span<const TimedPose> poses, PointSink sink) {
-  return impl_->cast(poses, true, [&](std::size_t pose, const std::uint8_t* results) {
-    sink(pose, {reinterpret_cast<const PointHit*>(results), impl_->firings()});
-  });
+CastTimes GpuScanner::cast_points(std::span<const ScanMotion> scans, PointSink sink) {
+  return impl_->cast(scans, Impl::Results::points, 1,
+                     [&](std::size_t scan, const std::uint8_t* results) {
+                       sink(scan, {reinterpret_cast<const PointHit*>(results), impl_->firings()});
+                     });
 }
 
-DeviceHits GpuScanner::cast_on_device(std::span<const TimedPose> poses, int depth) {
-  return impl_->cast_on_device(poses, depth);
+DeviceHits GpuScanner::cast_on_device(std::span<const ScanMotion> scans, int depth) {
+  return impl_->cast_on_device(scans, depth);
 }
 
 }  // namespace adasplats

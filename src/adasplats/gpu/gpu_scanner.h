@@ -14,6 +14,7 @@
 namespace adasplats {
 
 namespace gpu {
+struct BatchPoses;
 struct DeviceScanner;
 struct ScanBatch;
 }  // namespace gpu
@@ -28,26 +29,27 @@ struct GpuScanner::Impl {
   Impl& operator=(const Impl&) = delete;
 
   std::size_t firings() const { return firings_; }
-  std::span<const Hit> scan(const TimedPose& pose);
-  DeviceHits cast_on_device(std::span<const TimedPose> poses, int depth);
-  /// `sink` takes the results of one scan: Hits, or PointHits where `points`.
-  CastTimes cast(std::span<const TimedPose> poses, bool points,
-                 FunctionRef<void(std::size_t pose, const std::uint8_t* results)> sink);
+  std::span<const Hit> scan(const ScanMotion& motion);
+  DeviceHits cast_on_device(std::span<const ScanMotion> scans, int depth);
+  enum class Results : std::uint8_t { hits, points };
+  /// `sink` takes the results of one scan: Hits, `depth` of each firing, or one PointHit.
+  CastTimes cast(std::span<const ScanMotion> scans, Results results, int depth,
+                 FunctionRef<void(std::size_t scan, const std::uint8_t* results)> sink);
 
  private:
   /// What a launch of so many scans casts, without poses.
   gpu::RaySource source_of(const gpu::DeviceScanner& device, std::size_t scans) const;
-  void reserve(gpu::ScanBatch& batch, std::size_t scans, std::size_t result_bytes,
-               bool points) const;
-  void launch(gpu::DeviceScanner& device, gpu::ScanBatch& batch, std::span<const TimedPose> poses,
-              bool points) const;
+  void reserve(gpu::ScanBatch& batch, std::size_t scans, int depth, Results results) const;
+  void launch(gpu::DeviceScanner& device, gpu::ScanBatch& batch, std::span<const ScanMotion> scans,
+              int depth, Results results) const;
 
   const gpu::SceneParts& scene_;
   std::size_t firings_;
   gpu::RaySource source_;  ///< without pointers
   std::vector<std::unique_ptr<gpu::DeviceScanner>> devices_;
   gpu::PinnedBuffer<Hit> single_;
-  gpu::DeviceBuffer<ScanPose> kept_poses_;
+  std::unique_ptr<gpu::BatchPoses> single_poses_;
+  std::unique_ptr<gpu::BatchPoses> kept_poses_;
   gpu::DeviceBuffer<Hit> kept_hits_;
 };
 

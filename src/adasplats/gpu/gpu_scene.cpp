@@ -28,12 +28,14 @@ class SceneScanCaster final : public ScanCaster {
   explicit SceneScanCaster(const SceneParts& parts) : parts_(parts) {}
 
   CastTimes cast(const LidarModel& sensor, std::span<const Firing> firings,
-                 std::span<const TimedPose> poses, Sink sink) const override {
-    if (poses.empty()) return {};
+                 std::span<const ScanMotion> scans, int depth, Sink sink) const override {
+    if (scans.empty()) return {};
+    const std::size_t hits = firings.size() * static_cast<std::size_t>(depth);
     return GpuScanner::Impl(parts_, sensor, firings)
-        .cast(poses, false, [&](std::size_t pose, const std::uint8_t* results) {
-          sink(pose, {reinterpret_cast<const Hit*>(results), firings.size()});
-        });
+        .cast(scans, GpuScanner::Impl::Results::hits, depth,
+              [&](std::size_t scan, const std::uint8_t* results) {
+                sink(scan, {reinterpret_cast<const Hit*>(results), hits});
+              });
   }
 
  private:

@@ -54,20 +54,20 @@ class GpuScanner {
   GpuScanner& operator=(const GpuScanner&) = delete;
 
   /// One scan, now: hits[i] of firing i, valid until the next call.
-  std::span<const Hit> scan(const TimedPose& pose);
+  std::span<const Hit> scan(const ScanMotion& motion);
 
   /// Many scans a launch; hits are copied while the next ones are traced. Several devices share the
   /// scans. `sink` as in ScanCaster.
-  CastTimes cast(std::span<const TimedPose> poses, ScanCaster::Sink sink);
+  CastTimes cast(std::span<const ScanMotion> scans, int depth, ScanCaster::Sink sink);
 
-  /// The same with points instead of distances.
-  using PointSink = FunctionRef<void(std::size_t pose, std::span<const PointHit> hits)>;
-  CastTimes cast_points(std::span<const TimedPose> poses, PointSink sink);
+  /// The nearest hits as points instead of distances, each in the sensor's frame at its time.
+  using PointSink = FunctionRef<void(std::size_t scan, std::span<const PointHit> hits)>;
+  CastTimes cast_points(std::span<const ScanMotion> scans, PointSink sink);
 
   /// Without copying anything back, on the first device; the `depth` nearest hits of every ray
   /// (then there are depth times as many hits). Asynchronous: whoever reads them does it on
   /// `stream`, or waits for it.
-  DeviceHits cast_on_device(std::span<const TimedPose> poses, int depth = 1);
+  DeviceHits cast_on_device(std::span<const ScanMotion> scans, int depth = 1);
 
   struct Impl;  ///< private to gpu/
 

@@ -44,10 +44,10 @@ std::vector<Hit> download(const DeviceHits&, int) { throw_missing(); }
 
 struct GpuScanner::Impl {};
 GpuScanner::~GpuScanner() = default;
-std::span<const Hit> GpuScanner::scan(const TimedPose&) { throw_missing(); }
-CastTimes GpuScanner::cast(std::span<const TimedPose>, ScanCaster::Sink) { throw_missing(); }
-CastTimes GpuScanner::cast_points(std::span<const TimedPose>, PointSink) { throw_missing(); }
-DeviceHits GpuScanner::cast_on_device(std::span<const TimedPose>, int) { throw_missing(); }
+std::span<const Hit> GpuScanner::scan(const ScanMotion&) { throw_missing(); }
+CastTimes GpuScanner::cast(std::span<const ScanMotion>, int, ScanCaster::Sink) { throw_missing(); }
+CastTimes GpuScanner::cast_points(std::span<const ScanMotion>, PointSink) { throw_missing(); }
+DeviceHits GpuScanner::cast_on_device(std::span<const ScanMotion>, int) { throw_missing(); }
 
 struct GpuRenderer::Impl {};
 GpuRenderer::~GpuRenderer() = default;

@@ -42,17 +42,27 @@ LidarModel small_lidar() {
   LidarModel sensor;
   sensor.elevations_rad = {0.3, 0.2, 0.1, 0, -0.1, -0.2, -0.3};
   sensor.columns = 181;  // no multiple of a tile
+  for (int i = 0; i < 7; ++i) {
+    sensor.beam_origins_m.push_back({0.05, 0.01 * i, 0.1});
+    sensor.firing_times_s.push_back(2e-6 * i);
+  }
   sensor.min_range_m = 0.5;
   sensor.max_range_m = 18;
   return sensor;
 }
 
-std::vector<TimedPose> poses(std::size_t count) {
-  std::vector<TimedPose> result;
+/// Scans in turn standing still, moving evenly and moving in three parts.
+std::vector<ScanMotion> motions(std::size_t count) {
+  const auto pose = [](double t) {
+    return RigidTransform{rotation_from_yaw_pitch_roll(t, 0.1, -0.05),
+                          kOrigin + Vec3d{t, -0.5 * t, 0.1}};
+  };
+  std::vector<ScanMotion> result;
   for (std::size_t i = 0; i < count; ++i) {
     const double t = 0.1 * static_cast<double>(i);
-    result.push_back(
-        {t, {rotation_from_yaw_pitch_roll(t, 0.1, -0.05), kOrigin + Vec3d{t, -0.5 * t, 0.1}}});
+    result.push_back({{t, pose(t)}, {}});
+    for (std::size_t k = 0; k < 2 * (i % 3); ++k)
+      result.back().knots.push_back(pose(t + 0.005 * static_cast<double>(k)));
   }
   return result;
 }
@@ -69,10 +79,10 @@ class OnGpu : public testing::TestWithParam<GpuBackend> {
   }
 
   SceneView view() const { return {disks_, nullptr}; }
-  std::vector<Hit> expected(const TimedPose& pose) const {
-    const auto rays = scan_rays(sensor_, firings_, pose.world_from_sensor, kOrigin, executor_);
-    std::vector<Hit> hits(rays.size());
-    tracer_->nearest(rays, hits, executor_);
+  std::vector<Hit> expected(const ScanMotion& motion, int depth = 1) const {
+    const auto rays = scan_rays(sensor_, firings_, motion, kOrigin, executor_);
+    std::vector<Hit> hits(rays.size() * static_cast<std::size_t>(depth));
+    tracer_->nearest_hits(rays, depth, hits, executor_);
     return hits;
   }
 
@@ -88,20 +98,21 @@ class OnGpu : public testing::TestWithParam<GpuBackend> {
 
 TEST_P(OnGpu, OneScan) {
   const auto scanner = scene_->scanner(sensor_, firings_);
-  for (const TimedPose& pose : poses(3)) {
-    const auto hits = scanner->scan(pose);
-    EXPECT_EQ(std::vector<Hit>(hits.begin(), hits.end()), expected(pose));
+  for (const ScanMotion& motion : motions(5)) {
+    const auto hits = scanner->scan(motion);
+    EXPECT_EQ(std::vector<Hit>(hits.begin(), hits.end()), expected(motion));
   }
 }
 
 TEST_P(OnGpu, ScansComeInTheOrderOfTheirPoses) {
   for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
-    const auto trajectory = poses(count);
+    const auto scans = motions(count);
+    const int depth = count == 2 ? 4 : 1;
     std::size_t next = 0;
     const CastTimes times = scene_->scan_caster().cast(
-        sensor_, firings_, trajectory, [&](std::size_t i, std::span<const Hit> hits) {
+        sensor_, firings_, scans, depth, [&](std::size_t i, std::span<const Hit> hits) {
           EXPECT_EQ(i, next++);
-          EXPECT_EQ(std::vector<Hit>(hits.begin(), hits.end()), expected(trajectory[i])) << i;
+          EXPECT_EQ(std::vector<Hit>(hits.begin(), hits.end()), expected(scans[i], depth)) << i;
         });
     EXPECT_EQ(next, count);
     EXPECT_GE(times.traced_s, 0);
@@ -111,12 +122,13 @@ TEST_P(OnGpu, ScansComeInTheOrderOfTheirPoses) {
 
 TEST_P(OnGpu, PointsAreRangesAlongTheFirings) {
   const auto scanner = scene_->scanner(sensor_, firings_);
-  const auto trajectory = poses(3);
+  const auto trajectory = motions(3);
   scanner->cast_points(trajectory, [&](std::size_t i, std::span<const PointHit> points) {
     const std::vector<Hit> hits = expected(trajectory[i]);
     for (std::size_t k = 0; k < hits.size(); ++k) {
       ASSERT_EQ(points[k].primitive, hits[k].primitive);
-      const Vec3f point = hits[k].valid() ? hits[k].t * firings_[k].direction : Vec3f{};
+      const Vec3f point =
+          hits[k].valid() ? firings_[k].origin + hits[k].t * firings_[k].direction : Vec3f{};
       ASSERT_EQ(points[k].position, point);
     }
   });
@@ -124,16 +136,13 @@ TEST_P(OnGpu, PointsAreRangesAlongTheFirings) {
 
 TEST_P(OnGpu, HitsCanStayThere) {
   const auto scanner = scene_->scanner(sensor_, firings_);
-  const auto trajectory = poses(4);
+  const auto trajectory = motions(4);
   const DeviceHits kept = scanner->cast_on_device(trajectory, 3);
   EXPECT_EQ(kept.scans, 4U);
   EXPECT_EQ(kept.rays_per_scan, firings_.size());
   const std::vector<Hit> hits = download(kept, 3);
   for (std::size_t scan = 0; scan < 4; ++scan) {
-    const auto rays =
-        scan_rays(sensor_, firings_, trajectory[scan].world_from_sensor, kOrigin, executor_);
-    std::vector<Hit> three(rays.size() * 3);
-    tracer_->nearest_hits(rays, 3, three, executor_);
+    const std::vector<Hit> three = expected(trajectory[scan], 3);
     const auto begin = hits.begin() + static_cast<std::ptrdiff_t>(scan * three.size());
     EXPECT_EQ(std::vector<Hit>(begin, begin + static_cast<std::ptrdiff_t>(three.size())), three);
   }
@@ -141,13 +150,13 @@ TEST_P(OnGpu, HitsCanStayThere) {
 
 TEST_P(OnGpu, AnExceptionOfTheSinkEndsTheCastingAndNothingElse) {
   const auto scanner = scene_->scanner(sensor_, firings_);
-  const auto trajectory = poses(9);
+  const auto trajectory = motions(9);
   const auto stop = [](std::size_t i, std::span<const Hit>) {
     if (i == 1) throw std::runtime_error("enough");
   };
-  EXPECT_THROW(scanner->cast(trajectory, stop), std::runtime_error);
+  EXPECT_THROW(scanner->cast(trajectory, 1, stop), std::runtime_error);
   std::size_t scans = 0;
-  scanner->cast(trajectory, [&](std::size_t i, std::span<const Hit> hits) {
+  scanner->cast(trajectory, 1, [&](std::size_t i, std::span<const Hit> hits) {
     EXPECT_EQ(std::vector<Hit>(hits.begin(), hits.end()), expected(trajectory[i]));
     ++scans;
   });

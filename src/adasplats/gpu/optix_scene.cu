@@ -178,7 +178,7 @@ class OptixScene final : public DeviceScene {
                     cudaStream_t stream) const {
     constexpr std::uint64_t kMostHits = std::uint64_t{1} << 24U;  // 128 MB
     // Whole scans: within one, hits may come in another order than rays.
-    const std::uint64_t scan = source.order == nullptr ? 1 : source.firings;
+    const std::uint64_t scan = source.order == nullptr ? 1 : source.firing_count;
     const std::uint64_t part =
         std::min(count, std::max<std::uint64_t>(kMostHits / depth / scan, 1) * scan);
     const DeviceBuffer<Hit> lists(part * depth, stream);

@@ -5,12 +5,12 @@
 
 namespace adasplats::gpu {
 
-void queue_point_hits(const Hit* hits, const Vec3f* directions, std::uint32_t firings,
+void queue_point_hits(const Hit* hits, const FiringRay* firings, std::uint32_t firing_count,
                       std::uint64_t count, PointHit* points, cudaStream_t stream) {
   for_each(count, stream, "turn hits into points on the GPU", [=] __device__(std::uint64_t i) {
     const Hit hit = hits[i];
-    const Vec3f direction = directions[i % firings];
-    points[i] = {hit.valid() ? hit.t * direction : Vec3f{}, hit.primitive};
+    const FiringRay firing = firings[i % firing_count];
+    points[i] = {hit.valid() ? firing.origin + hit.t * firing.direction : Vec3f{}, hit.primitive};
   });
 }
 

@@ -7,11 +7,12 @@
 #include <cstdint>
 
 #include "adasplats/gpu/gpu_scene.h"
+#include "adasplats/simulate/scan_ray.h"
 
 namespace adasplats::gpu {
 
 /// Private to gpu/: queues the turning of hits into points in the frame of their sensor.
-void queue_point_hits(const Hit* hits, const Vec3f* directions, std::uint32_t firings,
+void queue_point_hits(const Hit* hits, const FiringRay* firings, std::uint32_t firing_count,
                       std::uint64_t count, PointHit* points, cudaStream_t stream);
 
 }  // namespace adasplats::gpu

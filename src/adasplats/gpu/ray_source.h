@@ -16,18 +16,21 @@ namespace adasplats::gpu {
 struct RaySource {
   enum class Kind : std::uint32_t {
     given,  ///< rays[i]
-    scans,  ///< ray i is firing i % firings of scan i / firings
+    scans,  ///< ray i is firing i % firing_count of scan i / firing_count
     image,  ///< ray i is sample i of a picture, tile by tile (see sample_of)
   };
   Kind kind = Kind::given;
 
   const Ray* rays = nullptr;
 
-  const Vec3f* directions = nullptr;     ///< of the firings, sensor frame, in casting order
+  const FiringRay* firings = nullptr;    ///< in casting order
   const std::uint32_t* order = nullptr;  ///< which firing the i-th of a scan is; null: the i-th
-  const ScanPose* poses = nullptr;       ///< one a scan; null: `pose` for all
+  const ScanPose* poses = nullptr;       ///< of all scans; null: `pose` for all
+  /// Where the poses of each scan begin, one more than scans: knots of its motion. Null: one a
+  /// scan.
+  const std::uint32_t* first_poses = nullptr;
   ScanPose pose;
-  std::uint32_t firings = 1;
+  std::uint32_t firing_count = 1;
   float t_min = 0, t_max = 0;
 
   CameraRays camera;
@@ -79,17 +82,27 @@ ADASPLATS_HD inline std::uint64_t ray_of_sample(SamplePlace at, std::int32_t col
 /// Where the hits of ray i go, in rays: the order of casting is the backend's, that of hits not.
 ADASPLATS_HD inline std::uint64_t place_of_ray(const RaySource& source, std::uint64_t i) {
   if (source.order == nullptr) return i;
-  const std::uint32_t within = divide(i, source.firings).rest;
+  const std::uint32_t within = divide(i, source.firing_count).rest;
   return i - within + source.order[within];
 }
 
+/// Whether sensors stand still is known when a kernel is chosen: it then needs fewer registers.
+enum class Sensors : std::uint8_t { still, may_move };
+
+template <Sensors kSensors = Sensors::may_move>
 ADASPLATS_HD inline Ray ray_of(const RaySource& source, std::uint64_t i) {
   switch (source.kind) {
     case RaySource::Kind::given: return source.rays[i];
     case RaySource::Kind::scans: {
-      const Quotient at = divide(i, source.firings);  // the scan, the firing
-      return scan_ray(source.poses == nullptr ? source.pose : source.poses[at.whole],
-                      source.directions[at.rest], source.t_min, source.t_max);
+      const Quotient at = divide(i, source.firing_count);  // the scan, the firing
+      const FiringRay firing = source.firings[at.rest];
+      if (kSensors == Sensors::may_move && source.first_poses != nullptr) {
+        const std::uint32_t first = source.first_poses[at.whole];
+        return scan_ray(source.poses + first, source.first_poses[at.whole + 1] - first, firing,
+                        source.t_min, source.t_max);
+      }
+      return still_scan_ray(source.poses == nullptr ? source.pose : source.poses[at.whole], firing,
+                            source.t_min, source.t_max);
     }
     case RaySource::Kind::image: {
       const SamplePlace at = sample_of(i, source.columns);

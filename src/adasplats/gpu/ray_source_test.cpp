@@ -34,7 +34,7 @@ TEST(RaySource, HitsOfScansGoToTheirFirings) {
   const std::vector<std::uint32_t> order = {2, 0, 1};
   RaySource source;
   source.kind = RaySource::Kind::scans;
-  source.firings = 3;
+  source.firing_count = 3;
   EXPECT_EQ(place_of_ray(source, 4), 4U);
   source.order = order.data();
   EXPECT_EQ(place_of_ray(source, 0), 2U);

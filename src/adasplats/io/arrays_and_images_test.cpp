@@ -84,6 +84,41 @@ TEST(Png, PixelsMustMatchTheSize) {
   EXPECT_THROW(write_png("never-written.png", -2, -2, pixels), std::logic_error);
 }
 
+// The oracle: libpng's reader of 16-bit levels as they are.
+TEST(Png, GreyLevelsOf16Bits) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "image.png";
+  const std::vector<std::uint16_t> levels = {0, 1, 255, 256, 12345, 65535};
+  write_png16(path, 3, 2, levels);
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  ASSERT_NE(png_image_begin_read_from_file(&image, path.c_str()), 0);
+  EXPECT_EQ(image.format, static_cast<png_uint_32>(PNG_FORMAT_LINEAR_Y));
+  EXPECT_EQ(image.width, 3U);
+  std::vector<std::uint16_t> read(levels.size());
+  ASSERT_NE(png_image_finish_read(&image, nullptr, read.data(), 0, nullptr), 0);
+  EXPECT_EQ(read, levels);
+  EXPECT_THROW(write_png16(path, 2, 2, levels), std::logic_error);
+  EXPECT_THROW(write_png16(path, 0, 0, {}), std::logic_error);
+}
+
+// The oracle: the values back from the bytes; shapes as numpy writes tuples.
+TEST(Npy, AnyTypeAndShape) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "file.npy";
+  const std::vector<std::uint32_t> values = {1, 2, 3, 0xffffffff};
+  write_npy(path, NpyArray{ColumnType::u32, {2, 2, 1}, values.data()});
+  const std::string bytes = read_file(path);
+  EXPECT_NE(bytes.find("'descr': '<u4', 'fortran_order': False, 'shape': (2, 2, 1), }"),
+            std::string::npos);
+  EXPECT_EQ(bytes.substr(128), bytes_of(1U) + bytes_of(2U) + bytes_of(3U) + bytes_of(0xffffffffU));
+  write_npy(path, NpyArray{ColumnType::i8, {0, 9}, nullptr});
+  EXPECT_NE(read_file(path).find("'|i1'"), std::string::npos);
+  const NpyArray huge = {ColumnType::f64, {std::size_t{1} << 62}, nullptr};
+  EXPECT_THROW(write_npy(path, huge), std::logic_error);
+  EXPECT_THROW(write_npy(path, NpyArray{ColumnType::u8, {}, nullptr}), std::logic_error);
+}
+
 TEST(KittiBin, FourFloatsAPoint) {
   const TemporaryFolder folder;
   std::string content;

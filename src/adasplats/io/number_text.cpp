@@ -3,6 +3,7 @@
 #include "adasplats/io/number_text.h"
 
 #include <algorithm>
+#include <array>
 
 namespace adasplats {
 namespace {
@@ -48,6 +49,13 @@ std::string lower_case(std::string_view text) {
     return (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
   });
   return lower;
+}
+
+std::string exact_text(double value) {
+  std::array<char, 32> buffer;
+  // Adding zero makes a 0 of -0.
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0).ptr;
+  return {buffer.data(), end};
 }
 
 }  // namespace adasplats

@@ -50,6 +50,9 @@ std::optional<T> parse_number(std::string_view token) {
 /// The token in quotes for a message: at most 40 characters, what cannot be printed as '?'.
 std::string shown(std::string_view token);
 
+/// The shortest text that reads back as the same number; a zero has no sign.
+std::string exact_text(double value);
+
 /// `text` with ASCII letters in lower case, whatever the locale.
 std::string lower_case(std::string_view text);
 

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
@@ -10,12 +9,10 @@
 
 #include "adasplats/io/atomic_file.h"
 #include "adasplats/io/ply.h"
-#include "adasplats/io/records.h"
+#include "adasplats/io/record_writer.h"
 
 namespace adasplats {
 namespace {
-
-constexpr std::size_t kChunkBytes = std::size_t{256} << 10;
 
 std::string_view ply_type(ColumnType type) {
   switch (type) {
@@ -54,47 +51,6 @@ std::string header_start(std::span<const std::string> comments) {
   return text;
 }
 
-/// Copies one value of every row of `column` to `to`, `record_bytes` apart.
-template <std::size_t kBytes>
-void spread_values(const ColumnView& column, std::size_t first_row, std::size_t rows,
-                   std::size_t record_bytes, char* to) {
-  const char* const from = static_cast<const char*>(column.data) + first_row * column.stride_bytes;
-  for (std::size_t row = 0; row < rows; ++row)
-    std::memcpy(to + row * record_bytes, from + row * column.stride_bytes, kBytes);
-}
-
-void spread_column(const ColumnView& column, std::size_t first_row, std::size_t rows,
-                   std::size_t record_bytes, char* to) {
-  switch (type_bytes(column.type)) {
-    case 1: return spread_values<1>(column, first_row, rows, record_bytes, to);
-    case 2: return spread_values<2>(column, first_row, rows, record_bytes, to);
-    case 4: return spread_values<4>(column, first_row, rows, record_bytes, to);
-    default: return spread_values<8>(column, first_row, rows, record_bytes, to);
-  }
-}
-
-/// Writes `rows` records: `prefix_bytes` that `fill_prefix(row, place)` fills, then the columns.
-template <class FillPrefix>
-void write_records(AtomicFile& file, std::size_t rows, std::span<const ColumnView> columns,
-                   std::size_t prefix_bytes, FillPrefix&& fill_prefix) {
-  std::size_t record_bytes = prefix_bytes;
-  for (const ColumnView& column : columns) record_bytes += type_bytes(column.type);
-  if (record_bytes == 0) return;
-  const std::size_t chunk_rows = std::max<std::size_t>(1, kChunkBytes / record_bytes);
-  std::vector<char> chunk(std::min(chunk_rows, rows) * record_bytes);
-  for (std::size_t first = 0; first < rows; first += chunk_rows) {
-    const std::size_t count = std::min(chunk_rows, rows - first);
-    for (std::size_t row = 0; row < count && prefix_bytes > 0; ++row)
-      fill_prefix(first + row, chunk.data() + row * record_bytes);
-    std::size_t offset = prefix_bytes;
-    for (const ColumnView& column : columns) {
-      spread_column(column, first, count, record_bytes, chunk.data() + offset);
-      offset += type_bytes(column.type);
-    }
-    file.write(chunk.data(), count * record_bytes);
-  }
-}
-
 }  // namespace
 
 void write_ply(const std::filesystem::path& path, std::size_t rows,
@@ -103,7 +59,7 @@ void write_ply(const std::filesystem::path& path, std::size_t rows,
                              "\n" + property_lines(columns) + "end_header\n";
   AtomicFile file(path);
   file.write(header);
-  write_records(file, rows, columns, 0, [](std::size_t, char*) {});
+  write_records(file, rows, columns);
   file.commit();
 }
 
@@ -127,7 +83,7 @@ void write_ply_mesh(const std::filesystem::path& path, std::size_t vertices,
                              property_lines(face_columns) + "end_header\n";
   AtomicFile file(path);
   file.write(header);
-  write_records(file, vertices, vertex_columns, 0, [](std::size_t, char*) {});
+  write_records(file, vertices, vertex_columns);
   constexpr std::size_t kCornerBytes = 3 * sizeof(std::int32_t);
   write_records(file, faces, face_columns, 1 + kCornerBytes, [&](std::size_t face, char* place) {
     *place = 3;

@@ -12,4 +12,8 @@ namespace adasplats {
 void write_png(const std::filesystem::path& path, int width, int height,
                std::span<const std::uint8_t> pixels);
 
+/// Writes a 16-bit grey image, rows from the top, `levels` of width * height.
+void write_png16(const std::filesystem::path& path, int width, int height,
+                 std::span<const std::uint16_t> levels);
+
 }  // namespace adasplats

@@ -15,6 +15,7 @@
 #include "adasplats/io/input_file.h"
 #include "adasplats/io/obj.h"
 #include "adasplats/io/ply.h"
+#include "adasplats/scene/gltf.h"
 
 namespace adasplats {
 namespace {
@@ -148,12 +149,13 @@ void save_mesh(const std::filesystem::path& path, const MeshModel& model) {
 
 MeshModel load_mesh(const std::filesystem::path& path) {
   if (is_ply(path)) return to_model(path, read_ply_mesh(path));
+  if (is_gltf(path)) return to_model(path, read_gltf_mesh(path));
   if (is_obj(path)) return to_model(path, read_obj_mesh(path));
-  throw data_error({path, {}, {}}, "not a mesh: neither PLY nor OBJ");
+  throw data_error({path, {}, {}}, "not a mesh: neither PLY, OBJ nor glTF");
 }
 
 bool is_mesh_file(const std::filesystem::path& path) {
-  return is_ply(path) ? ply_has_faces(path) : is_obj(path);
+  return is_ply(path) ? ply_has_faces(path) : is_gltf(path) || is_obj(path);
 }
 
 }  // namespace adasplats

@@ -3,17 +3,14 @@
 
 // A sensor as a list of rays: azimuth_deg, elevation_deg[, time_s[, ring]].
 
+#include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
 
-#include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
 #include "adasplats/sensors/lidar_files.h"
+#include "adasplats/sensors/text_fields.h"
 
 namespace adasplats {
 
@@ -22,91 +19,114 @@ namespace {
 constexpr std::array<std::string_view, 4> kFields = {"azimuth_deg", "elevation_deg", "time_s",
                                                      "ring"};
 
-std::string_view trimmed(std::string_view text) {
-  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-/// Takes what stands before `separator` off the front of `rest`.
-std::string_view take(std::string_view& rest, char separator) {
-  const std::size_t end = rest.find(separator);
-  const std::string_view part = rest.substr(0, end);
-  rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
-  return part;
-}
-
-/// What a line may hold, for messages: 40 characters are enough to find it.
-std::string shown(std::string_view text) {
-  return "'" + std::string(text.substr(0, 40)) + (text.size() > 40 ? "...'" : "'");
-}
-
-double parse_number(std::string_view text, std::string_view field, const FilePlace& place) {
-  double value = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    throw data_error(place, std::string(field) + " is " + shown(text) + ", not a finite number");
-  return value;
-}
-
 std::uint16_t parse_ring(std::string_view text, const FilePlace& place) {
-  std::uint16_t ring = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), ring);
-  if (status != std::errc() || end != text.data() + text.size())
+  const std::optional<std::uint16_t> ring = parse_number<std::uint16_t>(text);
+  if (!ring)
     throw data_error(place, "ring is " + shown(text) + ", not a whole number from 0 to 65535");
-  return ring;
+  return *ring;
 }
 
-/// The line with the names of its columns: the first ones of kFields.
-bool is_header(std::string_view line) {
-  std::size_t column = 0;
-  for (std::string_view rest = line; !rest.empty(); ++column)
-    if (column >= kFields.size() || trimmed(take(rest, ',')) != kFields[column]) return false;
-  return column >= 2;
-}
+/// Which column holds each of kFields; -1: none does.
+using Columns = std::array<int, kFields.size()>;
 
-Firing parse_ray(std::string_view line, std::uint32_t index, const FilePlace& place) {
-  std::array<std::string_view, kFields.size()> fields;
-  std::size_t count = 0;
-  bool more = true;
-  for (std::string_view rest = line; more; ++count) {
-    more = rest.find(',') != std::string_view::npos;
-    const std::string_view field = trimmed(take(rest, ','));
-    if (count < fields.size()) fields[count] = field;
+/// The line with the names of the columns, in any order; nothing where it is a ray.
+std::optional<Columns> read_header(std::string_view line, const FilePlace& place) {
+  const std::vector<std::string_view> names = fields_of(line, ',');
+  if (parse_number<double>(names.front())) return std::nullopt;
+  const auto starts_like_a_name = [](std::string_view name) {
+    return !name.empty() &&
+           ((name[0] >= 'a' && name[0] <= 'z') || (name[0] >= 'A' && name[0] <= 'Z'));
+  };
+  if (!std::ranges::all_of(names, starts_like_a_name)) return std::nullopt;
+  Columns columns;
+  columns.fill(-1);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto field = std::ranges::find(kFields, lower_case(names[i]));
+    if (field == kFields.end()) {
+      const auto nearest = nearest_word(std::string(names[i]), {kFields.begin(), kFields.end()});
+      throw data_error(place,
+                       "unknown column " + shown(names[i]) +
+                           (nearest ? ", did you mean '" + *nearest + "'?"
+                                    : ", expected azimuth_deg, elevation_deg, time_s, ring"));
+    }
+    int& column = columns[static_cast<std::size_t>(field - kFields.begin())];
+    if (column >= 0) throw data_error(place, "two columns " + shown(names[i]));
+    column = static_cast<int>(i);
   }
-  if (count < 2 || count > fields.size())
-    throw data_error(place, std::to_string(count) +
+  for (const std::size_t needed : {0, 1})
+    if (columns[needed] < 0)
+      throw data_error(place, "no column '" + std::string(kFields[needed]) + "'");
+  return columns;
+}
+
+Firing parse_ray(std::string_view line, const Columns& columns, std::uint32_t index,
+                 const FilePlace& place) {
+  const std::vector<std::string_view> fields = fields_of(line, ',');
+  const auto has = [&](std::size_t field) {
+    return columns[field] >= 0 && static_cast<std::size_t>(columns[field]) < fields.size();
+  };
+  const auto wanted = static_cast<std::size_t>(*std::ranges::max_element(columns)) + 1;
+  if (!has(0) || !has(1) || fields.size() > wanted)
+    throw data_error(place, std::to_string(fields.size()) +
                                 " values, expected azimuth_deg, elevation_deg[, time_s[, ring]]");
-  const double azimuth_deg = parse_number(fields[0], kFields[0], place);
-  const double elevation_deg = parse_number(fields[1], kFields[1], place);
-  const double time_s = count > 2 ? parse_number(fields[2], kFields[2], place) : 0.0;
-  const std::uint16_t ring = count > 3 ? parse_ring(fields[3], place) : std::uint16_t{0};
-  return {direction_of(radians(azimuth_deg), radians(elevation_deg)), ring, index,
-          static_cast<float>(time_s)};
+  const auto number = [&](std::size_t field) {
+    return finite_number(fields[static_cast<std::size_t>(columns[field])], kFields[field], place);
+  };
+  const double time_s = has(2) ? number(2) : 0.0;
+  if (!(time_s >= 0))
+    throw data_error(place, "time_s is negative, expected seconds since the start of the scan");
+  const std::uint16_t ring =
+      has(3) ? parse_ring(fields[static_cast<std::size_t>(columns[3])], place) : std::uint16_t{0};
+  return {direction_of(radians(number(0)), radians(number(1))),
+          ring,
+          index,
+          static_cast<float>(time_s),
+          {}};
+}
+
+/// Scans a second: one lasts from time 0 until one more of its firing times would follow the last.
+/// 10 where there is one time.
+double rotation_hz_of(const std::vector<Firing>& firings) {
+  std::vector<float> times_s;
+  times_s.reserve(firings.size());
+  for (const Firing& firing : firings) times_s.push_back(firing.time_s);
+  std::ranges::sort(times_s);
+  times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());
+  if (times_s.size() < 2) return 10.0;
+  const auto last_s = static_cast<double>(times_s.back());
+  const auto gaps = static_cast<double>(times_s.size() - 1);
+  return 1.0 / (last_s + (last_s - static_cast<double>(times_s.front())) / gaps);
 }
 
 }  // namespace
 
-LidarModel read_lidar_csv(const std::filesystem::path& path) {
-  const std::string text = read_file(path);
-  LidarModel model;
-  model.name = path.stem().string();
-  FilePlace place{path, std::nullopt, 0};
-  std::string_view rest = text;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // byte order mark of spreadsheets
-  while (!rest.empty()) {
-    place.line = *place.line + 1;
-    const std::string_view line = trimmed(take(rest, '\n'));
-    if (line.empty() || line.front() == '#') continue;
-    if (model.free_pattern.empty() && is_header(line)) continue;
-    if (model.free_pattern.size() >= std::numeric_limits<std::uint32_t>::max())
-      throw data_error(place, "more than 2^32 - 1 rays");
-    model.free_pattern.push_back(
-        parse_ray(line, static_cast<std::uint32_t>(model.free_pattern.size()), place));
+LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& path) {
+  LidarFile file;
+  file.model.name = path.stem().string();
+  file.model.source = path.filename().string();
+  std::vector<Firing>& firings = file.model.free_pattern;
+  Columns columns = {0, 1, 2, 3};
+  FilledLines lines(text, path);
+  bool first = true;
+  while (const auto line = lines.next()) {
+    if (first) {
+      first = false;
+      const std::string word = lower_case(fields_of(*line, ',').front());
+      if (word == "channel" || word.starts_with("laser") || word == "operational state")
+        return read_hesai_csv(text, path);
+      if (const auto header = read_header(*line, lines.place())) {
+        columns = *header;
+        continue;
+      }
+    }
+    if (firings.size() >= std::numeric_limits<std::uint32_t>::max())
+      throw data_error(lines.place(), "more than 2^32 - 1 rays");
+    firings.push_back(
+        parse_ray(*line, columns, static_cast<std::uint32_t>(firings.size()), lines.place()));
   }
-  if (model.free_pattern.empty()) throw data_error({path, {}, {}}, "a pattern with no rays");
-  return model;
+  if (firings.empty()) throw data_error({path, {}, {}}, "a pattern with no rays");
+  file.model.rotation_hz = rotation_hz_of(firings);
+  return file;
 }
 
 }  // namespace adasplats

@@ -4,21 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <stdexcept>
 
-#include "adasplats/core/error.h"
 #include "adasplats/sensors/lidar_files.h"
 
 namespace adasplats {
 
 namespace {
 
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
 void check(const LidarModel& model) {
-  const auto& offsets = model.azimuth_offsets_rad;
-  if (!offsets.empty() && offsets.size() != model.elevations_rad.size())
-    throw std::logic_error("a LiDAR model needs one azimuth offset a beam, or none");
+  const auto one_a_beam = [&](std::size_t count) {
+    return count == 0 || count == model.elevations_rad.size();
+  };
+  if (!one_a_beam(model.azimuth_offsets_rad.size()) || !one_a_beam(model.beam_origins_m.size()) ||
+      !one_a_beam(model.firing_times_s.size()))
+    throw std::logic_error("a LiDAR model needs one value a beam, or none");
   if (!(model.rotation_hz > 0)) throw std::logic_error("a LiDAR model needs rotation_hz > 0");
 }
 
@@ -41,71 +44,53 @@ Vec3f direction_of(double azimuth_rad, double elevation_rad) {
 
 double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
 
+Firing turned_firing(const LidarModel& model, std::size_t ring, std::uint32_t column) {
+  const double share = static_cast<double>(column) / model.columns;
+  const double late_s = model.firing_times_s.empty() ? 0.0 : model.firing_times_s[ring];
+  const double angle_rad = (share + late_s * model.rotation_hz) * kTurn;
+  const double head_rad = model.first_azimuth_rad + (model.clockwise ? -angle_rad : angle_rad);
+  const double offset_rad =
+      model.azimuth_offsets_rad.empty() ? 0.0 : model.azimuth_offsets_rad[ring];
+  Firing firing{direction_of(head_rad + offset_rad, model.elevations_rad[ring]),
+                static_cast<std::uint16_t>(ring),
+                column,
+                static_cast<float>(share / model.rotation_hz + late_s),
+                {}};
+  if (!model.beam_origins_m.empty()) {
+    const Vec3d head = model.beam_origins_m[ring];
+    const double cos = std::cos(head_rad);
+    const double sin = std::sin(head_rad);
+    firing.origin =
+        vec_cast<float>(Vec3d{cos * head.x - sin * head.y, sin * head.x + cos * head.y, head.z});
+  }
+  return firing;
+}
+
 std::size_t LidarModel::rays_per_scan() const {
+  if (rosette) return rosette_rays_per_scan(*this);
   return free_pattern.empty() ? elevations_rad.size() * columns : free_pattern.size();
 }
 
 std::size_t LidarModel::rings() const {
+  if (rosette) return std::max<std::size_t>(rosette->laser_tilts_rad.size(), 1);
   std::size_t count = free_pattern.empty() ? elevations_rad.size() : 0;
   for (const Firing& firing : free_pattern)
     count = std::max(count, static_cast<std::size_t>(firing.ring) + 1);
   return count;
 }
 
-std::vector<Firing> firings_of(const LidarModel& model) {
+std::vector<Firing> firings_of(const LidarModel& model, std::uint64_t scan_index) {
+  if (model.rosette) return rosette_firings(model, scan_index);
   if (!model.free_pattern.empty()) return model.free_pattern;
   check(model);
   std::vector<Firing> firings;
   firings.reserve(model.rays_per_scan());
-  const double turn = model.clockwise ? -1.0 : 1.0;
-  for (std::size_t ring = 0; ring < model.elevations_rad.size(); ++ring) {
-    const double offset_rad =
-        model.azimuth_offsets_rad.empty() ? 0.0 : model.azimuth_offsets_rad[ring];
-    for (std::uint32_t column = 0; column < model.columns; ++column) {
-      const double share = static_cast<double>(column) / model.columns;
-      const double azimuth_rad = turn * share * (2.0 * std::numbers::pi) + offset_rad;
-      firings.push_back({direction_of(azimuth_rad, model.elevations_rad[ring]),
-                         static_cast<std::uint16_t>(ring), column,
-                         static_cast<float>(share / model.rotation_hz)});
-    }
-  }
+  for (std::size_t ring = 0; ring < model.elevations_rad.size(); ++ring)
+    for (std::uint32_t column = 0; column < model.columns; ++column)
+      firings.push_back(turned_firing(model, ring, column));
   return firings;
 }
 
-LidarModel hdl_64_paper() {
-  LidarModel model;
-  model.name = "hdl-64-paper";
-  // The paper prints 0.419 degrees = 26.8 / 64; with both ends it is 26.8 / 63 = 0.4254.
-  model.elevations_rad = even_fan_rad(64, 2.0, -24.8);
-  model.columns = 2250;  // 0.16 degrees
-  model.max_range_m = 120.0;
-  return model;
-}
-
-LidarModel hdl_32_paper() {
-  LidarModel model;
-  model.name = "hdl-32-paper";
-  model.elevations_rad = even_fan_rad(32, 10.67, -30.67);
-  model.columns = 1800;  // 0.2 degrees
-  model.max_range_m = 100.0;
-  return model;
-}
-
-std::vector<std::string> lidar_model_names() { return {"hdl-64-paper", "hdl-32-paper"}; }
-
-LidarModel load_lidar_model(const std::string& name_or_path) {
-  if (name_or_path == "hdl-64-paper") return hdl_64_paper();
-  if (name_or_path == "hdl-32-paper") return hdl_32_paper();
-  const std::filesystem::path path(name_or_path);
-  if (path.extension() == ".toml") return read_lidar_toml(path);
-  if (path.extension() == ".csv") return read_lidar_csv(path);
-  const auto nearest = nearest_word(name_or_path, lidar_model_names());
-  std::string known;
-  for (const std::string& name : lidar_model_names()) known += name + ", ";
-  throw Error(ErrorKind::usage,
-              "unknown sensor '" + name_or_path + "'" +
-                  (nearest ? ", did you mean '" + *nearest + "'?"
-                           : ": expected " + known + "a .toml file or a .csv file of rays"));
-}
+bool repeats(const LidarModel& model) { return !model.rosette; }
 
 }  // namespace adasplats

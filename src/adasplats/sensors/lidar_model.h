@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,15 @@ struct Firing {
   std::uint16_t ring;    ///< beam number, 0 = topmost
   std::uint32_t column;  ///< azimuth step
   float time_s;          ///< since the start of the revolution
+  Vec3f origin;          ///< where the beam leaves, m; zero for a sensor that is one point
+};
+
+/// Two wedge prisms that turn: a pattern that does not repeat from scan to scan.
+struct RosettePattern {
+  double prism_hz[2] = {0, 0};          ///< turns a second, signed
+  double deflection_rad[2] = {0, 0};    ///< of each prism
+  double points_per_s = 0;              ///< of all lasers
+  std::vector<double> laser_tilts_rad;  ///< elevations of the lasers before the prisms; empty: {0}
 };
 
 /// A rotating LiDAR: which rays one revolution holds. Never sees a scene.
@@ -24,21 +34,39 @@ struct LidarModel {
   std::string name;
   std::vector<double> elevations_rad;       ///< one a beam, topmost first
   std::vector<double> azimuth_offsets_rad;  ///< one a beam, or empty for zero
-  std::uint32_t columns = 0;                ///< azimuth steps a revolution
-  double rotation_hz = 10.0;
+  /// Where each beam leaves in the frame of the turning head (x towards the head's azimuth, z up),
+  /// one a beam, or empty for zero.
+  std::vector<Vec3d> beam_origins_m;
+  /// When each beam fires after its column began, s; one a beam, or empty for zero. The head turns
+  /// on meanwhile.
+  std::vector<double> firing_times_s;
+  std::uint32_t columns = 0;     ///< azimuth steps a revolution
+  double first_azimuth_rad = 0;  ///< of the head when a revolution begins
+  double rotation_hz = 10.0;     ///< revolutions, or scans of a free pattern, a second
   double min_range_m = 0.0;
   double max_range_m = 120.0;
-  double range_noise_m = 0.0;        ///< standard deviation of white noise on the range
-  bool clockwise = false;            ///< seen from above
-  std::vector<Firing> free_pattern;  ///< used instead of beams x columns where not empty
+  double range_noise_m = 0.0;       ///< standard deviation of white noise on the range
+  double angular_noise_rad = 0.0;   ///< the same on the azimuth and elevation that are told
+  double range_resolution_m = 0.0;  ///< ranges are multiples of it; 0: any
+  /// Full angles of the beam, horizontal and vertical, rad.
+  double divergence_rad[2] = {0, 0};
+  int most_returns = 1;                   ///< echoes that the sensor tells a firing
+  bool clockwise = false;                 ///< seen from above
+  std::vector<Firing> free_pattern;       ///< used instead of beams x columns where not empty
+  std::optional<RosettePattern> rosette;  ///< used instead of both where it is there
+  std::string source;                     ///< where the numbers are from: manual and page, or file
 
   std::size_t rays_per_scan() const;
   std::size_t rings() const;
 };
 
 /// The rays of one revolution ring by ring (neighbours in azimuth side by side: a laser row), or
-/// the free pattern as it stands. Paper section "Firing Sequence Rays Generation".
-std::vector<Firing> firings_of(const LidarModel& model);
+/// the free pattern as it stands. Paper section "Firing Sequence Rays Generation". `scan_index`
+/// counts the scans of a sensor whose pattern does not repeat (repeats()); others ignore it.
+std::vector<Firing> firings_of(const LidarModel& model, std::uint64_t scan_index = 0);
+
+/// Whether every scan has the same firings.
+bool repeats(const LidarModel& model);
 
 /// Velodyne HDL-64 as in paper section "Velodyne HDL-64": 64 beams from +2.0 to -24.8 degrees, both
 /// included, 2250 columns, 120 m.
@@ -47,12 +75,16 @@ LidarModel hdl_64_paper();
 /// both included, 1800 columns, 100 m.
 LidarModel hdl_32_paper();
 
-/// "hdl-64-paper", "hdl-32-paper", a TOML file (keys: name, elevations_deg or beams +
-/// elevation_top_deg + elevation_bottom_deg, azimuth_offsets_deg, columns, rotation_hz,
-/// min_range_m, max_range_m, range_noise_m, clockwise), or a CSV of rays (azimuth_deg,
-/// elevation_deg[, time_s[, ring]]).
-/// Errors: usage (unknown name, with the nearest known), config (unknown key, with line), data (a
-/// pattern with no rays).
+/// A name of the library (lidar_model_names()) or a file, told by its extension, else by what it
+/// holds; docs/sensors.md has the keys:
+/// - TOML: beams or a rosette, or `like` another sensor;
+/// - JSON: metadata of an Ouster sensor as it writes them;
+/// - YAML: a Velodyne calibration of the ROS driver; CSV: Hesai's angles, with the firing times
+///   beside them; both have the rest from the sensor of the library with as many beams;
+/// - CSV of rays: azimuth_deg, elevation_deg[, time_s[, ring]].
+/// Beams are sorted, topmost first; those that skip columns come as a free pattern.
+/// Errors: usage (unknown name, with the nearest known), no_input, config (TOML: unknown key, with
+/// line), data (anything wrong in the other formats).
 LidarModel load_lidar_model(const std::string& name_or_path);
 
 /// Names that load_lidar_model knows.

@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/random.h"
 
 namespace adasplats {
 namespace {
@@ -62,6 +63,50 @@ TEST(Firings, AzimuthOffsetsTurnABeamCounterClockwise) {
   expect_direction(firings_of(model)[0].direction, {0, 1, 0});
   model.azimuth_offsets_rad = {0, 0};
   EXPECT_THROW(firings_of(model), std::logic_error);
+}
+
+TEST(Firings, BeginAtTheFirstAzimuth) {
+  LidarModel model = one_beam(0, 4);
+  model.first_azimuth_rad = 180 * kDegree;
+  model.clockwise = true;
+  const auto firings = firings_of(model);
+  expect_direction(firings[0].direction, {-1, 0, 0});
+  expect_direction(firings[1].direction, {0, 1, 0});
+  expect_direction(firings[3].direction, {0, -1, 0});
+}
+
+// Oracle: the head turns by 360 degrees * rotation_hz a second.
+TEST(Firings, TheHeadTurnsOnUntilABeamFires) {
+  LidarModel model = one_beam(0, 4);
+  model.firing_times_s = {0.025};  // of 0.1 s: a quarter
+  auto firings = firings_of(model);
+  expect_direction(firings[0].direction, {0, 1, 0});
+  EXPECT_FLOAT_EQ(firings[0].time_s, 0.025F);
+  EXPECT_FLOAT_EQ(firings[3].time_s, 0.1F);
+  model.clockwise = true;
+  expect_direction(firings_of(model)[0].direction, {0, -1, 0});
+  model.firing_times_s = {0, 0};
+  EXPECT_THROW(firings_of(model), std::logic_error);
+}
+
+// Oracle: x of the head's frame points to the head's azimuth, whatever the beam's offset is.
+TEST(Firings, OriginsTurnWithTheHead) {
+  LidarModel model = one_beam(0, 4);
+  EXPECT_EQ(firings_of(model)[1].origin, (Vec3f{0, 0, 0}));
+  model.beam_origins_m = {{0.3, 0.1, 0.2}};
+  model.azimuth_offsets_rad = {45 * kDegree};
+  const auto firings = firings_of(model);
+  expect_direction(firings[0].origin, {0.3, 0.1, 0.2});
+  expect_direction(firings[1].origin, {-0.1, 0.3, 0.2});
+  expect_direction(firings[2].origin, {-0.3, -0.1, 0.2});
+  model.beam_origins_m = {{}, {}};
+  EXPECT_THROW(firings_of(model), std::logic_error);
+}
+
+TEST(Firings, OfATurningSensorRepeat) {
+  const LidarModel model = one_beam(0, 4);
+  EXPECT_TRUE(repeats(model));
+  EXPECT_EQ(firings_of(model, 5)[1].direction, firings_of(model)[1].direction);
 }
 
 TEST(Firings, ComeRingByRingWithColumnAndTime) {
@@ -195,6 +240,154 @@ TEST_F(LidarFiles, EveryKeyOfATomlFileIsRead) {
   EXPECT_TRUE(model.clockwise);
 }
 
+TEST_F(LidarFiles, EveryNewKeyOfATomlFileIsRead) {
+  const LidarModel model = load_lidar_model(
+      write("all.toml",
+            "elevations_deg = [10, -10]\ncolumns = 8\nfirst_azimuth_deg = -90\n"
+            "beam_origins_m = [[0.1, 0, 0.2], [0.3, 0.4, 0.5]]\nfiring_times_us = [1.5, 0]\n"
+            "angular_noise_deg = 0.01\nrange_resolution_m = 0.002\n"
+            "divergence_deg = [0.2, 0.1]\nmost_returns = 3\nsource = \"a book\"\n"));
+  EXPECT_DOUBLE_EQ(model.first_azimuth_rad, -90 * kDegree);
+  ASSERT_EQ(model.beam_origins_m.size(), 2U);
+  EXPECT_EQ(model.beam_origins_m[1], (Vec3d{0.3, 0.4, 0.5}));
+  EXPECT_DOUBLE_EQ(model.firing_times_s[0], 1.5e-6);
+  EXPECT_DOUBLE_EQ(model.angular_noise_rad, 0.01 * kDegree);
+  EXPECT_EQ(model.range_resolution_m, 0.002);
+  EXPECT_DOUBLE_EQ(model.divergence_rad[0], 0.2 * kDegree);
+  EXPECT_DOUBLE_EQ(model.divergence_rad[1], 0.1 * kDegree);
+  EXPECT_EQ(model.most_returns, 3);
+  EXPECT_EQ(model.source, "a book");
+}
+
+TEST_F(LidarFiles, OneOriginStandsForAllBeams) {
+  const LidarModel model = load_lidar_model(
+      write("one.toml", "elevations_deg = [1, 0]\ncolumns = 4\nbeam_origins_m = [0.1, 0, 0.2]\n"));
+  ASSERT_EQ(model.beam_origins_m.size(), 2U);
+  EXPECT_EQ(model.beam_origins_m[1], (Vec3d{0.1, 0, 0.2}));
+}
+
+TEST_F(LidarFiles, BeamsAreSortedWithAllThatIsTheirs) {
+  const LidarModel model = load_lidar_model(
+      write("up.toml",
+            "elevations_deg = [-5, 5, 0]\ncolumns = 4\nazimuth_offsets_deg = [1, 2, 3]\n"
+            "firing_times_us = [10, 20, 30]\nbeam_origins_m = [[1,0,0], [2,0,0], [3,0,0]]\n"
+            "column_steps = [1, 2, 1]\ncolumn_phases = [0, 1, 0]\n"));
+  EXPECT_DOUBLE_EQ(model.elevations_rad[0], 5 * kDegree);
+  EXPECT_DOUBLE_EQ(model.azimuth_offsets_rad[0], 2 * kDegree);
+  EXPECT_DOUBLE_EQ(model.firing_times_s[0], 20e-6);
+  EXPECT_EQ(model.beam_origins_m[0].x, 2);
+  EXPECT_DOUBLE_EQ(model.elevations_rad[2], -5 * kDegree);
+  const auto firings = firings_of(model);
+  ASSERT_EQ(firings.size(), 10U);
+  EXPECT_EQ(firings[0].column, 1U);
+  EXPECT_EQ(firings[1].column, 3U);
+  EXPECT_EQ(firings[2].ring, 1);
+  EXPECT_EQ(model.columns, 4U);
+}
+
+// Oracle: the sensor of the library, but for what is told.
+TEST_F(LidarFiles, ASensorCanBeLikeAnother) {
+  const LidarModel vlp = load_lidar_model("velodyne-vlp-16");
+  const LidarModel mine =
+      load_lidar_model(write("mine.toml",
+                             "like = \"velodyne-vlp-16\"\nrange_noise_m = 0.005\nrotation_hz = 20\n"
+                             "columns = 904\n"));
+  EXPECT_EQ(mine.name, "mine");
+  EXPECT_EQ(mine.source, vlp.source);
+  EXPECT_EQ(mine.elevations_rad, vlp.elevations_rad);
+  EXPECT_EQ(mine.firing_times_s, vlp.firing_times_s);
+  EXPECT_EQ(mine.range_noise_m, 0.005);
+  EXPECT_EQ(mine.columns, 904U);
+  EXPECT_EQ(mine.max_range_m, vlp.max_range_m);
+
+  const LidarModel other_beams =
+      load_lidar_model(write("other.toml", "like = \"mine.toml\"\nelevations_deg = [1, 0]\n"));
+  EXPECT_EQ(other_beams.rings(), 2U);
+  EXPECT_TRUE(other_beams.firing_times_s.empty());
+  EXPECT_EQ(other_beams.rotation_hz, 20);
+
+  const LidarModel skipping = load_lidar_model(
+      write("skipping.toml", "like = \"hesai-ot128\"\ncolumns = 1800\nrotation_hz = 20\n"));
+  EXPECT_EQ(skipping.rays_per_scan(), 345'600U / 2);
+
+  const LidarModel rosette =
+      load_lidar_model(write("livox.toml", "like = \"livox-mid-40\"\nmax_range_m = 90\n"));
+  ASSERT_TRUE(rosette.rosette);
+  EXPECT_EQ(rosette.max_range_m, 90);
+
+  write("rays.csv", "0,0,0\n1,0,0.1\n");
+  const LidarModel rays =
+      load_lidar_model(write("like rays.toml", "like = \"rays.csv\"\nrange_noise_m = 0.01\n"));
+  EXPECT_EQ(rays.rays_per_scan(), 2U);
+  EXPECT_EQ(rays.range_noise_m, 0.01);
+}
+
+TEST_F(LidarFiles, WrongLikenessIsRefusedWithItsLine) {
+  expect_contains(toml_failure("\nlike = \"velodyne-vlp-17\"\n"), "did you mean 'velodyne-vlp-16'");
+  expect_contains(toml_failure("\nlike = \"nothing.toml\"\n"),
+                  "bad.toml:2: like is 'nothing.toml'");
+  expect_contains(toml_failure("like = \"\"\n"), "neither a sensor nor a file");
+  expect_contains(toml_failure("like = 1\n"), "is not a string");
+  expect_contains(toml_failure("like = \"bad.toml\"\n"), "more than 8 files");
+  expect_contains(toml_failure("like = \"velodyne-vlp-16\"\nrotation_hz = 20\n"),
+                  "at most 1446 columns");
+  expect_contains(toml_failure("like = \"livox-mid-40\"\ncolumns = 4\n"), "does not fit");
+  write("rays.csv", "0,0,0\n1,0,0.1\n");
+  expect_contains(toml_failure("like = \"rays.csv\"\nrotation_hz = 20\n"), "before the last ray");
+  expect_contains(toml_failure("like = \"rays.csv\"\nclockwise = true\n"), "does not fit");
+}
+
+TEST_F(LidarFiles, WrongNewKeysAreRefusedWithTheirLine) {
+  const std::string beams = "elevations_deg = [1, 0]\ncolumns = 4\n";
+  const auto refuse = [&](const std::string& line, const std::string& says) {
+    expect_contains(toml_failure(beams + line + "\n"), says);
+  };
+  refuse("firing_times_us = [1]", "bad.toml:3: firing_times_us has 1 values, expected 2");
+  refuse("firing_times_us = [1, -1]", "bad.toml:3: firing_times_us");
+  refuse("firing_times_us = [1, nan]", "bad.toml:3: firing_times_us");
+  refuse("firing_times_us = [1, 26000]", "bad.toml:2: columns leave 25000 us a column");
+  refuse("beam_origins_m = [1, 2]", "not [x, y, z]");
+  refuse("beam_origins_m = [[1, 2, 3]]", "has 1 values, expected 2");
+  refuse("beam_origins_m = [[1, 2, 3], 4]", "not a list [x, y, z]");
+  refuse("beam_origins_m = [[1, 2, 3], [1, 2, 'x']]", "bad.toml:3: beam_origins_m");
+  refuse("divergence_deg = [1]", "is not [horizontal, vertical]");
+  refuse("divergence_deg = []", "is not a list of numbers");
+  refuse("most_returns = 0", "bad.toml:3: most_returns");
+  refuse("column_steps = [0, 1]", "bad.toml:3: column_steps");
+  refuse("column_phases = [0, 1]", "needs column_steps");
+  refuse("column_steps = [2, 2]\ncolumn_phases = [0, 2]", "not below its step");
+  refuse("[rosette]\npoints_per_s = 1", "cannot stand together with a rosette");
+  refuse("rosette = 1", "cannot stand together with a rosette");
+}
+
+TEST_F(LidarFiles, TooManyRaysAreRefused) {
+  const std::string many = "beams = 60000\nelevation_top_deg = 1\nelevation_bottom_deg = 0\n";
+  expect_contains(toml_failure(many + "columns = 16000000\n"), "960000000000 rays a scan");
+  expect_contains(toml_failure("elevations_deg = [0]\ncolumns = 16000000\ncolumn_steps = [2]\n"),
+                  "16000000 rays a scan");
+}
+
+TEST_F(LidarFiles, ARosetteIsRead) {
+  const std::string start = "[rosette]\nprism_turns_per_minute = [600, -1200]\n";
+  const LidarModel model = load_lidar_model(
+      write("rosette.toml", start + "deflection_deg = [3, 1]\npoints_per_s = 4000\n"
+                                    "laser_tilts_deg = [1, 0]\n"));
+  ASSERT_TRUE(model.rosette);
+  EXPECT_EQ(model.rosette->prism_hz[1], -20);
+  EXPECT_DOUBLE_EQ(model.rosette->deflection_rad[0], 3 * kDegree);
+  EXPECT_EQ(model.rays_per_scan(), 400U);
+  EXPECT_EQ(model.rings(), 2U);
+  expect_contains(toml_failure(start), "deflection_deg is missing");
+  expect_contains(toml_failure(start + "deflection_deg = [3]\npoints_per_s = 4000\n"),
+                  "is not one number a prism");
+  expect_contains(toml_failure(start + "deflection_degrees = [3]\n"),
+                  "did you mean 'deflection_deg'");
+  expect_contains(toml_failure("rosette = 1\n"), "is not a table");
+  expect_contains(toml_failure("rotation_hz = 0.001\n" + start +
+                               "deflection_deg = [3, 1]\npoints_per_s = 1e9\n"),
+                  "has 1000000000000 rays a scan, expected at most");
+}
+
 TEST_F(LidarFiles, AFanOfOneBeamIsItsTop) {
   const LidarModel model = load_lidar_model(write(
       "one.toml", "beams = 1\nelevation_top_deg = 5\nelevation_bottom_deg = -5\ncolumns = 1"));
@@ -242,6 +435,7 @@ TEST_F(LidarFiles, HostileTomlIsAnErrorNotACrash) {
   toml_failure("[" + dotted + "]\n");
   toml_failure(dotted.substr(0, 16'000) + " = 1\n");  // as deep as the limit lets through
   toml_failure(std::string("\0\xff\xfe", 3));
+  toml_failure("a = [}");
 }
 
 // Oracle: the definition of azimuth and elevation.
@@ -269,6 +463,71 @@ TEST_F(LidarFiles, ACsvNeedsOnlyTheAngles) {
   expect_direction(firings[0].direction, {-1, 0, 0});
   expect_direction(firings[1].direction, {0, -1, 0});
   EXPECT_EQ(model.rings(), 1U);
+}
+
+TEST_F(LidarFiles, AHeaderNamesTheColumnsOfACsvInAnyOrder) {
+  const auto firings =
+      firings_of(load_lidar_model(write("named.csv", "Ring,Elevation_deg,Azimuth_deg\n2,0,90\n")));
+  ASSERT_EQ(firings.size(), 1U);
+  EXPECT_EQ(firings[0].ring, 2);
+  expect_direction(firings[0].direction, {0, 1, 0});
+  expect_contains(csv_failure("azimuth_deg,elevation_dge\n1,2\n"), "did you mean 'elevation_deg'");
+  expect_contains(csv_failure("azimuth_deg,azimuth_deg\n1,2\n"), "two columns");
+  expect_contains(csv_failure("azimuth_deg,time_s\n1,2\n"), "no column 'elevation_deg'");
+  expect_contains(csv_failure("azimuth_deg,elevation_deg\n1,2,3\n"), "bad.csv:2: 3 values");
+}
+
+// Oracle: four rays at equal times fill a scan of 4/3 of the last time.
+TEST_F(LidarFiles, TheTimesOfACsvTellHowLongAScanIs) {
+  const auto hz = [&](const std::string& text) {
+    return load_lidar_model(write("t.csv", text)).rotation_hz;
+  };
+  EXPECT_NEAR(hz("0,0,0\n1,0,0.0125\n2,0,0.025\n3,0,0.0375\n"), 20, 1e-5);
+  EXPECT_EQ(hz("0,0\n1,0\n"), 10);
+  EXPECT_EQ(hz("0,0,0\n"), 10);
+  expect_contains(csv_failure("0,0,-1\n"), "time_s is negative");
+}
+
+// Random changes, the same in each run: nothing but Error may escape.
+TEST_F(LidarFiles, ChangedFilesAreErrorsNotCrashes) {
+  const std::vector<std::pair<std::string, std::string>> seeds = {
+      {"a.toml",
+       "name = \"a\"\nelevations_deg = [1, 0]\ncolumns = 4\nfiring_times_us = [1, 0]\n"
+       "beam_origins_m = [[0, 0, 1], [0, 0, 2]]\ncolumn_steps = [1, 2]\n"},
+      {"b.toml",
+       "[rosette]\nprism_turns_per_minute = [600, -1200]\ndeflection_deg = [3, 1]\n"
+       "points_per_s = 4000\n"},
+      {"a.json", R"({"beam_altitude_angles": [1, 0], "beam_azimuth_angles": [1, 0],
+                     "lidar_mode": "16x10", "lidar_origin_to_beam_origin_mm": 1.5})"},
+      {"a.yaml",
+       "lasers:\n- {laser_id: 0, vert_correction: 0.1}\n- laser_id: 1\n"
+       "  vert_correction: 0.2\nnum_lasers: 2\n"},
+      {"a.csv", "azimuth_deg,elevation_deg,time_s,ring\n1,2,0.5,1\n2,2,0.6,1\n"},
+      {"a_angle.csv", "Channel,Elevation,Azimuth\n1,2,3\n2,1,3\n"}};
+  std::size_t loaded = 0;
+  for (std::size_t seed = 0; seed < seeds.size(); ++seed)
+    for (std::uint64_t run = 0; run < 50; ++run) {
+      Random random(7, seed, run);
+      std::string text = seeds[seed].second;
+      const auto changes = 1 + random.next_bits() % 3;
+      for (std::uint64_t change = 0; change < changes && !text.empty(); ++change) {
+        const std::size_t at = random.next_bits() % text.size();
+        constexpr std::string_view kBytes = "0159.-,:[]{}='\" \n#e\0\xff";
+        switch (random.next_bits() % 3) {
+          case 0: text[at] = kBytes[random.next_bits() % kBytes.size()]; break;
+          case 1: text.erase(at, 1 + random.next_bits() % 5); break;
+          default: text.insert(at, text.substr(0, random.next_bits() % 9)); break;
+        }
+      }
+      try {
+        const LidarModel model = load_lidar_model(write(seeds[seed].first, text));
+        for (const double elevation_rad : model.elevations_rad)
+          ASSERT_TRUE(std::isfinite(elevation_rad));
+        ++loaded;
+      } catch (const Error&) {
+      }
+    }
+  EXPECT_GT(loaded, 10U);  // not all changes break a file
 }
 
 TEST_F(LidarFiles, WrongCsvIsRefusedWithItsLine) {

@@ -1,32 +1,46 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A sensor as a TOML table of beams.
+// A sensor as a TOML table.
 
+// toml++ 3 asserts what broken files do not hold ("a = [}") before it says what is wrong with them.
+#define TOML_ASSERT(expression) static_cast<void>(0)
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <locale>
 #include <sstream>
 #include <string>
 #include <string_view>
 
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
 #include "adasplats/sensors/lidar_files.h"
 
 namespace adasplats {
 
 namespace {
 
-constexpr std::int64_t kMostBeams = 65536;  // a ring is 16 bits
-constexpr std::int64_t kMostColumns = 1 << 24;
+constexpr double kFar_m = 1e6;
+constexpr double kMicrosecond_s = 1e-6;
 
-const std::vector<std::string>& known_keys() {
-  static const std::vector<std::string> keys = {
-      "name",          "elevations_deg", "beams",       "elevation_top_deg", "elevation_bottom_deg",
-      "columns",       "rotation_hz",    "min_range_m", "max_range_m",       "azimuth_offsets_deg",
-      "range_noise_m", "clockwise"};
+using Keys = std::vector<std::string>;
+
+const Keys& sensor_keys() {
+  static const Keys keys = {"name",         "source",          "like",
+                            "beams",        "elevations_deg",  "elevation_top_deg",
+                            "columns",      "rotation_hz",     "elevation_bottom_deg",
+                            "clockwise",    "min_range_m",     "azimuth_offsets_deg",
+                            "max_range_m",  "range_noise_m",   "range_resolution_m",
+                            "most_returns", "divergence_deg",  "angular_noise_deg",
+                            "column_steps", "column_phases",   "first_azimuth_deg",
+                            "rosette",      "firing_times_us", "beam_origins_m"};
+  return keys;
+}
+
+const Keys& rosette_keys() {
+  static const Keys keys = {"prism_turns_per_minute", "deflection_deg", "points_per_s",
+                            "laser_tilts_deg"};
   return keys;
 }
 
@@ -35,8 +49,7 @@ Error config_error(const std::filesystem::path& path, std::uint64_t line,
   return Error(ErrorKind::config, path.string() + ":" + std::to_string(line) + ": " + message);
 }
 
-toml::table parse_table(const std::filesystem::path& path) {
-  const std::string text = read_file(path);
+toml::table parse_table(std::string_view text, const std::filesystem::path& path) {
   // toml++ bounds the depth of brackets but not of dotted keys, and frees nested tables by
   // recursion. No sensor has this many numbers, let alone keys.
   constexpr std::ptrdiff_t kMostDots = 8192;
@@ -53,11 +66,12 @@ toml::table parse_table(const std::filesystem::path& path) {
 /// Reads the keys of one table; each error has the line of what is wrong.
 class SensorTable {
  public:
-  explicit SensorTable(const std::filesystem::path& path) : path_(path), table_(parse_table(path)) {
+  SensorTable(toml::table table, const std::filesystem::path& path, const Keys& known)
+      : path_(path), table_(std::move(table)) {
     for (const auto& [key, value] : table_) {
       const std::string name(key.str());
-      if (std::ranges::find(known_keys(), name) != known_keys().end()) continue;
-      const auto nearest = nearest_word(name, known_keys());
+      if (std::ranges::find(known, name) != known.end()) continue;
+      const auto nearest = nearest_word(name, known);
       throw error_at(key.source(), "unknown key '" + name + "'" +
                                        (nearest ? ", did you mean '" + *nearest + "'?" : ""));
     }
@@ -72,18 +86,22 @@ class SensorTable {
     return error_at(node->source(), std::string(key) + " " + message);
   }
 
+  /// The table under a key, which is there.
+  SensorTable table(std::string_view key, const Keys& known) const {
+    const toml::table* inner = table_.get(key)->as_table();
+    if (inner == nullptr) throw error(key, "is not a table");
+    return {*inner, path_, known};
+  }
+
   double number(std::string_view key, double otherwise, double low, double high) const {
     const toml::node* node = table_.get(key);
     return node == nullptr ? otherwise : number_of(*node, key, low, high);
   }
 
-  std::int64_t whole_number(std::string_view key, std::int64_t high) const {
+  std::int64_t whole_number(std::string_view key, std::int64_t low, std::int64_t high) const {
     const toml::node* node = table_.get(key);
     if (node == nullptr) throw error(key, "is missing");
-    const auto value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
-    if (!value || *value < 1 || *value > high)
-      throw error(key, "is not a whole number from 1 to " + std::to_string(high));
-    return *value;
+    return whole_number_of(*node, key, low, high);
   }
 
   bool flag(std::string_view key, bool otherwise) const {
@@ -100,20 +118,75 @@ class SensorTable {
     return node->value_or(otherwise);
   }
 
+  /// Empty where the key is not there.
+  std::vector<double> numbers(std::string_view key, double low, double high) const {
+    std::vector<double> numbers;
+    for (const toml::node* element : elements(key))
+      numbers.push_back(number_of(*element, key, low, high));
+    return numbers;
+  }
+
   std::vector<double> angles_rad(std::string_view key, double low_deg, double high_deg) const {
-    const toml::node* node = table_.get(key);
-    if (node == nullptr) return {};
-    if (!node->is_array() || node->as_array()->empty())
-      throw error(key, "is not a list of numbers, one a beam");
-    std::vector<double> angles_rad;
-    for (const toml::node& element : *node->as_array())
-      angles_rad.push_back(radians(number_of(element, key, low_deg, high_deg)));
-    return angles_rad;
+    std::vector<double> angles = numbers(key, low_deg, high_deg);
+    for (double& angle : angles) angle = radians(angle);
+    return angles;
+  }
+
+  std::vector<std::uint32_t> whole_numbers(std::string_view key, std::int64_t low) const {
+    std::vector<std::uint32_t> numbers;
+    for (const toml::node* element : elements(key))
+      numbers.push_back(
+          static_cast<std::uint32_t>(whole_number_of(*element, key, low, kMostColumns)));
+    return numbers;
+  }
+
+  /// Points, or one that stands for all of `count`.
+  std::vector<Vec3d> points(std::string_view key, std::size_t count) const {
+    const std::vector<const toml::node*> rows = elements(key);
+    if (rows.empty()) return {};
+    if (rows.front()->is_number()) return std::vector<Vec3d>(count, point_of(rows, key));
+    std::vector<Vec3d> points;
+    for (const toml::node* row : rows) {
+      if (!row->is_array())
+        throw error_at(row->source(), std::string(key) + " is not a list [x, y, z]");
+      std::vector<const toml::node*> numbers;
+      for (const toml::node& number : *row->as_array()) numbers.push_back(&number);
+      points.push_back(point_of(numbers, key));
+    }
+    return points;
   }
 
  private:
+  /// Of a list, which may not be empty.
+  std::vector<const toml::node*> elements(std::string_view key) const {
+    const toml::node* node = table_.get(key);
+    if (node == nullptr) return {};
+    if (!node->is_array() || node->as_array()->empty())
+      throw error(key, "is not a list of numbers");
+    std::vector<const toml::node*> elements;
+    for (const toml::node& element : *node->as_array()) elements.push_back(&element);
+    return elements;
+  }
+
+  Vec3d point_of(const std::vector<const toml::node*>& row, std::string_view key) const {
+    if (row.size() != 3) throw error(key, "has a point that is not [x, y, z]");
+    Vec3d point;
+    for (int axis = 0; axis < 3; ++axis)
+      point[axis] = number_of(*row[static_cast<std::size_t>(axis)], key, -kFar_m, kFar_m);
+    return point;
+  }
+
   Error error_at(const toml::source_region& place, const std::string& message) const {
     return config_error(path_, place.begin.line, message);
+  }
+
+  std::int64_t whole_number_of(const toml::node& node, std::string_view key, std::int64_t low,
+                               std::int64_t high) const {
+    const auto value = node.is_integer() ? node.value<std::int64_t>() : std::nullopt;
+    if (!value || *value < low || *value > high)
+      throw error_at(node.source(), std::string(key) + " is not a whole number from " +
+                                        std::to_string(low) + " to " + std::to_string(high));
+    return *value;
   }
 
   double number_of(const toml::node& node, std::string_view key, double low, double high) const {
@@ -131,50 +204,168 @@ class SensorTable {
   toml::table table_;
 };
 
+bool has_fan(const SensorTable& table) {
+  return table.has("beams") || table.has("elevation_top_deg") || table.has("elevation_bottom_deg");
+}
+
 /// `beams` from top to bottom, or the list.
 std::vector<double> read_elevations_rad(const SensorTable& table) {
-  const bool has_fan =
-      table.has("beams") || table.has("elevation_top_deg") || table.has("elevation_bottom_deg");
   if (table.has("elevations_deg")) {
-    if (has_fan)
+    if (has_fan(table))
       throw table.error("elevations_deg", "cannot stand together with beams and elevation_*_deg");
     return table.angles_rad("elevations_deg", -90, 90);
   }
-  if (!has_fan) throw table.error("elevations_deg", "is missing (or beams and elevation_*_deg)");
+  if (!has_fan(table))
+    throw table.error("elevations_deg", "is missing (or beams and elevation_*_deg, or like)");
   for (const char* key : {"beams", "elevation_top_deg", "elevation_bottom_deg"})
     if (!table.has(key)) throw table.error(key, "is missing");
-  const auto beams = static_cast<int>(table.whole_number("beams", kMostBeams));
+  const auto beams = static_cast<int>(table.whole_number("beams", 1, kMostBeams));
   return even_fan_rad(beams, table.number("elevation_top_deg", 0, -90, 90),
                       table.number("elevation_bottom_deg", 0, -90, 90));
 }
 
-}  // namespace
+/// Replaces `values` where the key is there.
+template <class T>
+void read_one_a_beam(const SensorTable& table, std::string_view key, std::size_t beams,
+                     std::vector<T> read, std::vector<T>& values) {
+  if (!table.has(key)) return;
+  if (read.size() != beams)
+    throw table.error(key, "has " + std::to_string(read.size()) + " values, expected " +
+                               std::to_string(beams) + ", one a beam");
+  values = std::move(read);
+}
 
-LidarModel read_lidar_toml(const std::filesystem::path& path) {
-  const SensorTable table(path);
-  constexpr double kFar_m = 1e6;
-  LidarModel model;
-  model.name = table.text("name", path.stem().string());
-  model.elevations_rad = read_elevations_rad(table);
-  if (model.elevations_rad.size() > static_cast<std::size_t>(kMostBeams))
-    throw table.error("elevations_deg", "has more than 65536 beams");
-  model.azimuth_offsets_rad = table.angles_rad("azimuth_offsets_deg", -360, 360);
-  if (!model.azimuth_offsets_rad.empty() &&
-      model.azimuth_offsets_rad.size() != model.elevations_rad.size())
-    throw table.error("azimuth_offsets_deg",
-                      "has " + std::to_string(model.azimuth_offsets_rad.size()) +
-                          " values, expected " + std::to_string(model.elevations_rad.size()) +
-                          ", one a beam");
-  model.columns = static_cast<std::uint32_t>(table.whole_number("columns", kMostColumns));
-  model.rotation_hz = table.number("rotation_hz", model.rotation_hz, 1e-3, 1e6);
+void read_beams(const SensorTable& table, LidarFile& file) {
+  LidarModel& model = file.model;
+  if (table.has("elevations_deg") || has_fan(table) || !file.has_beams()) {
+    file.clear_pattern();
+    model.elevations_rad = read_elevations_rad(table);
+  }
+  const std::size_t beams = model.elevations_rad.size();
+  if (beams > kMostBeams) throw table.error("elevations_deg", "has more than 65536 beams");
+  read_one_a_beam(table, "azimuth_offsets_deg", beams,
+                  table.angles_rad("azimuth_offsets_deg", -360, 360), model.azimuth_offsets_rad);
+  read_one_a_beam(table, "beam_origins_m", beams, table.points("beam_origins_m", beams),
+                  model.beam_origins_m);
+  std::vector<double> times_s = table.numbers("firing_times_us", 0, 1e9);
+  for (double& time_s : times_s) time_s *= kMicrosecond_s;
+  read_one_a_beam(table, "firing_times_us", beams, std::move(times_s), model.firing_times_s);
+  read_one_a_beam(table, "column_steps", beams, table.whole_numbers("column_steps", 1),
+                  file.column_steps);
+  read_one_a_beam(table, "column_phases", beams, table.whole_numbers("column_phases", 0),
+                  file.column_phases);
+  if (!file.column_phases.empty() && file.column_steps.empty())
+    throw table.error("column_phases", "needs column_steps");
+  for (std::size_t beam = 0; beam < file.column_phases.size(); ++beam)
+    if (file.column_phases[beam] >= file.column_steps[beam])
+      throw table.error("column_phases", "has a phase that is not below its step");
+}
+
+void read_turning(const SensorTable& table, LidarModel& model) {
+  if (table.has("columns") || model.columns == 0)
+    model.columns = static_cast<std::uint32_t>(table.whole_number("columns", 1, kMostColumns));
+  if (table.has("first_azimuth_deg"))
+    model.first_azimuth_rad = radians(table.number("first_azimuth_deg", 0, -360, 360));
+  model.clockwise = table.flag("clockwise", model.clockwise);
+  if (const auto fault = column_fault(model))
+    throw table.error(table.has("columns") ? "columns" : "rotation_hz", *fault);
+}
+
+void read_rosette(const SensorTable& sensor, LidarFile& file) {
+  for (const char* key : {"columns", "beams", "elevations_deg"})
+    if (sensor.has(key)) throw sensor.error(key, "cannot stand together with a rosette");
+  const SensorTable table = sensor.table("rosette", rosette_keys());
+  file.clear_pattern();
+  RosettePattern rosette;
+  for (const char* key : {"prism_turns_per_minute", "deflection_deg", "points_per_s"})
+    if (!table.has(key)) throw table.error(key, "is missing");
+  const auto turns = table.numbers("prism_turns_per_minute", -1e9, 1e9);
+  const auto deflections_rad = table.angles_rad("deflection_deg", 0, 90);
+  if (turns.size() != 2) throw table.error("prism_turns_per_minute", "is not one number a prism");
+  if (deflections_rad.size() != 2) throw table.error("deflection_deg", "is not one number a prism");
+  for (int prism = 0; prism < 2; ++prism) {
+    rosette.prism_hz[prism] = turns[static_cast<std::size_t>(prism)] / 60.0;
+    rosette.deflection_rad[prism] = deflections_rad[static_cast<std::size_t>(prism)];
+  }
+  rosette.points_per_s = table.number("points_per_s", 0, 1, 1e9);
+  rosette.laser_tilts_rad = table.angles_rad("laser_tilts_deg", -90, 90);
+  if (rosette.laser_tilts_rad.size() > kMostBeams)
+    throw table.error("laser_tilts_deg", "has more than 65536 lasers");
+  file.model.rosette = std::move(rosette);
+}
+
+void read_measuring(const SensorTable& table, LidarModel& model) {
   model.min_range_m = table.number("min_range_m", model.min_range_m, 0, kFar_m);
   model.max_range_m = table.number("max_range_m", model.max_range_m, 0, kFar_m);
   if (!(model.max_range_m > model.min_range_m))
     throw table.error(table.has("max_range_m") ? "max_range_m" : "min_range_m",
                       "leaves no range between min_range_m and max_range_m");
   model.range_noise_m = table.number("range_noise_m", model.range_noise_m, 0, kFar_m);
-  model.clockwise = table.flag("clockwise", model.clockwise);
-  return model;
+  model.range_resolution_m =
+      table.number("range_resolution_m", model.range_resolution_m, 0, kFar_m);
+  if (table.has("angular_noise_deg"))
+    model.angular_noise_rad = radians(table.number("angular_noise_deg", 0, 0, 90));
+  if (table.has("most_returns"))
+    model.most_returns = static_cast<int>(table.whole_number("most_returns", 1, 255));
+  if (!table.has("divergence_deg")) return;
+  const auto divergence_rad = table.angles_rad("divergence_deg", 0, 90);
+  if (divergence_rad.size() != 2)
+    throw table.error("divergence_deg", "is not [horizontal, vertical]");
+  model.divergence_rad[0] = divergence_rad[0];
+  model.divergence_rad[1] = divergence_rad[1];
+}
+
+/// A rosette or a list of rays has no beams that turn.
+void check_untouched(const SensorTable& table, const LidarModel& model) {
+  for (const char* key :
+       {"azimuth_offsets_deg", "beam_origins_m", "firing_times_us", "column_steps", "column_phases",
+        "columns", "first_azimuth_deg", "clockwise"})
+    if (table.has(key))
+      throw table.error(key, "does not fit a sensor that is a rosette or a list of rays");
+  for (const Firing& firing : model.free_pattern)
+    if (static_cast<double>(firing.time_s) * model.rotation_hz > 1.0 + 1e-6)
+      throw table.error("rotation_hz", "ends a scan before the last ray, which fires at " +
+                                           std::to_string(firing.time_s) + " s");
+}
+
+/// What the table says that it is like: a name of the library, or a file, looked for beside `path`.
+LidarFile read_base(const SensorTable& table, const std::filesystem::path& path, int nesting) {
+  if (!table.has("like")) return {};
+  constexpr int kMostNesting = 8;
+  if (nesting >= kMostNesting) throw table.error("like", "leads through more than 8 files");
+  const std::string base = table.text("like", "");
+  if (base.empty()) throw table.error("like", "is neither a sensor nor a file");
+  if (auto known = read_library_lidar(base)) return std::move(*known);
+  const std::filesystem::path beside = path.parent_path() / base;
+  if (!std::filesystem::is_regular_file(beside)) {
+    const auto nearest = nearest_word(base, lidar_model_names());
+    throw table.error("like", "is '" + base +
+                                  "', which is neither a sensor nor a file beside this" +
+                                  (nearest ? ", did you mean '" + *nearest + "'?" : ""));
+  }
+  return read_lidar(beside.string(), nesting + 1);
+}
+
+}  // namespace
+
+LidarFile read_lidar_toml(std::string_view text, const std::filesystem::path& path, int nesting) {
+  const SensorTable table(parse_table(text, path), path, sensor_keys());
+  LidarFile file = read_base(table, path, nesting);
+  LidarModel& model = file.model;
+  model.name = table.text("name", path.stem().string());
+  model.source =
+      table.text("source", model.source.empty() ? path.filename().string() : model.source);
+  model.rotation_hz = table.number("rotation_hz", model.rotation_hz, 1e-3, 1e6);
+  read_measuring(table, model);
+  if (table.has("rosette")) read_rosette(table, file);
+  const bool new_beams = table.has("elevations_deg") || has_fan(table);
+  if (!new_beams && (model.rosette || !model.free_pattern.empty())) {
+    check_untouched(table, model);
+  } else {
+    read_beams(table, file);
+    read_turning(table, model);
+  }
+  return file;
 }
 
 }  // namespace adasplats

@@ -22,15 +22,18 @@ class CpuScanCaster final : public ScanCaster {
       : tracer_(tracer), scene_origin_(scene_origin), executor_(executor) {}
 
   CastTimes cast(const LidarModel& sensor, std::span<const Firing> firings,
-                 std::span<const TimedPose> poses, Sink sink) const override {
+                 std::span<const ScanMotion> scans, int depth, Sink sink) const override {
     CastTimes times;
-    std::vector<Hit> hits(firings.size());
-    for (std::size_t i = 0; i < poses.size(); ++i) {
+    std::vector<Hit> hits(firings.size() * static_cast<std::size_t>(depth));
+    for (std::size_t i = 0; i < scans.size(); ++i) {
       const Clock::time_point start = Clock::now();
-      const std::vector<Ray> rays =
-          scan_rays(sensor, firings, poses[i].world_from_sensor, scene_origin_, executor_);
+      const std::vector<Ray> rays = scan_rays(sensor, firings, scans[i], scene_origin_, executor_);
       const Clock::time_point rays_made = Clock::now();
-      tracer_.nearest(rays, hits, executor_);
+      if (depth == 1) {
+        tracer_.nearest(rays, hits, executor_);
+      } else {
+        tracer_.nearest_hits(rays, depth, hits, executor_);
+      }
       times.traced_s += seconds_since(rays_made);
       times.returned_s += seconds_since(start);
       sink(i, hits);

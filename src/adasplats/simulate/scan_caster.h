@@ -6,10 +6,10 @@
 #include <memory>
 #include <span>
 
-#include "adasplats/cloud/trajectory.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/function_ref.h"
 #include "adasplats/sensors/lidar_model.h"
+#include "adasplats/simulate/scan_motion.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {
@@ -25,15 +25,16 @@ struct CastTimes {
 /// Casts the firings of a sensor from many poses into one scene, on the CPU or on GPUs.
 class ScanCaster {
  public:
-  /// Takes the hits of one scan, hits[i] of firings[i]; they are valid during the call only.
-  using Sink = FunctionRef<void(std::size_t pose, std::span<const Hit> hits)>;
+  /// Takes the hits of one scan, the nearest `depth` of firings[i] at hits[i * depth + k]; they are
+  /// valid during the call only.
+  using Sink = FunctionRef<void(std::size_t scan, std::span<const Hit> hits)>;
 
   virtual ~ScanCaster() = default;
 
-  /// Calls `sink` for every pose, in their order, on the caller's thread. Rays are those of
+  /// Calls `sink` for every scan, in their order, on the caller's thread. Rays are those of
   /// scan_rays(). An exception of the sink ends the casting and reaches the caller.
   virtual CastTimes cast(const LidarModel& sensor, std::span<const Firing> firings,
-                         std::span<const TimedPose> poses, Sink sink) const = 0;
+                         std::span<const ScanMotion> scans, int depth, Sink sink) const = 0;
 };
 
 /// Casts with a tracer, scan by scan. `scene_origin`: world coordinates of the scene's local

@@ -45,7 +45,7 @@ class ScanCasterTest : public testing::Test {
       pose.time_s = 0.1 * i;
       pose.world_from_sensor = {rotation_from_yaw_pitch_roll(0.4 * i, 0.05, -0.02),
                                 kOrigin + Vec3d{1.5 * i - 3, 0.25 * i, 1}};
-      poses_.push_back(pose);
+      poses_.push_back({pose, {}});
     }
   }
 
@@ -53,12 +53,13 @@ class ScanCasterTest : public testing::Test {
     return make_cpu_scan_caster(*tracer_, kOrigin, executor_);
   }
   /// All hits that the sink was given, pose by pose.
-  std::vector<std::vector<Hit>> cast(std::span<const TimedPose> poses) const {
+  std::vector<std::vector<Hit>> cast(std::span<const ScanMotion> motions, int depth = 1) const {
     std::vector<std::vector<Hit>> scans;
-    caster()->cast(sensor_, firings_, poses, [&](std::size_t pose, std::span<const Hit> hits) {
-      EXPECT_EQ(pose, scans.size()) << "not in the order of the poses";
-      scans.emplace_back(hits.begin(), hits.end());
-    });
+    caster()->cast(sensor_, firings_, motions, depth,
+                   [&](std::size_t pose, std::span<const Hit> hits) {
+                     EXPECT_EQ(pose, scans.size()) << "not in the order of the poses";
+                     scans.emplace_back(hits.begin(), hits.end());
+                   });
     return scans;
   }
 
@@ -67,7 +68,7 @@ class ScanCasterTest : public testing::Test {
   std::unique_ptr<Tracer> tracer_;
   LidarModel sensor_ = hdl_32_paper();
   std::vector<Firing> firings_;
-  Trajectory poses_;
+  std::vector<ScanMotion> poses_;
 };
 
 // Oracle: brute force over the rays of scan_rays().
@@ -76,8 +77,7 @@ TEST_F(ScanCasterTest, HitsAreThoseOfBruteForce) {
   const std::vector<std::vector<Hit>> scans = cast(poses_);
   ASSERT_EQ(scans.size(), poses_.size());
   for (std::size_t i = 0; i < poses_.size(); ++i) {
-    const std::vector<Ray> rays =
-        scan_rays(sensor_, firings_, poses_[i].world_from_sensor, kOrigin, executor_);
+    const std::vector<Ray> rays = scan_rays(sensor_, firings_, poses_[i], kOrigin, executor_);
     std::vector<Hit> expected(rays.size());
     brute_force->nearest(rays, expected, executor_);
     EXPECT_EQ(scans[i], expected) << "pose " << i;
@@ -92,9 +92,10 @@ TEST_F(ScanCasterTest, ScansOfItsHitsAreThoseOfSimulateScan) {
   for (std::size_t i = 0; i < classes.size(); ++i) classes[i] = static_cast<std::uint16_t>(i);
   PrimitiveAttributes attributes;
   attributes.classes = classes;
-  const SimulateOptions options{42, true};
+  SimulateOptions options;
+  options.seed = 42;
   std::size_t points = 0;
-  caster()->cast(sensor_, firings_, poses_, [&](std::size_t i, std::span<const Hit> hits) {
+  caster()->cast(sensor_, firings_, poses_, 1, [&](std::size_t i, std::span<const Hit> hits) {
     const Scan scan =
         scan_of_hits(hits, attributes, sensor_, firings_, poses_[i], i, options, executor_);
     const Scan expected = simulate_scan(*tracer_, attributes, kOrigin, sensor_, firings_, poses_[i],
@@ -120,7 +121,7 @@ TEST_F(ScanCasterTest, NoPosesAndNoFirings) {
 }
 
 TEST_F(ScanCasterTest, APoseThatIsNotFiniteHitsNothing) {
-  poses_[1].world_from_sensor.translation.x = std::numeric_limits<double>::quiet_NaN();
+  poses_[1].reference.world_from_sensor.translation.x = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::vector<Hit>> scans = cast(poses_);
   ASSERT_EQ(scans.size(), poses_.size());
   EXPECT_EQ(scans[1], std::vector<Hit>(firings_.size()));
@@ -133,7 +134,7 @@ TEST_F(ScanCasterTest, AnExceptionOfTheSinkEndsTheCasting) {
     ++calls;
     if (pose == 1) throw std::runtime_error("disk full");
   };
-  EXPECT_THROW(caster()->cast(sensor_, firings_, poses_, refuse_second), std::runtime_error);
+  EXPECT_THROW(caster()->cast(sensor_, firings_, poses_, 1, refuse_second), std::runtime_error);
   EXPECT_EQ(calls, 2U);
   EXPECT_EQ(cast(poses_).size(), poses_.size()) << "casts again afterwards";
 }
@@ -141,12 +142,12 @@ TEST_F(ScanCasterTest, AnExceptionOfTheSinkEndsTheCasting) {
 TEST_F(ScanCasterTest, TimesAreNotNegativeAndLeaveOutTheSink) {
   constexpr std::chrono::milliseconds kSleep{10};
   const auto slow = [&](std::size_t, std::span<const Hit>) { std::this_thread::sleep_for(kSleep); };
-  const CastTimes none = caster()->cast(sensor_, firings_, {}, slow);
+  const CastTimes none = caster()->cast(sensor_, firings_, {}, 1, slow);
   EXPECT_EQ(none.traced_s, 0.0);
   EXPECT_EQ(none.returned_s, 0.0);
 
   const auto start = std::chrono::steady_clock::now();
-  const CastTimes some = caster()->cast(sensor_, firings_, poses_, slow);
+  const CastTimes some = caster()->cast(sensor_, firings_, poses_, 1, slow);
   const std::chrono::duration<double> all = std::chrono::steady_clock::now() - start;
   const std::chrono::duration<double> slept = kSleep * poses_.size();
   EXPECT_GT(some.traced_s, 0.0);

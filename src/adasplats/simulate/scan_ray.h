@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+
 #include "adasplats/core/ray.h"
 #include "adasplats/core/rigid_transform.h"
 
@@ -26,13 +28,44 @@ ADASPLATS_HD inline ScanPose scan_pose(const RigidTransform& world_from_sensor,
           vec_cast<float>(world_from_sensor.translation - scene_origin)};
 }
 
-/// THE ray of a firing, for every backend. Its direction has unit length to 2e-7, 0.02 mm at 100 m.
-ADASPLATS_HD inline Ray scan_ray(const ScanPose& pose, Vec3f firing_direction, float t_min,
-                                 float t_max) {
-  return {pose.origin,
+/// A firing as rays are made from it.
+struct FiringRay {
+  Vec3f direction;   ///< sensor frame, unit length
+  float share = 0;   ///< of the revolution that is over when it fires, 0..1
+  Vec3f origin;      ///< sensor frame, m
+  float unused = 0;  ///< 16-byte loads
+};
+static_assert(sizeof(FiringRay) == 32);
+
+inline ADASPLATS_HD Vec3f turned(const ScanPose& pose, Vec3f v) {
+  return {dot(pose.rows[0], v), dot(pose.rows[1], v), dot(pose.rows[2], v)};
+}
+
+/// THE ray of a firing of a sensor that stands still, for every backend. Its direction has unit
+/// length to 2e-7, 0.02 mm at 100 m.
+ADASPLATS_HD inline Ray still_scan_ray(const ScanPose& pose, const FiringRay& firing, float t_min,
+                                       float t_max) {
+  return {pose.origin + turned(pose, firing.origin), t_min, turned(pose, firing.direction), t_max};
+}
+
+/// The same for one that moves. `knots`: where it is at `knot_count` equal times from the beginning
+/// of the revolution to its end; one: it stands still. Between two of them origins and directions
+/// are mixed linearly, which for the half degree that they are apart at most (moving_scans) is off
+/// by less than 1e-7 rad.
+ADASPLATS_HD inline Ray scan_ray(const ScanPose* knots, std::uint32_t knot_count,
+                                 const FiringRay& firing, float t_min, float t_max) {
+  if (knot_count < 2) return still_scan_ray(knots[0], firing, t_min, t_max);
+  const float place = firing.share * static_cast<float>(knot_count - 1);
+  std::uint32_t segment = place > 0.0F ? static_cast<std::uint32_t>(place) : 0;
+  if (segment > knot_count - 2) segment = knot_count - 2;
+  const float late = place - static_cast<float>(segment);
+  const ScanPose& from = knots[segment];
+  const ScanPose& to = knots[segment + 1];
+  return {(1.0F - late) * (from.origin + turned(from, firing.origin)) +
+              late * (to.origin + turned(to, firing.origin)),
           t_min,
-          {dot(pose.rows[0], firing_direction), dot(pose.rows[1], firing_direction),
-           dot(pose.rows[2], firing_direction)},
+          normalized((1.0F - late) * turned(from, firing.direction) +
+                     late * turned(to, firing.direction)),
           t_max};
 }
 

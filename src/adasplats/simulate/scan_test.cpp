@@ -47,7 +47,7 @@ struct Drive {
   Scan scan(int threads = 2) const {
     const Executor executor(threads);
     const auto tracer = make_embree_tracer(view, executor);
-    return simulate_scan(*tracer, attributes, scene_origin, sensor, firings_of(sensor), pose,
+    return simulate_scan(*tracer, attributes, scene_origin, sensor, firings_of(sensor), {pose, {}},
                          scan_index, options, executor);
   }
 };
@@ -143,7 +143,7 @@ TEST(SimulateScan, AttributesComeFromThePrimitiveThatWasHit) {
   const std::vector<float> intensities = {0.25F, 0.75F};
   Drive drive;
   drive.view = {disks, nullptr};
-  drive.attributes = {classes, instances, intensities};
+  drive.attributes = {classes, instances, intensities, {}, nullptr};
   drive.sensor.elevations_rad = {0.0};
   drive.sensor.columns = 4;
   drive.pose.time_s = 12.5;
@@ -194,7 +194,7 @@ class ScanNoise : public testing::Test {
 // Oracle: moments of the normal distribution; 57,600 draws.
 TEST_F(ScanNoise, IsWhiteAlongTheRay) {
   const Scan noisy = drive_.scan();
-  drive_.options.range_noise = false;
+  drive_.options.noise = false;
   const Scan clean = drive_.scan();
   ASSERT_EQ(noisy.size(), clean.size());
   double sum = 0, squares = 0, neighbours = 0, before = 0;

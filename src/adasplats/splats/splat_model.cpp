@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/splats/splat_model.h"
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <optional>
+#include <sstream>
 
 #include "adasplats/cloud/point_cloud.h"
 #include "adasplats/core/error.h"
+#include "adasplats/io/number_text.h"
 #include "adasplats/io/ply.h"
 
 namespace adasplats {
@@ -15,6 +19,10 @@ namespace {
 
 constexpr const char* kLabelsComment = "adasplats.labels ";
 constexpr const char* kMethodComment = "adasplats.method ";
+/// Of the response's tables, in the order of response_tables().
+constexpr std::array<const char*, 4> kResponseComments = {
+    "adasplats.response_ranges_m ", "adasplats.response_range_gains ",
+    "adasplats.response_cosines ", "adasplats.response_cosine_gains "};
 constexpr const char* kFormatComment = "adasplats.splats 1";
 
 const Column& required(const Table& table, const std::filesystem::path& path,
@@ -58,6 +66,62 @@ std::string comment_value(const Table& table, const std::string& key) {
   for (const std::string& comment : table.comments)
     if (comment.rfind(key, 0) == 0) return comment.substr(key.size());
   return {};
+}
+
+/// The members of `response`, an IntensityResponse, const or not.
+template <class Response>
+auto response_tables(Response& response) {
+  return std::array{&response.ranges_m, &response.range_gains, &response.cos_incidences,
+                    &response.incidence_gains};
+}
+
+/// The shortest text that reads back as the same float.
+std::string float_text(float value) {
+  std::array<char, 32> buffer;
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+void add_response_comments(const IntensityResponse& response, std::vector<std::string>& comments) {
+  if (response.empty()) return;
+  const auto tables = response_tables(response);
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    std::string comment = kResponseComments[k];
+    for (const float value : *tables[k]) comment += float_text(value) + " ";
+    comment.pop_back();
+    comments.push_back(comment);
+  }
+}
+
+std::vector<float> numbers_of(const std::filesystem::path& path, const std::string& text) {
+  std::vector<float> numbers;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::optional<float> value = parse_number<float>(word);
+    if (!value || !std::isfinite(*value) || *value < 0)
+      throw data_error({path, {}, {}}, std::string("the intensity response has ") + shown(word) +
+                                           ", expected a number of 0 or more");
+    numbers.push_back(*value);
+  }
+  return numbers;
+}
+
+IntensityResponse response_of(const Table& table, const std::filesystem::path& path) {
+  IntensityResponse response;
+  const auto tables = response_tables(response);
+  for (std::size_t k = 0; k < tables.size(); ++k)
+    *tables[k] = numbers_of(path, comment_value(table, kResponseComments[k]));
+  const auto is_table = [](const std::vector<float>& nodes, const std::vector<float>& values) {
+    const auto not_after = [](float a, float b) { return a >= b; };
+    return nodes.size() == values.size() && nodes.size() != 1 &&
+           std::adjacent_find(nodes.begin(), nodes.end(), not_after) == nodes.end();
+  };
+  if (!is_table(response.ranges_m, response.range_gains) ||
+      !is_table(response.cos_incidences, response.incidence_gains) ||
+      response.ranges_m.empty() != response.cos_incidences.empty())
+    throw data_error({path, {}, {}},
+                     "the comments of the intensity response are not tables of two "
+                     "or more ascending nodes with a gain each");
+  return response;
 }
 
 }  // namespace
@@ -107,6 +171,7 @@ void save_model(const std::filesystem::path& path, const SplatModel& model) {
   std::vector<std::string> comments = {kFormatComment};
   if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
   if (!model.label_scheme.empty()) comments.push_back(kLabelsComment + model.label_scheme);
+  add_response_comments(model.response, comments);
   write_ply(path, model.size(), columns, comments);
 }
 
@@ -144,6 +209,7 @@ SplatModel load_model(const std::filesystem::path& path) {
       model.intensities.push_back(static_cast<float>(intensities->as_double(i)));
   model.method = comment_value(table, kMethodComment);
   model.label_scheme = comment_value(table, kLabelsComment);
+  model.response = response_of(table, path);
   return model;
 }
 

@@ -11,6 +11,7 @@
 #include "adasplats/cloud/label_scheme.h"
 #include "adasplats/core/vec3.h"
 #include "adasplats/scene/scene.h"
+#include "adasplats/splats/reflectance.h"
 
 namespace adasplats {
 
@@ -20,9 +21,12 @@ struct SplatModel {
   std::vector<Disk> disks;             ///< relative to `origin`
   std::vector<std::uint16_t> classes;  ///< semantic class of the seed point; empty without labels
   std::vector<SemanticGroup> groups;   ///< one a splat; empty for basic splats
-  std::vector<float> intensities;      ///< of the seed point; empty without
-  std::string label_scheme;            ///< name or path as load_label_scheme takes it; may be empty
-  std::string method;                  ///< how it was made
+  /// Reflectances where there is a `response`, else measured intensities of the seed point; empty
+  /// without.
+  std::vector<float> intensities;
+  IntensityResponse response;  ///< of the sensor that measured the intensities; empty: not known
+  std::string label_scheme;    ///< name or path as load_label_scheme takes it; may be empty
+  std::string method;          ///< how it was made
 
   std::size_t size() const { return disks.size(); }
   SceneView view() const { return {disks, nullptr}; }
@@ -32,11 +36,14 @@ struct SplatModel {
 std::pair<Vec3f, Vec3f> bounds(const SplatModel& model);
 
 /// Writes a PLY, one vertex a splat: x y z nx ny nz radius [class] [group] [intensity] (x y z as
-/// doubles in world coordinates where the origin is not zero).
+/// doubles in world coordinates where the origin is not zero). The rest is in comments
+/// "adasplats.KEY VALUE"; the response in "response_ranges_m", "response_range_gains",
+/// "response_cosines" and "response_cosine_gains".
 void save_model(const std::filesystem::path& path, const SplatModel& model);
 
 /// Reads what save_model wrote, and any PLY with x y z nx ny nz radius. Errors: data (no radius
-/// column, values not finite, radius <= 0, normal not of unit length to 1e-3).
+/// column, values not finite, radius <= 0, normal not of unit length to 1e-3, a response that is
+/// not complete). Without a response comment the response is empty.
 SplatModel load_model(const std::filesystem::path& path);
 
 }  // namespace adasplats

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+namespace adasplats::app {
+
+/// An output folder that appears whole or not at all, whose making can be interrupted at any moment
+/// and goes on where it stopped. It is filled beside its place under the name ".NAME.unfinished",
+/// where a journal tells which files are whole, with their SHA-256; commit() renames it.
+class ResumableFolder {
+ public:
+  /// `content` says what the folder is made of and how: all that its files depend on. It goes into
+  /// adasplats.json as OutputFolder's does, and the same for `overwrite`. What an earlier process
+  /// left unfinished is taken over if it was made of the same.
+  /// Errors: cannot_create (another process fills the folder; the unfinished one is of another run,
+  /// with the key that differs, or is damaged), io.
+  ResumableFolder(const std::filesystem::path& folder, bool overwrite, std::string command,
+                  nlohmann::ordered_json content);
+  /// Leaves what was recorded for another process; nothing, if nothing was.
+  ~ResumableFolder();
+  ResumableFolder(const ResumableFolder&) = delete;
+  ResumableFolder& operator=(const ResumableFolder&) = delete;
+
+  /// Where to write to.
+  const std::filesystem::path& path() const { return unfinished_; }
+  /// Whether files, named relative to path(), were recorded and are still as they were then.
+  bool has(std::span<const std::string> files) const;
+  bool has(const std::string& file) const { return has(std::span(&file, 1)); }
+  /// Notes that files are whole, one after another; to be called when they are on disk.
+  void record(std::span<const std::string> files);
+  void record(const std::string& file) { record(std::span(&file, 1)); }
+
+  /// Removes the files `aids`, adds `summary` and the SHA-256 of every file, as "outputs", to
+  /// adasplats.json, and gives the folder its name.
+  void commit(const nlohmann::ordered_json& summary, std::span<const std::string> aids);
+
+ private:
+  void take_over();
+  void read_journal();
+
+  std::filesystem::path folder_;
+  std::filesystem::path unfinished_;
+  std::string command_;
+  nlohmann::ordered_json content_;
+  std::map<std::string, std::string> recorded_;  ///< SHA-256 by file
+  int lock_ = -1;                                ///< descriptor of the unfinished folder, locked
+  int journal_ = -1;                             ///< descriptor, at its end
+};
+
+}  // namespace adasplats::app

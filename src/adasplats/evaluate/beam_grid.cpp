@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/evaluate/beam_grid.h"
+
+#include <algorithm>
+#include <bitset>
+#include <cmath>
+#include <complex>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+namespace {
+
+constexpr int kSteps = 4000;  // of the encoder, 0.09 degrees each
+constexpr double kStep_rad = 2 * std::numbers::pi / kSteps;
+constexpr double kMostOffCone_m = 0.02;
+constexpr std::size_t kLeastPoints = 100;  // of a ring
+constexpr std::size_t kLeastRings = 8;
+/// Length of the mean of unit vectors at the phases of a ring's azimuths: 1 on a lattice; KITTI's
+/// rings have 0.95 and more, compensated ones 0.6 and less.
+constexpr double kLeastOrder = 0.8;
+/// Of a ring's points on the firings of the fullest ring; by chance it is half of them.
+constexpr double kLeastOnFirings = 0.75;
+
+using Steps = std::bitset<kSteps>;
+
+/// One laser: its points and where the lattice of its azimuths lies.
+struct Ring {
+  std::size_t beam = 0;               ///< of the sensor
+  std::vector<std::uint32_t> points;  ///< of the scan
+  double beside_m = 0;                ///< where it leaves, left of the axis seen along the beam
+  double phase_rad = 0;               ///< of the lattice, within half a step
+  int shift = 0;                      ///< steps from the fullest ring's firings to this ring's
+  std::vector<int> steps;             ///< of each point
+  Steps taken;
+};
+
+int wrapped(int step) { return ((step % kSteps) + kSteps) % kSteps; }
+
+Vec3d point_of(const KittiScan& scan, std::uint32_t i) {
+  return vec_cast<double>(scan.positions[i]);
+}
+
+double rho_m(Vec3d point) { return std::hypot(point.x, point.y); }
+
+double height_m(const LidarModel& sensor, std::size_t beam) {
+  return sensor.beam_origins_m.empty() ? 0.0 : sensor.beam_origins_m[beam].z;
+}
+
+/// Azimuth in which a beam went that left `beside_m` left of the axis and met `point`.
+double beam_azimuth_rad(Vec3d point, double beside_m) {
+  const double sine = std::clamp(beside_m / rho_m(point), -1.0, 1.0);
+  return std::atan2(point.y, point.x) - std::asin(sine);
+}
+
+/// Points by the cone that they lie on; those on none are in no ring.
+std::vector<Ring> rings_of(const KittiScan& scan, const LidarModel& sensor) {
+  std::vector<Ring> rings(sensor.elevations_rad.size());
+  for (std::size_t beam = 0; beam < rings.size(); ++beam) rings[beam].beam = beam;
+  for (std::size_t i = 0; i < scan.positions.size(); ++i) {
+    const Vec3d point = point_of(scan, static_cast<std::uint32_t>(i));
+    if (!is_finite(point) || !(rho_m(point) > 0)) continue;
+    double nearest_m = kMostOffCone_m;
+    Ring* nearest = nullptr;
+    for (Ring& ring : rings) {
+      const double elevation_rad = sensor.elevations_rad[ring.beam];
+      const double above_m =
+          point.z - height_m(sensor, ring.beam) - std::tan(elevation_rad) * rho_m(point);
+      const double distance_m = std::fabs(above_m) * std::cos(elevation_rad);
+      if (distance_m >= nearest_m) continue;
+      nearest_m = distance_m;
+      nearest = &ring;
+    }
+    if (nearest != nullptr) nearest->points.push_back(static_cast<std::uint32_t>(i));
+  }
+  std::erase_if(rings, [](const Ring& ring) { return ring.points.size() < kLeastPoints; });
+  return rings;
+}
+
+/// Mean of the phases of a ring's azimuths on the lattice, as unit vectors.
+std::complex<double> mean_phase(const KittiScan& scan, const Ring& ring, double beside_m) {
+  constexpr std::size_t kEnough = 400;  // points
+  const std::size_t every = std::max<std::size_t>(1, ring.points.size() / kEnough);
+  std::complex<double> sum = 0;
+  double count = 0;
+  for (std::size_t k = 0; k < ring.points.size(); k += every) {
+    const double azimuth_rad = beam_azimuth_rad(point_of(scan, ring.points[k]), beside_m);
+    sum += std::polar(1.0, azimuth_rad / kStep_rad * 2 * std::numbers::pi);
+    ++count;
+  }
+  return sum / count;
+}
+
+/// Finds where a ring's lattice lies and its points' places on it. False: they are on none.
+bool fit_lattice(const KittiScan& scan, Ring& ring) {
+  constexpr int kMostBeside_mm = 60;
+  double best = 0;
+  for (int distance_mm = 0; distance_mm <= kMostBeside_mm; ++distance_mm) {
+    for (const int side : {1, -1}) {
+      const double beside_m = 1e-3 * side * distance_mm;
+      const std::complex<double> mean = mean_phase(scan, ring, beside_m);
+      if (std::abs(mean) <= best) continue;
+      best = std::abs(mean);
+      ring.beside_m = beside_m;
+      ring.phase_rad = std::arg(mean) / (2 * std::numbers::pi) * kStep_rad;
+    }
+  }
+  if (best < kLeastOrder) return false;
+  for (const std::uint32_t i : ring.points) {
+    const double azimuth_rad = beam_azimuth_rad(point_of(scan, i), ring.beside_m);
+    const int step = static_cast<int>(std::lround((azimuth_rad - ring.phase_rad) / kStep_rad));
+    ring.steps.push_back(wrapped(step));
+    ring.taken.set(static_cast<std::size_t>(ring.steps.back()));
+  }
+  return true;
+}
+
+/// `steps` turned counter-clockwise.
+Steps turned(const Steps& steps, int by) {
+  const auto places = static_cast<std::size_t>(wrapped(by));
+  return (steps << places) | (steps >> (kSteps - places));
+}
+
+/// Turns `ring` onto the firings of `fullest`. False: it does not fit.
+bool align(Ring& ring, const Ring& fullest) {
+  constexpr int kMostShift = 300;  // 27 degrees; lasers point less than 18 degrees apart
+  std::size_t best = 0;
+  for (int size = 0; size <= kMostShift; ++size) {
+    for (const int shift : {size, -size}) {
+      const std::size_t common = (ring.taken & turned(fullest.taken, shift)).count();
+      if (common <= best) continue;
+      best = common;
+      ring.shift = shift;
+    }
+  }
+  return static_cast<double>(best) >= kLeastOnFirings * static_cast<double>(ring.taken.count());
+}
+
+/// Steps of the fullest ring at which lasers fired: two rings at least have a point there.
+std::vector<int> firing_steps(const std::vector<Ring>& rings) {
+  std::vector<int> support(kSteps);
+  for (const Ring& ring : rings) {
+    const Steps taken = turned(ring.taken, -ring.shift);
+    for (int step = 0; step < kSteps; ++step) {
+      support[static_cast<std::size_t>(step)] += taken[static_cast<std::size_t>(step)] ? 1 : 0;
+    }
+  }
+  std::vector<int> firings;
+  // Clockwise from the rear, which is half a turn.
+  for (int k = 0; k < kSteps; ++k) {
+    const int step = wrapped(kSteps / 2 - k);
+    if (support[static_cast<std::size_t>(step)] >= 2) firings.push_back(step);
+  }
+  return firings;
+}
+
+Firing firing_at(const Ring& ring, std::uint32_t column, int step, const LidarModel& sensor) {
+  const double azimuth_rad = wrapped(step + ring.shift) * kStep_rad + ring.phase_rad;
+  const double elevation_rad = sensor.elevations_rad[ring.beam];
+  const double sine = std::sin(azimuth_rad), cosine = std::cos(azimuth_rad);
+  const double flat = std::cos(elevation_rad);
+  const double share =
+      0.5 - std::remainder(azimuth_rad, 2 * std::numbers::pi) / (2 * std::numbers::pi);
+  Firing firing{};
+  firing.direction = vec_cast<float>(Vec3d{flat * cosine, flat * sine, std::sin(elevation_rad)});
+  firing.origin = vec_cast<float>(
+      Vec3d{-ring.beside_m * sine, ring.beside_m * cosine, height_m(sensor, ring.beam)});
+  firing.ring = static_cast<std::uint16_t>(ring.beam);
+  firing.column = column;
+  firing.time_s = static_cast<float>(share / sensor.rotation_hz);
+  return firing;
+}
+
+void add_ring(BeamGrid& grid, const KittiScan& scan, const Ring& ring,
+              const std::vector<int>& firings, const LidarModel& sensor) {
+  constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+  std::vector<std::int64_t> point_at(kSteps, -1);
+  for (std::size_t k = 0; k < ring.points.size(); ++k) {
+    std::int64_t& place = point_at[static_cast<std::size_t>(ring.steps[k])];
+    if (place >= 0) {
+      ++grid.doubled;
+    } else {
+      place = ring.points[k];
+    }
+  }
+  for (std::size_t column = 0; column < firings.size(); ++column) {
+    const Firing firing =
+        firing_at(ring, static_cast<std::uint32_t>(column), firings[column], sensor);
+    const auto step = static_cast<std::size_t>(wrapped(firings[column] + ring.shift));
+    const std::int64_t point = point_at[step];
+    grid.beams.push_back(firing);
+    grid.ranges_m.push_back(kNothing);
+    grid.intensities.push_back(kNothing);
+    if (point < 0) continue;
+    const auto i = static_cast<std::size_t>(point);
+    grid.ranges_m.back() = length(scan.positions[i] - firing.origin);
+    if (!scan.intensities.empty()) grid.intensities.back() = scan.intensities[i];
+    ++grid.points;
+  }
+}
+
+}  // namespace
+
+BeamGrid find_beam_grid(const KittiScan& scan, const LidarModel& sensor) {
+  if (sensor.elevations_rad.empty() || !(sensor.rotation_hz > 0)) {
+    throw Error(ErrorKind::usage, std::string("sensor '") + sensor.name +
+                                      "' has no beams that turn: a grid of beams needs one that "
+                                      "has, such as an HDL-64E");
+  }
+  std::vector<Ring> rings = rings_of(scan, sensor);
+  std::erase_if(rings, [&](Ring& ring) { return !fit_lattice(scan, ring); });
+  if (!rings.empty()) {
+    const auto fewer = [](const Ring& a, const Ring& b) {
+      return a.taken.count() < b.taken.count();
+    };
+    const Ring fullest = *std::max_element(rings.begin(), rings.end(), fewer);
+    std::erase_if(rings, [&](Ring& ring) { return !align(ring, fullest); });
+  }
+  if (rings.size() < kLeastRings) {
+    throw Error(ErrorKind::data,
+                std::string("the points lie on the firings of ") + std::to_string(rings.size()) +
+                    " beams of sensor '" + sensor.name + "', expected at least " +
+                    std::to_string(kLeastRings) +
+                    ": beams without return can be told in scans of an HDL-64E that are not "
+                    "motion-compensated");
+  }
+  const std::vector<int> firings = firing_steps(rings);
+  BeamGrid grid;
+  grid.columns = firings.size();
+  for (const Ring& ring : rings) add_ring(grid, scan, ring, firings, sensor);
+  grid.outside = scan.positions.size() - grid.points - grid.doubled;
+  return grid;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/evaluate/echo_accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "adasplats/core/error.h"
+#include "adasplats/evaluate/beam_grid.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Ranks from 0; equal values share the mean of theirs.
+std::vector<double> ranks_of(std::span<const float> values) {
+  std::vector<std::uint32_t> order(values.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return values[a] != values[b] ? values[a] < values[b] : a < b;
+  });
+  std::vector<double> ranks(values.size());
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    while (end < order.size() && values[order[end]] == values[order[begin]]) ++end;
+    const double shared = 0.5 * static_cast<double>(begin + end - 1);
+    for (std::size_t k = begin; k < end; ++k) ranks[order[k]] = shared;
+  }
+  return ranks;
+}
+
+/// Of the beam and the disk or triangle, 0..1.
+float cos_incidence(const SceneView& view, Vec3f direction, std::uint32_t primitive) {
+  Vec3f normal;
+  if (primitive < view.disk_count()) {
+    normal = view.disks[primitive].normal;
+  } else {
+    const Triangle triangle = view.mesh->triangle(primitive - view.disk_count());
+    normal = normalized(cross(triangle.b - triangle.a, triangle.c - triangle.a));
+  }
+  return std::min(std::fabs(dot(direction, normal)), 1.0F);
+}
+
+/// What a beam meets, as the drop model sees it.
+EchoConditions echo_of(const EchoScene& scene, const Ray& ray, const Hit& hit) {
+  const auto& intensities = scene.attributes.intensities;
+  EchoConditions echo;
+  echo.range_m = hit.t;
+  echo.cos_incidence = cos_incidence(scene.attributes.view, ray.direction, hit.primitive);
+  echo.reflectance = hit.primitive < intensities.size() ? intensities[hit.primitive]
+                                                        : std::numeric_limits<float>::quiet_NaN();
+  return echo;
+}
+
+/// Pairs of intensities of one scan.
+struct IntensityPairs {
+  std::vector<float> predicted;
+  std::vector<float> measured;
+};
+
+void add_pairs(IntensityPairs& pairs, const EchoScene& scene, const KittiSequence& sequence,
+               std::size_t index, const Executor& executor) {
+  const KittiScan scan = read_kitti_scan(sequence, index);
+  RigidTransform scene_from_sensor = sequence.trajectory[index].world_from_sensor;
+  scene_from_sensor.translation = scene_from_sensor.translation - scene.origin;
+  std::vector<Ray> rays(scan.positions.size());
+  std::vector<Hit> hits(rays.size());
+  executor.for_chunks(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const MeasuredBeam beam = sequence.beams.beam_of(index, vec_cast<double>(scan.positions[i]));
+      rays[i].origin = vec_cast<float>(scene_from_sensor * beam.origin);
+      rays[i].direction =
+          vec_cast<float>(scene_from_sensor.rotation * normalized(beam.end - beam.origin));
+    }
+  });
+  scene.tracer.nearest(rays, hits, executor);
+  const IntensityResponse* response = scene.attributes.response;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (!hits[i].valid() || !std::isfinite(scan.intensities[i])) continue;
+    const EchoConditions echo = echo_of(scene, rays[i], hits[i]);
+    if (!std::isfinite(echo.reflectance)) continue;
+    const float gain =
+        response == nullptr ? 1.0F : response->gain(echo.range_m, echo.cos_incidence);
+    pairs.predicted.push_back(echo.reflectance * gain);
+    pairs.measured.push_back(scan.intensities[i]);
+  }
+}
+
+BeamGrid grid_of(const KittiSequence& sequence, std::size_t index, const LidarModel& sensor) {
+  const KittiScan scan = read_kitti_scan(sequence, index);
+  try {
+    return find_beam_grid(scan, sensor);
+  } catch (const Error& error) {
+    throw Error(error.kind(), sequence.scans[index].string() + ": " + error.what());
+  }
+}
+
+void add_beams(BeamEchoes& beams, const EchoScene& scene, const BeamGrid& grid, std::size_t index,
+               const LidarModel& sensor, const ScanMotion& motion, const Executor& executor) {
+  const std::vector<Ray> rays = scan_rays(sensor, grid.beams, motion, scene.origin, executor);
+  std::vector<Hit> hits(rays.size());
+  scene.tracer.nearest(rays, hits, executor);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const bool hit = hits[i].valid();
+    EchoConditions echo = hit ? echo_of(scene, rays[i], hits[i]) : EchoConditions{};
+    echo.direction = grid.beams[i].direction;
+    beams.echoes.push_back(echo);
+    beams.hit.push_back(hit ? 1 : 0);
+    beams.lost.push_back(grid.returned(i) ? 0 : 1);
+    beams.scans.push_back(static_cast<std::uint32_t>(index));
+  }
+}
+
+/// The beams that `keep` says by their number.
+template <class Keep>
+BeamEchoes kept(const BeamEchoes& beams, const Keep& keep) {
+  BeamEchoes result;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (!keep(i)) continue;
+    result.echoes.push_back(beams.echoes[i]);
+    result.hit.push_back(beams.hit[i]);
+    result.lost.push_back(beams.lost[i]);
+    result.scans.push_back(beams.scans[i]);
+  }
+  return result;
+}
+
+double share(std::size_t part, std::size_t whole) {
+  return whole == 0 ? kNan : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+double rank_correlation(std::span<const float> a, std::span<const float> b) {
+  if (a.size() != b.size()) throw std::logic_error("rank_correlation: sizes differ");
+  const std::vector<double> ranks_a = ranks_of(a), ranks_b = ranks_of(b);
+  const double middle = 0.5 * (static_cast<double>(a.size()) - 1);
+  double ab = 0, aa = 0, bb = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double from_a = ranks_a[i] - middle, from_b = ranks_b[i] - middle;
+    ab += from_a * from_b;
+    aa += from_a * from_a;
+    bb += from_b * from_b;
+  }
+  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : kNan;
+}
+
+IntensityAccuracy intensity_accuracy(const EchoScene& scene, const KittiSequence& sequence,
+                                     std::span<const std::size_t> indices, const Executor& executor,
+                                     ProgressSink& progress) {
+  if (scene.attributes.intensities.empty()) {
+    throw Error(ErrorKind::data,
+                "the model has no intensities; make it from points that have some");
+  }
+  IntensityPairs pairs;
+  progress.begin_step("compare intensities", indices.size());
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    add_pairs(pairs, scene, sequence, indices[k], executor);
+    progress.advance(k + 1);
+  }
+  progress.end_step();
+  if (pairs.measured.empty()) {
+    throw Error(ErrorKind::data,
+                sequence.folder.string() + ": no beam with an intensity hits the model");
+  }
+  IntensityAccuracy accuracy;
+  accuracy.rays = pairs.measured.size();
+  accuracy.rank_correlation = rank_correlation(pairs.predicted, pairs.measured);
+  for (std::size_t i = 0; i < accuracy.rays; ++i) {
+    accuracy.mae +=
+        std::fabs(static_cast<double>(pairs.predicted[i]) - static_cast<double>(pairs.measured[i]));
+  }
+  accuracy.mae /= static_cast<double>(accuracy.rays);
+  return accuracy;
+}
+
+BeamEchoes collect_beam_echoes(const EchoScene& scene, const KittiSequence& sequence,
+                               std::span<const std::size_t> indices, const LidarModel& sensor,
+                               std::span<const ScanMotion> motions, const Executor& executor,
+                               ProgressSink& progress) {
+  BeamEchoes beams;
+  progress.begin_step("cast all beams", indices.size());
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    const BeamGrid grid = grid_of(sequence, indices[k], sensor);
+    add_beams(beams, scene, grid, indices[k], sensor, motions[indices[k]], executor);
+    progress.advance(k + 1);
+  }
+  progress.end_step();
+  return beams;
+}
+
+RayDropModel fit_ray_drop(const BeamEchoes& beams) {
+  const BeamEchoes hits = kept(beams, [&](std::size_t i) { return beams.hit[i] != 0; });
+  RayDropModel blocked;
+  blocked.blocked = find_blocked_sectors(hits.echoes, hits.lost, hits.scans);
+  const BeamEchoes free =
+      kept(hits, [&](std::size_t i) { return !blocked.blocks(hits.echoes[i].direction); });
+  RayDropModel model = fit_ray_drop(free.echoes, free.lost);
+  model.blocked = std::move(blocked.blocked);
+  return model;
+}
+
+double DropAccuracy::precision() const { return share(right, predicted); }
+double DropAccuracy::recall() const { return share(right, empty); }
+double DropAccuracy::f1() const { return share(2 * right, predicted + empty); }
+
+DropAccuracy drop_accuracy(const BeamEchoes& beams, const RayDropModel* model, bool with_blocked) {
+  DropAccuracy accuracy;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const EchoConditions& echo = beams.echoes[i];
+    if (!with_blocked && model != nullptr && model->blocks(echo.direction)) continue;
+    const bool lost = beams.lost[i] != 0;
+    const bool predicted =
+        beams.hit[i] == 0 || (model != nullptr && model->probability(echo) > 0.5);
+    ++accuracy.beams;
+    accuracy.empty += lost ? 1 : 0;
+    accuracy.predicted += predicted ? 1 : 0;
+    accuracy.right += lost && predicted ? 1 : 0;
+  }
+  return accuracy;
+}
+
+}  // namespace adasplats

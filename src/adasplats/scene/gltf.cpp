@@ -1,0 +1,499 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/scene/gltf.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/rigid_transform.h"
+#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/input_file.h"
+
+namespace adasplats {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Instances of one mesh may multiply a small file; no object of a scene needs more.
+constexpr std::size_t kMostVertices = 50'000'000;
+constexpr std::size_t kMostTriangles = 100'000'000;
+
+/// Any affine map, as nodes have it.
+struct AffineMap {
+  Mat3d linear;
+  Vec3d offset;
+
+  Vec3d operator*(Vec3d p) const { return linear * p + offset; }
+  friend AffineMap operator*(const AffineMap& a, const AffineMap& b) {
+    return {a.linear * b.linear, a * b.offset};
+  }
+};
+
+std::optional<std::uint32_t> word_at(std::string_view bytes, std::size_t offset) {
+  std::uint32_t word = 0;
+  if (bytes.size() < sizeof(word) || offset > bytes.size() - sizeof(word)) return std::nullopt;
+  std::memcpy(&word, bytes.data() + offset, sizeof(word));
+  return word;
+}
+
+/// The JSON of a file and the binary chunk of a .glb (section 4.4, "Binary glTF Layout").
+struct Chunks {
+  std::string_view json;
+  std::string_view binary;
+};
+
+Chunks split(const std::filesystem::path& path, std::string_view file) {
+  constexpr std::string_view kMagic = "glTF";
+  constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
+  constexpr std::size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
+  if (!file.starts_with(kMagic)) return {file, {}};
+  const std::optional<std::uint32_t> version = word_at(file, 4);
+  if (version != 2U)
+    throw data_error({path, 4, {}}, "expected version 2 of binary glTF, found " +
+                                        (version ? std::to_string(*version) : "the end"));
+  Chunks chunks;
+  std::size_t offset = kHeaderBytes;
+  while (offset < file.size()) {
+    const auto length = word_at(file, offset), type = word_at(file, offset + 4);
+    if (!length || !type || *length > file.size() - offset - kChunkHeaderBytes)
+      throw data_error({path, offset, {}}, "a chunk reaches beyond the end of the file");
+    const std::string_view content = file.substr(offset + kChunkHeaderBytes, *length);
+    if (*type == kJson && chunks.json.empty()) chunks.json = content;
+    if (*type == kBinary && chunks.binary.empty()) chunks.binary = content;
+    offset += kChunkHeaderBytes + *length;
+  }
+  return chunks;
+}
+
+/// RFC 4648; nothing where a character is none of base64.
+std::optional<std::string> from_base64(std::string_view text) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  while (text.ends_with('=')) text.remove_suffix(1);
+  std::string bytes;
+  bytes.reserve(text.size() / 4 * 3 + 3);
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    const std::size_t digit = kDigits.find(c);
+    if (digit == std::string_view::npos) return std::nullopt;
+    bits = bits << 6 | static_cast<std::uint32_t>(digit);
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes += static_cast<char>(bits >> count & 0xffU);
+  }
+  return bytes;
+}
+
+/// RFC 3986: "%20" for a blank. Anything else behind a % stays as it is.
+std::string without_percents(std::string_view uri) {
+  const auto digit = [](char c) {
+    constexpr std::string_view kDigits = "0123456789abcdefABCDEF";
+    const std::size_t place = kDigits.find(c);
+    return place == std::string_view::npos ? -1 : static_cast<int>(place < 16 ? place : place - 6);
+  };
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const bool coded =
+        uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0;
+    text += coded ? static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2])) : uri[i];
+    if (coded) i += 2;
+  }
+  return text;
+}
+
+/// A JSON value that knows where in the document it is, for messages.
+class Member {
+ public:
+  Member(const std::filesystem::path& path, const Json& value, std::string place)
+      : path_(&path), value_(&value), place_(std::move(place)) {}
+
+  const std::string& place() const { return place_; }
+
+  Error error(const std::string& message) const {
+    return data_error({*path_, {}, {}}, place_ + ": " + message);
+  }
+
+  /// A member that must be there.
+  Member operator[](const char* key) const {
+    if (const std::optional<Member> found = find(key)) return *found;
+    throw error("'" + std::string(key) + "' is missing");
+  }
+  std::optional<Member> find(const char* key) const {
+    if (!value_->is_object()) throw error("is not an object");
+    const auto found = value_->find(key);
+    if (found == value_->end()) return std::nullopt;
+    return Member(*path_, *found, place_.empty() ? key : place_ + "." + key);
+  }
+
+  std::size_t size() const {
+    if (!value_->is_array()) throw error("is not an array");
+    return value_->size();
+  }
+  Member at(std::size_t i) const {
+    return {*path_, (*value_)[i], place_ + "[" + std::to_string(i) + "]"};
+  }
+  std::vector<Member> elements() const {
+    std::vector<Member> all;
+    for (std::size_t i = 0; i < size(); ++i) all.push_back(at(i));
+    return all;
+  }
+
+  std::uint64_t whole_number() const {
+    if (!value_->is_number_unsigned()) throw error("is not a whole number of 0 or more");
+    return value_->get<std::uint64_t>();
+  }
+  std::size_t index_below(std::size_t count) const {
+    const std::uint64_t index = whole_number();
+    if (index >= count)
+      throw error("found " + std::to_string(index) + ", but there are " + std::to_string(count));
+    return static_cast<std::size_t>(index);
+  }
+  double number() const {
+    const double value = value_->is_number() ? value_->get<double>() : HUGE_VAL;
+    if (!std::isfinite(value)) throw error("is not a finite number");
+    return value;
+  }
+  template <std::size_t N>
+  std::array<double, N> numbers() const {
+    if (size() != N) throw error("has not " + std::to_string(N) + " numbers");
+    std::array<double, N> all;
+    for (std::size_t i = 0; i < N; ++i) all[i] = at(i).number();
+    return all;
+  }
+  const std::string& text() const {
+    if (!value_->is_string()) throw error("is not a text");
+    return value_->get_ref<const std::string&>();
+  }
+
+ private:
+  const std::filesystem::path* path_;
+  const Json* value_;
+  std::string place_;
+};
+
+std::uint64_t whole_number_or(const std::optional<Member>& member, std::uint64_t otherwise) {
+  return member ? member->whole_number() : otherwise;
+}
+
+/// Section 3.6.2.2, "Accessor Data Types".
+enum class Component : std::uint16_t { u8 = 5121, u16 = 5123, u32 = 5125, f32 = 5126 };
+
+std::size_t bytes_of(Component component) {
+  return component == Component::u8 ? 1 : (component == Component::u16 ? 2 : 4);
+}
+
+/// Elements of an accessor, all within its buffer.
+struct Elements {
+  const char* begin = nullptr;
+  std::size_t count = 0;
+  std::size_t stride_bytes = 0;
+  Component component = Component::f32;
+
+  template <class T>
+  T value(std::size_t element, std::size_t component_index = 0) const {
+    T value;
+    std::memcpy(&value, begin + element * stride_bytes + component_index * sizeof(T), sizeof(T));
+    return value;
+  }
+  std::uint32_t index(std::size_t i) const {
+    switch (component) {
+      case Component::u8: return value<std::uint8_t>(i);
+      case Component::u16: return value<std::uint16_t>(i);
+      default: return value<std::uint32_t>(i);
+    }
+  }
+};
+
+class GltfReader {
+ public:
+  explicit GltfReader(const std::filesystem::path& path)
+      : path_(path), file_(read_file(path)), chunks_(split(path, file_)), json_(parse()) {
+    refuse_other_versions();
+    refuse_extensions();
+  }
+
+  MeshTable read() {
+    add_scene();
+    MeshTable mesh;
+    mesh.vertices.rows = coordinates_[0].size();
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      mesh.vertices.columns.push_back({std::string(1, "xyz"[axis]), std::move(coordinates_[axis])});
+    mesh.faces.rows = triangles_.size() / 3;
+    mesh.triangle_vertices = std::move(triangles_);
+    return mesh;
+  }
+
+ private:
+  Json parse() const {
+    try {
+      return Json::parse(chunks_.json);
+    } catch (const Json::exception& problem) {
+      throw data_error({path_, {}, {}}, std::string("glTF: ") + problem.what());
+    }
+  }
+  Member root() const { return {path_, json_, ""}; }
+  /// An array of the document; empty where it has none.
+  std::vector<Member> all(const char* key) const {
+    const std::optional<Member> found = root().find(key);
+    return found ? found->elements() : std::vector<Member>();
+  }
+
+  void refuse_other_versions() const;
+  void refuse_extensions() const;
+  std::string read_buffer(const Member& buffer, std::size_t number) const;
+  std::string_view buffer_bytes(std::size_t number);
+  Elements elements(const Member& accessor, std::string_view type, std::size_t components);
+  void add_scene();
+  void add_tree(std::size_t root_node);
+  void add_mesh(const Member& mesh, const AffineMap& world_from_mesh);
+  void add_vertices(const Elements& positions, const AffineMap& world_from_mesh);
+  void add_triangles(const Member& primitive, std::size_t first_vertex, std::size_t count);
+
+  std::filesystem::path path_;
+  std::string file_;
+  Chunks chunks_;
+  Json json_;
+  std::vector<Member> buffers_ = all("buffers"), views_ = all("bufferViews"),
+                      accessors_ = all("accessors"), meshes_ = all("meshes"), nodes_ = all("nodes");
+  std::vector<std::optional<std::string>> buffer_contents_ =
+      std::vector<std::optional<std::string>>(buffers_.size());
+  std::vector<bool> node_is_placed_ = std::vector<bool>(nodes_.size());
+  std::array<std::vector<double>, 3> coordinates_;
+  std::vector<std::uint32_t> triangles_;
+};
+
+void GltfReader::refuse_other_versions() const {
+  const Member version = root()["asset"]["version"];
+  if (!version.text().starts_with("2."))
+    throw version.error("found " + version.text().substr(0, 20) + ", expected 2.0");
+}
+
+/// Section 3.12: a file says which extensions it cannot be read without. Those of looks do no harm.
+void GltfReader::refuse_extensions() const {
+  for (const Member& required : all("extensionsRequired")) {
+    const std::string& name = required.text();
+    const bool looks = name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
+                       name.starts_with("EXT_texture_") || name == "KHR_lights_punctual";
+    if (!looks)
+      throw required.error("the extension " + name.substr(0, 60) +
+                           " is not read; export the mesh without it");
+  }
+}
+
+/// Section 3.6.1: bytes of a file beside the document, of a data URI, or of the binary chunk.
+std::string GltfReader::read_buffer(const Member& buffer, std::size_t number) const {
+  const std::optional<Member> uri = buffer.find("uri");
+  if (!uri) {
+    if (number > 0 || chunks_.binary.empty()) throw buffer.error("has neither uri nor chunk");
+    return std::string(chunks_.binary);
+  }
+  const std::string& text = uri->text();
+  if (text.starts_with("data:")) {
+    constexpr std::string_view kCoding = ";base64,";
+    const std::size_t begin = text.find(kCoding);
+    auto bytes = begin == std::string::npos
+                     ? std::nullopt
+                     : from_base64(std::string_view(text).substr(begin + kCoding.size()));
+    if (!bytes) throw uri->error("is not data in base64");
+    return std::move(*bytes);
+  }
+  const std::filesystem::path name = without_percents(text);
+  if (name.empty() || name.is_absolute() || text.find("://") != std::string::npos ||
+      text.find('\0') != std::string::npos)
+    throw uri->error("is not a file beside the document");
+  return read_file(path_.parent_path() / name);
+}
+
+std::string_view GltfReader::buffer_bytes(std::size_t number) {
+  const Member& buffer = buffers_[number];
+  std::optional<std::string>& content = buffer_contents_[number];
+  if (!content) content = read_buffer(buffer, number);
+  const std::uint64_t length = buffer["byteLength"].whole_number();
+  if (length > content->size())
+    throw buffer.error("has " + std::to_string(content->size()) + " bytes, expected " +
+                       std::to_string(length));
+  return std::string_view(*content).substr(0, static_cast<std::size_t>(length));
+}
+
+/// Section 3.6.2: `count` elements of `components` each, `byteStride` apart, within a view within a
+/// buffer.
+Elements GltfReader::elements(const Member& accessor, std::string_view type,
+                              std::size_t components) {
+  if (accessor.find("sparse")) throw accessor.error("sparse accessors are not read");
+  if (accessor["type"].text() != type)
+    throw accessor["type"].error("found " + accessor["type"].text().substr(0, 20) + ", expected " +
+                                 std::string(type));
+  Elements result;
+  const std::uint64_t component = accessor["componentType"].whole_number();
+  const bool real = component == 5126,
+             index = component == 5121 || component == 5123 || component == 5125;
+  if (components > 1 ? !real : !index)
+    throw accessor["componentType"].error("found " + std::to_string(component) + ", expected " +
+                                          (components > 1 ? "5126 (float)" : "5121, 5123 or 5125"));
+  result.component = static_cast<Component>(component);
+  const Member& view = views_[accessor["bufferView"].index_below(views_.size())];
+  const std::string_view buffer = buffer_bytes(view["buffer"].index_below(buffers_.size()));
+  const std::uint64_t view_begin = whole_number_or(view.find("byteOffset"), 0);
+  const std::uint64_t view_bytes = view["byteLength"].whole_number();
+  if (view_begin > buffer.size() || view_bytes > buffer.size() - view_begin)
+    throw view.error("reaches beyond its buffer of " + std::to_string(buffer.size()) + " bytes");
+  const std::size_t element_bytes = components * bytes_of(result.component);
+  const std::uint64_t stride = whole_number_or(view.find("byteStride"), element_bytes);
+  const std::uint64_t begin = whole_number_or(accessor.find("byteOffset"), 0);
+  const std::uint64_t count = accessor["count"].whole_number();
+  // Divided, not multiplied: nothing wraps.
+  const bool fits = begin <= view_bytes && stride >= element_bytes &&
+                    (count == 0 || (view_bytes - begin >= element_bytes &&
+                                    count - 1 <= (view_bytes - begin - element_bytes) / stride));
+  if (!fits) throw accessor.error("reaches beyond its view " + view.place());
+  result.begin = buffer.data() + view_begin + begin;
+  result.count = static_cast<std::size_t>(count);
+  result.stride_bytes = static_cast<std::size_t>(stride);
+  return result;
+}
+
+/// Section 3.5: the nodes of the default scene, or of the first; without scenes every mesh once.
+void GltfReader::add_scene() {
+  const std::vector<Member> scenes = all("scenes");
+  if (scenes.empty()) {
+    for (const Member& mesh : meshes_) add_mesh(mesh, {});
+    return;
+  }
+  const std::optional<Member> chosen = root().find("scene");
+  const Member& scene = scenes[chosen ? chosen->index_below(scenes.size()) : 0];
+  const std::optional<Member> roots = scene.find("nodes");
+  if (!roots) return;
+  for (const Member& node : roots->elements()) add_tree(node.index_below(nodes_.size()));
+}
+
+/// Section 3.5.3, "Transformations": a matrix by columns, or translation * rotation * scale.
+AffineMap local_transform(const Member& node) {
+  if (const std::optional<Member> matrix = node.find("matrix")) {
+    const auto m = matrix->numbers<16>();
+    return {{{{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}}}, {m[12], m[13], m[14]}};
+  }
+  AffineMap map;
+  if (const std::optional<Member> rotation = node.find("rotation")) {
+    const auto q = rotation->numbers<4>();  // x, y, z, w
+    const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (!(std::fabs(norm - 1) <= 1e-3)) throw rotation->error("is not a unit quaternion");
+    map.linear = rotation_from_quaternion(q[3] / norm, q[0] / norm, q[1] / norm, q[2] / norm);
+  }
+  if (const std::optional<Member> scale = node.find("scale")) {
+    const auto s = scale->numbers<3>();
+    for (Vec3d& row : map.linear.rows) row = {row.x * s[0], row.y * s[1], row.z * s[2]};
+  }
+  if (const std::optional<Member> translation = node.find("translation")) {
+    const auto t = translation->numbers<3>();
+    map.offset = {t[0], t[1], t[2]};
+  }
+  return map;
+}
+
+/// A node and all below it, without recursion: files decide how deep it goes.
+void GltfReader::add_tree(std::size_t root_node) {
+  std::vector<std::pair<std::size_t, AffineMap>> waiting = {{root_node, {}}};
+  while (!waiting.empty()) {
+    const auto [number, world_from_parent] = waiting.back();
+    waiting.pop_back();
+    const Member& node = nodes_[number];
+    if (node_is_placed_[number]) throw node.error("stands in the scene twice");
+    node_is_placed_[number] = true;
+    const AffineMap world_from_node = world_from_parent * local_transform(node);
+    if (const std::optional<Member> mesh = node.find("mesh"))
+      add_mesh(meshes_[mesh->index_below(meshes_.size())], world_from_node);
+    const std::optional<Member> children = node.find("children");
+    if (!children) continue;
+    for (const Member& child : children->elements())
+      waiting.emplace_back(child.index_below(nodes_.size()), world_from_node);
+  }
+}
+
+/// Section 3.7.2, "Meshes".
+void GltfReader::add_mesh(const Member& mesh, const AffineMap& world_from_mesh) {
+  constexpr std::uint64_t kTriangles = 4, kFan = 6;
+  for (const Member& primitive : mesh["primitives"].elements()) {
+    const std::uint64_t mode = whole_number_or(primitive.find("mode"), kTriangles);
+    if (mode < kTriangles) continue;  // points and lines
+    if (mode > kFan) throw primitive.error("mode " + std::to_string(mode) + " is none of glTF");
+    const std::optional<Member> position = primitive["attributes"].find("POSITION");
+    if (!position) continue;  // section 3.7.2.1: then it need not be drawn
+    const Elements positions =
+        elements(accessors_[position->index_below(accessors_.size())], "VEC3", 3);
+    const std::size_t first_vertex = coordinates_[0].size();
+    if (positions.count > kMostVertices - first_vertex)
+      throw primitive.error("the scene has more than " + std::to_string(kMostVertices) +
+                            " vertices");
+    add_vertices(positions, world_from_mesh);
+    add_triangles(primitive, first_vertex, positions.count);
+  }
+}
+
+void GltfReader::add_vertices(const Elements& positions, const AffineMap& world_from_mesh) {
+  for (std::size_t i = 0; i < positions.count; ++i) {
+    const Vec3d p = world_from_mesh * vec_cast<double>(Vec3f{positions.value<float>(i, 0),
+                                                             positions.value<float>(i, 1),
+                                                             positions.value<float>(i, 2)});
+    coordinates_[0].push_back(p.z);
+    coordinates_[1].push_back(p.x);
+    coordinates_[2].push_back(p.y);
+  }
+}
+
+void GltfReader::add_triangles(const Member& primitive, std::size_t first_vertex,
+                               std::size_t count) {
+  const std::optional<Member> indices = primitive.find("indices");
+  Elements corners;
+  if (indices) corners = elements(accessors_[indices->index_below(accessors_.size())], "SCALAR", 1);
+  const std::size_t corner_count = indices ? corners.count : count;
+  const auto corner = [&](std::size_t i) {
+    const std::uint32_t index = indices ? corners.index(i) : static_cast<std::uint32_t>(i);
+    if (index >= count)
+      throw primitive.error("index " + std::to_string(i) + " is " + std::to_string(index) +
+                            ", but there are " + std::to_string(count) + " vertices");
+    return static_cast<std::uint32_t>(first_vertex + index);
+  };
+  const std::uint64_t mode = whole_number_or(primitive.find("mode"), 4);
+  const std::size_t step = mode == 4 ? 3 : 1;
+  if (mode == 4 && corner_count % 3 != 0)
+    throw primitive.error(std::to_string(corner_count) + " corners are not whole triangles");
+  if (corner_count / step > kMostTriangles - triangles_.size() / 3)
+    throw primitive.error("the scene has more than " + std::to_string(kMostTriangles) +
+                          " triangles");
+  for (std::size_t i = 0; i + 2 < corner_count; i += step) {
+    const std::size_t first = mode == 6 ? 0 : i;
+    for (const std::size_t k : {first, i + 1, i + 2}) triangles_.push_back(corner(k));
+  }
+}
+
+}  // namespace
+
+MeshTable read_gltf_mesh(const std::filesystem::path& path) { return GltfReader(path).read(); }
+
+bool is_gltf(const std::filesystem::path& path) {
+  constexpr std::size_t kLookedAt = 64;
+  std::string_view begin;
+  InputFile file(path);
+  const auto bytes =
+      static_cast<std::size_t>(std::min<std::uint64_t>(kLookedAt, file.size_bytes()));
+  begin = {reinterpret_cast<const char*>(file.peek(bytes).data()), bytes};
+  if (begin.starts_with("glTF")) return true;
+  const std::size_t first = begin.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos || begin[first] != '{') return false;
+  return read_file(path).find("\"asset\"") != std::string::npos;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What all formats of sensors share: which reader, the order of the beams, skipped columns.
+
+#include <algorithm>
+#include <cmath>
+#include <locale>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/atomic_file.h"
+#include "adasplats/sensors/lidar_files.h"
+
+namespace adasplats {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMostRays = 1U << 28;
+constexpr std::uint64_t kMostListedRays = 4'000'000;  // 40 bytes each
+
+template <class T>
+void reorder(std::vector<T>& values, const std::vector<std::size_t>& order) {
+  if (values.empty()) return;
+  if (values.size() != order.size())
+    throw std::logic_error("a LiDAR model needs one value a beam, or none");
+  std::vector<T> sorted;
+  sorted.reserve(values.size());
+  for (const std::size_t beam : order) sorted.push_back(values[beam]);
+  values = std::move(sorted);
+}
+
+/// Beams topmost first; equally high ones stay in the file's order.
+void sort_beams(LidarFile& file) {
+  std::vector<std::size_t> order(file.model.elevations_rad.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater<>(),
+                           [&](std::size_t beam) { return file.model.elevations_rad[beam]; });
+  reorder(file.model.elevations_rad, order);
+  reorder(file.model.azimuth_offsets_rad, order);
+  reorder(file.model.beam_origins_m, order);
+  reorder(file.model.firing_times_s, order);
+  reorder(file.column_steps, order);
+  reorder(file.column_phases, order);
+}
+
+/// Puts the firings of beams that skip columns where those of all columns would stand.
+void skip_columns(LidarFile& file) {
+  if (std::ranges::all_of(file.column_steps, [](std::uint32_t step) { return step == 1; })) return;
+  LidarModel& model = file.model;
+  for (std::size_t ring = 0; ring < model.elevations_rad.size(); ++ring) {
+    const std::uint32_t phase = file.column_phases.empty() ? 0 : file.column_phases[ring];
+    for (std::uint32_t column = phase; column < model.columns; column += file.column_steps[ring])
+      model.free_pattern.push_back(turned_firing(model, ring, column));
+  }
+}
+
+/// Before anything is made of it: a slip of the pen must not fill the memory.
+void check_size(const LidarFile& file) {
+  const LidarModel& model = file.model;
+  const bool skips =
+      std::ranges::any_of(file.column_steps, [](std::uint32_t step) { return step != 1; });
+  const std::uint64_t most = skips ? kMostListedRays : kMostRays;
+  const std::uint64_t rays = model.rosette
+                                 ? rosette_rays_per_scan(model)
+                                 : std::uint64_t{model.elevations_rad.size()} * model.columns;
+  if (rays > most)
+    throw Error(ErrorKind::config, "sensor '" + model.name + "' has " + std::to_string(rays) +
+                                       " rays a scan, expected at most " + std::to_string(most));
+}
+
+std::string unknown_name(const std::string& name) {
+  const auto nearest = nearest_word(name, lidar_model_names());
+  if (nearest) return "unknown sensor '" + name + "', did you mean '" + *nearest + "'?";
+  std::string known;
+  for (const std::string& each : lidar_model_names()) known += each + ", ";
+  return "unknown sensor '" + name + "': expected " + known +
+         "or a file: .toml, .json (Ouster), .yaml (Velodyne), .csv (rays, or Hesai's angles)";
+}
+
+enum class Format : std::uint8_t { toml, json, yaml, csv };
+
+/// By the extension, else by what it holds.
+Format format_of(const fs::path& path, std::string_view text) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  if (extension == ".toml") return Format::toml;
+  if (extension == ".json") return Format::json;
+  if (extension == ".yaml" || extension == ".yml") return Format::yaml;
+  if (extension == ".csv" || extension == ".txt") return Format::csv;
+  if (text.substr(0, text.find_first_not_of(" \t\r\n") + 1).ends_with('{')) return Format::json;
+  if (text.find("lasers:") != std::string_view::npos) return Format::yaml;
+  return text.find('=') != std::string_view::npos ? Format::toml : Format::csv;
+}
+
+bool names_a_format(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  return extension == ".toml" || extension == ".json" || extension == ".yaml" ||
+         extension == ".yml" || extension == ".csv";
+}
+
+}  // namespace
+
+void LidarFile::clear_pattern() {
+  model.elevations_rad.clear();
+  model.azimuth_offsets_rad.clear();
+  model.beam_origins_m.clear();
+  model.firing_times_s.clear();
+  model.free_pattern.clear();
+  model.rosette.reset();
+  column_steps.clear();
+  column_phases.clear();
+}
+
+std::optional<std::string> column_fault(const LidarModel& model) {
+  if (model.firing_times_s.empty()) return std::nullopt;
+  const double column_s = 1.0 / (model.rotation_hz * model.columns);
+  const double last_s = std::ranges::max(model.firing_times_s);
+  if (last_s < column_s) return std::nullopt;
+  std::ostringstream message;
+  message.imbue(std::locale::classic());
+  message << "leave " << column_s * 1e6 << " us a column, but the last beam fires at "
+          << last_s * 1e6 << " us: expected at most "
+          << std::floor(1.0 / (model.rotation_hz * last_s)) << " columns at " << model.rotation_hz
+          << " Hz";
+  return message.str();
+}
+
+LidarModel finished_model(LidarFile file) {
+  check_size(file);
+  sort_beams(file);
+  skip_columns(file);
+  return std::move(file.model);
+}
+
+LidarFile unknown_turning_lidar() {
+  LidarFile file;
+  file.model.columns = 1800;
+  file.model.clockwise = true;
+  return file;
+}
+
+LidarFile read_lidar(const std::string& name_or_path, int nesting) {
+  if (auto known = read_library_lidar(name_or_path)) return std::move(*known);
+  const fs::path path(name_or_path);
+  if (!names_a_format(path) && !fs::is_regular_file(path))
+    throw Error(ErrorKind::usage, unknown_name(name_or_path));
+  const std::string text = read_file(path);
+  switch (format_of(path, text)) {
+    case Format::toml: return read_lidar_toml(text, path, nesting);
+    case Format::json: return read_ouster_json(text, path);
+    case Format::yaml: return read_velodyne_yaml(text, path);
+    case Format::csv: break;
+  }
+  return read_lidar_csv(text, path);
+}
+
+}  // namespace adasplats

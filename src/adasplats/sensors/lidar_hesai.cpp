@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The correction files of Hesai sensors: a CSV of angles (Channel, Elevation, Azimuth) and, beside
+// it under the same name with "firetime" for "angle", one of firing times: (Channel, fire
+// time(us)), or one column for each state of the azimuth, "-" where a channel does not fire.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "adasplats/io/atomic_file.h"
+#include "adasplats/sensors/lidar_files.h"
+#include "adasplats/sensors/text_fields.h"
+
+namespace adasplats {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Channel {
+  int number = 0;
+  double elevation_deg = 0;
+  double azimuth_deg = 0;
+};
+
+int channel_number(std::string_view text, const FilePlace& place) {
+  const std::optional<int> number = parse_number<int>(text);
+  if (!number || *number < 1 || *number > static_cast<int>(kMostBeams))
+    throw data_error(place, "channel is " + shown(text) + ", not a whole number from 1 to 65536");
+  return *number;
+}
+
+/// Where the columns of angles stand.
+struct AngleColumns {
+  std::size_t elevation = 0;
+  std::size_t azimuth = 0;
+};
+
+AngleColumns angle_columns(std::string_view header, const FilePlace& place) {
+  AngleColumns columns;
+  const auto names = fields_of(header, ',');
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    const std::string name = lower_case(names[i]);
+    if (name.starts_with("elevation")) columns.elevation = i;
+    if (name.starts_with("azimuth")) columns.azimuth = i;
+    if (name.starts_with("fire"))
+      throw data_error(place,
+                       "a table of firing times: expected that of the angles, which finds "
+                       "the times beside it (\"angle\" in its name for \"firetime\")");
+  }
+  if (columns.elevation == 0 || columns.azimuth == 0)
+    throw data_error(place, "expected the columns Channel, Elevation, Azimuth");
+  return columns;
+}
+
+double angle_deg(std::string_view text, std::string_view field, double limit,
+                 const FilePlace& place) {
+  const double angle = finite_number(text, field, place);
+  if (!(std::fabs(angle) <= limit))
+    throw data_error(place, std::string(field) + " is " + shown(text) + " degrees");
+  return angle;
+}
+
+std::vector<Channel> read_angles(std::string_view text, const fs::path& path) {
+  FilledLines lines(text, path);
+  const std::string_view header = lines.next().value_or("");
+  if (lower_case(header).starts_with("operational"))
+    throw data_error(lines.place(), "a table of firing times: expected that of the angles");
+  const AngleColumns columns = angle_columns(header, lines.place());
+  std::vector<Channel> channels;
+  while (const auto line = lines.next()) {
+    const auto fields = fields_of(*line, ',');
+    if (fields.size() <= std::max(columns.elevation, columns.azimuth))
+      throw data_error(lines.place(), std::to_string(fields.size()) +
+                                          " values, expected Channel, Elevation, Azimuth");
+    const int number = channel_number(fields[0], lines.place());
+    if (std::ranges::find(channels, number, &Channel::number) != channels.end())
+      throw data_error(lines.place(), "channel " + std::to_string(number) + " a second time");
+    channels.push_back({number,
+                        angle_deg(fields[columns.elevation], "elevation", 90, lines.place()),
+                        angle_deg(fields[columns.azimuth], "azimuth", 360, lines.place())});
+  }
+  if (channels.empty()) throw data_error({path, {}, {}}, "a table with no channels");
+  return channels;
+}
+
+/// When a channel fires behind the beginning of its column, and in which columns.
+struct FiringTime {
+  int channel = 0;
+  double time_us = 0;
+  std::uint32_t step = 1;
+  std::uint32_t phase = 0;
+};
+
+/// The state of the azimuth counts columns; those of the first operational state are one cycle.
+FiringTime firing_of_states(const std::vector<std::string_view>& fields, std::size_t states,
+                            const FilePlace& place) {
+  FiringTime firing;
+  std::vector<std::uint32_t> fires;
+  for (std::size_t state = 0; state < states; ++state) {
+    const std::string_view field = state + 1 < fields.size() ? fields[state + 1] : "-";
+    if (field == "-" || field.empty()) continue;
+    const double time_us = finite_number(field, "fire time", place);
+    if (fires.empty()) firing.time_us = time_us;
+    fires.push_back(static_cast<std::uint32_t>(state));
+  }
+  if (fires.empty()) throw data_error(place, "a channel that never fires");
+  if (states % fires.size() != 0) throw data_error(place, "a channel that fires at uneven steps");
+  firing.step = static_cast<std::uint32_t>(states / fires.size());
+  firing.phase = fires.front();
+  for (std::size_t i = 0; i < fires.size(); ++i)
+    if (fires[i] != firing.phase + i * firing.step)
+      throw data_error(place, "a channel that fires at uneven steps");
+  return firing;
+}
+
+/// How many columns of the table belong to the first operational state.
+std::size_t states_of(const std::vector<std::string_view>& operational, const FilePlace& place) {
+  std::size_t states = 0;
+  while (states + 1 < operational.size() && operational[states + 1] == operational[1]) ++states;
+  if (states == 0) throw data_error(place, "no operational states");
+  return states;
+}
+
+std::vector<FiringTime> read_firing_times(std::string_view text, const fs::path& path) {
+  FilledLines lines(text, path);
+  const auto header = fields_of(lines.next().value_or(""), ',');
+  std::size_t states = 1;
+  if (lower_case(header[0]).starts_with("operational")) {
+    states = states_of(header, lines.place());
+    lines.next();  // names of the states of the azimuth
+  } else if (header.size() != 2 || !lower_case(header[1]).starts_with("fire")) {
+    throw data_error(lines.place(), "expected the columns Channel, fire time(us)");
+  }
+  std::vector<FiringTime> times;
+  while (const auto line = lines.next()) {
+    const auto fields = fields_of(*line, ',');
+    FiringTime firing = firing_of_states(fields, states, lines.place());
+    firing.channel = channel_number(fields[0], lines.place());
+    times.push_back(firing);
+  }
+  return times;
+}
+
+/// "X_angle.csv" has its firing times in "X_firetime.csv"; nothing where there is no such file.
+std::optional<fs::path> firing_time_file(const fs::path& path) {
+  const std::string name = path.filename().string();
+  const std::size_t at = lower_case(name).rfind("angle");
+  if (at == std::string::npos) return std::nullopt;
+  for (const char* word : {"firetime", "Firetime", "FireTime"}) {
+    std::string sibling = name;
+    sibling.replace(at, 5, word);
+    if (fs::is_regular_file(path.parent_path() / sibling)) return path.parent_path() / sibling;
+  }
+  return std::nullopt;
+}
+
+void add_firing_times(const fs::path& path, const std::vector<Channel>& channels, LidarFile& file) {
+  const auto times = read_firing_times(read_file(path), path);
+  double first_us = 0;
+  for (const FiringTime& firing : times) first_us = std::min(first_us, firing.time_us);
+  LidarModel& model = file.model;
+  for (const Channel& channel : channels) {
+    const auto firing = std::ranges::find(times, channel.number, &FiringTime::channel);
+    if (firing == times.end())
+      throw data_error({path, {}, {}}, "no channel " + std::to_string(channel.number));
+    model.firing_times_s.push_back(1e-6 * (firing->time_us - first_us));
+    file.column_steps.push_back(firing->step);
+    file.column_phases.push_back(firing->phase);
+  }
+  if (const auto fault = column_fault(model))
+    throw data_error({path, {}, {}}, std::to_string(model.columns) + " columns " + *fault);
+  // Times before that of the block are shifted to 0, and so is where the head was then.
+  model.first_azimuth_rad = -1e-6 * first_us * model.rotation_hz * 2 * std::numbers::pi;
+}
+
+/// The sensor of the library with as many channels, which they list from top to bottom, too.
+LidarFile base_of(std::size_t channels) {
+  switch (channels) {
+    case 32: return *read_library_lidar("hesai-pandarxt-32");
+    case 64: return *read_library_lidar("hesai-pandar64");
+    case 128: return *read_library_lidar("hesai-ot128");
+    default: return unknown_turning_lidar();
+  }
+}
+
+}  // namespace
+
+LidarFile read_hesai_csv(std::string_view text, const fs::path& path) {
+  const std::vector<Channel> channels = read_angles(text, path);
+  const auto times = firing_time_file(path);
+  LidarFile file = base_of(channels.size());
+  LidarFile base = file;
+  file.clear_pattern();
+  LidarModel& model = file.model;
+  model.name = path.stem().string();
+  model.source = path.filename().string() + (times ? ", " + times->filename().string() : "") +
+                 (base.has_beams() ? ", like " + base.model.name : "");
+  // Added to the azimuth of a block, which counts clockwise from the sensor's front.
+  for (const Channel& channel : channels) {
+    model.elevations_rad.push_back(radians(channel.elevation_deg));
+    model.azimuth_offsets_rad.push_back(-radians(channel.azimuth_deg));
+  }
+  if (times) {
+    add_firing_times(*times, channels, file);
+  } else if (base.has_beams() && std::ranges::is_sorted(channels, {}, &Channel::number)) {
+    model.firing_times_s = std::move(base.model.firing_times_s);
+    file.column_steps = std::move(base.column_steps);
+    file.column_phases = std::move(base.column_phases);
+  }
+  return file;
+}
+
+}  // namespace adasplats

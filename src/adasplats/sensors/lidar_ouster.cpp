@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The metadata of Ouster sensors as the sensor and the Ouster SDK write them: JSON, either all keys
+// on one level (until firmware 2.x) or in groups (beam_intrinsics, lidar_data_format...). Geometry:
+// Ouster Sensor Documentation, "Coordinate Frames and XYZ Calculation".
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/number_text.h"
+#include "adasplats/sensors/lidar_files.h"
+
+namespace adasplats {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kMillimetre_m = 1e-3;
+
+/// The keys of the file, wherever they stand.
+class Metadata {
+ public:
+  Metadata(std::string_view text, const std::filesystem::path& path) : path_(path) {
+    try {
+      json_ = Json::parse(text);
+    } catch (const Json::parse_error& error) {
+      throw error_at_byte(text, error.byte);
+    } catch (const Json::exception& error) {
+      throw fault(std::string("is not JSON: ") + error.what());  // a number out of range
+    }
+    if (!json_.is_object()) throw fault("is not a JSON object");
+  }
+
+  Error fault(const std::string& message) const {
+    return {ErrorKind::data, path_.string() + ": " + message};
+  }
+
+  /// nullptr: none is there.
+  const Json* find(const char* key) const {
+    if (const auto found = json_.find(key); found != json_.end()) return &*found;
+    for (const auto& [group, values] : json_.items())
+      if (values.is_object())
+        if (const auto found = values.find(key); found != values.end()) return &*found;
+    return nullptr;
+  }
+
+  /// Finite numbers; empty where the key is not there.
+  std::vector<double> numbers(const char* key) const {
+    const Json* list = find(key);
+    if (list == nullptr) return {};
+    if (!list->is_array()) throw fault(std::string(key) + " is not a list of numbers");
+    std::vector<double> numbers;
+    for (const Json& each : *list) {
+      if (!each.is_number() || !std::isfinite(each.get<double>()))
+        throw fault(std::string(key) + " is not a list of numbers");
+      numbers.push_back(each.get<double>());
+    }
+    return numbers;
+  }
+
+  std::string text(const char* key) const {
+    const Json* value = find(key);
+    return value != nullptr && value->is_string() ? value->get<std::string>() : std::string();
+  }
+
+ private:
+  Error error_at_byte(std::string_view text, std::size_t byte) const {
+    const std::string_view before = text.substr(0, byte == 0 ? 0 : byte - 1);
+    const auto lines = static_cast<std::uint64_t>(std::count(before.begin(), before.end(), '\n'));
+    return data_error({path_, std::nullopt, lines + 1}, "not JSON here");
+  }
+
+  std::filesystem::path path_;
+  Json json_;
+};
+
+std::vector<double> beam_angles_rad(const Metadata& metadata, const char* key, double limit_deg) {
+  std::vector<double> angles = metadata.numbers(key);
+  if (angles.empty())
+    throw metadata.fault(std::string("no ") + key +
+                         ": expected the metadata that an Ouster sensor tells");
+  if (angles.size() > kMostBeams)
+    throw metadata.fault(std::string(key) + " has more than 65536 beams");
+  for (double& angle : angles) {
+    if (!(std::fabs(angle) <= limit_deg))
+      throw metadata.fault(std::string(key) + " has an angle of " + std::to_string(angle) +
+                           " degrees");
+    angle = radians(angle);
+  }
+  return angles;
+}
+
+/// "1024x10": columns and revolutions a second.
+void read_mode(const Metadata& metadata, LidarModel& model) {
+  const std::string mode = metadata.text("lidar_mode");
+  const std::size_t cross = mode.find('x');
+  std::optional<std::uint32_t> columns;
+  std::optional<double> rotation_hz;
+  if (cross != std::string::npos) {
+    columns = parse_number<std::uint32_t>(std::string_view(mode).substr(0, cross));
+    rotation_hz = parse_number<double>(std::string_view(mode).substr(cross + 1));
+  }
+  if (!columns || *columns < 1 || *columns > kMostColumns || !rotation_hz ||
+      !(*rotation_hz > 0 && *rotation_hz <= 1e6))
+    throw metadata.fault("lidar_mode is " + shown(mode) + ", expected columns x Hz as '1024x10'");
+  model.columns = *columns;
+  model.rotation_hz = *rotation_hz;
+}
+
+/// A list of 16 numbers by rows; the identity where the key is not there.
+std::vector<double> matrix_of(const Metadata& metadata, const char* key) {
+  std::vector<double> matrix = metadata.numbers(key);
+  if (matrix.empty()) matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  if (matrix.size() != 16)
+    throw metadata.fault(std::string(key) + " has " + std::to_string(matrix.size()) +
+                         " numbers, expected 16");
+  return matrix;
+}
+
+/// From the sensor's axis to where beams leave, along the encoder's azimuth; x, y, z in m.
+Vec3d beam_origin(const Metadata& metadata) {
+  const std::vector<double> matrix = matrix_of(metadata, "beam_to_lidar_transform");
+  if (metadata.find("beam_to_lidar_transform") != nullptr)
+    return kMillimetre_m * Vec3d{matrix[3], matrix[7], matrix[11]};
+  const Json* along_mm = metadata.find("lidar_origin_to_beam_origin_mm");
+  if (along_mm == nullptr) return {};
+  if (!along_mm->is_number())
+    throw metadata.fault("lidar_origin_to_beam_origin_mm is not a number");
+  return {kMillimetre_m * along_mm->get<double>(), 0, 0};
+}
+
+/// Turns the lidar frame, whose x points at the connector, to that of the sensor.
+void read_frames(const Metadata& metadata, LidarModel& model) {
+  std::vector<double> matrix = metadata.numbers("lidar_to_sensor_transform");
+  // Older files leave it out: half a turn, and the height of the first generation.
+  if (matrix.empty()) matrix = {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 36.18, 0, 0, 0, 1};
+  if (matrix.size() != 16 || std::fabs(matrix[10] - 1) > 1e-6 ||
+      std::fabs(std::hypot(matrix[0], matrix[4]) - 1) > 1e-6)
+    throw metadata.fault("lidar_to_sensor_transform is not a turn around z");
+  if (std::hypot(matrix[3], matrix[7]) > 1e-6)
+    throw metadata.fault("lidar_to_sensor_transform moves the axis off the sensor's origin");
+  model.first_azimuth_rad = std::atan2(matrix[4], matrix[0]);
+  const Vec3d origin = beam_origin(metadata) + Vec3d{0, 0, kMillimetre_m * matrix[11]};
+  model.beam_origins_m.assign(model.elevations_rad.size(), origin);
+}
+
+/// The sensor of the library with the same optics: ranges, noise, divergence.
+LidarFile base_of(const std::string& product_line, std::size_t beams) {
+  if (product_line.starts_with("OS-0")) return *read_library_lidar("ouster-os0-128");
+  if (product_line.starts_with("OS-2")) return *read_library_lidar("ouster-os2-128");
+  if (product_line.starts_with("OS-1"))
+    return *read_library_lidar(beams == 128 ? "ouster-os1-128" : "ouster-os1-64");
+  return unknown_turning_lidar();
+}
+
+}  // namespace
+
+LidarFile read_ouster_json(std::string_view text, const std::filesystem::path& path) {
+  const Metadata metadata(text, path);
+  std::vector<double> elevations_rad = beam_angles_rad(metadata, "beam_altitude_angles", 90);
+  std::vector<double> azimuths_rad = beam_angles_rad(metadata, "beam_azimuth_angles", 360);
+  if (elevations_rad.size() != azimuths_rad.size())
+    throw metadata.fault("beam_altitude_angles has " + std::to_string(elevations_rad.size()) +
+                         " beams, beam_azimuth_angles " + std::to_string(azimuths_rad.size()));
+  const std::string line = metadata.text("prod_line");
+  LidarFile file = base_of(line, elevations_rad.size());
+  file.clear_pattern();
+  LidarModel& model = file.model;
+  model.name = path.stem().string();
+  const std::string serial = metadata.text("prod_sn");
+  model.source = path.filename().string() + (line.empty() ? "" : ", " + line) +
+                 (serial.empty() ? "" : " " + serial);
+  model.elevations_rad = std::move(elevations_rad);
+  for (const double azimuth_rad : azimuths_rad) model.azimuth_offsets_rad.push_back(-azimuth_rad);
+  model.clockwise = true;
+  if (metadata.text("udp_profile_lidar").ends_with("_DUAL")) model.most_returns = 2;
+  read_mode(metadata, model);
+  read_frames(metadata, model);
+  return file;
+}
+
+}  // namespace adasplats

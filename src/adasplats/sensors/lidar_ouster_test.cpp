@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "adasplats/cloud/temporary_folder_test.h"
+#include "adasplats/sensors/lidar_model.h"
+
+namespace adasplats {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegree = kPi / 180;
+
+class OusterJson : public testing::Test {
+ protected:
+  LidarModel load(const std::string& text) const {
+    return load_lidar_model(folder_.write("mine.json", text).string());
+  }
+  void expect_data_error(const std::string& text, const std::string& says) const {
+    expect_error(ErrorKind::data, {"mine.json", says}, [&] { load(text); });
+  }
+  TemporaryFolder folder_;
+};
+
+/// All keys on one level, as firmware 2.x tells them.
+const std::string kFlat =
+    R"({"beam_altitude_angles": [10, -10.5], "beam_azimuth_angles": [3, -1],
+        "lidar_mode": "512x20", "lidar_origin_to_beam_origin_mm": 15,
+        "lidar_to_sensor_transform": [-1,0,0,0, 0,-1,0,0, 0,0,1,36, 0,0,0,1],
+        "prod_line": "OS-0-128", "prod_sn": "7"})";
+
+// Oracle: Ouster Sensor Documentation, "Lidar Range to XYZ" and "Sensor Coordinate Frame": with the
+// encoder's angle theta (counter-clockwise), range r from the axis, n to the beam's origin.
+Vec3d sdk_point(double column, double r_m, double n_m, double altitude_rad, double azimuth_rad) {
+  const double encoder = 2 * kPi * (1.0 - column / 512);
+  const double along = encoder - azimuth_rad;
+  const double x = (r_m - n_m) * std::cos(along) * std::cos(altitude_rad) + n_m * std::cos(encoder);
+  const double y = (r_m - n_m) * std::sin(along) * std::cos(altitude_rad) + n_m * std::sin(encoder);
+  return {-x, -y, (r_m - n_m) * std::sin(altitude_rad) + 0.036};
+}
+
+TEST_F(OusterJson, AReturnLiesWhereTheMakersFormulaPutsIt) {
+  const LidarModel model = load(kFlat);
+  EXPECT_EQ(model.columns, 512U);
+  EXPECT_EQ(model.rotation_hz, 20);
+  EXPECT_EQ(model.max_range_m, 50);  // of the OS0 of the library
+  EXPECT_EQ(model.source, "mine.json, OS-0-128 7");
+  const auto firings = firings_of(model);
+  ASSERT_EQ(firings.size(), 1024U);
+  for (const std::uint32_t column : {0U, 1U, 130U, 511U})
+    for (const std::uint32_t beam : {0U, 1U}) {
+      const Firing& firing = firings[512 * beam + column];
+      const Vec3d expected = sdk_point(column, 20.015, 0.015, (beam == 0 ? 10 : -10.5) * kDegree,
+                                       (beam == 0 ? 3 : -1) * kDegree);
+      const Vec3d found =
+          vec_cast<double>(firing.origin) + 20.0 * vec_cast<double>(firing.direction);
+      EXPECT_LT(length(found - expected), 1e-5) << column << " " << beam;
+      EXPECT_FLOAT_EQ(firing.time_s, static_cast<float>(column / 512.0 / 20));
+    }
+}
+
+// Oracle: the same keys in groups, as firmware 3 tells them, give the same sensor.
+TEST_F(OusterJson, GroupedKeysAreTheSame) {
+  const LidarModel flat = load(kFlat);
+  const LidarModel grouped = load(
+      R"({"beam_intrinsics": {"beam_altitude_angles": [10, -10.5], "beam_azimuth_angles": [3, -1],
+             "beam_to_lidar_transform": [1,0,0,15, 0,1,0,0, 0,0,1,0, 0,0,0,1],
+             "lidar_origin_to_beam_origin_mm": 15},
+          "config_params": {"lidar_mode": "512x20",
+             "udp_profile_lidar": "RNG19_RFL8_SIG16_NIR16_DUAL"},
+          "lidar_intrinsics": {"lidar_to_sensor_transform":
+             [-1,0,0,0, 0,-1,0,0, 0,0,1,36, 0,0,0,1]},
+          "sensor_info": {"prod_line": "OS-0-128"}})");
+  EXPECT_EQ(grouped.most_returns, 2);
+  EXPECT_EQ(flat.most_returns, 1);
+  EXPECT_EQ(grouped.first_azimuth_rad, flat.first_azimuth_rad);
+  EXPECT_EQ(grouped.elevations_rad, flat.elevations_rad);
+  EXPECT_EQ(grouped.azimuth_offsets_rad, flat.azimuth_offsets_rad);
+  ASSERT_EQ(grouped.beam_origins_m.size(), 2U);
+  EXPECT_EQ(grouped.beam_origins_m[0], flat.beam_origins_m[0]);
+}
+
+TEST_F(OusterJson, ContentTellsTheFormatWithoutAnExtension) {
+  const auto file = folder_.write("metadata", "\n " + kFlat);
+  EXPECT_EQ(load_lidar_model(file.string()).columns, 512U);
+}
+
+TEST_F(OusterJson, WrongFilesAreRefused) {
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = kFlat;
+    text.replace(text.find(from), from.size(), to);
+    return text;
+  };
+  expect_data_error("", "not JSON");
+  expect_data_error("{\n\n\"a\": }", "mine.json:3: not JSON");
+  expect_data_error("[1, 2]", "not a JSON object");
+  expect_data_error("{}", "no beam_altitude_angles");
+  expect_data_error(with("[10, -10.5]", "[10]"), "has 1 beams, beam_azimuth_angles 2");
+  expect_data_error(with("[10, -10.5]", "[]"), "no beam_altitude_angles");
+  expect_data_error(with("[10, -10.5]", "[10, \"x\"]"), "not a list of numbers");
+  expect_data_error(with("[10, -10.5]", "[10, 91]"), "an angle of 91");
+  expect_data_error(with("[10, -10.5]", "[10, NaN]"), "not JSON");
+  expect_data_error(with("[10, -10.5]", "[10, 1e999]"), "not JSON");
+  expect_data_error(with("512x20", "512"), "lidar_mode is '512'");
+  expect_data_error(with("512x20", "0x20"), "lidar_mode");
+  expect_data_error(with("512x20", "512xnan"), "lidar_mode");
+  expect_data_error(with("512x20", "99999999999x10"), "lidar_mode");
+  expect_data_error(with("\"lidar_mode\"", "\"lidar_mod\""), "lidar_mode is ''");
+  expect_data_error(with("_mm\": 15", "_mm\": \"15\""), "is not a number");
+  expect_data_error(with("0,0,1,36", "0,1,0,36"), "not a turn around z");
+  expect_data_error(with("0,0,1,36, ", ""), "not a turn around z");
+  expect_data_error(with("-1,0,0,0, 0", "-1,0,0,5, 0"), "moves the axis");
+}
+
+TEST_F(OusterJson, HostileFilesAreErrorsNotCrashes) {
+  expect_data_error(std::string(1'000'000, '['), "not JSON");
+  expect_data_error("{\"a\":" + std::string(200'000, '[') + std::string(200'000, ']') + "}",
+                    "no beam_altitude_angles");
+  expect_data_error(std::string("{\"a\0\xff\xfe", 6), "not JSON");
+}
+
+}  // namespace
+}  // namespace adasplats
