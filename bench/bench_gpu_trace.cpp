@@ -91,7 +91,8 @@ Arguments parse(int argc, char** argv) {
 std::vector<ScanMotion> scans_for(const Trajectory& trajectory, std::size_t count) {
   std::vector<ScanMotion> poses;
   const std::size_t step = std::max<std::size_t>(1, trajectory.size() / 64);
-  for (std::size_t i = 0; i < count; ++i) poses.push_back({trajectory[i * step % trajectory.size()], {}});
+  for (std::size_t i = 0; i < count; ++i)
+    poses.push_back({trajectory[i * step % trajectory.size()], {}});
   return poses;
 }
 
