@@ -57,7 +57,8 @@ TEST(ResumableFolder, GoesOnWhereItStopped) {
     EXPECT_FALSE(fs::exists(output));
     EXPECT_EQ(attempt(output, 9).size(), static_cast<std::size_t>(4 - stop));
     EXPECT_EQ(all_of(output), whole);
-    EXPECT_FALSE(fs::exists(folder.path() / (std::string(".") + std::to_string(stop) + ".unfinished")));
+    EXPECT_FALSE(
+        fs::exists(folder.path() / (std::string(".") + std::to_string(stop) + ".unfinished")));
   }
   const Json content = Json::parse(read_file(folder.path() / "whole" / "adasplats.json"));
   EXPECT_EQ(content["command"], "test");
