@@ -78,6 +78,23 @@ CastTimes cast_scans(const ModelScene& scene, CastSensor& sensor, std::span<cons
   return sum;
 }
 
+/// The sensor's firings in the frame of the scan's points, which is another than theirs where the
+/// motion was taken out.
+std::vector<Firing> firings_of_points(const CastSensor& sensor, const ScanMotion& motion,
+                                      PointFrame frame) {
+  std::vector<Firing> firings = sensor.firings;
+  if (frame == PointFrame::raw || motion.knots.empty()) return firings;
+  const RigidTransform frame_from_world = motion.reference.world_from_sensor.inverse();
+  for (Firing& firing : firings) {
+    const double share = static_cast<double>(firing.time_s) * sensor.sensor.rotation_hz;
+    const RigidTransform frame_from_sensor = frame_from_world * pose_at(motion, share);
+    firing.origin = vec_cast<float>(frame_from_sensor * vec_cast<double>(firing.origin));
+    firing.direction =
+        vec_cast<float>(frame_from_sensor.rotation * vec_cast<double>(firing.direction));
+  }
+  return firings;
+}
+
 /// Boxes around the objects that a scan sees.
 void write_boxes(const ModelScene& scene, const std::filesystem::path& folder, std::size_t index,
                  const Scan& scan) {
@@ -93,6 +110,7 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   CastSensor sensor{load_lidar_model(job.sensor), job.beam, {}, {}};
   if (job.range_noise_m) sensor.sensor.range_noise_m = *job.range_noise_m;
   check_beam(job.beam, sensor.sensor);
+  check_weather(job.weather, sensor.sensor);
   const std::vector<ScanMotion> scans = scans_along(job.drive, sensor.sensor);
   std::optional<RayDropModel> ray_drop;
   if (!job.ray_drop.empty()) ray_drop = load_ray_drop(job.ray_drop);
@@ -118,8 +136,8 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
     Scan scan = scan_of_hits(hits, attributes, sensor.sensor, sensor.firings, scans[i], i, options,
                              session.executor);
     if (!job.weather.is_clear())
-      scan =
-          in_weather(scan, sensor.firings, sensor.sensor, job.beam, job.weather, session.seed, i);
+      scan = in_weather(scan, firings_of_points(sensor, scans[i], job.frame), sensor.sensor,
+                        job.beam, job.weather, session.seed, i);
     result.seconds_assembled += assembling.seconds();
     writer->write(i, scan);
     if (scene.world() != nullptr) write_boxes(scene, folder.path() / "boxes", i, scan);

@@ -375,7 +375,9 @@ Scan scan_of(std::span<const Told> told, const Scan& clear, std::span<const Firi
   return scan;
 }
 
-void check(const Weather& weather, const LidarModel& sensor) {
+}  // namespace
+
+void check_weather(const Weather& weather, const LidarModel& sensor) {
   const auto refuse = [](const char* what, double found, const char* expected) {
     throw Error(ErrorKind::usage,
                 std::string(what) + " is " + std::to_string(found) + ", expected " + expected);
@@ -392,8 +394,6 @@ void check(const Weather& weather, const LidarModel& sensor) {
     refuse("the sensor's greatest range in m", sensor.max_range_m, "a length");
 }
 
-}  // namespace
-
 bool Weather::is_clear() const { return extinction_per_m(*this) == 0; }
 
 double extinction_per_m(const Weather& weather) {
@@ -403,20 +403,20 @@ double extinction_per_m(const Weather& weather) {
 
 double told_share(const Weather& weather, const LidarModel& sensor, double range_m,
                   double reflectance) {
-  check(weather, sensor);
+  check_weather(weather, sensor);
   return told_share(extinction_per_m(weather), range_m,
                     power_of(usable(reflectance), range_m, sensor));
 }
 
 double clutter_share(const Weather& weather, const LidarModel& sensor, double range_m) {
-  check(weather, sensor);
+  check_weather(weather, sensor);
   return -std::expm1(-Clutter(weather, sensor).expected_within(range_m));
 }
 
 Scan in_weather(const Scan& clear, std::span<const Firing> firings, const LidarModel& sensor,
                 const BeamOptions& beam, const Weather& weather, std::uint64_t seed,
                 std::uint64_t scan_index) {
-  check(weather, sensor);
+  check_weather(weather, sensor);
   if (weather.is_clear()) return clear;
   // Not the numbers that the scan's own noise was drawn from.
   constexpr std::uint64_t kWeatherStream = 0x7765617468657221ULL;

@@ -37,6 +37,10 @@ double told_share(const Weather& weather, const LidarModel& sensor, double range
 /// How likely a drop, a flake or fog nearer than `range_m` sends back enough to be told.
 double clutter_share(const Weather& weather, const LidarModel& sensor, double range_m);
 
+/// Errors: usage (rates or visibility negative or not a number, a white_intensity that is not
+/// positive, no greatest range).
+void check_weather(const Weather& weather, const LidarModel& sensor);
+
 /// The scan as it is in such weather. Intensities fall by exp(-2 alpha r); returns get lost
 /// (told_share); the sensor's range noise grows by exp(alpha r); particles in the air answer nearer
 /// than the farthest return of their firing (clutter_share): class and instance 0. Which of them
