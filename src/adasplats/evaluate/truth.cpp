@@ -220,6 +220,10 @@ TruthResult compare_with_truth(const Tracer& model, Vec3d model_origin, const Me
                                const Executor& executor, ProgressSink& progress) {
   if (poses.empty()) throw Error(ErrorKind::data, "no poses to cast rays from");
   if (truth.size() == 0) throw Error(ErrorKind::data, "no triangles in the true mesh");
+  if (!repeats(sensor))
+    throw Error(ErrorKind::usage, sensor.name +
+                                      ": its pattern does not repeat, so that beams have "
+                                      "no neighbours to compare them with");
   const TruthCaster caster(model, model_origin, truth, labels, sensor, options, executor);
   std::vector<TruthBeam> beams;
   progress.begin_step("compare with the truth", poses.size());
