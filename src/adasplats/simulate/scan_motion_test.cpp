@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "adasplats/core/error.h"
+#include "adasplats/simulate/box_mesh_test.h"
 #include "adasplats/simulate/scan.h"
 
 namespace adasplats {
@@ -25,17 +26,6 @@ Trajectory drive(double step_s, double end_s, double speed_m_s, double yaw_rate)
   for (double t = 0; t < end_s + 1e-9; t += step_s)
     poses.push_back({t, driven(t, speed_m_s, yaw_rate)});
   return poses;
-}
-
-/// The cube [-half, half]^3 as 12 triangles.
-TriangleMesh box_mesh(float half) {
-  TriangleMesh mesh;
-  for (int i = 0; i < 8; ++i)
-    mesh.vertices.push_back(
-        {(i & 1) != 0 ? half : -half, (i & 2) != 0 ? half : -half, (i & 4) != 0 ? half : -half});
-  mesh.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                    {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 3, 7}, {1, 7, 5}};
-  return mesh;
 }
 
 LidarModel ring_sensor(double elevation_rad, std::uint32_t columns) {
