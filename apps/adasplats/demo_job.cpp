@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "demo_job.h"
 
+#include "adasplats/pipeline/metrics_json.h"
 #include "build_options.h"
 #include "output_path.h"
 #include "render_job.h"
@@ -28,7 +29,7 @@ DemoRow run_method(const std::string& name, SplatMethod method, const fs::path& 
   DemoRow row;
   row.method = name;
 
-  ModelJob model;
+  ModelFileJob model;
   model.inputs = {street / "mapping.ply"};
   model.output = folder / (name + ".ply");
   model.labels = "semantickitti";
@@ -42,8 +43,12 @@ DemoRow run_method(const std::string& name, SplatMethod method, const fs::path& 
   simulation.output = folder / (name + "-scans");
   row.simulation = run_simulate(simulation, session);
 
-  row.comparison = run_cloud_comparison(
-      {simulation.output, street / "mapping.ply", true, "semantickitti"}, session);
+  CloudComparisonJob comparison;
+  comparison.simulated = simulation.output;
+  comparison.original = street / "mapping.ply";
+  comparison.labels = "semantickitti";
+  comparison.by_class = true;
+  row.comparison = run_cloud_comparison(comparison, session);
   row.thin_c2c_m = c2c_of_classes(row.comparison, thin_classes());
 
   ResimulateJob held_out;

@@ -10,12 +10,10 @@
 namespace adasplats::app {
 namespace {
 
-const Choices<DeviceKind>& device_words() {
-  static const Choices<DeviceKind> words = {{"auto", DeviceKind::automatic},
-                                            {"cpu", DeviceKind::cpu},
-                                            {"cuda", DeviceKind::cuda},
-                                            {"optix", DeviceKind::optix}};
-  return words;
+Choices<DeviceKind> choices_of_devices() {
+  Choices<DeviceKind> choices;
+  for (const auto& [word, kind] : device_words()) choices.emplace_back(word, kind);
+  return choices;
 }
 
 [[noreturn]] void refuse(const std::string& why, const std::string& text) {
@@ -46,7 +44,7 @@ std::vector<int> parse_gpus(const std::string& text) {
 
 void add_device_options(CLI::App& app, DeviceOptions& options, GpuCount count) {
   constexpr const char* kGroup = "Device options";
-  add_choice<DeviceKind>(app, "--device", options.kind, device_words(),
+  add_choice<DeviceKind>(app, "--device", options.kind, choices_of_devices(),
                          "What computes: cuda and optix need an NVIDIA GPU; auto takes cuda where "
                          "there is one, else cpu")
       ->group(kGroup);
@@ -61,13 +59,6 @@ void add_device_options(CLI::App& app, DeviceOptions& options, GpuCount count) {
          "the first")
       ->type_name("LIST|all")
       ->group(kGroup);
-}
-
-std::string device_word(DeviceKind kind) {
-  for (const auto& [word, value] : device_words()) {
-    if (value == kind) return word;
-  }
-  return "";
 }
 
 }  // namespace adasplats::app

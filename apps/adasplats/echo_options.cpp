@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "echo_options.h"
 
+#include "option_types.h"
+
 namespace adasplats::app {
 
 std::pair<CLI::Option*, CLI::Option*> add_echo_inputs(CLI::App& app, EchoInputs& inputs) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "evaluate_echoes_job.h"
+#include "adasplats/pipeline/evaluate_echoes.h"
 #include "text_table.h"
 
 namespace adasplats::app {

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include "adasplats/core/stopwatch.h"
+#include "adasplats/pipeline/evaluate_echoes.h"
 #include "commands.h"
 #include "echo_options.h"
-#include "evaluate_echoes_job.h"
-#include "stopwatch.h"
+#include "option_types.h"
 #include "terminal.h"
 #include "text_table.h"
 
@@ -49,7 +50,7 @@ class EvaluateEchoesCommand final : public Command {
 
   void run(Session& session) override {
     const Stopwatch watch;
-    const EchoResult result = run_evaluate_echoes(inputs_, drop_, session);
+    const EchoResult result = evaluate_echoes(inputs_, drop_, session);
     session.report.update(to_json(result));
     session.report["seconds"]["total"] = watch.seconds();
     print(text_of(result));

@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "adasplats/cloud/kitti_sequence.h"
-#include "adasplats/evaluate/label_agreement.h"
+#include "adasplats/core/stopwatch.h"
+#include "adasplats/pipeline/evaluate_labels.h"
+#include "adasplats/pipeline/metrics_json.h"
 #include "commands.h"
-#include "inputs.h"
 #include "option_types.h"
-#include "stopwatch.h"
 #include "terminal.h"
 #include "text_table.h"
 
@@ -20,47 +19,31 @@ constexpr const char* kExamples =
 
 constexpr std::size_t kConfusionsShown = 8;
 
-nlohmann::ordered_json to_json(const LabelAgreement& agreement) {
-  nlohmann::ordered_json json = {{"points", agreement.points}, {"agree", agreement.agree}};
-  if (agreement.points > 0) {
-    json["share"] = agreement.share();
-    json["distance_m"] = agreement.distance_m;
-  }
-  return json;
-}
-
 class EvaluateLabelsCommand final : public Command {
  public:
   explicit EvaluateLabelsCommand(CLI::App& evaluate)
       : Command(evaluate, "labels",
                 "How many simulated points have the class of the nearest measured one", kExamples) {
     CLI::App& app = options();
-    require(add_path(app, "SIMULATED", simulated_, "Sequence folder with labels"));
-    require(add_path(app, "ORIGINAL", original_, "The sequence that it was made from"));
-    app.add_option("--window", options_.window,
+    require(add_path(app, "SIMULATED", job_.simulated, "Sequence folder with labels"));
+    require(add_path(app, "ORIGINAL", job_.original, "The sequence that it was made from"));
+    app.add_option("--window", job_.options.window,
                    "Original scans before and after the one of the same time to look at")
         ->capture_default_str()
         ->type_name("N");
-    app.add_option("--every", options_.every, "Take every n-th simulated scan")
+    app.add_option("--every", job_.options.every, "Take every n-th simulated scan")
         ->capture_default_str()
         ->type_name("N");
-    app.add_option("--labels", labels_, "What labels mean: semantickitti or a TOML file")
+    app.add_option("--labels", job_.labels, "What labels mean: semantickitti or a TOML file")
         ->capture_default_str()
         ->type_name("SCHEME");
   }
 
   void run(Session& session) override {
     const Stopwatch watch;
-    const LabelScheme labels = load_label_scheme(labels_);
-    const LabelAgreementResult result =
-        compare_labels(open_kitti_sequence(resolve_cloud_input(simulated_)),
-                       open_kitti_sequence(resolve_cloud_input(original_)), labels, options_,
-                       session.executor, session.progress);
-    session.report["all"] = to_json(result.all);
-    session.report["labelled"] = to_json(result.labelled);
-    session.report["by_class"] = nlohmann::ordered_json::object();
-    for (const auto& [id, agreement] : result.by_class)
-      session.report["by_class"][std::to_string(id)] = to_json(agreement);
+    const LabelScheme labels = load_label_scheme(job_.labels);
+    const LabelAgreementResult result = evaluate_labels(job_, session);
+    session.report.update(to_json(result));
     session.report["seconds"]["total"] = watch.seconds();
     print(table_of(result, labels) + "\n" + confusions_of(result, labels));
   }
@@ -97,10 +80,7 @@ class EvaluateLabelsCommand final : public Command {
     return table.text();
   }
 
-  std::filesystem::path simulated_;
-  std::filesystem::path original_;
-  std::string labels_ = "semantickitti";
-  LabelAgreementOptions options_;
+  LabelAgreementJob job_;
 };
 
 }  // namespace

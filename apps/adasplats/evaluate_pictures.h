@@ -6,8 +6,8 @@
 
 #include "adasplats/cloud/point_cloud.h"
 #include "adasplats/evaluate/resimulate.h"
+#include "adasplats/pipeline/view_choice.h"
 #include "session.h"
-#include "view_choice.h"
 
 namespace adasplats::app {
 

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include "adasplats/core/stopwatch.h"
+#include "adasplats/pipeline/metrics_json.h"
 #include "commands.h"
 #include "evaluate_job.h"
 #include "option_types.h"
-#include "stopwatch.h"
 #include "terminal.h"
 #include "text_table.h"
 

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include "adasplats/core/stopwatch.h"
+#include "adasplats/pipeline/evaluate_truth.h"
+#include "adasplats/pipeline/metrics_json.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "commands.h"
-#include "evaluate_truth_job.h"
 #include "option_types.h"
-#include "stopwatch.h"
 #include "terminal.h"
 #include "text_table.h"
 
@@ -79,7 +80,7 @@ class EvaluateTruthCommand final : public Command {
     const Stopwatch watch;
     job_.offset_m = offset_.value_or(Vec3d{});
     job_.options.drop_moving = !keep_moving_;
-    const TruthResult result = run_truth(job_, session);
+    const TruthResult result = evaluate_truth(job_, session);
     session.report.update(to_json(result));
     session.report["seconds"]["total"] = watch.seconds();
     print(table_of(result));

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/core/error.h"
+#include "adasplats/core/stopwatch.h"
+#include "adasplats/pipeline/evaluate_echoes.h"
 #include "commands.h"
 #include "echo_options.h"
-#include "evaluate_echoes_job.h"
-#include "stopwatch.h"
+#include "option_types.h"
+#include "output_path.h"
 #include "terminal.h"
 #include "text_table.h"
 
@@ -34,7 +36,9 @@ class FitDropCommand final : public Command {
     const Stopwatch watch;
     if (every_ == 0) throw Error(ErrorKind::usage, "--every is 0, expected 1 or more");
     inputs_.scans.stride = every_;
-    const FitDropResult result = run_fit_drop(inputs_, output_, session);
+    check_output_file(output_);
+    const FitDropResult result = fit_drop(inputs_, session);
+    save_ray_drop(output_, result.model);
     session.report.update(to_json(result));
     session.report["seconds"]["total"] = watch.seconds();
     TextTable table = drop_table();

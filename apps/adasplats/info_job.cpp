@@ -11,9 +11,9 @@
 #include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/point_files.h"
+#include "adasplats/pipeline/inputs.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/splats/splat_model.h"
-#include "inputs.h"
 #include "text_table.h"
 
 namespace adasplats::app {

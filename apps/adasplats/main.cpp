@@ -137,7 +137,7 @@ void run_command(Program& program, Command& command) {
   nlohmann::ordered_json report;
   DeviceChoice device;
   if (command.device()) device = choose_device(*command.device());
-  Session session{executor, progress, common.seed, device, report};
+  Session session{{executor, progress, common.seed, device}, progress, report};
   command.run(session);
   if (!common.report.empty()) write_report(command, session);
 }

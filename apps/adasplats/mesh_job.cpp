@@ -9,11 +9,11 @@
 #include "adasplats/baselines/imls.h"
 #include "adasplats/baselines/nearest_classes.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/stopwatch.h"
+#include "adasplats/pipeline/inputs.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/splats/canonical_order.h"
-#include "inputs.h"
 #include "output_path.h"
-#include "stopwatch.h"
 
 namespace adasplats::app {
 namespace {

@@ -59,7 +59,7 @@ class ModelCommand final : public Command {
   }
 
  private:
-  ModelJob job_;
+  ModelFileJob job_;
 };
 
 }  // namespace

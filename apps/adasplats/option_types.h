@@ -12,16 +12,10 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/vec3.h"
+#include "adasplats/pipeline/scan_range.h"
 #include "adasplats/splats/build_model.h"
 
 namespace adasplats::app {
-
-/// Scans [first, first + count) of a sequence, every `stride`-th.
-struct ScanRange {
-  std::size_t first = 0;
-  std::size_t count = static_cast<std::size_t>(-1);
-  std::size_t stride = 1;
-};
 
 /// "FIRST:COUNT[:STRIDE]", the value of `option`. Errors: CLI::ValidationError.
 ScanRange parse_scan_range(const std::string& option, const std::string& text);

@@ -10,12 +10,12 @@
 
 #include "adasplats/cloud/load_cloud.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/stopwatch.h"
 #include "adasplats/io/png.h"
+#include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/model_scene.h"
 #include "adasplats/simulate/point_colors.h"
-#include "inputs.h"
-#include "model_scene.h"
 #include "output_path.h"
-#include "stopwatch.h"
 
 namespace adasplats::app {
 namespace {
@@ -49,12 +49,6 @@ std::pair<Vec3d, Vec3d> middle_box_of(const Subject& subject) {
                        : middle_box(subject.cloud.positions, subject.cloud.origin);
 }
 
-ImageColor color_of(const RenderJob& job, const ImageScene& scene) {
-  if (job.color) return *job.color;
-  const bool bare = scene.attributes.classes.empty() && scene.groups.empty();
-  return bare ? ImageColor::shading : ImageColor::semantic;
-}
-
 /// Copies `part` into `picture` at column `left`.
 void paste(Image& picture, const Image& part, int left) {
   const std::size_t row_bytes = static_cast<std::size_t>(part.width) * 3;
@@ -84,7 +78,7 @@ void check(const RenderJob& job) {
 
 Image image_of(const ModelScene& model, const Camera& camera, const RenderJob& job) {
   ImageOptions options;
-  options.color = color_of(job, model.image_scene());
+  options.color = job.color.value_or(model.default_color());
   options.samples_per_axis = job.samples_per_axis;
   return model.render(camera, options);
 }

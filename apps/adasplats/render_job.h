@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/pipeline/view_choice.h"
 #include "adasplats/simulate/image.h"
 #include "session.h"
-#include "view_choice.h"
 
 namespace adasplats::app {
 

@@ -2,21 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "adasplats/core/executor.h"
-#include "device_choice.h"
+#include "adasplats/pipeline/session.h"
 #include "progress_bar.h"
 
 namespace adasplats::app {
 
 /// What one run of a subcommand works with.
-struct Session {
-  const Executor& executor;
-  ProgressBar& progress;
-  std::uint64_t seed;
-  DeviceChoice& device;            ///< of scenes and models; the CPU where there is no --device
+struct Session : adasplats::Session {
+  ProgressBar& bar;                ///< its `progress`
   nlohmann::ordered_json& report;  ///< keys that the subcommand adds to its --report
 };
 

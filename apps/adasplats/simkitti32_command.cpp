@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include "adasplats/pipeline/inputs.h"
 #include "build_options.h"
 #include "commands.h"
-#include "inputs.h"
 #include "option_types.h"
 #include "simkitti32_job.h"
 #include "terminal.h"

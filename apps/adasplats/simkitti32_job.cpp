@@ -8,17 +8,17 @@
 
 #include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/stopwatch.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/semantickitti_writer.h"
 #include "adasplats/io/sha256.h"
+#include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/model_scene.h"
 #include "adasplats/simulate/moving_points.h"
 #include "adasplats/simulate/scan.h"
 #include "adasplats/simulate/world.h"
 #include "build_options.h"
-#include "inputs.h"
-#include "model_scene.h"
 #include "resumable_folder.h"
-#include "stopwatch.h"
 
 namespace adasplats::app {
 namespace {
@@ -216,7 +216,7 @@ class Simulation {
 
   void make_model(SimKitti32Result& result) {
     if (folder_.has(kModelFile)) return;
-    ModelJob model;
+    ModelFileJob model;
     model.inputs = {source_.sequence.folder};
     model.output = folder_.path() / kModelFile;
     model.labels = job_.labels;

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "adasplats/dataset/scan_writer.h"
+#include "adasplats/pipeline/drive.h"
 #include "adasplats/simulate/scan.h"
 #include "adasplats/simulate/weather.h"
-#include "drive.h"
 #include "session.h"
 
 namespace adasplats::app {

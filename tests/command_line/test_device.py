@@ -52,7 +52,7 @@ class AnyMachine(DeviceTest):
         self.run_bad(64, *simulate, "--gpus", "1,0,1", says=["--gpus", "once"])
         for value in ["0", "all"]:
             self.run_bad(64, *simulate, "--device", "cpu", "--gpus", value,
-                         says=["--gpus", "--device cpu"])
+                         says=["gpus", "device cpu"])
         self.run_bad(64, "render", model, "-o", self.folder / "p.png", "--gpus", "0",
                      says=["--gpus"])
         self.assertEqual(self.names(), before)
@@ -126,9 +126,9 @@ class WithoutGpu(DeviceTest):
             for device in ["cuda", "optix"]:
                 with self.subTest(name, device=device):
                     self.run_bad(69, *words, "--device", device, says=[
-                        f"--device {device}", self.found["reason"], "use --device cpu"])
+                        f"device {device}", self.found["reason"], "use device cpu"])
         self.run_bad(69, *self.simulate_words(model, "new"), "--gpus", "0,1",
-                     says=["--gpus", self.found["reason"], "use --device cpu"])
+                     says=["gpus", self.found["reason"], "use device cpu"])
         self.assertEqual(self.names(), before)
 
 
@@ -150,7 +150,7 @@ class WithGpu(DeviceTest):
         self.assertEqual(cuda["device"]["gpus"], [self.first["number"]])
         self.assertEqual(cuda["rays"], cpu["rays"])
         self.assertAlmostEqual(cuda["hits"] / cpu["hits"], 1, delta=0.001)
-        self.run_bad(64, *simulate, "--overwrite", "--gpus", "9999", says=["--gpus", "9999"])
+        self.run_bad(64, *simulate, "--overwrite", "--gpus", "9999", says=["GPU 9999"])
 
 
 if __name__ == "__main__":

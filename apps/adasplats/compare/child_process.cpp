@@ -20,9 +20,9 @@
 #include <thread>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/stopwatch.h"
 #include "adasplats/io/atomic_file.h"
 #include "interrupt.h"
-#include "stopwatch.h"
 
 namespace adasplats::app {
 namespace {

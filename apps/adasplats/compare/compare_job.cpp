@@ -9,13 +9,14 @@
 #include "adasplats/cloud/label_scheme.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/atomic_file.h"
+#include "adasplats/pipeline/inputs.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "compare/competitors.h"
 #include "compare/machine.h"
 #include "compare/paper_figures.h"
 #include "compare/steps.h"
 #include "compare/work_folder.h"
-#include "inputs.h"
+#include "device_report.h"
 #include "report_page/report_page.h"
 
 namespace adasplats::app {
@@ -149,7 +150,7 @@ Json run_compare(const CompareJob& job, Session& session) {
       {"title", data.title},
       {"data", data_json(rules, facts, job.preset)},
       {"machine", machine_json(session.executor.threads())},
-      {"device", to_json(session.device)},
+      {"device", device_json(session.device)},
       {"limits",
        {{"seconds", job.steps.limits.seconds}, {"memory_bytes", job.steps.limits.memory_bytes}}},
       {"command", job.command},

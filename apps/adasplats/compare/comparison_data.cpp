@@ -11,8 +11,8 @@
 #include "adasplats/cloud/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/symmetric_eigen.h"
+#include "adasplats/pipeline/inputs.h"
 #include "compare/work_folder.h"
-#include "inputs.h"
 #include "option_types.h"
 
 namespace adasplats::app {

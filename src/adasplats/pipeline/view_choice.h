@@ -10,7 +10,7 @@
 
 #include "adasplats/sensors/camera.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 /// Where a picture is seen from: one of the places below, or from above a corner of what it shows.
 struct ViewChoice {
@@ -35,4 +35,4 @@ Camera camera_of(const ViewChoice& view, Vec3d low, Vec3d high);
 /// picture shows. `positions` (one or more) are relative to `origin`.
 std::pair<Vec3d, Vec3d> middle_box(std::span<const Vec3f> positions, Vec3d origin);
 
-}  // namespace adasplats::app
+}  // namespace adasplats

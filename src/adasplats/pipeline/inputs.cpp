@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "inputs.h"
+#include "adasplats/pipeline/inputs.h"
 
 #include <fstream>
 
 #include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/core/error.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 namespace fs = std::filesystem;
 
@@ -81,4 +81,4 @@ Trajectory poses_along(const fs::path& path, Vec3d offset_m, std::size_t every) 
   return taken;
 }
 
-}  // namespace adasplats::app
+}  // namespace adasplats

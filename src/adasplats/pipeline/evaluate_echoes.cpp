@@ -1,37 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "evaluate_echoes_job.h"
+#include "adasplats/pipeline/evaluate_echoes.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "inputs.h"
-#include "model_scene.h"
-#include "output_path.h"
+#include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/model_scene.h"
 
-namespace adasplats::app {
+namespace adasplats {
 namespace {
-
-std::vector<std::size_t> chosen_scans(const KittiSequence& sequence, const ScanRange& range) {
-  std::vector<std::size_t> chosen;
-  for (std::size_t i = range.first; i < sequence.scans.size() && chosen.size() < range.count;
-       i += range.stride) {
-    chosen.push_back(i);
-  }
-  if (chosen.empty()) {
-    throw Error(ErrorKind::usage, "--scans: " + sequence.folder.string() + " has only " +
-                                      std::to_string(sequence.scans.size()) + " scans");
-  }
-  return chosen;
-}
 
 /// Measured scans of a sequence, and whether they tell which beams found nothing.
 class EchoSequence {
  public:
   explicit EchoSequence(const EchoInputs& inputs)
       : sequence_(open_kitti_sequence(resolve_cloud_input(inputs.sequence))),
-        scans_(adasplats::app::chosen_scans(sequence_, inputs.scans)),
+        scans_(chosen_scans(inputs.scans, sequence_.scans.size(), sequence_.folder)),
         motion_(inputs.motion.empty() ? sequence_.trajectory : load_trajectory(inputs.motion)) {
     sequence_.beams = recognize_beams(sequence_);
     if (tells_empty_beams()) {
@@ -88,8 +75,8 @@ nlohmann::ordered_json to_json(const DropAccuracy& drop) {
 
 }  // namespace
 
-EchoResult run_evaluate_echoes(const EchoInputs& inputs, const std::filesystem::path& drop,
-                               Session& session) {
+EchoResult evaluate_echoes(const EchoInputs& inputs, const std::filesystem::path& drop,
+                           Session& session) {
   require_input(inputs.model);
   std::optional<RayDropModel> drop_model;
   if (!drop.empty()) drop_model = load_ray_drop(drop);
@@ -108,9 +95,7 @@ EchoResult run_evaluate_echoes(const EchoInputs& inputs, const std::filesystem::
   return result;
 }
 
-FitDropResult run_fit_drop(const EchoInputs& inputs, const std::filesystem::path& output,
-                           Session& session) {
-  check_output_file(output);
+FitDropResult fit_drop(const EchoInputs& inputs, Session& session) {
   require_input(inputs.model);
   const EchoSequence measured(inputs);
   measured.require_raw("fit-drop");
@@ -123,7 +108,6 @@ FitDropResult run_fit_drop(const EchoInputs& inputs, const std::filesystem::path
   result.scans = measured.scans().size();
   result.misses = drop_accuracy(beams, nullptr);
   result.drop = drop_accuracy(beams, &result.model);
-  save_ray_drop(output, result.model);
   return result;
 }
 
@@ -148,4 +132,4 @@ nlohmann::ordered_json to_json(const FitDropResult& result) {
   return json;
 }
 
-}  // namespace adasplats::app
+}  // namespace adasplats

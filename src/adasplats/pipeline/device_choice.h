@@ -2,16 +2,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "adasplats/core/function_ref.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/gpu/device.h"
-#include "device_option.h"
 
-namespace adasplats::app {
+namespace adasplats {
+
+/// Who computes.
+enum class DeviceKind : std::uint8_t {
+  automatic,  ///< cuda where there is a GPU, else cpu
+  cpu,
+  cuda,
+  optix,  ///< rays are cast with OptiX; all else as cuda
+};
+
+/// auto, cpu, cuda and optix.
+std::span<const std::pair<std::string_view, DeviceKind>> device_words();
+std::string device_word(DeviceKind kind);
+
+/// What a user says of the device.
+struct DeviceOptions {
+  DeviceKind kind = DeviceKind::automatic;
+  std::vector<int> gpus;  ///< CUDA's numbers; empty: the first one
+  bool all_gpus = false;
+};
 
 /// What a run computes on.
 struct DeviceChoice {
@@ -26,7 +47,7 @@ struct DeviceChoice {
   std::vector<int> gpu_numbers() const;
 };
 
-/// Looks for what the options name. Errors: usage (--gpus with --device cpu, or a number that no
+/// Looks for what the options name. Errors: usage (GPUs by number with the CPU, or a number that no
 /// GPU has), unavailable (cuda, optix or GPUs by number are asked for and there is no GPU), with
 /// what helps.
 DeviceChoice choose_device(const DeviceOptions& options);
@@ -36,10 +57,10 @@ DeviceChoice choose_device(const DeviceOptions& options);
 /// on; the failure of one that was asked for is the caller's.
 bool try_on_gpu(DeviceChoice& device, ProgressSink& progress, FunctionRef<void()> work);
 
-/// "device" of a --report: "kind", "name", and of GPUs "driver" and "gpus", of the CPU "reason".
-nlohmann::ordered_json to_json(const DeviceChoice& device);
+/// Names of the GPUs with commas between them.
+std::string names_of(const std::vector<GpuDevice>& gpus);
 
 /// One key a choice, for what was computed on another one.
 std::string device_key(const DeviceChoice& device);
 
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -3,14 +3,15 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
 #include "adasplats/evaluate/echo_accuracy.h"
-#include "option_types.h"
-#include "session.h"
+#include "adasplats/pipeline/scan_range.h"
+#include "adasplats/pipeline/session.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 /// A model and measured scans whose beams are cast into it.
 struct EchoInputs {
@@ -32,8 +33,8 @@ struct EchoResult {
 
 /// `drop`: file of a drop model, or empty. Errors: usage (a drop model, but scans that are
 /// motion-compensated or of another sensor).
-EchoResult run_evaluate_echoes(const EchoInputs& inputs, const std::filesystem::path& drop,
-                               Session& session);
+EchoResult evaluate_echoes(const EchoInputs& inputs, const std::filesystem::path& drop,
+                           Session& session);
 
 struct FitDropResult {
   RayDropModel model;
@@ -42,12 +43,11 @@ struct FitDropResult {
   DropAccuracy drop;
 };
 
-/// Fits a drop model and writes it. Errors: usage (as above), those of fit_ray_drop.
-FitDropResult run_fit_drop(const EchoInputs& inputs, const std::filesystem::path& output,
-                           Session& session);
+/// Fits a drop model. Errors: usage (as above), those of fit_ray_drop.
+FitDropResult fit_drop(const EchoInputs& inputs, Session& session);
 
 /// The keys of the --reports.
 nlohmann::ordered_json to_json(const EchoResult& result);
 nlohmann::ordered_json to_json(const FitDropResult& result);
 
-}  // namespace adasplats::app
+}  // namespace adasplats

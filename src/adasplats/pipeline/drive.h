@@ -10,7 +10,7 @@
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/simulate/scan_motion.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 /// Where a sensor drives.
 struct DriveOptions {
@@ -30,4 +30,4 @@ Trajectory sensor_poses(const DriveOptions& drive);
 /// The scans at those poses. Errors: likewise.
 std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor);
 
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-namespace adasplats::app {
+namespace adasplats {
 
 /// Seconds since it was made.
 class Stopwatch {
@@ -17,4 +17,4 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace adasplats::app
+}  // namespace adasplats

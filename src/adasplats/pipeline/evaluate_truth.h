@@ -6,9 +6,9 @@
 #include <string>
 
 #include "adasplats/evaluate/truth.h"
-#include "session.h"
+#include "adasplats/pipeline/session.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 /// A model against the true surface, with the rays that `simulate` would cast.
 struct TruthJob {
@@ -22,9 +22,6 @@ struct TruthJob {
   TruthOptions options;
 };
 
-TruthResult run_truth(const TruthJob& job, Session& session);
+TruthResult evaluate_truth(const TruthJob& job, Session& session);
 
-/// The keys of the --report.
-nlohmann::ordered_json to_json(const TruthResult& result);
-
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "model_scene.h"
+#include "adasplats/pipeline/model_scene.h"
 
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "inputs.h"
-#include "view_choice.h"
+#include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/view_choice.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 namespace {
 
@@ -35,6 +35,30 @@ ModelScene::ModelScene(const std::filesystem::path& file, const std::string& lab
   if (!labels.empty()) labels_ = load_label_scheme(labels);
   session.progress.begin_step("load " + file.filename().string(), 0);
   load(world_file ? world_file->model : file);
+  prepare(file.string(), session);
+  if (world_file) make_world(*world_file);
+  session.progress.end_step();
+}
+
+ModelScene::ModelScene(SplatModel splats, std::optional<LabelScheme> labels, Session& session)
+    : executor_(session.executor), splats_(std::move(splats)), labels_(std::move(labels)) {
+  prepare("the model", session);
+  session.progress.end_step();
+}
+
+ModelScene::ModelScene(MeshModel mesh, std::optional<LabelScheme> labels, Session& session)
+    : executor_(session.executor),
+      is_mesh_(true),
+      mesh_(std::move(mesh)),
+      labels_(std::move(labels)) {
+  prepare("the mesh", session);
+  session.progress.end_step();
+}
+
+/// What every scene needs once its geometry is there.
+void ModelScene::prepare(const std::string& name, Session& session) {
+  if (view().primitive_count() == 0)
+    throw Error(ErrorKind::data, name + (is_mesh_ ? ": no triangles" : ": no splats"));
   const std::string& known = is_mesh_ ? mesh_.label_scheme : splats_.label_scheme;
   if (!labels_ && !known.empty()) {
     try {
@@ -46,13 +70,13 @@ ModelScene::ModelScene(const std::filesystem::path& file, const std::string& lab
   }
   session.progress.begin_step("build the ray index", 0);
   make_tracers(session);
-  if (world_file) make_world(*world_file);
-  session.progress.end_step();
+  attributes_ = place_attributes();
 }
 
 void ModelScene::make_world(const WorldFile& file) {
   world_.emplace(static_cast<std::uint32_t>(view().primitive_count()), origin(), executor_);
   add_objects(*world_, file, labels_ ? *labels_ : LabelScheme("", {}));
+  attributes_ = world_->attributes(place_attributes());
 }
 
 void ModelScene::make_tracers(Session& session) {
@@ -73,15 +97,9 @@ void ModelScene::load(const std::filesystem::path& file) {
   } else {
     splats_ = load_model(file);
   }
-  if (view().primitive_count() > 0) return;
-  throw Error(ErrorKind::data, file.string() + (is_mesh_ ? ": no triangles" : ": no splats"));
 }
 
 SceneView ModelScene::view() const { return is_mesh_ ? mesh_.view() : splats_.view(); }
-
-PrimitiveAttributes ModelScene::attributes() {
-  return world_ ? world_->attributes(place_attributes()) : place_attributes();
-}
 
 PrimitiveAttributes ModelScene::place_attributes() const {
   PrimitiveAttributes attributes;
@@ -102,9 +120,15 @@ ImageScene ModelScene::image_scene() const {
   return scene;
 }
 
+ImageColor ModelScene::default_color() const {
+  const bool bare = place_attributes().classes.empty() && splats_.groups.empty();
+  return bare ? ImageColor::shading : ImageColor::semantic;
+}
+
 Image ModelScene::render(const Camera& camera, const ImageOptions& options) const {
   if (!gpu_) return render_image(*tracer_, image_scene(), camera, options, executor_);
   // The colours of the scene go to the GPU once for all pictures.
+  const std::lock_guard lock(renderer_mutex_);
   if (!renderer_ || !(renderer_options_ == options)) {
     renderer_ = gpu_->renderer(image_scene(), options);
     renderer_options_ = options;
@@ -113,11 +137,11 @@ Image ModelScene::render(const Camera& camera, const ImageOptions& options) cons
 }
 
 std::pair<Vec3d, Vec3d> ModelScene::middle_box() const {
-  if (is_mesh_) return app::middle_box(mesh_.mesh.vertices, mesh_.origin);
+  if (is_mesh_) return adasplats::middle_box(mesh_.mesh.vertices, mesh_.origin);
   std::vector<Vec3f> centers;
   centers.reserve(splats_.size());
   for (const Disk& disk : splats_.disks) centers.push_back(disk.center);
-  return app::middle_box(centers, splats_.origin);
+  return adasplats::middle_box(centers, splats_.origin);
 }
 
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "drive.h"
+#include "adasplats/pipeline/drive.h"
 
 #include "adasplats/core/error.h"
-#include "inputs.h"
+#include "adasplats/pipeline/inputs.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 Trajectory sensor_poses(const DriveOptions& drive) {
   if (drive.every == 0) throw Error(ErrorKind::usage, "--every must be at least 1");
@@ -33,4 +33,4 @@ std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel&
   return moving_scans(poses, mounted(motion, drive.mount), 1 / sensor.rotation_hz);
 }
 
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "view_choice.h"
+#include "adasplats/pipeline/view_choice.h"
 
 #include <algorithm>
 #include <string>
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "inputs.h"
+#include "adasplats/pipeline/inputs.h"
 
-namespace adasplats::app {
+namespace adasplats {
 namespace {
 
 constexpr double kRadiansPerDegree = 0.017453292519943295;
@@ -83,4 +83,4 @@ std::pair<Vec3d, Vec3d> middle_box(std::span<const Vec3f> positions, Vec3d origi
   return box;
 }
 
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -10,7 +10,7 @@
 #include "adasplats/cloud/label_scheme.h"
 #include "adasplats/cloud/trajectory.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 /// What `labels` names; for an empty one SemanticKITTI where an input is a sequence folder with
 /// labels, else nothing.
@@ -37,4 +37,4 @@ Trajectory poses_along(const std::filesystem::path& path, Vec3d offset_m, std::s
 /// Throws no_input where there is nothing of that name, so that it is said before long work.
 void require_input(const std::filesystem::path& path);
 
-}  // namespace adasplats::app
+}  // namespace adasplats

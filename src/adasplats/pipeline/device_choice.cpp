@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "device_choice.h"
+#include "adasplats/pipeline/device_choice.h"
 
 #include <algorithm>
 
 #include "adasplats/core/error.h"
-#include "compare/machine.h"
 
-namespace adasplats::app {
+namespace adasplats {
 namespace {
 
 /// Whether the user wants a GPU and nothing else.
@@ -17,7 +16,7 @@ bool asks_for_gpu(const DeviceOptions& options) {
 }
 
 std::string asked_for(const DeviceOptions& options) {
-  return options.gpus.empty() ? "--device " + device_word(options.kind) : "--gpus";
+  return options.gpus.empty() ? "device " + device_word(options.kind) : "gpus";
 }
 
 std::string numbers_of(const std::vector<GpuDevice>& gpus) {
@@ -30,8 +29,8 @@ GpuDevice gpu_of_number(const std::vector<GpuDevice>& found, int number) {
   const auto gpu = std::find_if(found.begin(), found.end(),
                                 [number](const GpuDevice& g) { return g.index == number; });
   if (gpu == found.end()) {
-    throw Error(ErrorKind::usage, "--gpus: there is no GPU " + std::to_string(number) +
-                                      "; usable are " + numbers_of(found));
+    throw Error(ErrorKind::usage,
+                "there is no GPU " + std::to_string(number) + "; usable are " + numbers_of(found));
   }
   return *gpu;
 }
@@ -45,13 +44,29 @@ std::vector<GpuDevice> chosen_gpus(const DeviceOptions& options,
   return gpus;
 }
 
+}  // namespace
+
+std::span<const std::pair<std::string_view, DeviceKind>> device_words() {
+  static constexpr std::pair<std::string_view, DeviceKind> kWords[] = {
+      {"auto", DeviceKind::automatic},
+      {"cpu", DeviceKind::cpu},
+      {"cuda", DeviceKind::cuda},
+      {"optix", DeviceKind::optix}};
+  return kWords;
+}
+
+std::string device_word(DeviceKind kind) {
+  for (const auto& [word, value] : device_words()) {
+    if (value == kind) return std::string(word);
+  }
+  return "";
+}
+
 std::string names_of(const std::vector<GpuDevice>& gpus) {
   std::string text;
   for (const GpuDevice& gpu : gpus) text += (text.empty() ? "" : ", ") + gpu.name;
   return text;
 }
-
-}  // namespace
 
 std::vector<int> DeviceChoice::gpu_numbers() const {
   std::vector<int> numbers;
@@ -64,7 +79,7 @@ DeviceChoice choose_device(const DeviceOptions& options) {
   DeviceChoice choice;
   if (options.kind == DeviceKind::cpu) {
     if (options.all_gpus || !options.gpus.empty()) {
-      throw Error(ErrorKind::usage, "--gpus and --device cpu exclude each other");
+      throw Error(ErrorKind::usage, "gpus and device cpu exclude each other");
     }
     return choice;
   }
@@ -74,7 +89,7 @@ DeviceChoice choose_device(const DeviceOptions& options) {
     choice.reason = search.reason;
     if (choice.is_automatic) return choice;
     throw Error(ErrorKind::unavailable,
-                asked_for(options) + ": " + search.reason + ", or use --device cpu");
+                asked_for(options) + ": " + search.reason + ", or use device cpu");
   }
   choice.kind = options.kind == DeviceKind::automatic ? DeviceKind::cuda : options.kind;
   choice.gpus = chosen_gpus(options, search.devices);
@@ -97,23 +112,9 @@ bool try_on_gpu(DeviceChoice& device, ProgressSink& progress, FunctionRef<void()
   }
 }
 
-nlohmann::ordered_json to_json(const DeviceChoice& device) {
-  nlohmann::ordered_json json = {{"kind", device_word(device.kind)}};
-  if (device.on_gpu()) {
-    json["name"] = names_of(device.gpus);
-    json["driver"] = device.driver;
-    json["gpus"] = device.gpu_numbers();
-  } else {
-    json["name"] = cpu_name();
-    json["driver"] = nullptr;
-    if (!device.reason.empty()) json["reason"] = device.reason;
-  }
-  return json;
-}
-
 std::string device_key(const DeviceChoice& device) {
   return device.on_gpu() ? device_word(device.kind) + " " + names_of(device.gpus)
                          : device_word(device.kind);
 }
 
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+namespace adasplats {
+
+/// Scans [first, first + count) of a sequence, every `stride`-th.
+struct ScanRange {
+  std::size_t first = 0;
+  std::size_t count = static_cast<std::size_t>(-1);
+  std::size_t stride = 1;
+};
+
+/// Numbers of the scans that a range takes of `scans`, of the sequence in `folder`.
+/// Errors: usage (none).
+std::vector<std::size_t> chosen_scans(const ScanRange& range, std::size_t scans,
+                                      const std::filesystem::path& folder);
+
+}  // namespace adasplats
