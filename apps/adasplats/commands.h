@@ -25,6 +25,8 @@ std::unique_ptr<Command> make_simkitti32_command(CLI::App& program);
 std::unique_ptr<Command> make_fit_drop_command(CLI::App& program);
 std::unique_ptr<Command> make_sensors_command(CLI::App& program);
 std::unique_ptr<Command> make_compare_command(CLI::App& program);
+std::unique_ptr<Command> make_view_command(CLI::App& program);
+std::unique_ptr<Command> make_export_command(CLI::App& program);
 std::unique_ptr<Command> make_demo_command(CLI::App& program);
 
 }  // namespace adasplats::app

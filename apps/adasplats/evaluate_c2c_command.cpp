@@ -52,6 +52,9 @@ class EvaluateC2cCommand final : public Command {
         ->type_name("SCHEME");
     add_path(app, "--picture", job_.picture,
              "Also draw the simulated points, coloured by their distance to the original (PNG)");
+    add_path(app, "--errors", job_.errors,
+             "Also write the simulated points with their distances (PLY; 'adasplats view' shows "
+             "them)");
     add_vector(app, "--eye", job_.view.eye, "Where the picture's camera is, world coordinates");
     add_vector(app, "--target", job_.view.target, "What it looks at; the middle of the original");
     add_picture_width(app, job_.view.width);

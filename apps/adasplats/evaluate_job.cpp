@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluate_job.h"
 
+#include <utility>
+
 #include "adasplats/core/error.h"
+#include "adasplats/evaluate/error_points.h"
 #include "adasplats/pipeline/inputs.h"
 #include "evaluate_pictures.h"
 #include "output_path.h"
@@ -13,17 +16,24 @@ CloudComparison run_cloud_comparison(const CloudComparisonJob& job, Session& ses
   check(job.view);
   if (job.view.eye && job.picture.empty()) throw Error(ErrorKind::usage, "--eye needs --picture");
   if (!job.picture.empty()) check_output_file(job.picture);
-  const CloudPair clouds = load_clouds(job, session);
+  if (!job.errors.empty()) check_output_file(job.errors);
+  CloudPair clouds = load_clouds(job, session);
   CloudComparison comparison = evaluate_clouds(clouds.simulated, clouds.original, job.by_class,
                                                clouds.labels ? &*clouds.labels : nullptr, session);
   if (!job.picture.empty())
     write_distance_picture(job.picture, clouds.simulated, clouds.original, job.view, session);
+  if (!job.errors.empty()) {
+    const ErrorPoints points =
+        distance_points(std::move(clouds.simulated), clouds.original, session.executor);
+    write_error_points(job.errors, points.cloud, points.errors_m);
+  }
   return comparison;
 }
 
 ResimulateResult run_resimulate(const ResimulateJob& job, Session& session) {
   require_input(job.model);
   if (!job.picture.empty()) check_output_file(job.picture);
+  if (!job.errors.empty()) check_output_file(job.errors);
   const LabelScheme labels = load_label_scheme(job.labels);
   const KittiSequence sequence = open_held_out(job);
   const ModelScene scene(job.model, "", session);
@@ -35,6 +45,12 @@ ResimulateResult run_resimulate(const ResimulateJob& job, Session& session) {
                        resimulate_scan(scene.tracer(), scene.view(), scene.origin(), sequence,
                                        middle, labels, job.options, session.executor),
                        job.picture_width, session);
+  }
+  if (!job.errors.empty()) {
+    const ErrorPoints points =
+        beam_points(scene.tracer(), scene.view(), scene.origin(), sequence, labels, job.options,
+                    session.executor, session.progress);
+    write_error_points(job.errors, points.cloud, points.errors_m);
   }
   return result;
 }

@@ -62,6 +62,9 @@ class EvaluateResimulateCommand final : public Command {
     add_path(app, "--picture", job_.picture,
              "Also draw the middle scan, its points coloured by the range error (PNG)");
     add_picture_width(app, job_.picture_width);
+    add_path(app, "--errors", job_.errors,
+             "Also write the measured points with their range errors (PLY; 'adasplats view' shows "
+             "them)");
     app.add_option_function<std::string>(
            "--scans",
            [this](const std::string& text) { job_.scans = parse_scan_range("--scans", text); },

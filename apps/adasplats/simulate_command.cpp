@@ -110,6 +110,11 @@ class SimulateCommand final : public Command {
     app.add_option("--range-noise", job_.range_noise_m,
                    "Standard deviation of the noise on ranges, m; the default is the sensor's")
         ->type_name("M");
+    app.add_option("--min-range", job_.min_range_m, "Instead of the sensor's, m")->type_name("M");
+    app.add_option("--max-range", job_.max_range_m, "Instead of the sensor's, m")->type_name("M");
+    app.add_option("--rotation-rate", job_.rotation_hz,
+                   "Revolutions a second instead of the sensor's")
+        ->type_name("HZ");
     app.add_option("--depth", beam.depth,
                    "Splats along a ray whose weighted mean is the echo (the paper's D = 5)")
         ->capture_default_str()

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "adasplats/core/stopwatch.h"
+#include "adasplats/core/error.h"
 #include "adasplats/dataset/kitti_boxes.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/model_scene.h"
@@ -32,6 +33,13 @@ nlohmann::ordered_json content_of(const SimulateJob& job, std::uint64_t seed) {
                                     {"snow_mm_h", job.weather.snow_mm_h},
                                     {"seed", seed}};
   if (!job.labels.empty()) content["labels"] = load_label_scheme(job.labels).name();
+  const auto add = [&content](const char* name, const std::optional<double>& value) {
+    if (value) content[name] = *value;
+  };
+  add("range_noise_m", job.range_noise_m);
+  add("min_range_m", job.min_range_m);
+  add("max_range_m", job.max_range_m);
+  add("rotation_hz", job.rotation_hz);
   return content;
 }
 
@@ -45,7 +53,14 @@ void write_boxes(const ModelScene& scene, const std::filesystem::path& folder, s
 ScanSettings settings_of(const SimulateJob& job, std::uint64_t seed) {
   ScanSettings settings;
   settings.sensor = load_lidar_model(job.sensor);
-  if (job.range_noise_m) settings.sensor.range_noise_m = *job.range_noise_m;
+  LidarModel& sensor = settings.sensor;
+  sensor.range_noise_m = job.range_noise_m.value_or(sensor.range_noise_m);
+  sensor.min_range_m = job.min_range_m.value_or(sensor.min_range_m);
+  sensor.max_range_m = job.max_range_m.value_or(sensor.max_range_m);
+  sensor.rotation_hz = job.rotation_hz.value_or(sensor.rotation_hz);
+  if (!(sensor.min_range_m >= 0 && sensor.min_range_m < sensor.max_range_m))
+    throw Error(ErrorKind::usage, "--min-range must be 0 or more and less than --max-range");
+  if (!(sensor.rotation_hz > 0)) throw Error(ErrorKind::usage, "--rotation-rate must be positive");
   settings.beam = job.beam;
   settings.noise = job.noise;
   settings.frame = job.frame;

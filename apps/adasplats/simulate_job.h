@@ -21,7 +21,11 @@ struct SimulateJob {
   std::string labels;           ///< scheme of the classes; empty: what the model says
   std::string sensor = "hdl-64-paper";
   DriveOptions drive;
-  std::optional<double> range_noise_m;  ///< instead of the sensor's
+  // Instead of the sensor's own.
+  std::optional<double> range_noise_m;
+  std::optional<double> min_range_m;
+  std::optional<double> max_range_m;
+  std::optional<double> rotation_hz;
   BeamOptions beam;
   bool noise = true;
   PointFrame frame = PointFrame::raw;

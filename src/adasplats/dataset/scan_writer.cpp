@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "adasplats/cloud/trajectory.h"
+#include "adasplats/dataset/mcap_writer.h"
 #include "adasplats/dataset/scan_files.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/semantickitti_writer.h"
@@ -48,7 +49,8 @@ class FileWriter final : public ScanWriter {
       case ScanFormat::range_image:
         return write_range_image(folder_, stem, range_image(scan, options_.image_size),
                                  options_.labels);
-      case ScanFormat::semantickitti: break;
+      case ScanFormat::semantickitti:
+      case ScanFormat::mcap: break;
     }
     throw std::logic_error("ScanWriter: no format of single files");
   }
@@ -59,11 +61,33 @@ class FileWriter final : public ScanWriter {
   Trajectory trajectory_;
 };
 
+/// All scans as messages of one file, and poses.csv.
+class MessageWriter final : public ScanWriter {
+ public:
+  explicit MessageWriter(std::filesystem::path folder)
+      : folder_(std::move(folder)), writer_(folder_ / "scans.mcap") {}
+
+  void write(std::size_t /*index*/, const Scan& scan) override {
+    writer_.write(scan);
+    trajectory_.push_back({scan.time_s, scan.world_from_sensor});
+  }
+  void finish() override {
+    writer_.finish();
+    write_trajectory_csv(folder_ / "poses.csv", trajectory_);
+  }
+
+ private:
+  std::filesystem::path folder_;
+  McapWriter writer_;
+  Trajectory trajectory_;
+};
+
 }  // namespace
 
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
                                              const ScanWriterOptions& options) {
   if (format == ScanFormat::semantickitti) return std::make_unique<SequenceWriter>(folder);
+  if (format == ScanFormat::mcap) return std::make_unique<MessageWriter>(folder);
   return std::make_unique<FileWriter>(folder, format, options);
 }
 

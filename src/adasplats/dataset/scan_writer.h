@@ -13,8 +13,8 @@
 
 namespace adasplats {
 
-/// What scans are written as: a sequence folder, files of one kind, or pictures.
-enum class ScanFormat : std::uint8_t { semantickitti, ply, npy, npz, pcd, las, range_image };
+/// What scans are written as: a sequence folder, files of one kind, pictures, or messages.
+enum class ScanFormat : std::uint8_t { semantickitti, ply, npy, npz, pcd, las, range_image, mcap };
 
 struct ScanWriterOptions {
   ImageSize image_size;                 ///< of range images (image_size_of)
@@ -37,8 +37,9 @@ class ScanWriter {
 };
 
 /// A writer into `folder`, which exists. semantickitti: FOLDER/sequences/00 as SemanticKittiWriter;
-/// range_image: files of write_range_image(); else NNNNNN.EXT of scan_files.h. All but
-/// semantickitti have poses.csv beside them. Errors: cannot_create, io.
+/// range_image: files of write_range_image(); mcap: FOLDER/scans.mcap as McapWriter; else
+/// NNNNNN.EXT of scan_files.h. All but semantickitti have poses.csv beside them. Errors:
+/// cannot_create, io; mcap: data (times that ROS cannot tell).
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
                                              const ScanWriterOptions& options = {});
 

@@ -50,6 +50,7 @@ TEST(ScanWriter, NamesOfEveryFormat) {
   EXPECT_EQ(written_names(ScanFormat::range_image),
             (Names{"000000_label.npy", "000000_label.png", "000000_range.npy", "000000_range.png",
                    "000001_range.npy", "000001_range.png", "poses.csv"}));
+  EXPECT_EQ(written_names(ScanFormat::mcap), (Names{"poses.csv", "scans.mcap"}));
   EXPECT_EQ(written_names(ScanFormat::semantickitti), Names{"sequences"});
 }
 

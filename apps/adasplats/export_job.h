@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/pipeline/session.h"
+
+namespace adasplats::app {
+
+/// What other programs open (docs/exports.md).
+enum class ExportFormat : std::uint8_t { gaussian_3d, gaussian_2d, glb, ply, mcap };
+/// What colours show; names as --color has them.
+enum class ExportColor : std::uint8_t { semantic, intensity, height };
+
+/// A splat model, a point cloud or the scans of a sequence, for other programs.
+struct ExportJob {
+  std::filesystem::path input, output;
+  /// Else that of the output's ending, where that is clear.
+  std::optional<ExportFormat> format;
+  std::string labels;  ///< scheme of the classes; empty: what the model says
+  /// Else by class where classes and their scheme are known, else by intensity, else by height.
+  std::optional<ExportColor> color;
+  LoadOptions load;  ///< of clouds and sequences
+};
+
+struct ExportResult {
+  std::size_t count = 0;
+  const char* unit = "";    ///< of `count`: "splats", "points" or "scans"
+  std::size_t dropped = 0;  ///< points that were not finite or too far
+  std::uint64_t written_bytes = 0;
+};
+
+/// Writes the file. Errors: usage (a format that the input cannot have, with those it can; an
+/// ending that tells none), and those of reading and writing.
+ExportResult run_export(const ExportJob& job, adasplats::Session& session);
+
+}  // namespace adasplats::app

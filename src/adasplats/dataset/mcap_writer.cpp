@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/dataset/mcap_writer.h"
+
+#include <string>
+
+#include "adasplats/dataset/ros_messages.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::string_view kWorldFrame = "map";
+constexpr std::string_view kSensorFrame = "lidar";
+
+McapChannel ros_channel(std::string topic, std::string_view type, std::string definition) {
+  return {std::move(topic), "cdr", std::string(type), "ros2msg", std::move(definition)};
+}
+
+}  // namespace
+
+McapWriter::McapWriter(const std::filesystem::path& path)
+    : file_(path, "ros2"),
+      transforms_(file_.add_channel(ros_channel("/tf", kTransformsType, transforms_definition()))),
+      points_(
+          file_.add_channel(ros_channel("/points", kPointCloud2Type, point_cloud2_definition()))) {}
+
+void McapWriter::write(const Scan& scan) {
+  const std::uint64_t time_ns = ros_time_ns(scan.time_s);
+  // Both before either is added: a scan that cannot be told leaves no half of it.
+  const std::string transform =
+      transform_message(scan.world_from_sensor, scan.time_s, kWorldFrame, kSensorFrame);
+  const std::string points = point_cloud2_message(scan, kSensorFrame);
+  file_.add_message(transforms_, time_ns, transform);
+  file_.add_message(points_, time_ns, points);
+}
+
+}  // namespace adasplats

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "adasplats/io/mcap_file.h"
+#include "adasplats/simulate/scan.h"
+
+namespace adasplats {
+
+/// Writes scans into one MCAP file that Foxglove and the tools of ROS 2 read: on /points a
+/// sensor_msgs/msg/PointCloud2 a scan in the frame "lidar" (its fields: point_cloud2_message), on
+/// /tf a tf2_msgs/msg/TFMessage with that frame's place in "map", the world, at the scan's time.
+/// Atomic; memory: three times the largest scan.
+class McapWriter {
+ public:
+  /// Errors: cannot_create, io.
+  explicit McapWriter(const std::filesystem::path& path);
+
+  /// Scans by ascending time. Errors: io; data (a time that ROS cannot tell: ros_time_ns).
+  void write(const Scan& scan);
+  /// Makes the file whole. Call once, last.
+  void finish() { file_.finish(); }
+
+ private:
+  McapFile file_;
+  std::uint16_t transforms_, points_;  ///< channels
+};
+
+}  // namespace adasplats

@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/dataset/ros_messages.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+#include <vector>
+
+#include "adasplats/cloud/rotation.h"
+#include "adasplats/core/error.h"
+#include "adasplats/dataset/scan_values.h"
+#include "adasplats/io/record_writer.h"
+#include "adasplats/io/records.h"
+
+namespace adasplats {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "messages are written little-endian");
+
+constexpr std::uint64_t kNanoseconds = 1'000'000'000;
+constexpr std::string_view kSeparator =
+    "================================================================================\n";
+
+constexpr std::string_view kTime =
+    "MSG: builtin_interfaces/Time\n"
+    "int32 sec\n"
+    "uint32 nanosec\n";
+constexpr std::string_view kHeader =
+    "MSG: std_msgs/Header\n"
+    "builtin_interfaces/Time stamp\n"
+    "string frame_id\n";
+
+/// Values as CDR lays them out: each at a multiple of its size behind the encapsulation.
+class CdrWriter {
+ public:
+  explicit CdrWriter(std::size_t bytes) {
+    bytes_.reserve(bytes);
+    bytes_.append("\0\1\0\0", kEncapsulationBytes);  // CDR_LE, no options
+  }
+  template <class T>
+  CdrWriter& put(T value) {
+    static_assert(std::is_arithmetic_v<T>);
+    while ((bytes_.size() - kEncapsulationBytes) % sizeof(T) != 0) bytes_ += '\0';
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof(T));
+    return *this;
+  }
+  CdrWriter& text(std::string_view value) {
+    put(static_cast<std::uint32_t>(value.size() + 1));
+    bytes_.append(value).push_back('\0');
+    return *this;
+  }
+  CdrWriter& header(double time_s, std::string_view frame) {
+    const std::uint64_t time_ns = ros_time_ns(time_s);
+    put(static_cast<std::int32_t>(time_ns / kNanoseconds));
+    put(static_cast<std::uint32_t>(time_ns % kNanoseconds));
+    return text(frame);
+  }
+  /// Room for an array of bytes; where it begins.
+  char* array(std::size_t size) {
+    put(static_cast<std::uint32_t>(size));
+    bytes_.resize(bytes_.size() + size);
+    return bytes_.data() + bytes_.size() - size;
+  }
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  static constexpr std::size_t kEncapsulationBytes = 4;
+  std::string bytes_;
+};
+
+/// The numbers of sensor_msgs/PointField.
+std::uint8_t point_field_type(ColumnType type) {
+  switch (type) {
+    case ColumnType::i8: return 1;
+    case ColumnType::u8: return 2;
+    case ColumnType::i16: return 3;
+    case ColumnType::u16: return 4;
+    case ColumnType::i32: return 5;
+    case ColumnType::u32: return 6;
+    case ColumnType::f32: return 7;
+    case ColumnType::f64: return 8;
+    default: throw std::logic_error("PointField has no 64-bit integers");
+  }
+}
+
+/// Column and range follow from the rest, or nearly; the widest come first, so that all are
+/// aligned.
+std::vector<ColumnView> message_columns(const Scan& scan) {
+  std::vector<ColumnView> columns = scan_columns(scan);
+  std::erase_if(columns, [](const ColumnView& column) {
+    return column.name == "column" || column.name == "range";
+  });
+  std::ranges::stable_sort(columns, std::ranges::greater(),
+                           [](const ColumnView& column) { return type_bytes(column.type); });
+  return columns;
+}
+
+}  // namespace
+
+std::string point_cloud2_definition() {
+  std::string text =
+      "std_msgs/Header header\n"
+      "uint32 height\n"
+      "uint32 width\n"
+      "PointField[] fields\n"
+      "bool is_bigendian\n"
+      "uint32 point_step\n"
+      "uint32 row_step\n"
+      "uint8[] data\n"
+      "bool is_dense\n";
+  text.append(kSeparator).append(kHeader).append(kSeparator).append(kTime).append(kSeparator);
+  return text +
+         "MSG: sensor_msgs/PointField\n"
+         "uint8 INT8 = 1\n"
+         "uint8 UINT8 = 2\n"
+         "uint8 INT16 = 3\n"
+         "uint8 UINT16 = 4\n"
+         "uint8 INT32 = 5\n"
+         "uint8 UINT32 = 6\n"
+         "uint8 FLOAT32 = 7\n"
+         "uint8 FLOAT64 = 8\n"
+         "string name\n"
+         "uint32 offset\n"
+         "uint8 datatype\n"
+         "uint32 count\n";
+}
+
+std::string transforms_definition() {
+  std::string text = "geometry_msgs/TransformStamped[] transforms\n";
+  text.append(kSeparator)
+      .append(
+          "MSG: geometry_msgs/TransformStamped\n"
+          "std_msgs/Header header\n"
+          "string child_frame_id\n"
+          "Transform transform\n")
+      .append(kSeparator)
+      .append(
+          "MSG: geometry_msgs/Transform\n"
+          "Vector3 translation\n"
+          "Quaternion rotation\n")
+      .append(kSeparator)
+      .append("MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n")
+      .append(kSeparator)
+      .append("MSG: geometry_msgs/Quaternion\n")
+      .append("float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n");
+  return text.append(kSeparator).append(kHeader).append(kSeparator).append(kTime);
+}
+
+std::uint64_t ros_time_ns(double time_s) {
+  constexpr double kEnd_s = 2147483648.0;
+  if (!(time_s >= 0 && time_s < kEnd_s))
+    throw Error(ErrorKind::data, "a scan at " + std::to_string(time_s) +
+                                     " s: the times of ROS messages are 0 to 2147483647 s; "
+                                     "shift the times of the poses");
+  // Seconds and their fraction apart: nanoseconds since 1970 are more than a double holds.
+  const double seconds = std::floor(time_s);
+  const double fraction_ns = std::round((time_s - seconds) * static_cast<double>(kNanoseconds));
+  return static_cast<std::uint64_t>(seconds) * kNanoseconds +
+         static_cast<std::uint64_t>(fraction_ns);
+}
+
+std::string point_cloud2_message(const Scan& scan, std::string_view frame) {
+  const std::vector<ColumnView> columns = message_columns(scan);
+  std::size_t step = 0;
+  for (const ColumnView& column : columns) step += type_bytes(column.type);
+  constexpr std::size_t kAlignment = 4;
+  step = (step + kAlignment - 1) / kAlignment * kAlignment;
+  if (scan.size() > std::numeric_limits<std::uint32_t>::max() / step)
+    throw Error(ErrorKind::data, "a scan of " + std::to_string(scan.size()) +
+                                     " points is too large for one message");
+  constexpr std::size_t kHeadBytes = 1024;
+  CdrWriter message(scan.size() * step + kHeadBytes);
+  message.header(scan.time_s, frame);
+  message.put(std::uint32_t{1}).put(static_cast<std::uint32_t>(scan.size()));
+  message.put(static_cast<std::uint32_t>(columns.size()));
+  std::uint32_t offset = 0;
+  for (const ColumnView& column : columns) {
+    message.text(column.name).put(offset).put(point_field_type(column.type));
+    message.put(std::uint32_t{1});
+    offset += static_cast<std::uint32_t>(type_bytes(column.type));
+  }
+  message.put(std::uint8_t{0}).put(static_cast<std::uint32_t>(step));  // not big-endian
+  message.put(static_cast<std::uint32_t>(step * scan.size()));
+  char* to = message.array(step * scan.size());
+  for (const ColumnView& column : columns) {
+    spread_column(column, 0, scan.size(), step, to);
+    to += type_bytes(column.type);
+  }
+  return message.put(std::uint8_t{1}).take();  // every point is valid
+}
+
+std::string transform_message(const RigidTransform& frame_from_child, double time_s,
+                              std::string_view frame, std::string_view child_frame) {
+  constexpr std::size_t kBytes = 256;
+  CdrWriter message(kBytes);
+  message.put(std::uint32_t{1}).header(time_s, frame).text(child_frame);
+  const Vec3d t = frame_from_child.translation;
+  message.put(t.x).put(t.y).put(t.z);
+  const Quaternion q = quaternion_from_rotation(frame_from_child.rotation);
+  return message.put(q.x).put(q.y).put(q.z).put(q.w).take();
+}
+
+}  // namespace adasplats

@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/evaluate/error_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "adasplats/core/error.h"
+#include "adasplats/evaluate/cloud_metrics.h"
+#include "adasplats/io/input_file.h"
+#include "adasplats/io/line_reader.h"
+#include "adasplats/io/number_text.h"
+#include "adasplats/io/ply.h"
+#include "adasplats/io/ply_header.h"
+#include "adasplats/io/point_files.h"
+
+namespace adasplats {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr const char* kErrorName = "error_m";
+/// As load_cloud drops them: doubles no longer hold 0.1 mm; farther than this from the median.
+constexpr double kLargest_m = 1e12;
+constexpr double kFarthest_m = 100e3;
+
+// In lower case, the commonest first.
+const std::initializer_list<std::string_view> kErrorNames = {"error_m", "scalar_error_m",
+                                                             "scalar_c2c_absolute_distances"};
+const std::initializer_list<std::string_view> kClassNames = {"label", "class", "scalar_label",
+                                                             "scalar_class"};
+const std::initializer_list<std::string_view> kIntensityNames = {"intensity", "scalar_intensity"};
+
+const Column* first_of(const Table& table, std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names)
+    for (const Column& column : table.columns)
+      if (lower_case(column.name) == name) return &column;
+  return nullptr;
+}
+
+const Column& required(const Table& table, const std::filesystem::path& path,
+                       std::initializer_list<std::string_view> names) {
+  if (const Column* const column = first_of(table, names)) return *column;
+  std::string list;
+  for (const Column& column : table.columns) list += (list.empty() ? "" : ", ") + column.name;
+  throw Error(ErrorKind::data, path.string() + ": has no column '" + std::string(*names.begin()) +
+                                   "', so these are no points with errors (it has " +
+                                   (list.empty() ? "no columns" : list) + ")");
+}
+
+/// The low 16 bits, as SemanticKITTI packs labels.
+std::uint16_t class_at(const Column& column, std::size_t row, const std::filesystem::path& path) {
+  const double value = column.as_double(row);
+  if (!(value >= 0 && value < 0x1p32 && std::trunc(value) == value))
+    throw Error(ErrorKind::data, path.string() + ": column '" + column.name + "' of point " +
+                                     std::to_string(row) + " is " + std::to_string(value) +
+                                     ", expected a whole number from 0 to 4294967295");
+  return static_cast<std::uint16_t>(static_cast<std::uint32_t>(value) & 0xffffU);
+}
+
+bool is_place(Vec3d p) {
+  return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) <= kLargest_m && is_finite(p);
+}
+
+/// Componentwise, lower, of one or more places.
+Vec3d median_of(const std::vector<Vec3d>& places, const std::vector<std::uint32_t>& rows) {
+  Vec3d median;
+  std::vector<double> values(rows.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < rows.size(); ++k) values[k] = places[rows[k]][axis];
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    median[axis] = *middle;
+  }
+  return median;
+}
+
+/// Rows of places that are finite and not far from the others.
+std::vector<std::uint32_t> near_rows(const std::vector<Vec3d>& places) {
+  std::vector<std::uint32_t> rows;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (is_place(places[i])) rows.push_back(static_cast<std::uint32_t>(i));
+  if (rows.empty()) return rows;
+  const Vec3d median = median_of(places, rows);
+  std::erase_if(rows, [&](std::uint32_t i) { return length(places[i] - median) > kFarthest_m; });
+  return rows;
+}
+
+/// Origin and positions of the cloud: the rows of places in world coordinates.
+void set_positions(PointCloud& cloud, const std::vector<Vec3d>& places,
+                   const std::vector<std::uint32_t>& rows) {
+  if (rows.empty()) return;
+  Vec3d low = places[rows.front()], high = low;
+  for (const std::uint32_t i : rows) {
+    low = min(low, places[i]);
+    high = max(high, places[i]);
+  }
+  cloud.origin = choose_origin(low, high);
+  cloud.positions.reserve(rows.size());
+  for (const std::uint32_t i : rows)
+    cloud.positions.push_back(vec_cast<float>(places[i] - cloud.origin));
+}
+
+}  // namespace
+
+ErrorPoints distance_points(PointCloud simulated, const PointCloud& original,
+                            const Executor& executor) {
+  ErrorPoints points;
+  points.errors_m = distances_to(simulated, original, executor);
+  points.cloud = std::move(simulated);
+  return points;
+}
+
+ErrorPoints beam_points(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
+                        const KittiSequence& sequence, const LabelScheme& labels,
+                        const ResimulateOptions& options, const Executor& executor,
+                        ProgressSink& progress) {
+  ErrorPoints points;
+  std::vector<Vec3d> places;
+  progress.begin_step("errors of beams", sequence.scans.size());
+  for (std::size_t index = 0; index < sequence.scans.size(); ++index) {
+    const ScanErrors scan =
+        resimulate_scan(tracer, scene, scene_origin, sequence, index, labels, options, executor);
+    const RigidTransform& world_from_sensor = sequence.trajectory[index].world_from_sensor;
+    for (const Vec3f p : scan.measured) places.push_back(world_from_sensor * vec_cast<double>(p));
+    points.errors_m.insert(points.errors_m.end(), scan.errors_m.begin(), scan.errors_m.end());
+    progress.advance(index + 1);
+  }
+  progress.end_step();
+  std::vector<std::uint32_t> rows(places.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<std::uint32_t>(i);
+  set_positions(points.cloud, places, rows);
+  return points;
+}
+
+void write_error_points(const std::filesystem::path& path, const PointCloud& cloud,
+                        std::span<const float> errors_m) {
+  const auto fits = [&](std::size_t size) { return size == 0 || size == cloud.size(); };
+  if (errors_m.size() != cloud.size() || !fits(cloud.classes.size()) ||
+      !fits(cloud.intensities.size()))
+    throw std::logic_error("write_error_points: an attribute of another size than the points");
+  const bool far = !(cloud.origin == Vec3d{});
+  std::vector<Vec3d> world;
+  for (std::size_t i = 0; far && i < cloud.size(); ++i) world.push_back(cloud.world(i));
+  std::vector<ColumnView> columns;
+  const Vec3f* const local = cloud.positions.data();
+  const auto add_axis = [&](const char* name, float Vec3f::*near_axis, double Vec3d::*far_axis) {
+    if (cloud.empty())
+      columns.push_back({name, ColumnType::f32, nullptr, sizeof(float)});
+    else if (far)
+      columns.push_back({name, ColumnType::f64, &(world.data()->*far_axis), sizeof(Vec3d)});
+    else
+      columns.push_back({name, ColumnType::f32, &(local->*near_axis), sizeof(Vec3f)});
+  };
+  add_axis("x", &Vec3f::x, &Vec3d::x);
+  add_axis("y", &Vec3f::y, &Vec3d::y);
+  add_axis("z", &Vec3f::z, &Vec3d::z);
+  columns.push_back({kErrorName, ColumnType::f32, errors_m.data(), sizeof(float)});
+  if (!cloud.intensities.empty())
+    columns.push_back({"intensity", ColumnType::f32, cloud.intensities.data(), sizeof(float)});
+  if (!cloud.classes.empty())
+    columns.push_back({"label", ColumnType::u16, cloud.classes.data(), sizeof(std::uint16_t)});
+  write_ply(path, cloud.size(), columns);
+}
+
+bool has_error_points(const std::filesystem::path& path) {
+  if (lower_case(path.extension().string()) != ".ply") return false;
+  InputFile file(path);
+  LineReader lines(file);
+  const PlyHeader header = read_ply_header(lines);
+  const PlyElement* const vertices = header.find("vertex");
+  return vertices != nullptr &&
+         std::ranges::any_of(vertices->properties, [](const PlyProperty& property) {
+           return std::ranges::find(kErrorNames, lower_case(property.name)) != kErrorNames.end();
+         });
+}
+
+ErrorPoints read_error_points(const std::filesystem::path& path) {
+  const Table table = read_points(path);
+  const Column& errors = required(table, path, kErrorNames);
+  const Column* const axes[3] = {&required(table, path, {"x"}), &required(table, path, {"y"}),
+                                 &required(table, path, {"z"})};
+  std::vector<Vec3d> places(table.rows);
+  for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t i = 0; i < places.size(); ++i) places[i][axis] = axes[axis]->as_double(i);
+  const std::vector<std::uint32_t> rows = near_rows(places);
+  ErrorPoints points;
+  points.dropped = table.rows - rows.size();
+  set_positions(points.cloud, places, rows);
+  const auto finite = [](double value) {
+    const float narrow = static_cast<float>(value);
+    return std::isfinite(narrow) ? narrow : kNaN;
+  };
+  for (const std::uint32_t i : rows) points.errors_m.push_back(finite(errors.as_double(i)));
+  if (const Column* const classes = first_of(table, kClassNames))
+    for (const std::uint32_t i : rows) points.cloud.classes.push_back(class_at(*classes, i, path));
+  if (const Column* const intensities = first_of(table, kIntensityNames))
+    for (const std::uint32_t i : rows)
+      points.cloud.intensities.push_back(finite(intensities->as_double(i)));
+  return points;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/core/progress.h"
+#include "adasplats/evaluate/resimulate.h"
+#include "adasplats/scene/scene.h"
+#include "adasplats/trace/tracer.h"
+
+namespace adasplats {
+
+/// Points and what an evaluation found wrong at each.
+struct ErrorPoints {
+  PointCloud cloud;             ///< positions, and classes and intensities where they are known
+  std::vector<float> errors_m;  ///< one a point; NaN: not known (a beam that hit nothing)
+  std::size_t dropped = 0;      ///< points of the file that are not finite or far from all others
+};
+
+/// The simulated points with their distance to the nearest original one: what C2C is the mean of.
+/// Errors: as distances_to.
+ErrorPoints distance_points(PointCloud simulated, const PointCloud& original,
+                            const Executor& executor);
+
+/// The measured points of all scans, in world coordinates, with predicted minus measured range: the
+/// beams that `resimulate` takes. Errors: as resimulate's.
+ErrorPoints beam_points(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
+                        const KittiSequence& sequence, const LabelScheme& labels,
+                        const ResimulateOptions& options, const Executor& executor,
+                        ProgressSink& progress);
+
+/// Writes a PLY: x y z error_m [intensity] [label] (x y z as doubles where the origin is not zero),
+/// which load_cloud reads as a cloud, too. Atomic. Throws std::logic_error where an attribute has
+/// another size than the points.
+void write_error_points(const std::filesystem::path& path, const PointCloud& cloud,
+                        std::span<const float> errors_m);
+
+/// Whether a file is a PLY whose points have errors, by its header alone. Errors: as read_ply's for
+/// headers; a file that is no PLY by its name is none.
+bool has_error_points(const std::filesystem::path& path);
+
+/// Reads any file of points with x, y, z and error_m (or CloudCompare's scalar_error_m and
+/// scalar_C2C_absolute_distances), and where they are there intensity, and label or class. Drops
+/// and counts points that are not finite or farther than 100 km from the median of all; errors that
+/// are not finite become NaN. Memory: the reader's, and 48 bytes a point. Errors: those of
+/// read_points; data (a column is missing; a class that is no whole number from 0 to 2^32 - 1, of
+/// which the low 16 bits count).
+ErrorPoints read_error_points(const std::filesystem::path& path);
+
+}  // namespace adasplats

@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#ifdef ADASPLATS_HAVE_BOOST
+
+#include "adasplats/serve/http_connection.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/error.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/serializer.hpp>
+#include <boost/beast/http/span_body.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <optional>
+#include <utility>
+
+#include "adasplats/serve/answer_headers.h"
+#include "adasplats/serve/request_check.h"
+#include "adasplats/serve/websocket_connection.h"
+
+namespace adasplats {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using ErrorCode = boost::system::error_code;
+using Request = http::request<http::empty_body>;
+using Response = http::response<http::span_body<const char>>;
+
+/// After a last answer: so long what still comes is read and dropped. A socket that is closed with
+/// unread bytes resets the connection, and the answer is lost.
+constexpr std::chrono::milliseconds kLingerLimit{1000};
+
+std::string_view to_std(beast::string_view text) { return {text.data(), text.size()}; }
+
+HttpReply status_reply(http::status status) {
+  const std::string text = std::string(to_std(http::obsolete_reason(status))) + "\n";
+  return {static_cast<int>(status), "text/plain; charset=utf-8",
+          std::make_shared<const std::string>(text)};
+}
+
+/// What is wrong with a request whoever asks; ok where nothing is.
+http::status fault_of(const Request& request, bool has_body, const ServerCore& core) {
+  if (request.method() != http::verb::get && request.method() != http::verb::head)
+    return http::status::method_not_allowed;
+  // Origin-form alone (RFC 9112, 3.2.1): we are no proxy. One Host (3.2).
+  if (has_body || !request.target().starts_with('/') || request.count(http::field::host) != 1)
+    return http::status::bad_request;
+  const std::string_view host = to_std(request[http::field::host]);
+  if (!is_own_host(host, {core.options.address, core.port})) return http::status::forbidden;
+  return http::status::ok;
+}
+
+class HttpConnection final : public Connection,
+                             public std::enable_shared_from_this<HttpConnection> {
+ public:
+  HttpConnection(asio::ip::tcp::socket socket, std::shared_ptr<ServerCore> core, bool refused)
+      : core_(std::move(core)), socket_(std::move(socket)), refused_(refused) {}
+
+  void read();
+  void abort() override;
+  void stop() override { abort(); }
+
+ private:
+  void read_done(ErrorCode error);
+  void answer();
+  void answer_path(const std::string& path);
+  void answer_live();
+  HttpReply reply_to(const std::string& path) const;
+  void send(HttpReply reply, bool last);
+  void send_some();
+  void sent(ErrorCode error);
+  void drop_input();
+  void leave();
+
+  std::shared_ptr<ServerCore> core_;
+  asio::ip::tcp::socket socket_;
+  bool refused_;
+  bool ended_ = false;
+  beast::flat_buffer buffer_;
+  std::optional<http::request_parser<http::empty_body>> parser_;
+  SharedBytes body_;
+  std::optional<Response> response_;
+  std::optional<http::response_serializer<http::span_body<const char>>> serializer_;
+  std::array<char, 2048> dropped_{};
+};
+
+void HttpConnection::read() {
+  // One limit for the whole header: bytes that trickle in do not move it.
+  set_deadline(core_->stall_deadline());
+  parser_.emplace();
+  parser_->header_limit(static_cast<std::uint32_t>(core_->options.header_bytes_limit));
+  http::async_read_header(
+      socket_, buffer_, *parser_,
+      [self = shared_from_this()](ErrorCode error, std::size_t) { self->read_done(error); });
+}
+
+void HttpConnection::read_done(ErrorCode error) {
+  if (ended_) return;
+  if (!error) {
+    answer();
+  } else if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+    send(status_reply(http::status::request_header_fields_too_large), true);
+  } else if (error.category() == http::make_error_code(http::error::bad_method).category() &&
+             error != http::error::end_of_stream && error != http::error::partial_message) {
+    send(status_reply(http::status::bad_request), true);
+  } else {
+    abort();
+  }
+}
+
+void HttpConnection::answer() {
+  if (refused_) return send(status_reply(http::status::service_unavailable), true);
+  const Request& request = parser_->get();
+  const http::status fault = fault_of(request, !parser_->is_done(), *core_);
+  if (fault != http::status::ok) return send(status_reply(fault), true);
+  const std::optional<std::string> path =
+      path_behind_token(to_std(request.target()), core_->options.token);
+  if (!path) return send(status_reply(http::status::not_found), !request.keep_alive());
+  answer_path(*path);
+}
+
+void HttpConnection::answer_path(const std::string& path) {
+  if (path == "live") return answer_live();
+  send(reply_to(path), !parser_->get().keep_alive());
+}
+
+void HttpConnection::answer_live() {
+  Request& request = parser_->get();
+  if (!beast::websocket::is_upgrade(request))
+    return send(status_reply(http::status::upgrade_required), !request.keep_alive());
+  // A program that is no browser names no origin; it knows the token.
+  const std::string_view host = to_std(request[http::field::host]);
+  for (const auto& field : request) {
+    if (field.name() == http::field::origin && !is_own_origin(to_std(field.value()), host))
+      return send(status_reply(http::status::forbidden), true);
+  }
+  // Nothing may be sent before the answer to the upgrade (RFC 6455, 4.1). The key is 16 bytes as
+  // base64 (4.2.1).
+  const bool good_key = request[http::field::sec_websocket_key].size() == 24;
+  if (buffer_.size() > 0 || !good_key) return send(status_reply(http::status::bad_request), true);
+  const auto self = shared_from_this();
+  leave();
+  start_websocket(std::move(socket_), core_, parser_->release());
+}
+
+HttpReply HttpConnection::reply_to(const std::string& path) const {
+  try {
+    HttpReply reply = core_->get(path);
+    // So that a path that is not there looks like a wrong token.
+    if (reply.status == 404) return status_reply(http::status::not_found);
+    return reply;
+  } catch (...) {
+    return status_reply(http::status::internal_server_error);
+  }
+}
+
+void HttpConnection::send(HttpReply reply, bool last) {
+  body_ = std::move(reply.body);
+  const std::string_view bytes = body_ ? std::string_view(*body_) : std::string_view();
+  response_.emplace();
+  response_->version(11);
+  response_->result(static_cast<unsigned>(reply.status));
+  response_->keep_alive(!last);
+  response_->set(http::field::content_type, reply.content_type);
+  set_safety_headers(*response_);
+  if (response_->result() == http::status::method_not_allowed)
+    response_->set(http::field::allow, "GET, HEAD");
+  if (response_->result() == http::status::upgrade_required) {
+    response_->set(http::field::upgrade, "websocket");
+    response_->set(http::field::connection, last ? "upgrade, close" : "upgrade");
+  }
+  response_->content_length(bytes.size());
+  if (parser_->get().method() != http::verb::head) response_->body() = {bytes.data(), bytes.size()};
+  serializer_.emplace(*response_);
+  send_some();
+}
+
+void HttpConnection::send_some() {
+  // Every part that is taken gives time for the next.
+  set_deadline(core_->stall_deadline());
+  http::async_write_some(
+      socket_, *serializer_,
+      [self = shared_from_this()](ErrorCode error, std::size_t) { self->sent(error); });
+}
+
+void HttpConnection::sent(ErrorCode error) {
+  if (ended_) return;
+  if (error) return abort();
+  if (!serializer_->is_done()) return send_some();
+  const bool last = !response_->keep_alive();
+  serializer_.reset();
+  response_.reset();
+  body_.reset();
+  if (!last) return read();
+  socket_.shutdown(asio::ip::tcp::socket::shutdown_send, error);
+  set_deadline(ServerClock::now() + std::min(kLingerLimit, core_->options.stall_limit));
+  drop_input();
+}
+
+void HttpConnection::drop_input() {
+  socket_.async_read_some(asio::buffer(dropped_),
+                          [self = shared_from_this()](ErrorCode error, std::size_t) {
+                            if (self->ended_) return;
+                            if (error)
+                              self->abort();
+                            else
+                              self->drop_input();
+                          });
+}
+
+void HttpConnection::leave() {
+  ended_ = true;
+  core_->connections.erase(shared_from_this());
+}
+
+void HttpConnection::abort() {
+  if (ended_) return;
+  const auto self = shared_from_this();
+  leave();
+  ErrorCode ignored;
+  socket_.close(ignored);
+}
+
+}  // namespace
+
+void start_http(asio::ip::tcp::socket socket, const std::shared_ptr<ServerCore>& core,
+                bool refused) {
+  const auto connection = std::make_shared<HttpConnection>(std::move(socket), core, refused);
+  core->connections.insert(connection);
+  connection->read();
+}
+
+}  // namespace adasplats
+
+#endif

@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/serve/http_server.h"
+
+#ifdef ADASPLATS_HAVE_BOOST
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <cctype>
+#include <cerrno>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/serve/connection.h"
+#include "adasplats/serve/http_connection.h"
+#include "adasplats/serve/request_check.h"
+
+namespace adasplats {
+namespace {
+
+namespace asio = boost::asio;
+using ErrorCode = boost::system::error_code;
+using asio::ip::tcp;
+
+/// So long nobody is accepted after an error (no descriptors, no memory): it does not pass at once.
+constexpr std::chrono::milliseconds kAcceptPause{100};
+/// How often deadlines are looked at, at most and at least.
+constexpr std::chrono::milliseconds kShortestSweep{10};
+constexpr std::chrono::milliseconds kLongestSweep{250};
+
+Error listen_error(const HttpServerOptions& options, const ErrorCode& error) {
+  const std::string port = "port " + std::to_string(options.port) + " of " + options.address;
+  if (error == asio::error::address_in_use)
+    return {ErrorKind::unavailable,
+            port + " is taken by another program; choose another port, or 0 for any that is free"};
+  return {ErrorKind::unavailable, port + " cannot be served: " + error.message()};
+}
+
+tcp::acceptor listening(asio::io_context& context, const HttpServerOptions& options) {
+  ErrorCode error;
+  const asio::ip::address address = asio::ip::make_address(options.address, error);
+  if (error)
+    throw Error(ErrorKind::usage, std::string("'") + options.address +
+                                      "' is no numeric address; expected one like 127.0.0.1");
+  const tcp::endpoint endpoint(address, options.port);
+  tcp::acceptor acceptor(context);
+  acceptor.open(endpoint.protocol(), error);
+  // Of connections that ended lately; a port that another program listens on stays refused.
+  if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+  if (!error) acceptor.bind(endpoint, error);
+  if (!error) acceptor.listen(tcp::acceptor::max_listen_connections, error);
+  if (error) throw listen_error(options, error);
+  return acceptor;
+}
+
+void check_token(const std::string& token) {
+  if (token.empty()) throw std::logic_error("HttpServer: an empty token");
+  // What a browser sends as it is (RFC 3986, 2.3), but dots, of which it may make another path.
+  const bool plain = std::all_of(token.begin(), token.end(), [](unsigned char c) {
+    return c < 128 && (std::isalnum(c) != 0 || c == '-' || c == '_');
+  });
+  if (!plain)
+    throw Error(ErrorKind::usage, std::string("'") + token +
+                                      "' cannot be the secret part of an address; expected "
+                                      "letters, digits, '-' and '_' alone");
+}
+
+int new_event() {
+  const int descriptor = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  if (descriptor < 0)
+    throw system_error(ErrorKind::unavailable, "eventfd", "no descriptor for the server", errno);
+  return descriptor;
+}
+
+}  // namespace
+
+class HttpServer::Implementation {
+ public:
+  Implementation(HttpServerOptions options, HttpHandler get, WebSocketHandler& live)
+      : core_(new ServerCore{std::move(options), std::move(get), live}),
+        acceptor_(listening(core_->context, core_->options)),
+        pause_(core_->context),
+        sweep_(core_->context),
+        event_(new_event()),
+        stopped_(core_->context, event_) {
+    core_->port = acceptor_.local_endpoint().port();
+  }
+
+  std::string host() const { return host_of({core_->options.address, core_->port}); }
+  const ServerCore& core() const { return *core_; }
+  void run();
+  /// Nothing but one system call: a signal's handler may do no more.
+  void stop() const {
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const ssize_t written = ::write(event_, &one, sizeof one);
+  }
+
+ private:
+  void accept();
+  void accepted(ErrorCode error, tcp::socket socket);
+  void sweep();
+  void begin_stop();
+  template <class Call>
+  void for_connections(Call call);
+
+  std::shared_ptr<ServerCore> core_;
+  tcp::acceptor acceptor_;
+  asio::steady_timer pause_;
+  asio::steady_timer sweep_;
+  int event_;
+  asio::posix::stream_descriptor stopped_;  // owns event_
+  bool stopping_ = false;
+};
+
+void HttpServer::Implementation::run() {
+  stopped_.async_wait(asio::posix::stream_descriptor::wait_read, [this](ErrorCode error) {
+    if (!error) begin_stop();
+  });
+  accept();
+  sweep();
+  while (true) {
+    try {
+      core_->context.run();
+      return;
+    } catch (const std::bad_alloc&) {
+      // Whose handler it was gets nothing any more, and is closed when its time is over.
+      continue;
+    }
+  }
+}
+
+void HttpServer::Implementation::accept() {
+  acceptor_.async_accept([this](ErrorCode error, tcp::socket socket) {
+    if (!stopping_) accepted(error, std::move(socket));
+  });
+}
+
+void HttpServer::Implementation::accepted(ErrorCode error, tcp::socket socket) {
+  if (error && error != asio::error::connection_aborted) {
+    pause_.expires_after(kAcceptPause);
+    pause_.async_wait([this](ErrorCode) {
+      if (!stopping_) accept();
+    });
+    return;
+  }
+  const std::size_t limit = core_->options.connections_limit;
+  const std::size_t open = core_->connections.size();
+  // Telling somebody that we are full takes a connection, too; beyond twice the limit nobody is
+  // told.
+  if (!error && open < 2 * limit) {
+    socket.set_option(tcp::no_delay(true), error);
+    start_http(std::move(socket), core_, open >= limit);
+  }
+  accept();
+}
+
+template <class Call>
+void HttpServer::Implementation::for_connections(Call call) {
+  // A copy, as those that end leave the set.
+  const std::vector<std::shared_ptr<Connection>> all(core_->connections.begin(),
+                                                     core_->connections.end());
+  for (const std::shared_ptr<Connection>& connection : all) call(*connection);
+}
+
+void HttpServer::Implementation::sweep() {
+  const ServerClock::time_point now = ServerClock::now();
+  for_connections([now](Connection& connection) {
+    if (connection.deadline() <= now) connection.abort();
+  });
+  if (stopping_ && core_->connections.empty()) return;
+  sweep_.expires_after(
+      stopping_ ? kShortestSweep
+                : std::clamp(core_->options.stall_limit / 4, kShortestSweep, kLongestSweep));
+  sweep_.async_wait([this](ErrorCode) { sweep(); });
+}
+
+void HttpServer::Implementation::begin_stop() {
+  stopping_ = true;
+  ErrorCode ignored;
+  acceptor_.close(ignored);
+  pause_.cancel();
+  for_connections([](Connection& connection) { connection.stop(); });
+  sweep_.cancel();  // from now on it comes often
+}
+
+HttpServer::HttpServer(HttpServerOptions options, HttpHandler get, WebSocketHandler& live) {
+  check_token(options.token);
+  implementation_ = std::make_unique<Implementation>(std::move(options), std::move(get), live);
+}
+HttpServer::~HttpServer() = default;
+
+std::uint16_t HttpServer::port() const { return implementation_->core().port; }
+
+std::string HttpServer::url() const {
+  return std::string("http://") + implementation_->host() + "/" +
+         implementation_->core().options.token + "/";
+}
+
+void HttpServer::run() { implementation_->run(); }
+void HttpServer::stop() { implementation_->stop(); }
+
+bool has_http_server() { return true; }
+
+}  // namespace adasplats
+
+#endif

@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#ifdef ADASPLATS_HAVE_BOOST
+
+#include "adasplats/serve/websocket_connection.h"
+
+#include <algorithm>
+#include <atomic>
+#include <boost/asio/post.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "adasplats/serve/answer_headers.h"
+
+namespace adasplats {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+namespace websocket = boost::beast::websocket;
+using ErrorCode = boost::system::error_code;
+using Request = http::request<http::empty_body>;
+
+/// A message goes out in frames of so many bytes: each that the socket takes shows that the other
+/// end is alive, and control frames need not wait for a whole scan.
+constexpr std::size_t kFrameBytes = std::size_t{64} << 10;
+/// What a message costs in the queue besides its bytes.
+constexpr std::size_t kMessageBytes = 128;
+/// From the wish to close until the socket is closed, whatever the other end does.
+constexpr std::chrono::milliseconds kCloseLimit{500};
+
+enum class Queued : std::uint8_t { kept, dropped };
+
+/// The bytes of a close reason: at most 123 (RFC 6455, 5.5), whole characters.
+std::string_view cut_reason(std::string_view reason) {
+  if (reason.size() <= 123) return reason;
+  std::size_t size = 123;
+  while (size > 0 && (reason[size] & 0xc0) == 0x80) --size;
+  return reason.substr(0, size);
+}
+
+class WebSocketConnection final : public Connection,
+                                  public WebSocketPeer,
+                                  public std::enable_shared_from_this<WebSocketConnection> {
+ public:
+  WebSocketConnection(asio::ip::tcp::socket socket, std::shared_ptr<ServerCore> core,
+                      Request request);
+  void accept();
+
+  // Of WebSocketPeer, from any thread.
+  void send_text(std::string text) override;
+  void send_binary(SharedBytes bytes) override;
+  void close(std::uint16_t code, std::string_view reason) override;
+
+  // Of Connection, on the server's thread, as all below.
+  void abort() override;
+  void stop() override;
+
+ private:
+  struct Message {
+    SharedBytes bytes;
+    bool binary = false;
+    std::size_t cost() const { return bytes->size() + kMessageBytes; }
+  };
+
+  void enqueue(SharedBytes bytes, bool binary);
+  template <class Function>
+  void on_server_thread(Function function);
+  void accepted(ErrorCode error);
+  void read();
+  void read_done(ErrorCode error);
+  template <class Call>
+  bool call_handler(Call call);
+  void write();
+  void written(ErrorCode error, std::size_t bytes);
+  void begin_close(std::uint16_t code, std::string_view reason, Queued queued);
+  void send_close();
+
+  std::shared_ptr<ServerCore> core_;
+  /// Without compression. Gone with the connection: its timer would keep the server running.
+  std::optional<websocket::stream<asio::ip::tcp::socket, false>> stream_;
+  Request request_;
+  beast::flat_buffer buffer_;
+  std::deque<Message> queue_;
+  std::size_t sent_bytes_ = 0;  // of the first in the queue
+  websocket::close_reason reason_;
+  bool opened_ = false;
+  bool writing_ = false;
+  bool closing_ = false;     // no more is taken in
+  bool close_sent_ = false;  // async_close is under way
+  bool ended_ = false;
+  std::atomic<bool> open_{false};
+  std::atomic<std::size_t> queued_bytes_{0};
+};
+
+WebSocketConnection::WebSocketConnection(asio::ip::tcp::socket socket,
+                                         std::shared_ptr<ServerCore> core, Request request)
+    : core_(std::move(core)), stream_(std::move(socket)), request_(std::move(request)) {
+  websocket::stream_base::timeout timeout{};
+  timeout.handshake_timeout = core_->options.stall_limit;
+  // Without a sign for half of it a ping is sent.
+  timeout.idle_timeout = core_->options.stall_limit;
+  timeout.keep_alive_pings = true;
+  stream_->set_option(timeout);
+  stream_->set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+    response.set(http::field::server, "adasplats");  // else Beast names itself and its version
+    set_safety_headers(response);
+  }));
+  stream_->read_message_max(core_->options.message_bytes_limit);
+  stream_->auto_fragment(false);
+}
+
+void WebSocketConnection::accept() {
+  set_deadline(core_->stall_deadline());
+  stream_->async_accept(request_,
+                        [self = shared_from_this()](ErrorCode error) { self->accepted(error); });
+}
+
+void WebSocketConnection::accepted(ErrorCode error) {
+  if (ended_) return;
+  if (error) return abort();
+  set_deadline(ServerClock::time_point::max());
+  opened_ = true;
+  open_ = true;
+  if (call_handler([&] { core_->live.opened(shared_from_this()); })) read();
+}
+
+/// False where the handler threw: the connection is then being closed.
+template <class Call>
+bool WebSocketConnection::call_handler(Call call) {
+  try {
+    call();
+    return true;
+  } catch (...) {
+    begin_close(1011, "an error of the server", Queued::dropped);
+    return false;
+  }
+}
+
+void WebSocketConnection::read() {
+  stream_->async_read(buffer_, [self = shared_from_this()](ErrorCode error, std::size_t) {
+    self->read_done(error);
+  });
+}
+
+void WebSocketConnection::read_done(ErrorCode error) {
+  // With a close frame of ours under way its operation sees the end of the connection.
+  if (ended_ || close_sent_) return;
+  // Beast has told the other end what was wrong (RFC 6455, 7.1.7), or answered its close frame.
+  if (error) return abort();
+  if (closing_) return;
+  if (stream_->got_binary()) return begin_close(1003, "text messages only", Queued::dropped);
+  const auto bytes = buffer_.data();
+  const std::string_view text(static_cast<const char*>(bytes.data()), bytes.size());
+  if (!call_handler([&] { core_->live.received(shared_from_this(), text); })) return;
+  buffer_.consume(buffer_.size());
+  read();
+}
+
+void WebSocketConnection::send_text(std::string text) {
+  enqueue(std::make_shared<const std::string>(std::move(text)), false);
+}
+
+void WebSocketConnection::send_binary(SharedBytes bytes) {
+  enqueue(bytes ? std::move(bytes) : std::make_shared<const std::string>(), true);
+}
+
+template <class Function>
+void WebSocketConnection::on_server_thread(Function function) {
+  asio::post(core_->context, [weak = weak_from_this(), function = std::move(function)]() mutable {
+    const std::shared_ptr<WebSocketConnection> self = weak.lock();
+    if (self && !self->ended_) function(*self);
+  });
+}
+
+void WebSocketConnection::enqueue(SharedBytes bytes, bool binary) {
+  Message message{std::move(bytes), binary};
+  if (!open_) return;
+  // Counted here: what the server's thread has not yet seen waits as well.
+  if (queued_bytes_ += message.cost(); queued_bytes_ > core_->options.queued_bytes_limit) {
+    open_ = false;
+    on_server_thread([](WebSocketConnection& self) {
+      self.begin_close(1008, "too slow for what is sent", Queued::dropped);
+    });
+    return;
+  }
+  on_server_thread([message = std::move(message)](WebSocketConnection& self) mutable {
+    if (self.closing_) return;
+    self.queue_.push_back(std::move(message));
+    self.write();
+  });
+}
+
+void WebSocketConnection::close(std::uint16_t code, std::string_view reason) {
+  if (!open_) return;
+  on_server_thread([code, text = std::string(reason)](WebSocketConnection& self) {
+    self.begin_close(code, text, Queued::kept);
+  });
+}
+
+void WebSocketConnection::write() {
+  if (writing_ || close_sent_) return;
+  if (queue_.empty()) {
+    if (closing_) send_close();
+    return;
+  }
+  writing_ = true;
+  if (!closing_) set_deadline(core_->stall_deadline());
+  const SharedBytes bytes = queue_.front().bytes;
+  const std::size_t count = std::min(kFrameBytes, bytes->size() - sent_bytes_);
+  stream_->binary(queue_.front().binary);
+  stream_->async_write_some(sent_bytes_ + count == bytes->size(),
+                            asio::buffer(bytes->data() + sent_bytes_, count),
+                            [self = shared_from_this(), bytes, count](
+                                ErrorCode error, std::size_t) { self->written(error, count); });
+}
+
+void WebSocketConnection::written(ErrorCode error, std::size_t bytes) {
+  writing_ = false;
+  if (ended_) return;
+  if (error) return abort();
+  if (!closing_) set_deadline(ServerClock::time_point::max());
+  sent_bytes_ += bytes;
+  if (!queue_.empty() && sent_bytes_ == queue_.front().bytes->size()) {
+    queued_bytes_ -= queue_.front().cost();
+    queue_.pop_front();
+    sent_bytes_ = 0;
+  }
+  write();
+}
+
+void WebSocketConnection::begin_close(std::uint16_t code, std::string_view reason, Queued queued) {
+  if (queued == Queued::dropped) queue_.clear();
+  if (!closing_) {
+    const std::string_view cut = cut_reason(reason);
+    reason_ = websocket::close_reason(websocket::close_code(code), {cut.data(), cut.size()});
+    set_deadline(ServerClock::now() + std::min(kCloseLimit, core_->options.stall_limit));
+  }
+  open_ = false;
+  closing_ = true;
+  write();
+}
+
+void WebSocketConnection::stop() {
+  if (opened_)
+    begin_close(1001, "the server ends", Queued::dropped);
+  else
+    abort();
+}
+
+void WebSocketConnection::send_close() {
+  close_sent_ = true;
+  stream_->async_close(reason_, [self = shared_from_this()](ErrorCode) { self->abort(); });
+}
+
+void WebSocketConnection::abort() {
+  if (ended_) return;
+  ended_ = true;
+  open_ = false;
+  const auto self = shared_from_this();
+  core_->connections.erase(self);
+  ErrorCode ignored;
+  stream_->next_layer().close(ignored);
+  stream_.reset();
+  queue_.clear();
+  if (!opened_) return;
+  try {
+    core_->live.closed(self);
+  } catch (...) {
+    // There is nothing left to close.
+  }
+}
+
+}  // namespace
+
+void start_websocket(asio::ip::tcp::socket socket, const std::shared_ptr<ServerCore>& core,
+                     Request request) {
+  const auto connection =
+      std::make_shared<WebSocketConnection>(std::move(socket), core, std::move(request));
+  core->connections.insert(connection);
+  connection->accept();
+}
+
+}  // namespace adasplats
+
+#endif

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/view/level_sample.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adasplats {
+namespace {
+
+constexpr double kMost16 = 65535;
+constexpr float kMost15 = 32767;
+
+/// `share` of 0..1, in 0..most.
+template <class T>
+T quantized(double share, double most) {
+  return static_cast<T>(std::lround(std::clamp(share, 0.0, 1.0) * most));
+}
+
+std::uint16_t place(float value, float low, float high) {
+  const double size = static_cast<double>(high) - static_cast<double>(low);
+  if (!(size > 0)) return 0;
+  return quantized<std::uint16_t>((static_cast<double>(value) - static_cast<double>(low)) / size,
+                                  kMost16);
+}
+
+std::uint8_t byte_of(float value, ByteRange range) {
+  if (std::isnan(value)) return 255;
+  const double low = static_cast<double>(range.low), high = static_cast<double>(range.high);
+  return quantized<std::uint8_t>((static_cast<double>(value) - low) / (high - low), 255);
+}
+
+}  // namespace
+
+OctahedralNormal octahedral(Vec3f normal) {
+  const float size = std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z);
+  if (!(size > 0)) return {0, 0};
+  float x = normal.x / size, y = normal.y / size;
+  if (normal.z < 0) {
+    const float folded_x = (1 - std::fabs(y)) * (x < 0 ? -1.0F : 1.0F);
+    y = (1 - std::fabs(x)) * (y < 0 ? -1.0F : 1.0F);
+    x = folded_x;
+  }
+  const auto code = [](float v) {
+    return static_cast<std::int16_t>(std::lround(std::clamp(v, -1.0F, 1.0F) * kMost15));
+  };
+  return {code(x), code(y)};
+}
+
+Vec3f normal_of(OctahedralNormal code) {
+  float x = static_cast<float>(code.u) / kMost15, y = static_cast<float>(code.v) / kMost15;
+  const float z = 1 - std::fabs(x) - std::fabs(y);
+  if (z < 0) {
+    const float unfolded_x = (1 - std::fabs(y)) * (x < 0 ? -1.0F : 1.0F);
+    y = (1 - std::fabs(x)) * (y < 0 ? -1.0F : 1.0F);
+    x = unfolded_x;
+  }
+  return normalized(Vec3f{x, y, z});
+}
+
+std::vector<LevelElement> encode(std::span<const LevelSample> samples, ByteRange intensities,
+                                 ByteRange errors_m, LevelNode& node) {
+  node.count = static_cast<std::uint32_t>(samples.size());
+  if (samples.empty()) return {};
+  node.low = node.high = samples.front().position;
+  for (const LevelSample& sample : samples) {
+    node.low = min(node.low, sample.position);
+    node.high = max(node.high, sample.position);
+    node.largest_radius_m = std::max(node.largest_radius_m, sample.radius_m);
+  }
+  std::vector<LevelElement> elements;
+  elements.reserve(samples.size());
+  for (const LevelSample& sample : samples) {
+    LevelElement element{};
+    for (int axis = 0; axis < 3; ++axis)
+      element.position[axis] = place(sample.position[axis], node.low[axis], node.high[axis]);
+    if (sample.radius_m > 0)
+      element.radius = std::max<std::uint16_t>(1, place(sample.radius_m, 0, node.largest_radius_m));
+    const OctahedralNormal normal = octahedral(sample.normal);
+    element.normal[0] = normal.u;
+    element.normal[1] = normal.v;
+    element.class_id = sample.class_id;
+    element.intensity = byte_of(sample.intensity, intensities);
+    element.error = byte_of(sample.error_m, errors_m);
+    elements.push_back(element);
+  }
+  return elements;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/view/live_message.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr Vec3d kOrigin = {1000, 2000, 30};
+
+template <class T>
+T parsed(const std::string& text) {
+  return std::get<T>(parse_live_message(text, kOrigin));
+}
+
+/// The kind of the Error that a message gives and what it says.
+std::pair<ErrorKind, std::string> refusal(const std::string& text) {
+  try {
+    parse_live_message(text, kOrigin);
+  } catch (const Error& error) {
+    return {error.kind(), error.what()};
+  }
+  ADD_FAILURE() << "taken: " << text.substr(0, 100);
+  return {};
+}
+
+void expect_refused(const std::string& text, const std::string& says) {
+  const auto [kind, message] = refusal(text);
+  EXPECT_EQ(kind, ErrorKind::usage) << text.substr(0, 100);
+  EXPECT_NE(message.find(says), std::string::npos) << message;
+}
+
+TEST(LiveMessage, PosesComeToWorldCoordinates) {
+  const auto pose =
+      parsed<LivePose>(R"({"type":"pose","pose":[1,2,3,0,0,0.7071067811865476,0.7071067811865476],)"
+                       R"("velocity_m_s":[4,5,6],"yaw_rate_rad_s":0.5})");
+  EXPECT_EQ(pose.world_from_sensor.translation.x, 1001);
+  EXPECT_EQ(pose.world_from_sensor.translation.z, 33);
+  const Vec3d ahead = pose.world_from_sensor.rotation * Vec3d{1, 0, 0};  // a quarter turn left
+  EXPECT_NEAR(ahead.y, 1, 1e-12);
+  EXPECT_EQ(pose.velocity_m_s.y, 5);
+  EXPECT_EQ(pose.yaw_rate_rad_s, 0.5);
+}
+
+TEST(LiveMessage, WordsWithoutMoreInThem) {
+  EXPECT_TRUE(parsed<RunMessage>(R"({"type":"run","on":true})").on);
+  EXPECT_FALSE(parsed<RunMessage>(R"({"type":"run","on":false})").on);
+  parsed<ReadyMessage>(R"({"type":"ready"})");
+}
+
+TEST(LiveMessage, PicksKeepTheirNumber) {
+  const auto pick =
+      parsed<PickMessage>(R"({"type":"pick","id":77,"origin":[0,0,1],"direction":[0,0,-2]})");
+  EXPECT_EQ(pick.id, 77);
+  EXPECT_EQ(pick.origin.z, 31);
+  EXPECT_EQ(pick.direction.z, -2);
+}
+
+TEST(LiveMessage, ASensorWithoutSettingsIsTheLibrarys) {
+  const auto sensor = parsed<LiveSensor>(R"({"type":"sensor","name":"velodyne-vlp-16"})");
+  EXPECT_EQ(sensor.settings.sensor.rings(), 16U);
+  EXPECT_TRUE(sensor.options.empty());
+  EXPECT_TRUE(sensor.settings.noise);
+  EXPECT_EQ(sensor.key(), live_sensor("velodyne-vlp-16").key());
+}
+
+TEST(LiveMessage, SettingsChangeTheSensorAndTellTheOptions) {
+  const auto sensor = parsed<LiveSensor>(
+      R"({"type":"sensor","name":"velodyne-vlp-16","settings":{"noise":false,"max_range_m":40.5,)"
+      R"("sub_rays":7,"returns":2,"rolling_shutter":true,"fog_visibility_m":150,"rain_mm_h":0}})");
+  EXPECT_FALSE(sensor.settings.noise);
+  EXPECT_EQ(sensor.settings.sensor.max_range_m, 40.5);
+  EXPECT_EQ(sensor.settings.beam.sub_rays, 7);
+  EXPECT_EQ(sensor.settings.weather.fog_visibility_m, 150);
+  // In the order in which they were given; what is as it was has no option.
+  const std::vector<std::string> options = {
+      "--no-noise", "--max-range",       "40.5",  "--sub-rays", "7", "--returns",
+      "2",          "--rolling-shutter", "--fog", "150"};
+  std::vector<std::string> told = sensor.options;
+  std::vector<std::string> expected = options;
+  std::sort(told.begin(), told.end());
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(told, expected);
+  EXPECT_NE(sensor.key(), live_sensor("velodyne-vlp-16").key());
+}
+
+TEST(LiveMessage, WhatTheSensorMessageSaysCanBeSaidBack) {
+  const auto sensor = parsed<LiveSensor>(
+      R"({"type":"sensor","name":"ouster-os1-64","settings":{"returns":1,"rain_mm_h":12.5}})");
+  const Json told = Json::parse(sensor_message(sensor, 64, 1024, 65536));
+  EXPECT_EQ(told["rings"], 64);
+  EXPECT_EQ(told["options"], Json({"--rain", "12.5"}));
+  const Json said = {{"type", "sensor"}, {"name", told["name"]}, {"settings", told["settings"]}};
+  EXPECT_EQ(parsed<LiveSensor>(said.dump()).key(), sensor.key());
+}
+
+// Files are not read for somebody at the other end of a wire.
+TEST(LiveMessage, FilesAreNoSensors) {
+  for (const char* name : {"/etc/passwd", "../sensor.toml", "sensors/velodyne-vlp-16.toml", ""})
+    expect_refused(Json({{"type", "sensor"}, {"name", name}}).dump(), "unknown sensor");
+}
+
+TEST(LiveMessage, WhatIsNoObjectIsBadData) {
+  for (const char* text : {"", "null", "[]", "3", "\"pose\"", "{", "{\"type\":\"run\",}", "\xff"})
+    EXPECT_EQ(refusal(text).first, ErrorKind::data) << text;
+  EXPECT_EQ(refusal(std::string(8000, '[')).first, ErrorKind::data);
+  EXPECT_EQ(refusal(std::string(8000, '[') + std::string(8000, ']')).first, ErrorKind::data);
+}
+
+TEST(LiveMessage, WrongMessagesAreRefusedByName) {
+  expect_refused("{}", "'type' is missing");
+  expect_refused(R"({"type":3})", "type");
+  expect_refused(R"({"type":"fly"})", "unknown type 'fly'");
+  expect_refused(R"({"type":"run"})", "'on' is missing");
+  expect_refused(R"({"type":"run","on":1})", "true or false");
+  expect_refused(R"({"type":"pose","pose":[1,2,3]})", "7 numbers");
+  expect_refused(R"({"type":"pose","pose":[1,2,"3",0,0,0,1]})", "number");
+  expect_refused(R"({"type":"pose","pose":[1,2,1e300,0,0,0,1]})", "number");
+  expect_refused(R"({"type":"pose","pose":[1,2,null,0,0,0,1]})", "number");
+  expect_refused(R"({"type":"pose","pose":[1,2,3,0,0,0,2]})", "length 1");
+  expect_refused(R"({"type":"pose","pose":[1,2,3,0,0,0,0]})", "length 1");
+  expect_refused(R"({"type":"pick","id":1,"origin":[0,0,0],"direction":[0,0,0]})", "direction");
+  expect_refused(R"({"type":"pick","id":-1,"origin":[0,0,0],"direction":[0,0,1]})", "id");
+}
+
+TEST(LiveMessage, SettingsOutOfRangeAreRefused) {
+  const auto with = [](const std::string& settings) {
+    return R"({"type":"sensor","name":"velodyne-vlp-16","settings":)" + settings + "}";
+  };
+  expect_refused(with("3"), "object");
+  expect_refused(with(R"({"colour":1})"), "unknown setting 'colour'");
+  expect_refused(with(R"({"max_range_m":-1})"), "max_range_m");
+  expect_refused(with(R"({"max_range_m":"far"})"), "max_range_m");
+  expect_refused(with(R"({"min_range_m":50,"max_range_m":50})"), "min_range_m");
+  expect_refused(with(R"({"sub_rays":1000000})"), "sub_rays");
+  expect_refused(with(R"({"sub_rays":2})"), "2");  // cannot stand evenly around the axis
+  expect_refused(with(R"({"returns":1.5})"), "whole");
+  expect_refused(with(R"({"rain_mm_h":-3})"), "rain_mm_h");
+  expect_refused(with(R"({"rotation_hz":0})"), "rotation_hz");
+}
+
+TEST(LiveMessage, NothingOfALongNameIsKept) {
+  EXPECT_LT(refusal(R"({"type":")" + std::string(10'000, 'x') + "\"}").second.size(), 200U);
+}
+
+// Oracle: where something is that moves at a constant speed and turns at a constant rate.
+TEST(LivePose, ARollingShutterMovesTheSensorAroundItsPose) {
+  LiveSensor sensor = live_sensor("velodyne-vlp-16");
+  LivePose pose;
+  pose.world_from_sensor.translation = {5, 0, 0};
+  pose.velocity_m_s = {10, 0, 0};
+  pose.yaw_rate_rad_s = 1;
+  EXPECT_TRUE(motion_of(pose, sensor).knots.empty()) << "without a rolling shutter";
+  sensor.rolling_shutter = true;
+  const ScanMotion motion = motion_of(pose, sensor);
+  ASSERT_GE(motion.knots.size(), 3U);
+  for (const double share : {0.0, 0.25, 0.5, 1.0}) {
+    const double time_s = (share - 0.5) / sensor.settings.sensor.rotation_hz;
+    const RigidTransform at = pose_at(motion, share);
+    EXPECT_NEAR(at.translation.x, 5 + 10 * time_s, 1e-9);
+    EXPECT_NEAR(std::atan2(at.rotation.rows[1].x, at.rotation.rows[0].x), time_s, 1e-6);
+  }
+  EXPECT_TRUE(motion_of({}, sensor).knots.empty()) << "that stands";
+}
+
+}  // namespace
+}  // namespace adasplats

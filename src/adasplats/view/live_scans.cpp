@@ -1,0 +1,291 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/view/live_scans.h"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/stopwatch.h"
+#include "adasplats/dataset/range_image.h"
+#include "adasplats/view/live_message.h"
+#include "adasplats/view/picked.h"
+#include "adasplats/view/scan_packet.h"
+
+namespace adasplats {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Scans that may be under way to a page that has not yet said that it drew them.
+constexpr int kMostUnderWay = 2;
+/// Questions that a page may have open.
+constexpr std::size_t kMostPicks = 32;
+/// A page has nothing of more, and other pages wait.
+constexpr Clock::duration kLeastInterval = std::chrono::milliseconds(33);
+/// Sensors whose rays are kept, over all pages.
+constexpr std::size_t kMostSimulators = 8;
+
+struct Client {
+  std::shared_ptr<WebSocketPeer> peer;
+  std::shared_ptr<const LiveSensor> sensor;
+  bool sensor_is_new = true;  ///< the page has not been told of it
+  LivePose pose;
+  bool running = false;
+  int under_way = 0;
+  std::uint64_t next_number = 0;
+  Clock::time_point next_scan;
+  std::deque<PickMessage> picks;
+
+  bool wants_scan(Clock::time_point now) const {
+    return running && under_way < kMostUnderWay && next_scan <= now;
+  }
+  bool has_work(Clock::time_point now) const {
+    return sensor_is_new || !picks.empty() || wants_scan(now);
+  }
+};
+
+/// What the simulating thread does next, taken out of a Client.
+struct Work {
+  std::shared_ptr<WebSocketPeer> peer;
+  std::shared_ptr<const LiveSensor> sensor;
+  bool tell_sensor = false;
+  std::deque<PickMessage> picks;
+  bool scan = false;
+  LivePose pose;
+  std::uint64_t number = 0;
+};
+
+struct Simulator {
+  std::string key;
+  std::unique_ptr<ScanSimulator> scans;
+  ImageSize size;
+};
+
+/// Rays of the sensors that were used last.
+class Simulators {
+ public:
+  Simulators(const ModelScene& scene, const Executor& executor)
+      : scene_(scene), executor_(executor) {}
+
+  Simulator& of(const LiveSensor& sensor) {
+    std::string key = sensor.key();
+    const auto found =
+        std::find_if(kept_.begin(), kept_.end(), [&](const auto& kept) { return kept.key == key; });
+    if (found != kept_.end()) {
+      std::rotate(kept_.begin(), found, found + 1);
+      return kept_.front();
+    }
+    auto scans = std::make_unique<ScanSimulator>(scene_, sensor.settings, executor_);
+    const ImageSize size = image_size_of(scans->firings());
+    if (kept_.size() == kMostSimulators) kept_.pop_back();
+    return *kept_.insert(kept_.begin(), {std::move(key), std::move(scans), size});
+  }
+
+ private:
+  const ModelScene& scene_;
+  const Executor& executor_;
+  std::vector<Simulator> kept_;  ///< last used first
+};
+
+}  // namespace
+
+class LiveScans::Implementation {
+ public:
+  Implementation(const ViewScene& scene, const Executor& executor)
+      : scene_(scene), executor_(executor), simulators_(*scene.model, executor) {
+    first_sensor_ = std::make_shared<const LiveSensor>(live_sensor(scene.sensor));
+    thread_ = std::thread([this] { simulate(); });
+  }
+
+  ~Implementation() {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+  }
+
+  void opened(const std::shared_ptr<WebSocketPeer>& peer) {
+    Client client;
+    client.peer = peer;
+    client.sensor = first_sensor_;
+    client.pose.world_from_sensor = scene_.start_pose;
+    {
+      const std::lock_guard lock(mutex_);
+      clients_.push_back(std::move(client));
+    }
+    changed_.notify_all();
+  }
+
+  void closed(const std::shared_ptr<WebSocketPeer>& peer) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(clients_, [&](const Client& client) { return client.peer == peer; });
+  }
+
+  void received(const std::shared_ptr<WebSocketPeer>& peer, std::string_view text) {
+    LiveMessage message = parse_live_message(text, scene_.origin);
+    {
+      const std::lock_guard lock(mutex_);
+      const auto client = std::find_if(clients_.begin(), clients_.end(),
+                                       [&](const Client& c) { return c.peer == peer; });
+      if (client == clients_.end()) return;
+      std::visit([&](auto&& part) { take(*client, std::forward<decltype(part)>(part)); },
+                 std::move(message));
+    }
+    changed_.notify_all();
+  }
+
+ private:
+  static void take(Client& client, LiveSensor&& sensor) {
+    client.sensor = std::make_shared<const LiveSensor>(std::move(sensor));
+    client.sensor_is_new = true;
+  }
+  static void take(Client& client, const LivePose& pose) { client.pose = pose; }
+  static void take(Client& client, const RunMessage& run) { client.running = run.on; }
+  static void take(Client& client, ReadyMessage /*ready*/) {
+    client.under_way = std::max(client.under_way - 1, 0);
+  }
+  static void take(Client& client, const PickMessage& pick) {
+    if (client.picks.size() >= kMostPicks)
+      throw Error(ErrorKind::usage, "more than " + std::to_string(kMostPicks) + " open questions");
+    client.picks.push_back(pick);
+  }
+
+  /// The next client's work; waits where there is none. Nothing: the end.
+  std::optional<Work> next_work() {
+    std::unique_lock lock(mutex_);
+    while (!stopping_) {
+      const Clock::time_point now = Clock::now();
+      for (std::size_t i = 0; i < clients_.size(); ++i) {
+        if (!clients_[i].has_work(now)) continue;
+        Work work = work_of(clients_[i], now);
+        // Behind the others: everybody's turn comes.
+        std::rotate(clients_.begin() + static_cast<std::ptrdiff_t>(i),
+                    clients_.begin() + static_cast<std::ptrdiff_t>(i) + 1, clients_.end());
+        return work;
+      }
+      changed_.wait_until(lock, wake_time(now));
+    }
+    return std::nullopt;
+  }
+
+  static Work work_of(Client& client, Clock::time_point now) {
+    Work work;
+    work.peer = client.peer;
+    work.sensor = client.sensor;
+    work.pose = client.pose;
+    work.tell_sensor = std::exchange(client.sensor_is_new, false);
+    work.picks = std::exchange(client.picks, {});
+    work.scan = client.wants_scan(now);
+    if (!work.scan) return work;
+    work.number = client.next_number++;
+    client.next_scan = now + kLeastInterval;
+    ++client.under_way;
+    return work;
+  }
+
+  /// When a client that is ready may have its next scan.
+  Clock::time_point wake_time(Clock::time_point now) const {
+    Clock::time_point time = now + std::chrono::seconds(1);
+    for (const Client& client : clients_)
+      if (client.running && client.under_way < kMostUnderWay)
+        time = std::min(time, client.next_scan);
+    return time;
+  }
+
+  void simulate() {
+    while (const std::optional<Work> work = next_work()) {
+      try {
+        perform(*work);
+      } catch (const std::exception& error) {
+        work->peer->send_text(error_message(error.what()));
+      }
+    }
+  }
+
+  void perform(const Work& work) {
+    for (const PickMessage& pick : work.picks)
+      work.peer->send_text(picked_message(scene_, pick, executor_));
+    if (!work.tell_sensor && !work.scan) return;
+    Simulator& simulator = simulators_.of(*work.sensor);
+    const ImageSize size = simulator.size;
+    if (work.tell_sensor)
+      work.peer->send_text(sensor_message(*work.sensor, size.rings, size.columns,
+                                          simulator.scans->firings().size()));
+    if (work.scan) send_scan(work, *simulator.scans, size);
+  }
+
+  void send_scan(const Work& work, ScanSimulator& simulator, const ImageSize& size) {
+    const Stopwatch watch;
+    const ScanMotion motion = motion_of(work.pose, *work.sensor);
+    const Scan scan = simulator.scan(motion, work.number);
+    ScanPacketHead head;
+    head.number = static_cast<std::uint32_t>(work.number);
+    head.rings = static_cast<std::uint32_t>(size.rings);
+    head.columns = static_cast<std::uint32_t>(size.columns);
+    head.moved = !motion.knots.empty();
+    head.seconds = watch.seconds();
+    head.max_range_m = simulator.settings().sensor.max_range_m;
+    head.full_intensity = full_intensity();
+    head.local_origin = scene_.origin;
+    work.peer->send_binary(scan_packet(scan, head));
+  }
+
+  /// Of the model, once: the same for every scan.
+  float full_intensity() {
+    if (!full_intensity_)
+      full_intensity_ = full_intensity_of(scene_.model->attributes().intensities);
+    return *full_intensity_;
+  }
+
+  const ViewScene& scene_;
+  const Executor& executor_;
+  std::shared_ptr<const LiveSensor> first_sensor_;
+  Simulators simulators_;  ///< of the simulating thread alone, as the next
+  std::optional<float> full_intensity_;
+  std::mutex mutex_;  ///< of all below
+  std::condition_variable changed_;
+  std::vector<Client> clients_;  ///< whose turn is next stands first
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+LiveScans::LiveScans(const ViewScene& scene, const Executor& executor) {
+  if (scene.model != nullptr) implementation_ = std::make_unique<Implementation>(scene, executor);
+}
+
+LiveScans::~LiveScans() = default;
+
+void LiveScans::opened(const std::shared_ptr<WebSocketPeer>& peer) {
+  if (implementation_) implementation_->opened(peer);
+}
+
+void LiveScans::received(const std::shared_ptr<WebSocketPeer>& peer, std::string_view text) {
+  try {
+    if (!implementation_) throw Error(ErrorKind::usage, "there is no model to simulate scans in");
+    implementation_->received(peer, text);
+  } catch (const Error& error) {
+    constexpr std::uint16_t kInvalidPayload = 1007;  // RFC 6455, 7.4.1
+    if (error.kind() == ErrorKind::data) {
+      peer->close(kInvalidPayload, error.what());
+    } else {
+      peer->send_text(error_message(error.what()));
+    }
+  }
+}
+
+void LiveScans::closed(const std::shared_ptr<WebSocketPeer>& peer) {
+  if (implementation_) implementation_->closed(peer);
+}
+
+}  // namespace adasplats

@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/view/live_scans.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "adasplats/view/room_test.h"
+
+namespace adasplats {
+namespace {
+
+using Json = nlohmann::json;
+using namespace std::chrono_literals;
+
+/// The other end of a WebSocket that takes down what it is sent.
+class Listener final : public WebSocketPeer {
+ public:
+  void send_text(std::string text) override {
+    add([&] { texts_.push_back(Json::parse(text)); });
+  }
+  void send_binary(SharedBytes bytes) override {
+    add([&] { packets_.push_back(std::move(bytes)); });
+  }
+  void close(std::uint16_t code, std::string_view /*reason*/) override {
+    add([&] { close_code_ = code; });
+  }
+
+  /// The next packet; null where none comes.
+  SharedBytes packet(std::chrono::milliseconds limit = 10s) {
+    std::unique_lock lock(mutex_);
+    if (!heard_.wait_for(lock, limit, [&] { return packets_.size() > packets_taken_; })) return {};
+    return packets_[packets_taken_++];
+  }
+  /// The next text of that type; null where none comes.
+  Json text(const std::string& type) {
+    std::unique_lock lock(mutex_);
+    Json found;
+    heard_.wait_for(lock, 10s, [&] {
+      while (texts_taken_ < texts_.size() && found.is_null())
+        if (texts_[texts_taken_++]["type"] == type) found = texts_[texts_taken_ - 1];
+      return !found.is_null();
+    });
+    return found;
+  }
+  /// Whether so many texts come.
+  bool wait_for_texts(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    return heard_.wait_for(lock, 10s, [&] { return texts_.size() >= count; });
+  }
+  int close_code() {
+    const std::lock_guard lock(mutex_);
+    return close_code_;
+  }
+
+ private:
+  template <class F>
+  void add(F&& what) {
+    {
+      const std::lock_guard lock(mutex_);
+      what();
+    }
+    heard_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable heard_;
+  std::vector<Json> texts_;
+  std::vector<SharedBytes> packets_;
+  std::size_t texts_taken_ = 0;
+  std::size_t packets_taken_ = 0;
+  int close_code_ = 0;
+};
+
+std::uint32_t word(const SharedBytes& packet, std::size_t index) {
+  std::uint32_t value = 0;
+  std::memcpy(&value, packet->data() + 4 * index, sizeof(value));
+  return value;
+}
+float number(const SharedBytes& packet, std::size_t index) {
+  float value = 0;
+  std::memcpy(&value, packet->data() + 4 * index, sizeof(value));
+  return value;
+}
+
+/// A page that is connected to the room.
+struct Page {
+  explicit Page(LiveScans& live) : live_(live) { live_.opened(ear); }
+  ~Page() { live_.closed(ear); }
+  Page(const Page&) = delete;
+  Page& operator=(const Page&) = delete;
+  void say(const std::string& text) { live_.received(ear, text); }
+
+  std::shared_ptr<Listener> ear = std::make_shared<Listener>();
+  LiveScans& live_;
+};
+
+constexpr const char* kRun = R"({"type":"run","on":true})";
+constexpr const char* kReady = R"({"type":"ready"})";
+constexpr const char* kVlp16 =
+    R"({"type":"sensor","name":"velodyne-vlp-16","settings":{"noise":false}})";
+
+TEST(LiveScans, APageIsToldItsSensorAndGetsNoScanBeforeItAsks) {
+  const Room room;
+  LiveScans live(room.view, room.executor);
+  Page page(live);
+  const Json sensor = page.ear->text("sensor");
+  EXPECT_EQ(sensor["name"], "hdl-64-paper");
+  EXPECT_EQ(sensor["rings"], 64);
+  EXPECT_EQ(sensor["columns"], 2250);
+  EXPECT_EQ(page.ear->packet(100ms), nullptr);
+}
+
+// Oracle: the floor is at 0, so points of the lower rings lie 1.7 m below the sensor.
+TEST(LiveScans, ScansAreThoseOfTheChosenSensorAtThePose) {
+  const Room room;
+  LiveScans live(room.view, room.executor);
+  Page page(live);
+  page.say(kVlp16);
+  page.say(R"({"type":"pose","pose":[2,1,1.7,0,0,0,1]})");
+  page.say(kRun);
+  const SharedBytes packet = page.ear->packet();
+  ASSERT_NE(packet, nullptr);
+  EXPECT_EQ(word(packet, 0), 0x4e435341U);
+  EXPECT_EQ(word(packet, 5), 16U) << "rings";
+  EXPECT_EQ(number(packet, 8), 2) << "pose";
+  const std::size_t points = word(packet, 3);
+  ASSERT_GT(points, 1000U);
+  ASSERT_EQ(packet->size(), 80 + 24 * points);
+  std::size_t on_wall = 0;
+  for (std::size_t i = 0; i < points; ++i) {
+    const bool is_on_wall = std::fabs(number(packet, 20 + 6 * i) - 6) < 1e-3F;
+    const bool is_on_floor = std::fabs(number(packet, 20 + 6 * i + 2) + 1.7F) < 1e-3F;
+    EXPECT_TRUE(is_on_wall || is_on_floor) << i;
+    on_wall += is_on_wall ? 1 : 0;
+  }
+  EXPECT_GT(on_wall, 500U);
+}
+
+TEST(LiveScans, TwoScansAreUnderWayAndReadyLetsOneMoreCome) {
+  const Room room;
+  LiveScans live(room.view, room.executor);
+  Page page(live);
+  page.say(kVlp16);
+  page.say(kRun);
+  ASSERT_NE(page.ear->packet(), nullptr);
+  ASSERT_NE(page.ear->packet(), nullptr);
+  EXPECT_EQ(page.ear->packet(300ms), nullptr) << "a page that stalls gets no third one";
+  page.say(kReady);
+  const SharedBytes third = page.ear->packet();
+  ASSERT_NE(third, nullptr);
+  EXPECT_EQ(word(third, 2), 2U) << "number";
+  page.say(R"({"type":"run","on":false})");
+  page.say(kReady);
+  EXPECT_EQ(page.ear->packet(300ms), nullptr);
+}
+
+TEST(LiveScans, PagesDriveForThemselves) {
+  const Room room;
+  LiveScans live(room.view, room.executor);
+  Page first(live);
+  Page second(live);
+  first.say(kVlp16);
+  second.say(R"({"type":"sensor","name":"velodyne-vlp-32c"})");
+  first.say(kRun);
+  second.say(kRun);
+  const SharedBytes of_first = first.ear->packet();
+  const SharedBytes of_second = second.ear->packet();
+  ASSERT_TRUE(of_first != nullptr && of_second != nullptr);
+  EXPECT_EQ(word(of_first, 5), 16U);
+  EXPECT_EQ(word(of_second, 5), 32U);
+}
+
+TEST(LiveScans, APickNamesTheSplat) {
+  const Room room;
+  LiveScans live(room.view, room.executor);
+  Page page(live);
+  page.say(R"({"type":"pick","id":5,"origin":[0.05,0.05,3],"direction":[0,0,-2]})");
+  const Json hit = page.ear->text("picked");
+  EXPECT_EQ(hit["id"], 5);
+  ASSERT_TRUE(hit["hit"]);
+  EXPECT_NEAR(hit["range_m"], 3, 1e-5);
+  EXPECT_NEAR(hit["position"][2], 0, 1e-5);
+  EXPECT_EQ(hit["class"], 40);
+  EXPECT_EQ(hit["class_name"], "road");
+  EXPECT_NEAR(hit["intensity"], 0.2, 1e-6);
+  EXPECT_NEAR(hit["radius_m"], 0.09, 1e-6);
+  const Disk& disk = room.model.splats()->disks.at(hit["primitive"]);
+  EXPECT_NEAR(disk.center.x, 0.05, 0.1);
+  page.say(R"({"type":"pick","id":6,"origin":[0,0,3],"direction":[0,0,1]})");
+  EXPECT_FALSE(page.ear->text("picked")["hit"]);
+}
+
+TEST(LiveScans, WhatIsWrongIsToldAndChangesNothing) {
+  const Room room;
+  LiveScans live(room.view, room.executor);
+  Page page(live);
+  page.say(kVlp16);
+  page.say(R"({"type":"sensor","name":"/etc/passwd"})");
+  EXPECT_NE(page.ear->text("error")["message"].get<std::string>().find("unknown sensor"),
+            std::string::npos);
+  page.say(kRun);
+  const SharedBytes packet = page.ear->packet();
+  ASSERT_NE(packet, nullptr);
+  EXPECT_EQ(word(packet, 5), 16U);
+  EXPECT_EQ(page.ear->close_code(), 0);
+  page.say("no JSON");
+  EXPECT_EQ(page.ear->close_code(), 1007);
+}
+
+TEST(LiveScans, EveryQuestionIsAnsweredOrRefused) {
+  const Room room;
+  LiveScans live(room.view, room.executor);
+  Page page(live);
+  constexpr std::size_t kQuestions = 2000;
+  for (std::size_t i = 0; i < kQuestions; ++i)
+    page.say(R"({"type":"pick","id":1,"origin":[0,0,3],"direction":[0,0,-1]})");
+  EXPECT_TRUE(page.ear->wait_for_texts(kQuestions + 1)) << "and the sensor";
+}
+
+TEST(LiveScans, WithoutAModelNothingIsSimulated) {
+  Room room;
+  room.view.model = nullptr;
+  LiveScans live(room.view, room.executor);
+  Page page(live);
+  page.say(kRun);
+  EXPECT_NE(page.ear->text("error")["message"].get<std::string>().find("no model"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace adasplats

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "adasplats/sensors/lidar_model.h"
+#include "adasplats/view/pose_json.h"
+#include "adasplats/view/view_scene.h"
+
+namespace adasplats {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(Vec3d v) { return {v.x, v.y, v.z}; }
+Json json_of(ByteRange range) { return {range.low, range.high}; }
+
+Json box_of(const LevelTree& tree) {
+  const LevelNode& root = tree.nodes().front();
+  return {json_of(vec_cast<double>(root.low)), json_of(vec_cast<double>(root.high))};
+}
+
+Json layer_json(const ViewLayer& layer, std::size_t id) {
+  return {{"id", id},
+          {"kind", layer.is_splats ? "splats" : "points"},
+          {"name", layer.name},
+          {"count", layer.tree.input_size()},
+          {"nodes", layer.tree.nodes().size()},
+          {"has_classes", layer.has_classes},
+          {"has_intensities", layer.has_intensities},
+          {"has_errors", layer.has_errors},
+          {"intensity_range", json_of(layer.tree.intensity_range())},
+          {"error_range_m", json_of(layer.tree.error_range_m())},
+          {"box", box_of(layer.tree)}};
+}
+
+Json trajectory_json(const std::string& name, const Trajectory& poses, Vec3d origin) {
+  Json json = {{"name", name}, {"poses", Json::array()}};
+  for (const TimedPose& pose : poses)
+    json["poses"].push_back(pose_json(pose.world_from_sensor, origin));
+  return json;
+}
+
+/// Sequences first: a recorded scan names its trajectory by number.
+Json trajectories_json(const ViewScene& scene) {
+  Json json = Json::array();
+  for (const ViewSequence& sequence : scene.sequences)
+    json.push_back(trajectory_json(sequence.name, sequence.scans.trajectory, scene.origin));
+  for (const auto& [name, poses] : scene.trajectories)
+    json.push_back(trajectory_json(name, poses, scene.origin));
+  return json;
+}
+
+Json scans_json(const ViewScene& scene) {
+  Json json = Json::array();
+  for (std::size_t k = 0; k < scene.sequences.size(); ++k) {
+    const KittiSequence& scans = scene.sequences[k].scans;
+    for (std::size_t i = 0; i < scans.scans.size(); ++i) {
+      json.push_back({{"name", scans.scans[i].stem().string()},
+                      {"trajectory", k},
+                      {"pose", pose_json(scans.trajectory[i].world_from_sensor, scene.origin)}});
+    }
+  }
+  return json;
+}
+
+Json classes_json(const std::optional<LabelScheme>& labels) {
+  Json json = Json::array();
+  if (!labels) return json;
+  for (const SemanticClass& c : labels->classes())
+    json.push_back({{"id", c.id}, {"name", c.name}, {"color", c.rgb}});
+  return json;
+}
+
+Json sensors_json() {
+  Json json = Json::array();
+  for (const std::string& name : lidar_model_names()) {
+    const LidarModel sensor = load_lidar_model(name);
+    json.push_back({{"name", name},
+                    {"title", sensor.name},
+                    {"rings", sensor.rings()},
+                    {"rays", sensor.rays_per_scan()},
+                    {"rotation_hz", sensor.rotation_hz},
+                    {"min_range_m", sensor.min_range_m},
+                    {"max_range_m", sensor.max_range_m}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string scene_json(const ViewScene& scene) {
+  Json json = {{"version", 1}, {"name", scene.name}, {"origin_m", json_of(scene.origin)}};
+  json["layers"] = Json::array();
+  for (std::size_t i = 0; i < scene.layers.size(); ++i)
+    json["layers"].push_back(layer_json(scene.layers[i], i));
+  json["middle_box"] = {json_of(scene.middle_box.first - scene.origin),
+                        json_of(scene.middle_box.second - scene.origin)};
+  json["classes"] = classes_json(scene.labels);
+  json["trajectories"] = trajectories_json(scene);
+  json["scans"] = scans_json(scene);
+  json["can_simulate"] = scene.model != nullptr;
+  json["sensors"] = scene.model != nullptr ? sensors_json() : Json::array();
+  json["sensor"] = scene.sensor;
+  json["start_pose"] = pose_json(scene.start_pose, scene.origin);
+  json["device"] = scene.device;
+  json["command"] = scene.command;
+  // Names of files need not be UTF-8; JSON must be.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace adasplats

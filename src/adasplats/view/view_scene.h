@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/trajectory.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/pipeline/model_scene.h"
+#include "adasplats/serve/http_server.h"
+#include "adasplats/splats/splat_model.h"
+#include "adasplats/view/level_tree.h"
+
+namespace adasplats {
+
+/// One layer of what the page draws, relative to the view's origin.
+struct ViewLayer {
+  std::string name;
+  bool is_splats = false;
+  bool has_classes = false;
+  bool has_intensities = false;
+  bool has_errors = false;
+  LevelTree tree;
+};
+
+ViewLayer splat_layer(std::string name, const SplatModel& model, Vec3d origin,
+                      const Executor& executor);
+/// `errors_m`: empty, or one a point.
+ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const float> errors_m,
+                      Vec3d origin, const Executor& executor);
+
+/// Recorded scans; they are read when the page asks for one.
+struct ViewSequence {
+  std::string name;
+  KittiSequence scans;
+};
+
+/// What a browser is shown. All of it stays as it is while it is served.
+struct ViewScene {
+  std::string name;
+  Vec3d origin;  ///< of what the page is told, world coordinates
+  std::vector<ViewLayer> layers;
+  std::vector<std::pair<std::string, Trajectory>> trajectories;  ///< besides those of `sequences`
+  std::vector<ViewSequence> sequences;
+  std::optional<LabelScheme> labels;
+  std::pair<Vec3d, Vec3d> middle_box;   ///< world coordinates: where to look first
+  const ModelScene* model = nullptr;    ///< that scans are simulated in; null: none
+  std::string sensor = "hdl-64-paper";  ///< chosen at the start
+  RigidTransform start_pose;            ///< of the sensor, world coordinates
+  std::string device = "cpu";
+  std::vector<std::string> command;  ///< that 'copy command line' begins with
+};
+
+/// Where a sensor begins to drive: at the first pose that there is, else `mount_height_m` above
+/// what lies in the middle of the model.
+RigidTransform start_pose_of(const ViewScene& scene, double mount_height_m,
+                             const Executor& executor);
+
+/// Answers the page's GETs (docs/viewer_protocol.md): the page, scene.json, layers and recorded
+/// scans, and nothing else. `scene` must outlive it.
+class ViewPages {
+ public:
+  explicit ViewPages(const ViewScene& scene);
+  /// Status 404 for what there is not, 500 where a recorded scan can no longer be read.
+  HttpReply get(std::string_view path) const;
+
+ private:
+  HttpReply layer(std::string_view path) const;
+  HttpReply recorded_scan(std::string_view name) const;
+
+  const ViewScene& scene_;
+  SharedBytes scene_json_;
+  std::vector<SharedBytes> nodes_;  ///< nodes.bin of each layer
+};
+
+/// "scene.json".
+std::string scene_json(const ViewScene& scene);
+
+}  // namespace adasplats

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// How many elements a picture may have: as many as the machine draws while things move, and more
+// once they rest.
+
+const kLeast = 50_000;
+const kMost = 6_000_000;
+const kSlowMs = 45;
+/** Without a GPU half the frame is the window itself. */
+const kSlowSoftwareMs = 90;
+/** Of the budget, that a slow picture leaves. */
+const kMostAtOnce = 0.8;
+const kQuickMs = 24;
+/** A longer pause between frames tells about the page, not about the drawing. */
+const kOddMs = 2000;
+
+export class Budget {
+  private moving: number;
+  private smoothedMs = 33;
+
+  constructor(private readonly software: boolean) {
+    this.moving = software ? 120_000 : 1_500_000;
+  }
+
+  /** While the eye moves. */
+  get interactive(): number {
+    return this.moving;
+  }
+
+  /** Once it rests: such a picture is drawn once. */
+  get still(): number {
+    return Math.min(this.moving * (this.software ? 5 : 3), kMost);
+  }
+
+  /** Two pictures in a row took so long; `limited`: with more budget there would be more to draw. */
+  frame(ms: number, limited: boolean) {
+    if (ms > kOddMs) return;
+    this.smoothedMs += (ms - this.smoothedMs) * 0.25;
+    const slow = this.software ? kSlowSoftwareMs : kSlowMs;
+    const less = Math.max(kMostAtOnce, slow / this.smoothedMs);
+    if (less < 1) this.moving = Math.max(this.moving * less, kLeast);
+    else if (this.smoothedMs < kQuickMs && limited) this.moving = Math.min(this.moving * 1.05, kMost);
+  }
+}

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// A layer of splats or points: its tree, and a mesh for each node that is there.
+
+import {
+  Box3, BufferAttribute, BufferGeometry, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry,
+  Mesh, Points, RawShaderMaterial, Vector3, type IUniform,
+} from 'three';
+import { nodeBox, parentsOf, type Tree } from './lod';
+import { kElementBytes, parseElements, type LayerInfo, type TreeNode } from './protocol';
+import { kDiskFragment, kDiskVertex, kPointFragment, kPointVertex } from './shaders';
+
+/** What all layers are drawn with; the same objects in every material. */
+export interface SharedUniforms {
+  [name: string]: IUniform;
+  classes: IUniform;
+  maps: IUniform;
+  color_mode: IUniform<number>;
+  height_range_m: IUniform;
+  point_px: IUniform<number>;
+  focal_px: IUniform<number>;
+}
+
+/** A tip and four corners. */
+const kCorners = new Float32Array([0, 0, -1, -1, 1, -1, 1, 1, -1, 1]);
+const kTriangles = new Uint16Array([0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1]);
+
+interface Loaded {
+  object: Mesh | Points;
+  bytes: number;
+  used: number;
+}
+
+/** The GPU has it; the page need not keep it as well. */
+function forget(attribute: BufferAttribute) {
+  attribute.onUpload(function (this: BufferAttribute) {
+    (this as { array: unknown }).array = new Uint32Array(0);
+  });
+}
+
+export class Layer implements Tree {
+  visible = true;
+  bytes = 0;
+  readonly boxes: Box3[];
+  readonly parents: Int32Array;
+  private readonly loaded = new Map<number, Loaded>();
+  private readonly material: RawShaderMaterial;
+
+  constructor(
+    readonly info: LayerInfo,
+    readonly nodes: TreeNode[],
+    shared: SharedUniforms,
+  ) {
+    this.boxes = nodes.map(nodeBox);
+    this.parents = parentsOf(nodes);
+    const { has_classes, has_intensities, has_errors } = info;
+    const splats = info.kind === 'splats';
+    this.material = new RawShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: splats ? kDiskVertex : kPointVertex,
+      fragmentShader: splats ? kDiskFragment : kPointFragment,
+      side: 2,
+      uniforms: {
+        ...shared,
+        has: { value: (has_classes ? 1 : 0) | (has_intensities ? 2 : 0) | (has_errors ? 4 : 0) },
+        low: { value: new Vector3() },
+        size: { value: new Vector3() },
+        largest_radius_m: { value: 0 },
+        spacing_m: { value: 0 },
+      },
+    });
+  }
+
+  get loadedNodes(): number {
+    return this.loaded.size;
+  }
+
+  has(node: number): boolean {
+    return this.loaded.has(node) || this.nodes[node].count === 0;
+  }
+
+  url(node: number): string {
+    return `layers/${this.info.id}/nodes/${node}.bin`;
+  }
+
+  /** Takes what the server said of a node. Errors: ProtocolError. */
+  add(node: number, bytes: ArrayBuffer) {
+    if (this.loaded.has(node)) return;
+    const count = this.nodes[node].count;
+    const elements = parseElements(bytes, count);
+    const object = this.info.kind === 'splats' ? this.disks(elements) : this.points(elements);
+    object.frustumCulled = false;
+    object.matrixAutoUpdate = false;
+    object.onBeforeRender = () => this.setNode(node);
+    this.loaded.set(node, { object, bytes: count * kElementBytes, used: performance.now() });
+    this.bytes += count * kElementBytes;
+  }
+
+  /** Null where a node is empty. */
+  object(node: number): Mesh | Points | null {
+    return this.loaded.get(node)?.object ?? null;
+  }
+
+  touch(nodes: Iterable<number>, now: number) {
+    for (const node of nodes) {
+      const found = this.loaded.get(node);
+      if (found) found.used = now;
+    }
+  }
+
+  /** Nodes that were not used since `before`, with the time they were. */
+  idle(before: number): { layer: Layer; node: number; used: number }[] {
+    return [...this.loaded]
+      .filter(([, l]) => l.used < before)
+      .map(([node, l]) => ({ layer: this, node, used: l.used }));
+  }
+
+  unload(node: number) {
+    const found = this.loaded.get(node);
+    if (!found) return;
+    found.object.geometry.dispose();
+    this.loaded.delete(node);
+    this.bytes -= found.bytes;
+  }
+
+  dispose() {
+    for (const node of [...this.loaded.keys()]) this.unload(node);
+    this.material.dispose();
+  }
+
+  private setNode(node: number) {
+    const { low, high, largest_radius_m, spacing_m } = this.nodes[node];
+    const { uniforms } = this.material;
+    uniforms.low.value.set(...low);
+    uniforms.size.value.set(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+    uniforms.largest_radius_m.value = largest_radius_m;
+    uniforms.spacing_m.value = spacing_m;
+    this.material.uniformsNeedUpdate = true;
+  }
+
+  private disks(elements: Uint32Array): Mesh {
+    const geometry = new InstancedBufferGeometry();
+    geometry.setIndex(new BufferAttribute(kTriangles, 1));
+    geometry.setAttribute('corner', new BufferAttribute(kCorners, 2));
+    const attribute = new InstancedBufferAttribute(elements, 4);
+    forget(attribute);
+    geometry.setAttribute('element', attribute);
+    geometry.instanceCount = elements.length / 4;
+    return new Mesh(geometry, this.material);
+  }
+
+  private points(elements: Uint32Array): Points {
+    const geometry = new BufferGeometry();
+    const attribute = new BufferAttribute(elements, 4);
+    forget(attribute);
+    geometry.setAttribute('element', attribute);
+    geometry.setDrawRange(0, elements.length / 4);
+    return new Points(geometry, this.material);
+  }
+}

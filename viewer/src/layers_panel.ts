@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What is drawn: layers over each other or two side by side.
+
+import { choice, fill, make, row, segments, short, slider, tick } from './dom';
+import type { SceneView } from './scene_view';
+
+export function layersPanel(view: SceneView): HTMLElement {
+  const element = make('div');
+  const pair = make('div', { className: 'pair', hidden: true });
+  const many = view.layers.length > 1;
+  let sides: [number, number] = [0, Math.min(1, view.layers.length - 1)];
+  const arrange = (split: boolean) => {
+    view.arrangement = split ? { split, left: sides[0], right: sides[1] } : { split };
+    pair.hidden = !split;
+    document.body.classList.toggle('split', split);
+    view.moved();
+  };
+  const side = (which: 0 | 1, label: string) =>
+    choice(label, view.layers.map((l, i) => ({ value: String(i), text: `${label}: ${l.info.name}` })),
+      String(sides[which]), (value) => {
+        sides = which === 0 ? [Number(value), sides[1]] : [sides[0], Number(value)];
+        arrange(true);
+      });
+  const list = view.layers.map((layer) =>
+    tick(
+      make('span', {}, layer.info.name,
+        make('small', {}, `${short(layer.info.count)} ${layer.info.kind}`)),
+      layer.visible,
+      (on) => {
+        layer.visible = on;
+        view.moved();
+      },
+    ),
+  );
+  fill(pair, side(0, 'Left'), side(1, 'Right'));
+  const split = segments('Arrangement', [{ value: 'over', text: 'Overlay' }, { value: 'split', text: 'Side by side' }],
+    'over', (value) => arrange(value === 'split'));
+  split.id = 'arrangement';
+  const points = slider('Size of points', { low: 1, high: 8, step: 0.5, value: view.shared.point_px.value }, (value) => {
+    view.shared.point_px.value = value;
+    view.invalidateModel();
+  });
+  const hasPoints = view.layers.some((l) => l.info.kind === 'points');
+  arrange(false);
+  fill(element, ...list, many ? split : null, many ? pair : null, hasPoints ? row('Points', points) : null);
+  return element;
+}

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The live channel: keeps itself connected, and tells a new server what the last one knew.
+
+import {
+  parseMessage, parseScan, type PickedMessage, type Pose, type ScanPacket, type SensorMessage,
+  type Settings,
+} from './protocol';
+
+export interface LiveEvents {
+  /** Connected, when the sensor is to be told, or no longer. */
+  connection(connected: boolean): void;
+  /** Before each connection but the first: reads the scene again. Rejects while nobody answers. */
+  beforeReconnect(): Promise<void>;
+  scan(scan: ScanPacket): void;
+  sensor(message: SensorMessage): void;
+  error(message: string): void;
+}
+
+const kFirstPauseMs = 150;
+const kLongestPauseMs = 1000;
+/** A scan that takes longer than this: the server is told again that the page is ready. */
+const kPatienceMs = 5000;
+const kPickPatienceMs = 5000;
+
+interface Motion {
+  pose: Pose;
+  velocity_m_s: [number, number, number];
+  yaw_rate_rad_s: number;
+}
+
+export class Live {
+  connected = false;
+  private socket: WebSocket | null = null;
+  private pauseMs = kFirstPauseMs;
+  private motion: Motion | null = null;
+  private running = false;
+  private lastScanMs = 0;
+  private nextPick = 1;
+  private readonly picks = new Map<number, (found: PickedMessage | null) => void>();
+
+  constructor(
+    private readonly url: string,
+    private readonly events: LiveEvents,
+  ) {
+    window.setInterval(() => this.nudge(), 1000);
+  }
+
+  connect() {
+    const socket = new WebSocket(this.url);
+    socket.binaryType = 'arraybuffer';
+    this.socket = socket;
+    socket.onopen = () => this.opened();
+    socket.onmessage = (event) => this.received(event.data as string | ArrayBuffer);
+    socket.onclose = () => this.closed();
+  }
+
+  chooseSensor(name: string, settings: Settings) {
+    this.send({ type: 'sensor', name, settings });
+  }
+
+  setMotion(motion: Motion) {
+    this.motion = motion;
+    this.send({ type: 'pose', ...motion });
+  }
+
+  run(on: boolean) {
+    this.running = on;
+    this.lastScanMs = performance.now();
+    this.send({ type: 'run', on });
+  }
+
+  /** A scan was drawn. */
+  ready() {
+    this.send({ type: 'ready' });
+  }
+
+  /** What a ray meets; null where the server does not answer. */
+  pick(origin: number[], direction: number[]): Promise<PickedMessage | null> {
+    if (!this.connected) return Promise.resolve(null);
+    const id = this.nextPick++;
+    this.send({ type: 'pick', id, origin, direction });
+    return new Promise((resolve) => {
+      this.picks.set(id, resolve);
+      window.setTimeout(() => this.answerPick(id, null), kPickPatienceMs);
+    });
+  }
+
+  private answerPick(id: number, found: PickedMessage | null) {
+    this.picks.get(id)?.(found);
+    this.picks.delete(id);
+  }
+
+  private send(message: object) {
+    if (this.connected) this.socket?.send(JSON.stringify(message));
+  }
+
+  private opened() {
+    this.connected = true;
+    this.pauseMs = kFirstPauseMs;
+    this.events.connection(true);
+    if (this.motion) this.send({ type: 'pose', ...this.motion });
+    this.run(this.running);
+  }
+
+  private closed() {
+    const was = this.connected;
+    this.connected = false;
+    for (const id of [...this.picks.keys()]) this.answerPick(id, null);
+    if (was) this.events.connection(false);
+    this.later();
+  }
+
+  private later() {
+    window.setTimeout(() => {
+      this.events.beforeReconnect().then(
+        () => this.connect(),
+        () => this.later(),
+      );
+    }, this.pauseMs);
+    this.pauseMs = Math.min(this.pauseMs * 2, kLongestPauseMs);
+  }
+
+  private received(data: string | ArrayBuffer) {
+    try {
+      if (typeof data === 'string') this.receivedText(data);
+      else {
+        this.lastScanMs = performance.now();
+        this.events.scan(parseScan(data));
+      }
+    } catch (error) {
+      this.events.error(`The server sent something odd: ${(error as Error).message}`);
+    }
+  }
+
+  private receivedText(line: string) {
+    const message = parseMessage(line);
+    if (message?.type === 'sensor') this.events.sensor(message);
+    else if (message?.type === 'picked') this.answerPick(message.id, message);
+    else if (message?.type === 'error') this.events.error(message.message);
+  }
+
+  private nudge() {
+    if (!this.running || document.hidden) return;
+    if (performance.now() - this.lastScanMs < kPatienceMs) return;
+    this.lastScanMs = performance.now();
+    this.ready();
+  }
+}

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Starts the page: reads the scene, as soon as somebody answers.
+
+import { App } from './app';
+import { byId } from './dom';
+import { parseScene, ProtocolError, type SceneInfo } from './protocol';
+
+const kPauseMs = 1000;
+
+function tell(message: string) {
+  const banner = byId('banner');
+  banner.textContent = message;
+  banner.hidden = false;
+}
+
+async function readScene(): Promise<SceneInfo> {
+  for (;;) {
+    try {
+      const reply = await fetch('scene.json');
+      if (reply.ok) return parseScene(await reply.json());
+      tell(`The server answers ${reply.status}`);
+    } catch (error) {
+      const odd = error instanceof ProtocolError || error instanceof SyntaxError;
+      tell(odd ? `The server sent something odd: ${error.message}` : 'Waiting for the server');
+    }
+    await new Promise((resolve) => window.setTimeout(resolve, kPauseMs));
+  }
+}
+
+async function start() {
+  const scene = await readScene();
+  byId('banner').hidden = true;
+  try {
+    new App(scene).start();
+  } catch (error) {
+    tell(`This browser cannot show the scene (it needs WebGL 2): ${(error as Error).message}`);
+  }
+}
+
+void start();

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What lies under a click, told on a card.
+
+import { Vector3 } from 'three';
+import { button, fill, grouped, make } from './dom';
+import { cssColor, type ClassPalette } from './palette';
+import type { PickedMessage, Vec3 } from './protocol';
+import type { Echo } from './scan_cloud';
+
+type Line = [string, string | Node];
+
+function triple(v: Vec3, digits: number): string {
+  return v.map((c) => c.toFixed(digits)).join(', ');
+}
+
+export class PickCard {
+  constructor(
+    private readonly element: HTMLElement,
+    private readonly palette: ClassPalette,
+    private readonly origin_m: Vec3,
+  ) {}
+
+  hide() {
+    this.element.hidden = true;
+  }
+
+  get shown(): boolean {
+    return !this.element.hidden;
+  }
+
+  /** `sensor`: where the LiDAR is, in the layers' coordinates. */
+  show(found: PickedMessage | null, echo: Echo | null, sensor: Vector3) {
+    const lines: Line[] = [];
+    if (echo) lines.push(...this.echoLines(echo));
+    if (found?.hit) lines.push(...this.splatLines(found, echo, sensor));
+    if (lines.length === 0) return this.hide();
+    const title = make('header', {}, make('strong', {}, echo ? 'Echo' : 'Splat'),
+      button('×', 'Close (Esc)', () => this.hide()));
+    const table = make('dl', {}, ...lines.flatMap(([name, value]) => [
+      make('dt', {}, name), make('dd', {}, value),
+    ]));
+    fill(this.element, title, table);
+    this.element.hidden = false;
+  }
+
+  private echoLines(echo: Echo): Line[] {
+    const lines: Line[] = [];
+    if (echo.class !== null) lines.push(['Class', this.className(echo.class)]);
+    lines.push(['Range', `${echo.range_m.toFixed(3)} m`], ['Ring, column', `${echo.ring}, ${echo.column}`]);
+    lines.push(['Position', this.world(echo.position.toArray() as Vec3)]);
+    if (echo.intensity !== null) lines.push(['Intensity', echo.intensity.toFixed(3)]);
+    if (echo.return_index > 0) lines.push(['Return', String(echo.return_index + 1)]);
+    return lines;
+  }
+
+  private splatLines(found: PickedMessage, echo: Echo | null, sensor: Vector3): Line[] {
+    const lines: Line[] = [];
+    const range = new Vector3(...found.position).distanceTo(sensor);
+    if (found.class !== undefined)
+      lines.push([echo ? 'Splat class' : 'Class', this.className(found.class, found.class_name)]);
+    if (!echo) lines.push(['From the sensor', `${range.toFixed(3)} m`]);
+    lines.push(['Splat', grouped(found.primitive)], ['Radius', `${found.radius_m.toFixed(3)} m`]);
+    if (!echo) lines.push(['Position', this.world(found.position)]);
+    lines.push(['Normal', triple(found.normal, 3)]);
+    if (found.intensity !== undefined) lines.push([echo ? 'Splat intensity' : 'Intensity', found.intensity.toFixed(3)]);
+    return lines;
+  }
+
+  private className(id: number, name?: string): Node {
+    const swatch = make('i', { className: 'swatch' });
+    swatch.style.background = cssColor(this.palette.color(id));
+    return make('span', {}, swatch, name ?? this.palette.name(id));
+  }
+
+  private world(position: Vec3): string {
+    return triple(position.map((v, i) => v + this.origin_m[i]) as Vec3, 3);
+  }
+}

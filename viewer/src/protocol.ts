@@ -1,0 +1,381 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What the server says, as types, and read with distrust: docs/viewer_protocol.md.
+
+export type Vec3 = [number, number, number];
+/** x, y, z, qx, qy, qz, qw: local_from_sensor. */
+export type Pose = [number, number, number, number, number, number, number];
+export type Box = [Vec3, Vec3];
+
+export interface LayerInfo {
+  id: number;
+  kind: 'splats' | 'points';
+  name: string;
+  count: number;
+  nodes: number;
+  has_classes: boolean;
+  has_intensities: boolean;
+  has_errors: boolean;
+  intensity_range: [number, number];
+  error_range_m: [number, number];
+  box: Box;
+}
+
+export interface ClassInfo {
+  id: number;
+  name: string;
+  color: Vec3;
+}
+
+export interface SensorInfo {
+  name: string;
+  title: string;
+  rings: number;
+  rays: number;
+  rotation_hz: number;
+  min_range_m: number;
+  max_range_m: number;
+}
+
+export interface RecordedScan {
+  name: string;
+  trajectory: number;
+  pose: Pose;
+  /** Null: not told. */
+  points: number | null;
+}
+
+export interface SceneInfo {
+  name: string;
+  origin_m: Vec3;
+  layers: LayerInfo[];
+  middle_box: Box;
+  classes: ClassInfo[];
+  trajectories: { name: string; poses: Pose[] }[];
+  scans: RecordedScan[];
+  can_simulate: boolean;
+  sensors: SensorInfo[];
+  sensor: string;
+  start_pose: Pose;
+  device: string;
+  command: string[];
+}
+
+/** Of a LiDAR; null: none, or the sensor's own. */
+export type Settings = Record<string, number | boolean | null>;
+
+export interface SensorMessage {
+  type: 'sensor';
+  name: string;
+  rings: number;
+  columns: number;
+  rays: number;
+  settings: Settings;
+  options: string[];
+}
+
+export interface PickedMessage {
+  type: 'picked';
+  id: number;
+  hit: boolean;
+  range_m: number;
+  primitive: number;
+  position: Vec3;
+  normal: Vec3;
+  radius_m: number;
+  class?: number;
+  class_name?: string;
+  intensity?: number;
+}
+
+export interface ErrorMessage {
+  type: 'error';
+  message: string;
+}
+
+export type ServerMessage = SensorMessage | PickedMessage | ErrorMessage;
+
+/** Data that do not follow the protocol. */
+export class ProtocolError extends Error {}
+
+type Fields = Record<string, unknown>;
+
+function fields(value: unknown, what: string): Fields {
+  if (typeof value !== 'object' || value === null || Array.isArray(value))
+    throw new ProtocolError(`${what} is no object`);
+  return value as Fields;
+}
+
+function number(value: unknown, what: string): number {
+  if (typeof value !== 'number' || !Number.isFinite(value))
+    throw new ProtocolError(`${what} is no number`);
+  return value;
+}
+
+function text(value: unknown, what: string): string {
+  if (typeof value !== 'string') throw new ProtocolError(`${what} is no text`);
+  return value;
+}
+
+function list<T>(value: unknown, what: string, item: (v: unknown, what: string) => T): T[] {
+  if (value === undefined || value === null) return [];
+  if (!Array.isArray(value)) throw new ProtocolError(`${what} is no list`);
+  return value.map((v, i) => item(v, `${what}[${i}]`));
+}
+
+function numbers<T extends number[]>(value: unknown, what: string, size: number): T {
+  const found = list(value, what, number);
+  if (found.length !== size)
+    throw new ProtocolError(`${what} has ${found.length} numbers, expected ${size}`);
+  return found as T;
+}
+
+function pose(value: unknown, what: string): Pose {
+  const found = numbers<Pose>(value, what, 7);
+  const norm = Math.hypot(found[3], found[4], found[5], found[6]);
+  if (!(Math.abs(norm - 1) < 0.01)) throw new ProtocolError(`${what} is no rotation`);
+  return found;
+}
+
+function box(value: unknown, what: string): Box {
+  const corners = list(value, what, (v, w) => numbers<Vec3>(v, w, 3));
+  if (corners.length !== 2) throw new ProtocolError(`${what} has no two corners`);
+  return corners as Box;
+}
+
+function range(value: unknown, what: string): [number, number] {
+  if (value === undefined || value === null) return [0, 1];
+  return numbers<[number, number]>(value, what, 2);
+}
+
+function layer(value: unknown, what: string): LayerInfo {
+  const v = fields(value, what);
+  const kind = text(v.kind, `${what}.kind`);
+  if (kind !== 'splats' && kind !== 'points')
+    throw new ProtocolError(`${what}.kind is '${kind}', expected splats or points`);
+  return {
+    id: number(v.id, `${what}.id`),
+    kind,
+    name: text(v.name, `${what}.name`),
+    count: number(v.count, `${what}.count`),
+    nodes: number(v.nodes, `${what}.nodes`),
+    has_classes: v.has_classes === true,
+    has_intensities: v.has_intensities === true,
+    has_errors: v.has_errors === true,
+    intensity_range: range(v.intensity_range, `${what}.intensity_range`),
+    error_range_m: range(v.error_range_m, `${what}.error_range_m`),
+    box: box(v.box, `${what}.box`),
+  };
+}
+
+function classInfo(value: unknown, what: string): ClassInfo {
+  const v = fields(value, what);
+  return {
+    id: number(v.id, `${what}.id`),
+    name: text(v.name, `${what}.name`),
+    color: numbers<Vec3>(v.color, `${what}.color`, 3),
+  };
+}
+
+function sensorInfo(value: unknown, what: string): SensorInfo {
+  const v = fields(value, what);
+  const name = text(v.name, `${what}.name`);
+  return {
+    name,
+    title: typeof v.title === 'string' && v.title !== '' ? v.title : name,
+    rings: number(v.rings, `${what}.rings`),
+    rays: number(v.rays, `${what}.rays`),
+    rotation_hz: number(v.rotation_hz, `${what}.rotation_hz`),
+    min_range_m: number(v.min_range_m, `${what}.min_range_m`),
+    max_range_m: number(v.max_range_m, `${what}.max_range_m`),
+  };
+}
+
+function trajectory(value: unknown, what: string) {
+  const v = fields(value, what);
+  return { name: text(v.name, `${what}.name`), poses: list(v.poses, `${what}.poses`, pose) };
+}
+
+function recordedScan(value: unknown, what: string): RecordedScan {
+  const v = fields(value, what);
+  return {
+    name: text(v.name, `${what}.name`),
+    trajectory: number(v.trajectory, `${what}.trajectory`),
+    pose: pose(v.pose, `${what}.pose`),
+    points: typeof v.points === 'number' ? v.points : null,
+  };
+}
+
+/** scene.json. */
+export function parseScene(value: unknown): SceneInfo {
+  const v = fields(value, 'scene.json');
+  if (v.version !== 1)
+    throw new ProtocolError(`scene.json: version ${String(v.version)}, this page knows 1`);
+  const canSimulate = v.can_simulate === true;
+  return {
+    name: text(v.name, 'name'),
+    origin_m: numbers<Vec3>(v.origin_m, 'origin_m', 3),
+    layers: list(v.layers, 'layers', layer),
+    middle_box: box(v.middle_box, 'middle_box'),
+    classes: list(v.classes, 'classes', classInfo),
+    trajectories: list(v.trajectories, 'trajectories', trajectory),
+    scans: list(v.scans, 'scans', recordedScan),
+    can_simulate: canSimulate,
+    sensors: list(v.sensors, 'sensors', sensorInfo),
+    sensor: typeof v.sensor === 'string' ? v.sensor : '',
+    start_pose: Array.isArray(v.start_pose) ? pose(v.start_pose, 'start_pose') : [0, 0, 0, 0, 0, 0, 1],
+    device: typeof v.device === 'string' ? v.device : '',
+    command: list(v.command, 'command', text),
+  };
+}
+
+function settings(value: unknown): Settings {
+  const found: Settings = {};
+  if (value === undefined || value === null) return found;
+  for (const [key, v] of Object.entries(fields(value, 'settings')))
+    found[key] = typeof v === 'number' || typeof v === 'boolean' ? v : null;
+  return found;
+}
+
+/** A text message of the live channel; null: of a type that this page does not know. */
+export function parseMessage(line: string): ServerMessage | null {
+  const v = fields(JSON.parse(line), 'a message');
+  switch (v.type) {
+    case 'sensor':
+      return {
+        type: 'sensor',
+        name: text(v.name, 'sensor.name'),
+        rings: number(v.rings, 'sensor.rings'),
+        columns: number(v.columns, 'sensor.columns'),
+        rays: number(v.rays, 'sensor.rays'),
+        settings: settings(v.settings),
+        options: list(v.options, 'sensor.options', text),
+      };
+    case 'picked':
+      return picked(v);
+    case 'error':
+      return { type: 'error', message: text(v.message, 'error.message') };
+    default:
+      return null;
+  }
+}
+
+function picked(v: Fields): PickedMessage {
+  const id = number(v.id, 'picked.id');
+  const miss: PickedMessage = {
+    type: 'picked', id, hit: false, range_m: 0, primitive: 0,
+    position: [0, 0, 0], normal: [0, 0, 1], radius_m: 0,
+  };
+  if (v.hit !== true) return miss;
+  return {
+    ...miss,
+    hit: true,
+    range_m: number(v.range_m, 'picked.range_m'),
+    primitive: number(v.primitive, 'picked.primitive'),
+    position: numbers<Vec3>(v.position, 'picked.position', 3),
+    normal: numbers<Vec3>(v.normal, 'picked.normal', 3),
+    radius_m: typeof v.radius_m === 'number' ? v.radius_m : 0,
+    class: typeof v.class === 'number' ? v.class : undefined,
+    class_name: typeof v.class_name === 'string' ? v.class_name : undefined,
+    intensity: typeof v.intensity === 'number' ? v.intensity : undefined,
+  };
+}
+
+export interface TreeNode {
+  low: Vec3;
+  high: Vec3;
+  spacing_m: number;
+  largest_radius_m: number;
+  first_child: number;
+  child_count: number;
+  count: number;
+  level: number;
+}
+
+const kNodeBytes = 48;
+export const kElementBytes = 16;
+
+function treeNode(view: DataView, index: number, nodes: number): TreeNode {
+  const at = 8 + kNodeBytes * index;
+  const float = (i: number) => view.getFloat32(at + 4 * i, true);
+  const word = (i: number) => view.getUint32(at + 4 * i, true);
+  const node: TreeNode = {
+    low: [float(0), float(1), float(2)],
+    high: [float(3), float(4), float(5)],
+    spacing_m: float(6),
+    largest_radius_m: float(7),
+    first_child: word(8),
+    child_count: word(9),
+    count: word(10),
+    level: word(11),
+  };
+  // Children come later than their parent: so a tree that lies cannot make the page loop.
+  const end = node.first_child + node.child_count;
+  if (node.child_count > 8 || (node.child_count > 0 && (node.first_child <= index || end > nodes)))
+    throw new ProtocolError(`nodes.bin: node ${index} has children that cannot be`);
+  if (![...node.low, ...node.high, node.spacing_m, node.largest_radius_m].every(Number.isFinite))
+    throw new ProtocolError(`nodes.bin: node ${index} has a box that is not finite`);
+  return node;
+}
+
+/** nodes.bin. */
+export function parseNodes(bytes: ArrayBuffer): TreeNode[] {
+  if (bytes.byteLength < 8) throw new ProtocolError('nodes.bin: too short');
+  const view = new DataView(bytes);
+  const count = view.getUint32(0, true);
+  if (bytes.byteLength !== 8 + kNodeBytes * count)
+    throw new ProtocolError(`nodes.bin: ${bytes.byteLength} bytes for ${count} nodes`);
+  return Array.from({ length: count }, (_, i) => treeNode(view, i, count));
+}
+
+/** nodes/N.bin: four words an element. */
+export function parseElements(bytes: ArrayBuffer, count: number): Uint32Array {
+  if (bytes.byteLength !== count * kElementBytes)
+    throw new ProtocolError(`a node: ${bytes.byteLength} bytes for ${count} elements`);
+  return new Uint32Array(bytes);
+}
+
+export interface ScanPacket {
+  number: number;
+  points: number;
+  rays: number;
+  rings: number;
+  columns: number;
+  has_classes: boolean;
+  has_intensities: boolean;
+  pose: Pose;
+  seconds: number;
+  max_range_m: number;
+  /** Six words a point. */
+  words: Uint32Array;
+}
+
+const kScanMagic = 0x4e435341;
+const kScanHeaderBytes = 80;
+export const kScanPointWords = 6;
+
+/** A scan packet, recorded or live. */
+export function parseScan(bytes: ArrayBuffer): ScanPacket {
+  if (bytes.byteLength < kScanHeaderBytes) throw new ProtocolError('a scan: too short');
+  const head = new Uint32Array(bytes, 0, 20);
+  const floats = new Float32Array(bytes, 0, 20);
+  if (head[0] !== kScanMagic || head[1] !== 1)
+    throw new ProtocolError('a scan: no packet of version 1');
+  const points = head[3];
+  if (bytes.byteLength !== kScanHeaderBytes + points * kScanPointWords * 4)
+    throw new ProtocolError(`a scan: ${bytes.byteLength} bytes for ${points} points`);
+  return {
+    number: head[2],
+    points,
+    rays: head[4],
+    rings: head[5],
+    columns: head[6],
+    has_classes: (head[7] & 1) !== 0,
+    has_intensities: (head[7] & 2) !== 0,
+    pose: pose(Array.from(floats.subarray(8, 15)), 'the pose of a scan'),
+    seconds: floats[15],
+    max_range_m: floats[16],
+    words: new Uint32Array(bytes, kScanHeaderBytes),
+  };
+}

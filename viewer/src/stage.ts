@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The canvas. The model is drawn into a picture that is kept while nothing of it changes; scans,
+// paths and the sensor are drawn over it, against its depth.
+
+import {
+  BufferAttribute, BufferGeometry, Camera, DepthTexture, GLSL3, Mesh, NearestFilter, Object3D,
+  OrthographicCamera, PerspectiveCamera, RawShaderMaterial, Scene, UnsignedIntType, Vector2,
+  WebGLRenderTarget, WebGLRenderer,
+} from 'three';
+import { kScreenFragment, kScreenVertex } from './shaders';
+
+/** A part of the canvas, in its pixels from the lower left corner. */
+export interface Area {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
+}
+
+const kLargestPixelRatio = 2;
+
+export class Stage {
+  readonly renderer: WebGLRenderer;
+  readonly overlay = new Scene();
+  /** Drawn by a renderer without a GPU: everything costs a hundred times as much. */
+  readonly software: boolean;
+  outline = 0.6;
+  private readonly model = new Scene();
+  private target: WebGLRenderTarget;
+  private readonly screen: Mesh<BufferGeometry, RawShaderMaterial>;
+  private readonly screenCamera = new OrthographicCamera();
+  private readonly size = new Vector2(1, 1);
+
+  constructor(canvas: HTMLCanvasElement) {
+    this.software = isSoftware();
+    const antialias = !this.software;
+    this.renderer = new WebGLRenderer({ canvas, antialias, powerPreference: 'high-performance' });
+    this.renderer.autoClear = false;
+    this.renderer.sortObjects = false;
+    this.target = makeTarget(1, 1);
+    this.screen = makeScreen();
+    this.model.matrixWorldAutoUpdate = false;
+  }
+
+  /** Fits the canvas to its element; whether it changed. */
+  resize(width: number, height: number): boolean {
+    const ratio = this.software ? 1 : Math.min(window.devicePixelRatio, kLargestPixelRatio);
+    const pixels = new Vector2(Math.max(1, Math.floor(width * ratio)), Math.max(1, Math.floor(height * ratio)));
+    if (pixels.equals(this.size)) return false;
+    this.size.copy(pixels);
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.target.dispose();
+    this.target = makeTarget(pixels.x, pixels.y);
+    return true;
+  }
+
+  get pixels(): Vector2 {
+    return this.size;
+  }
+
+  get pixelRatio(): number {
+    return this.renderer.getPixelRatio();
+  }
+
+  beginModel() {
+    this.target.scissorTest = false;
+    this.target.viewport.set(0, 0, this.size.x, this.size.y);
+    this.renderer.setRenderTarget(this.target);
+    this.renderer.clear(true, true, false);
+  }
+
+  drawModel(objects: Object3D[], area: Area, camera: Camera) {
+    this.target.scissorTest = true;
+    this.target.viewport.set(area.x, area.y, area.width, area.height);
+    this.target.scissor.copy(this.target.viewport);
+    this.renderer.setRenderTarget(this.target);
+    this.model.children = objects;
+    this.renderer.render(this.model, camera);
+    this.model.children = [];
+  }
+
+  /** The picture of the model, and over it the rest, in each area. */
+  drawScreen(areas: Area[], camera: PerspectiveCamera) {
+    const { renderer, size } = this;
+    renderer.setRenderTarget(null);
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, size.x / this.pixelRatio, size.y / this.pixelRatio);
+    const { uniforms } = this.screen.material;
+    uniforms.picture.value = this.target.texture;
+    uniforms.depths.value = this.target.depthTexture;
+    uniforms.near_far.value.set(camera.near, camera.far);
+    uniforms.pixels.value.copy(size);
+    uniforms.outline.value = this.outline;
+    uniforms.pixel_ratio.value = this.pixelRatio;
+    renderer.clear(true, true, false);
+    renderer.render(this.screen, this.screenCamera);
+    renderer.setScissorTest(true);
+    for (const area of areas) {
+      const [x, y, w, h] = [area.x, area.y, area.width, area.height].map((v) => v / this.pixelRatio);
+      renderer.setViewport(x, y, w, h);
+      renderer.setScissor(x, y, w, h);
+      renderer.render(this.overlay, camera);
+    }
+    renderer.setScissorTest(false);
+  }
+
+  /** Colours of pixels of what was drawn in this task, from the upper left corner, 4 bytes each. */
+  read(x: number, y: number, width: number, height: number): Uint8Array {
+    const gl = this.renderer.getContext();
+    const bytes = new Uint8Array(4 * width * height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.readPixels(x, this.size.y - y - height, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    return bytes;
+  }
+}
+
+/** Asked of a canvas of its own: the answer decides how the real one is made. */
+function isSoftware(): boolean {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  if (!gl) throw new Error('there is none');
+  const info = gl.getExtension('WEBGL_debug_renderer_info');
+  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}
+
+function makeTarget(width: number, height: number): WebGLRenderTarget {
+  return new WebGLRenderTarget(width, height, {
+    minFilter: NearestFilter,
+    magFilter: NearestFilter,
+    depthTexture: new DepthTexture(width, height, UnsignedIntType),
+    stencilBuffer: false,
+    generateMipmaps: false,
+  });
+}
+
+function makeScreen(): Mesh<BufferGeometry, RawShaderMaterial> {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
+  const material = new RawShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: kScreenVertex,
+    fragmentShader: kScreenFragment,
+    depthFunc: 1,
+    uniforms: {
+      picture: { value: null },
+      depths: { value: null },
+      near_far: { value: new Vector2() },
+      pixels: { value: new Vector2() },
+      outline: { value: 0 },
+      pixel_ratio: { value: 1 },
+    },
+  });
+  const mesh = new Mesh(geometry, material);
+  mesh.frustumCulled = false;
+  return mesh;
+}
