@@ -25,7 +25,10 @@ demo  libcli11-dev         -             the command line
 demo  nlohmann-json3-dev   -             reports of the program
 demo  libtomlplusplus-dev  -             sensor, label and configuration files
 demo  libpng-dev           -             images
+demo  libboost-dev         -             the viewer's server (headers)
 maybe liblaszip-dev        -             LAZ files
+maybe nodejs               node          the viewer's page
+maybe npm                  npm           likewise
 test  git                  git           lists the files to check
 test  python3              python3       the layer check and clang-tidy's driver
 test  libgtest-dev         -             tests
@@ -33,8 +36,14 @@ test  libeigen3-dev        -             oracle of the tests
 test  libnanoflann-dev     -             baseline of the benchmarks
 test  clang-format         clang-format  checks
 test  clang-tidy           clang-tidy    checks
+test  pybind11-dev         -             the Python package
+test  python3-dev          -             likewise
+test  python3-numpy        -             likewise
+test  python3-setuptools   -             pip install
+test  python3-wheel        -             likewise
+test  python3-pip          -             likewise
+test  python3-pytest       -             tests of the Python package
 maybe-test libopenvdb-dev  -             IMLS meshes
-maybe-test libboost-dev    -             headers that those of OpenVDB include
 maybe-test libopen3d-dev   -             Poisson meshes
 maybe-test cloudcompare    CloudCompare  distances to compare ours with
 maybe-test chromium        chromium      the report page in a browser

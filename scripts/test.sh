@@ -5,13 +5,13 @@
 # Installs what is missing, then builds, tests and checks everything; ends with a line
 # "N passed, N failed", where each check and each test program counts once.
 # usage: scripts/test.sh [--help] [CHECK...]
-#   CHECK: names layers scripts format build tidy tests asan install (default: all, in this order)
+#   CHECK: names layers scripts format packages build tidy tests asan install (default: all, in this order)
 # The build folders are build/release and build/asan; logs of the checks are in build/test-logs.
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 70
-readonly kChecks="names layers scripts format build tidy tests asan install"
+readonly kChecks="names layers scripts format packages build tidy tests asan install"
 readonly logs=$root/build/test-logs
 
 # git refuses a clone that another user owns, which is what a container sees of a mounted folder.
@@ -69,6 +69,19 @@ check_scripts() {
   if command -v shellcheck >/dev/null; then
     shellcheck "${scripts[@]}"
   fi
+}
+
+# What the tests of the page and of the exports read with, from the npm registry.
+fetch_packages() {
+  if ! command -v npm >/dev/null; then
+    echo "no npm: the tests of the viewer's page and of the exports skip themselves"
+    exit 77
+  fi
+  local folder
+  for folder in viewer tests/exports; do
+    (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error)
+  done
+  (cd viewer && npm run check)
 }
 
 build_release() {
@@ -137,6 +150,7 @@ else
   fi
   wanted scripts && check scripts check_scripts
   wanted format && check format tools/check_format.sh
+  wanted packages && check packages fetch_packages
   if wanted build; then
     check build build_release || built=false
   fi

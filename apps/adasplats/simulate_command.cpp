@@ -52,8 +52,9 @@ class SimulateCommand final : public Command {
                             {"npz", ScanFormat::npz},
                             {"pcd", ScanFormat::pcd},
                             {"las", ScanFormat::las},
-                            {"range-image", ScanFormat::range_image}},
-                           "Of the scans; semantickitti writes OUTPUT/sequences/00");
+                            {"range-image", ScanFormat::range_image},
+                            {"mcap", ScanFormat::mcap}},
+                           "Of the scans; semantickitti writes OUTPUT/sequences/00, mcap OUTPUT/scans.mcap");
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     add_device_options(GpuCount::several);
   }

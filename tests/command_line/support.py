@@ -31,6 +31,8 @@ SUBCOMMANDS = [
     ["evaluate", "truth"],
     ["evaluate", "presence"],
     ["compare"],
+    ["view"],
+    ["export"],
     ["demo"],
 ]
 ROAD, BUILDING, POLE = 40, 50, 80

@@ -1,0 +1,139 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""export: which input can become what; tests/exports reads the files with other programs."""
+import resource
+import struct
+import unittest
+
+from support import ProgramTest, tree_digest
+
+
+class Export(ProgramTest):
+    def export(self, input_path, name, *arguments):
+        """Exports to a file of that name; gives back its path."""
+        path = self.folder / name
+        self.run_good("export", input_path, "-o", path, *arguments)
+        return path
+
+    def header(self, path):
+        return path.read_bytes().partition(b"end_header\n")[0].decode().splitlines()
+
+    def test_a_model(self):
+        model = self.model()
+        splats = next(line for line in self.header(model) if line.startswith("element vertex"))
+        for kind, scales in [("gaussian-3d", 3), ("gaussian-2d", 2)]:
+            lines = self.header(self.export(model, f"{kind}.ply", "--format", kind))
+            self.assertIn(splats, lines)
+            self.assertIn("comment adasplats.origin 0 0 0", lines)
+            self.assertEqual(sum("property float scale_" in line for line in lines), scales)
+        glb = self.export(model, "centers.glb")
+        self.assertEqual(glb.read_bytes()[:4], b"glTF")
+        report = self.report("export", model, "-o", self.folder / "again.glb")
+        self.assertEqual(f"element vertex {report['splats']}", splats)
+        self.assertEqual(report["bytes"], glb.stat().st_size)
+        self.assertEqual((self.folder / "again.glb").read_bytes(), glb.read_bytes())
+
+    def test_colors(self):
+        model = self.model()
+        by_class = self.export(model, "a.glb").read_bytes()
+        self.assertEqual(self.export(model, "b.glb", "--color", "class").read_bytes(), by_class)
+        self.assertNotEqual(self.export(model, "c.glb", "--color", "height").read_bytes(), by_class)
+        self.run_bad(64, "export", model, "-o", self.folder / "d.glb", "--color", "intensity",
+                     says=["--color intensity", "no intensities"])
+        self.run_bad(64, "export", self.cloud, "-o", self.folder / "d.glb", "--color", "class",
+                     says=["label scheme"])
+        self.run_bad(64, "export", self.cloud, "-o", self.folder / "d.ply", "--color", "height",
+                     says=["--color", "ply", "gaussian-3d"])
+        self.assertNotIn("d.glb", self.names())
+
+    def test_a_cloud_and_a_sequence(self):
+        scans = self.simulate(self.model())
+        for source in (self.cloud, scans, scans / "sequences" / "00"):
+            points = self.report("export", source, "-o", self.folder / "points.ply")["points"]
+            self.assertEqual(self.report("export", source, "-o", self.folder / "p.glb")["points"],
+                             points)
+            self.assertIn(f"element vertex {points}", self.header(self.folder / "points.ply"))
+        both = [self.export(scans, "a.mcap"), self.export(scans / "sequences" / "00", "b.mcap")]
+        self.assertEqual(both[0].read_bytes(), both[1].read_bytes())
+        self.assertEqual(both[0].read_bytes()[:8], b"\x89MCAP0\r\n")
+        self.assertEqual(both[0].read_bytes()[-8:], b"\x89MCAP0\r\n")
+        report = self.report("export", scans, "-o", self.folder / "c.mcap", "--scans", "1:9")
+        self.assertEqual(report["scans"], 2)
+        self.run_bad(64, "export", scans, "-o", self.folder / "d.mcap", "--scans", "3:1")
+
+    def test_simulate_writes_the_same_format(self):
+        model = self.model()
+        scans = self.simulate(model, "scans", "--format", "mcap")
+        again = self.simulate(model, "again", "--format", "mcap", "--threads", "1")
+        self.assertEqual(sorted(path.name for path in scans.iterdir()),
+                         ["adasplats.json", "poses.csv", "scans.mcap"])
+        self.assertEqual(tree_digest(scans), tree_digest(again))
+        self.run_bad(65, "export", scans, "-o", self.folder / "a.mcap", says=["semantickitti"])
+
+    def test_times_that_messages_do_not_hold(self):
+        self.poses.write_text("time,x,y,z,qw,qx,qy,qz\n-1,4,0,2,1,0,0,0\n")
+        model = self.model()
+        before = self.names()
+        self.run_bad(65, "simulate", model, "--trajectory", self.poses, "--sensor", self.sensor,
+                     "-o", self.folder / "scans", "--format", "mcap", says=["-1.0", "ROS"])
+        self.assertEqual(self.names(), before)
+
+    def test_what_cannot_be(self):
+        model = self.model()
+        out = self.folder / "out"
+        bad = lambda source, name, *words, says: self.run_bad(64, "export", source, "-o",
+                                                              self.folder / name, *words, says=says)
+        bad(model, "out.ply", says=["splat model", "gaussian-3d, gaussian-2d or glb", "--format"])
+        bad(model, "out.mcap", says=["splat model", "gaussian-3d, gaussian-2d or glb"])
+        bad(model, "out", says=["without an ending", "--format"])
+        bad(model, "out.ply", "--format", "ply", says=["not as ply"])
+        bad(self.cloud, "out.mcap", says=["point cloud", "glb or ply"])
+        bad(self.cloud, "out.ply", "--format", "gaussian-3d", says=["not as gaussian-3d"])
+        bad(self.cloud, "out.ply", "--format", "gausian-3d", says=["did you mean 'gaussian-3d'"])
+        bad(model, "model.ply", "--format", "gaussian-3d", says=["is the input"])
+        (self.folder / "mesh.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        bad(self.folder / "mesh.obj", "out.glb", says=["triangle mesh"])
+        self.run_bad(66, "export", self.folder / "lost.ply", "-o", out, says=["lost.ply"])
+        self.run_bad(73, "export", self.cloud, "-o", self.folder / "no such" / "a.glb")
+        self.assertFalse(any(name.startswith("out") for name in self.names()))
+
+    def test_points_that_are_not_finite(self):
+        sequence = self.simulate(self.model()) / "sequences" / "00"
+        scan = sequence / "velodyne" / "000001.bin"
+        content = bytearray(scan.read_bytes())
+        struct.pack_into("<f", content, 16 * 7, float("nan"))
+        scan.write_bytes(content)
+        report = self.report("export", sequence, "-o", self.folder / "a.mcap")
+        self.assertEqual((report["scans"], report["points_dropped"]), (3, 1))
+        self.run_bad(65, "export", sequence, "-o", self.folder / "b.mcap", "--strict",
+                     says=["000001.bin", "not finite"])
+        self.assertNotIn("b.mcap", self.names())
+
+    def test_no_points_and_one(self):
+        cloud = self.folder / "few.csv"
+        for rows, count in [("", 0), ("1,2,3\n", 1)]:
+            cloud.write_text("x,y,z\n" + rows)
+            for name in ["few.glb", "few.ply"]:
+                report = self.report("export", cloud, "-o", self.folder / name)
+                self.assertEqual(report["points"], count)
+
+    def test_disk_full(self):
+        model = self.model()
+        scans = self.simulate(model)
+        before = self.names()
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2048, 2048))
+        for source, name, words in [(model, "a.ply", ["--format", "gaussian-3d"]),
+                                    (model, "a.glb", []), (scans, "a.mcap", [])]:
+            self.run_bad(74, "export", source, "-o", self.folder / name, *words, preexec_fn=limit,
+                         says=[name])
+            self.assertEqual(self.names(), before)
+
+    def test_far_from_zero(self):
+        cloud = self.folder / "far.csv"
+        cloud.write_text("x,y,z\n" + "".join(f"{448262 + k},5411932,{k}\n" for k in range(9)))
+        glb = self.export(cloud, "far.glb").read_bytes()
+        self.assertIn(b'"origin":[448000,5412000,0]', glb)
+
+
+if __name__ == "__main__":
+    unittest.main()
