@@ -24,7 +24,7 @@ import sys
 import tempfile
 
 HEAVY = ("nlohmann/", "toml++/", "CLI/", "tbb/", "oneapi/", "embree", "Eigen/", "png.h", "laszip/",
-         "nanoflann", "gtest/", "benchmark/", "cuda", "cub/", "thrust/")
+         "nanoflann", "gtest/", "benchmark/", "cuda", "cub/", "thrust/", "boost/")
 LIGHT = ("nlohmann/json_fwd.hpp",)  # declarations alone
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 STAGE = re.compile(r"^[ \t]*adasplats_stage\(([^)]*)\)", re.MULTILINE)

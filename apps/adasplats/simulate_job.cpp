@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "adasplats/core/stopwatch.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/stopwatch.h"
 #include "adasplats/dataset/kitti_boxes.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/model_scene.h"

@@ -35,6 +35,7 @@ using Response = http::response<http::span_body<const char>>;
 /// After a last answer: so long what still comes is read and dropped. A socket that is closed with
 /// unread bytes resets the connection, and the answer is lost.
 constexpr std::chrono::milliseconds kLingerLimit{1000};
+constexpr std::size_t kLingerBytes = std::size_t{1} << 20;
 
 std::string_view to_std(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -88,6 +89,7 @@ class HttpConnection final : public Connection,
   std::optional<Response> response_;
   std::optional<http::response_serializer<http::span_body<const char>>> serializer_;
   std::array<char, 2048> dropped_{};
+  std::size_t dropped_bytes_ = 0;
 };
 
 void HttpConnection::read() {
@@ -205,12 +207,11 @@ void HttpConnection::sent(ErrorCode error) {
 
 void HttpConnection::drop_input() {
   socket_.async_read_some(asio::buffer(dropped_),
-                          [self = shared_from_this()](ErrorCode error, std::size_t) {
+                          [self = shared_from_this()](ErrorCode error, std::size_t count) {
                             if (self->ended_) return;
-                            if (error)
-                              self->abort();
-                            else
-                              self->drop_input();
+                            self->dropped_bytes_ += count;
+                            if (error || self->dropped_bytes_ > kLingerBytes) return self->abort();
+                            self->drop_input();
                           });
 }
 

@@ -36,8 +36,8 @@ double time_to_end(RawClient& client) {
 
 TEST_F(HttpServerTest, AnswersGet) {
   start();
-  EXPECT_EQ(server_->url(),
-            std::string("http://127.0.0.1:") + std::to_string(server_->port()) + "/secret/");
+  EXPECT_EQ(server->url(),
+            std::string("http://127.0.0.1:") + std::to_string(server->port()) + "/secret/");
   RawClient one = client();
   one.get("/secret/a%20b?x=1");
   const std::string reply = one.reply();
@@ -79,8 +79,9 @@ TEST_F(HttpServerTest, HeadHasTheHeaderOfGet) {
 TEST_F(HttpServerTest, ConnectionsAreKeptAndRequestsPipelined) {
   start();
   RawClient one = client();
-  const std::string get = std::string("GET /secret/a%20b HTTP/1.1\r\nHost: ") + one.host() + "\r\n";
-  one.send(get + "\r\n" + get + "\r\n" + get + "Connection: close\r\n\r\n");
+  const std::string lines =
+      std::string("GET /secret/a%20b HTTP/1.1\r\nHost: ") + one.host() + "\r\n";
+  one.send(lines + "\r\n" + lines + "\r\n" + lines + "Connection: close\r\n\r\n");
   for (int i = 0; i < 3; ++i) EXPECT_EQ(body(one.reply()), "found");
   EXPECT_TRUE(one.ended());
   RawClient old = client();
@@ -92,8 +93,9 @@ TEST_F(HttpServerTest, ConnectionsAreKeptAndRequestsPipelined) {
 TEST_F(HttpServerTest, BytesMayComeOneByOne) {
   start();
   RawClient one = client();
-  const std::string get = std::string("GET /secret/ HTTP/1.1\r\nHost: ") + one.host() + "\r\n\r\n";
-  for (const char byte : get) one.send(std::string(1, byte));
+  const std::string lines =
+      std::string("GET /secret/ HTTP/1.1\r\nHost: ") + one.host() + "\r\n\r\n";
+  for (const char byte : lines) one.send(std::string(1, byte));
   EXPECT_EQ(status_line(one.reply()), "HTTP/1.1 200 OK");
 }
 
@@ -178,7 +180,7 @@ TEST_F(HttpServerTest, LongHeadersAreRefused) {
 }
 
 TEST_F(HttpServerTest, SlowHeadersAreCut) {
-  options_.stall_limit = 100ms;
+  options.stall_limit = 100ms;
   start();
   RawClient silent = client();
   RawClient kept = client();
@@ -193,11 +195,11 @@ TEST_F(HttpServerTest, SlowHeadersAreCut) {
 }
 
 TEST_F(HttpServerTest, AStalledDownloadIsClosed) {
-  options_.stall_limit = 100ms;
+  options.stall_limit = 100ms;
   const auto big = std::make_shared<const std::string>(std::size_t{32} << 20, 'x');
-  get_ = [&](std::string_view) { return HttpReply{200, "text/plain", big}; };
+  get = [&](std::string_view) { return HttpReply{200, "text/plain", big}; };
   start();
-  RawClient stalled(server_->port(), 4096);
+  RawClient stalled(server->port(), 4096);
   stalled.get("/secret/");
   ASSERT_TRUE(soon([&] { return big.use_count() > 1; }));
   EXPECT_TRUE(soon([&] { return big.use_count() == 1; }));
@@ -205,9 +207,9 @@ TEST_F(HttpServerTest, AStalledDownloadIsClosed) {
 }
 
 TEST_F(HttpServerTest, ASlowDownloadGetsAll) {
-  options_.stall_limit = 250ms;
+  options.stall_limit = 250ms;
   const auto big = std::make_shared<const std::string>(std::size_t{24} << 20, 'x');
-  get_ = [&](std::string_view) { return HttpReply{200, "text/plain", big}; };
+  get = [&](std::string_view) { return HttpReply{200, "text/plain", big}; };
   start();
   RawClient slow = client();
   slow.get("/secret/");
@@ -221,10 +223,10 @@ TEST_F(HttpServerTest, ASlowDownloadGetsAll) {
 
 TEST_F(HttpServerTest, ABodyIsNotCopiedForEachClient) {
   const auto big = std::make_shared<const std::string>(std::size_t{32} << 20, 'x');
-  get_ = [&](std::string_view) { return HttpReply{200, "text/plain", big}; };
+  get = [&](std::string_view) { return HttpReply{200, "text/plain", big}; };
   start();
   const std::size_t before = resident_kb();
-  std::vector<RawClient> clients;
+  std::deque<RawClient> clients;
   for (int i = 0; i < 20; ++i) {
     clients.push_back(client());
     clients.back().get("/secret/");
@@ -238,7 +240,7 @@ TEST_F(HttpServerTest, ABodyIsNotCopiedForEachClient) {
 TEST_F(HttpServerTest, TwentyClientsAtOnce) {
   start();
   std::atomic<int> good = 0;
-  std::vector<std::thread> threads;
+  std::deque<std::thread> threads;
   for (int i = 0; i < 20; ++i)
     threads.emplace_back([&] {
       RawClient one = client();
@@ -247,12 +249,12 @@ TEST_F(HttpServerTest, TwentyClientsAtOnce) {
         good += body(one.reply()) == "found";
       }
     });
-  for (std::thread& thread : threads) thread.join();
+  for (std::thread& each : threads) each.join();
   EXPECT_EQ(good, 400);
 }
 
 TEST_F(HttpServerTest, MoreThanTheLimitAreTurnedAway) {
-  options_.connections_limit = 2;
+  options.connections_limit = 2;
   start();
   RawClient first = client();
   first.get("/secret/");
@@ -266,7 +268,7 @@ TEST_F(HttpServerTest, MoreThanTheLimitAreTurnedAway) {
     EXPECT_EQ(status_line(third.reply()), "HTTP/1.1 503 Service Unavailable");
     EXPECT_TRUE(third.ended());
     // Of those that say nothing at most as many again are kept.
-    std::vector<RawClient> crowd;
+    std::deque<RawClient> crowd;
     for (int i = 0; i < 50; ++i) crowd.push_back(client());
     EXPECT_TRUE(crowd.back().ended());
   }
@@ -278,7 +280,7 @@ TEST_F(HttpServerTest, MoreThanTheLimitAreTurnedAway) {
 }
 
 TEST_F(HttpServerTest, AHandlerThatThrowsIs500) {
-  get_ = [](std::string_view path) -> HttpReply {
+  get = [](std::string_view path) -> HttpReply {
     if (path == "1") throw std::runtime_error("private words");
     if (path == "2") throw 2;
     return {200, "text/plain", nullptr};
@@ -344,28 +346,27 @@ TEST_F(HttpServerTest, GoesOnAfterItRanOutOfDescriptors) {
 
 TEST_F(HttpServerTest, PlacesThatCannotBeServed) {
   start();
-  RecordingHandler live;
+  RecordingHandler nobody;
   const auto kind_of = [&](const std::string& address, std::uint16_t port) -> ErrorKind {
     try {
-      HttpServerOptions options{address, port, "secret"};
-      HttpServer(options, get_, live);
+      HttpServer({address, port, "secret"}, get, nobody);
     } catch (const Error& error) {
       return error.kind();
     }
     return ErrorKind::software;
   };
-  EXPECT_EQ(kind_of("127.0.0.1", server_->port()), ErrorKind::unavailable);
+  EXPECT_EQ(kind_of("127.0.0.1", server->port()), ErrorKind::unavailable);
   EXPECT_EQ(kind_of("192.0.2.1", 0), ErrorKind::unavailable);  // for documentation (RFC 5737)
   EXPECT_EQ(kind_of("localhost", 0), ErrorKind::usage);
   EXPECT_EQ(kind_of("", 0), ErrorKind::usage);
-  EXPECT_THROW(HttpServer(HttpServerOptions{}, get_, live), std::logic_error);
+  EXPECT_THROW(HttpServer(HttpServerOptions{}, get, nobody), std::logic_error);
   for (const char* token : {"a/b", "a b", "a%20", "..", "\u00e4", "a?"})
-    EXPECT_THROW(HttpServer({"127.0.0.1", 0, token}, get_, live), Error) << token;
+    EXPECT_THROW(HttpServer({"127.0.0.1", 0, token}, get, nobody), Error) << token;
 }
 
 TEST_F(HttpServerTest, EndsWithClientsConnected) {
   start();
-  std::vector<RawClient> clients;
+  std::deque<RawClient> clients;
   for (int i = 0; i < 10; ++i) clients.push_back(client());
   clients[0].get("/secret/");
   clients[0].reply();
@@ -378,20 +379,20 @@ TEST_F(HttpServerTest, EndsWithClientsConnected) {
 }
 
 TEST_F(HttpServerTest, StopBeforeRunIsNotLost) {
-  server_ = std::make_unique<HttpServer>(
-      HttpServerOptions{"127.0.0.1", 0, "secret"}, [](auto) { return HttpReply{}; }, live_);
-  server_->stop();
-  server_->run();
+  server = std::make_unique<HttpServer>(
+      HttpServerOptions{"127.0.0.1", 0, "secret"}, [](auto) { return HttpReply{}; }, live);
+  server->stop();
+  server->run();
 }
 
 HttpServer* signalled = nullptr;
 
 TEST_F(HttpServerTest, ASignalMayStopIt) {
   start();
-  signalled = server_.get();
+  signalled = server.get();
   const auto old = std::signal(SIGUSR1, [](int) { signalled->stop(); });
   std::raise(SIGUSR1);
-  thread_.join();
+  running.join();
   std::signal(SIGUSR1, old);
 }
 

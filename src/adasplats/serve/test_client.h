@@ -11,8 +11,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -94,6 +96,7 @@ class RawClient {
   bool receive() {
     char bytes[65536];
     const ssize_t count = ::recv(socket_, bytes, sizeof bytes, 0);
+    if (count < 0 && errno == EAGAIN) ADD_FAILURE() << "nothing came for five seconds";
     if (count <= 0) return false;
     buffer_.append(bytes, static_cast<std::size_t>(count));
     return true;
@@ -265,38 +268,38 @@ class ServerTest : public testing::Test {
  protected:
   void SetUp() override {
     if (!has_http_server()) GTEST_SKIP() << "built without Boost";
-    options_.token = "secret";
+    options.token = "secret";
   }
   void TearDown() override { stop(); }
 
   void start() {
-    server_ = std::make_unique<HttpServer>(
-        options_, [this](std::string_view path) { return get_(path); }, live_);
-    thread_ = std::thread([this] { server_->run(); });
+    server = std::make_unique<HttpServer>(
+        options, [this](std::string_view path) { return get(path); }, live);
+    running = std::thread([this] { server->run(); });
   }
   void stop() {
-    if (thread_.joinable()) {
-      server_->stop();
-      thread_.join();
+    if (running.joinable()) {
+      server->stop();
+      running.join();
     }
   }
-  RawClient client() const { return RawClient(server_->port()); }
+  RawClient client() const { return RawClient(server->port()); }
   /// A client with an open WebSocket.
   RawClient live_client(std::string_view lines = {}, int receive_buffer = 0) const {
-    RawClient result(server_->port(), receive_buffer);
+    RawClient result(server->port(), receive_buffer);
     EXPECT_TRUE(result.upgrade("/secret/live", lines).starts_with("HTTP/1.1 101 "));
     return result;
   }
 
-  HttpServerOptions options_;
-  RecordingHandler live_;
-  HttpHandler get_ = [](std::string_view path) -> HttpReply {
+  HttpServerOptions options;
+  RecordingHandler live;
+  HttpHandler get = [](std::string_view path) -> HttpReply {
     if (path == "a b") return {200, "text/plain", std::make_shared<const std::string>("found")};
     if (path.empty()) return {200, "text/html", nullptr};
     return {404, {}, nullptr};
   };
-  std::unique_ptr<HttpServer> server_;
-  std::thread thread_;
+  std::unique_ptr<HttpServer> server;
+  std::thread running;
 };
 
 }  // namespace adasplats

@@ -18,6 +18,8 @@ using Json = nlohmann::ordered_json;
 
 /// Positions and speeds beyond it are nobody's.
 constexpr double kFarthest_m = 1e7;
+/// Of one scan with its sub-rays: one page must not keep the others waiting.
+constexpr std::size_t kMostRays = 4'000'000;
 /// A rotation whose quaternion is of this much other length is a mistake.
 constexpr double kNormTolerance = 1e-2;
 
@@ -174,6 +176,10 @@ LiveSensor parse_sensor(const Json& json) {
   if (!(sensor.settings.sensor.min_range_m < sensor.settings.sensor.max_range_m))
     refuse("min_range_m: expected less than max_range_m");
   check(sensor.settings);
+  const std::size_t rays = sensor.settings.sensor.rays_per_scan() *
+                           static_cast<std::size_t>(sensor.settings.beam.sub_rays);
+  if (rays > kMostRays)
+    refuse(std::to_string(rays) + " rays a scan, expected at most " + std::to_string(kMostRays));
   return sensor;
 }
 

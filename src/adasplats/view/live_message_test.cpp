@@ -148,6 +148,12 @@ TEST(LiveMessage, SettingsOutOfRangeAreRefused) {
   expect_refused(with(R"({"rotation_hz":0})"), "rotation_hz");
 }
 
+TEST(LiveMessage, AScanThatTakesForeverIsRefused) {
+  expect_refused(R"({"type":"sensor","name":"livox-mid-40","settings":{"rotation_hz":0.1,)"
+                 R"("sub_rays":19,"returns":1}})",
+                 "rays a scan");
+}
+
 TEST(LiveMessage, NothingOfALongNameIsKept) {
   EXPECT_LT(refusal(R"({"type":")" + std::string(10'000, 'x') + "\"}").second.size(), 200U);
 }
