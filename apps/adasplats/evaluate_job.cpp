@@ -47,9 +47,8 @@ ResimulateResult run_resimulate(const ResimulateJob& job, Session& session) {
                        job.picture_width, session);
   }
   if (!job.errors.empty()) {
-    const ErrorPoints points =
-        beam_points(scene.tracer(), scene.view(), scene.origin(), sequence, labels, job.options,
-                    session.executor, session.progress);
+    const ErrorPoints points = beam_points(scene.tracer(), scene.view(), scene.origin(), sequence,
+                                           labels, job.options, session.executor, session.progress);
     write_error_points(job.errors, points.cloud, points.errors_m);
   }
   return result;

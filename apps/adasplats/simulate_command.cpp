@@ -45,16 +45,17 @@ class SimulateCommand final : public Command {
     add_drive_options(app);
     add_beam_options(app);
     add_weather_options(app);
-    add_choice<ScanFormat>(app, "--format", job_.format,
-                           {{"semantickitti", ScanFormat::semantickitti},
-                            {"ply", ScanFormat::ply},
-                            {"npy", ScanFormat::npy},
-                            {"npz", ScanFormat::npz},
-                            {"pcd", ScanFormat::pcd},
-                            {"las", ScanFormat::las},
-                            {"range-image", ScanFormat::range_image},
-                            {"mcap", ScanFormat::mcap}},
-                           "Of the scans; semantickitti writes OUTPUT/sequences/00, mcap OUTPUT/scans.mcap");
+    add_choice<ScanFormat>(
+        app, "--format", job_.format,
+        {{"semantickitti", ScanFormat::semantickitti},
+         {"ply", ScanFormat::ply},
+         {"npy", ScanFormat::npy},
+         {"npz", ScanFormat::npz},
+         {"pcd", ScanFormat::pcd},
+         {"las", ScanFormat::las},
+         {"range-image", ScanFormat::range_image},
+         {"mcap", ScanFormat::mcap}},
+        "Of the scans; semantickitti writes OUTPUT/sequences/00, mcap OUTPUT/scans.mcap");
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     add_device_options(GpuCount::several);
   }
