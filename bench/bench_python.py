@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""What Python costs: the rate of Scene.simulate against the same loop in C++, by turns in one run, and
-what casting 10 million rays adds to the memory.
+"""What Python costs: the rate of Scene.simulate against the same loop in C++, by turns in one run,
+and what casting 10 million rays adds to the memory.
 
     PYTHONPATH=build/release/python python3 bench/bench_python.py MODEL.ply TRAJECTORY
-        [--sensor hdl-64-paper] [--program build/release/bin/bench_simulate] [--repeats 9] [--json FILE]
+        [--sensor hdl-64-paper] [--program build/release/bin/bench_simulate] [--repeats 9]
+        [--json FILE]
 """
 import argparse
 import json
@@ -21,9 +22,10 @@ import adasplats
 RAYS = 10_000_000
 
 
-def peak_bytes():
+def memory_bytes(key):
+    """VmRSS, what is in memory now, or VmHWM, its peak."""
     with open("/proc/self/status", encoding="ascii") as status:
-        return next(1024 * int(x.split()[1]) for x in status if x.startswith("VmHWM:"))
+        return next(1024 * int(x.split()[1]) for x in status if x.startswith(key + ":"))
 
 
 class Counterpart:
@@ -47,7 +49,7 @@ class Counterpart:
 
 
 def simulated(arguments):
-    """Scans a second in Python and in C++, and the median of the ratios of runs beside each other."""
+    """Scans a second in Python and in C++, and the median ratio of runs beside each other."""
     scene = adasplats.Scene(arguments.model, device="cpu")
     sensor = adasplats.Sensor(arguments.sensor)
     poses = adasplats.Trajectory.read(arguments.trajectory)
@@ -83,13 +85,14 @@ def cast_memory(arguments):
     origins = np.empty_like(directions)
     origins[:] = [*middle[:2], 1.73]
     scene.cast(origins[:300_000], directions[:300_000])
-    before = peak_bytes()
+    before = memory_bytes("VmRSS")
     start = time.perf_counter()
     hits = scene.cast(origins, directions)
     seconds = time.perf_counter() - start
+    grown = memory_bytes("VmHWM") - before
     return {"rays": RAYS, "input_bytes": origins.nbytes + directions.nbytes,
-            "result_bytes": 8 * len(hits), "peak_grew_by_bytes": peak_bytes() - before,
-            "beside_result_bytes": peak_bytes() - before - 8 * len(hits),
+            "result_bytes": 8 * len(hits), "peak_over_before_bytes": grown,
+            "beside_result_bytes": grown - 8 * len(hits),
             "rays_per_s": RAYS / seconds}
 
 

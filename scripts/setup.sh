@@ -42,6 +42,7 @@ test  python3-numpy        -             likewise
 test  python3-setuptools   -             pip install
 test  python3-wheel        -             likewise
 test  python3-pip          -             likewise
+test  python3-venv         -             likewise
 test  python3-pytest       -             tests of the Python package
 maybe-test libopenvdb-dev  -             IMLS meshes
 maybe-test libopen3d-dev   -             Poisson meshes

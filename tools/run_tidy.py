@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs clang-tidy over the sources of src/ and apps/ (tests and benchmarks are not checked).
+"""Runs clang-tidy over the sources of src/, apps/ and python/ (tests and benchmarks are not checked).
 
 A file that passed is not run again until it, a header of ours that it includes, its compile
 command or .clang-tidy changes: what passed is kept as stamps in BUILD/tidy. Versions of clang-tidy
@@ -23,7 +23,7 @@ import sys
 
 PINNED = 14  # Debian 12's
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-CHECKED = (ROOT / "src", ROOT / "apps")
+CHECKED = (ROOT / "src", ROOT / "apps", ROOT / "python" / "src")
 DIAGNOSTIC = re.compile(r"^(?=/[^\n]*:\d+:\d+: (?:error|warning): )", re.MULTILINE)
 OUR_INCLUDE = re.compile(rb'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
 

@@ -8,7 +8,7 @@ import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 const here = dirname(fileURLToPath(import.meta.url));
-const output = resolve(process.argv[2] ?? join(here, 'dist'));
+const output = resolve(process.argv[2] ?? join(here, '..', 'build', 'page'));
 const three = join(here, 'node_modules', 'three');
 
 /** The licence of what is bundled, as its own text demands: with every copy. */
@@ -34,6 +34,10 @@ await build({
   bundle: true,
   format: 'iife',
   target: 'es2020',
+  // Said here, so that a copy without tsconfig.json makes the same page.
+  tsconfigRaw: {
+    compilerOptions: { strict: true, target: 'es2020', useDefineForClassFields: false },
+  },
   minify: true,
   charset: 'ascii',
   legalComments: 'inline',

@@ -3,12 +3,13 @@
 
 // The page: what the user does, what the server says, and what is shown of it.
 
-import { Raycaster, Vector2, Vector3 } from 'three';
+import { Raycaster, Vector2 } from 'three';
 import type { CameraMode } from './camera_rig';
 import { ColorPanel, firstMode } from './color_panel';
 import { commandLine, kPosesFile, posesCsv } from './command_line';
 import { button, byId, download, fill, make, row, segments, short, slider, tick } from './dom';
 import { Driver, typing } from './driver';
+import { publishHandle } from './handle';
 import { fillHelp } from './help';
 import { layersPanel } from './layers_panel';
 import { LidarPanel } from './lidar_panel';
@@ -24,16 +25,22 @@ import { ScanRate } from './scan_rate';
 import { ScansPanel } from './scans_panel';
 import { SceneView } from './scene_view';
 import { SensorBody } from './sensor_body';
-import { kColorModes, kScanModes, type ColorMode, type ScanMode } from './shaders';
-import { yawOf, rotationOf } from './pose';
+import { kScanModes, type ColorMode, type ScanMode } from './shaders';
+import { yawOf } from './pose';
 
 const kFiguresMs = 250;
 const kToastMs = 6000;
 const kImageMs = 60;
 const kMotionMs = 33;
 const kEchoPixels = 5;
-const kAliveMs = 400;
-const kCameras: [CameraMode, string][] = [['orbit', 'Orbit'], ['follow', 'Follow'], ['top', 'Top']];
+const kAliveMs = 1500;
+/** Scans a second that a page takes without having drawn them. */
+const kEnoughPerSecond = 12;
+const kCameras: [CameraMode, string][] = [
+  ['orbit', 'Orbit'],
+  ['follow', 'Follow'],
+  ['top', 'Top'],
+];
 const kDrivenColor = 0x3aa0e6;
 
 export class App {
@@ -61,7 +68,6 @@ export class App {
   /** Scans for which the server has not been told that the page is ready again. */
   private owed = 0;
   private motionDue = false;
-  private fetchFailures = 0;
 
   constructor(private scene: SceneInfo) {
     const canvas = byId<HTMLCanvasElement>('view');
@@ -72,14 +78,20 @@ export class App {
     this.recordedCloud = new ScanCloud(classes, maps);
     this.image = new RangeImage(byId<HTMLCanvasElement>('range-image'), this.view.palette);
     this.live = this.makeLive();
-    this.driver = new Driver(scene.start_pose, (origin, direction) => this.live.pick(origin, direction));
+    this.driver = new Driver(scene.start_pose, (origin, direction) =>
+      this.live.pick(origin, direction),
+    );
     this.lidar = new LidarPanel(scene.sensors, scene.sensor, {
       choose: (name, settings) => this.live.chooseSensor(name, settings),
       run: (on) => this.live.run(on),
     });
     this.card = new PickCard(byId('card'), this.view.palette, scene.origin_m);
-    this.cameraButtons = segments('Camera', kCameras.map(([value, text]) => ({ value, text })), 'orbit',
-      (mode) => this.setCamera(mode as CameraMode));
+    this.cameraButtons = segments(
+      'Camera',
+      kCameras.map(([value, text]) => ({ value, text })),
+      'orbit',
+      (mode) => this.setCamera(mode as CameraMode),
+    );
     this.fillOverlay();
     this.fillTools();
     this.fillStrip();
@@ -102,7 +114,19 @@ export class App {
       this.lidar.setRunning(true);
       this.live.connect();
     }
-    (window as unknown as { adasplats: unknown }).adasplats = this.handle();
+    publishHandle({
+      view,
+      live: this.live,
+      driver: this.driver,
+      lidar: this.lidar,
+      rate: this.rate,
+      cloud: this.liveCloud,
+      setPose: (pose) => this.setPose(pose),
+      setCameraMode: (mode) => this.chooseCamera(mode),
+      setColor: (mode) => this.colors.choose(mode),
+      command: () => this.command,
+      poses: () => this.poses,
+    });
   }
 
   // What the server says.
@@ -179,12 +203,13 @@ export class App {
     this.newScan = scan;
     this.view.invalidate();
     ++this.owed;
-    // A page that draws, if slowly, takes all that come; one that does not (in the background) none.
-    if (now - this.lastStepMs < kAliveMs) this.payReady();
+    // A page that draws slowly need not make the LiDAR slow, nor be flooded; one that does not
+    // draw at all (in the background) takes nothing.
+    const slow = this.rate.perSecond(now) < kEnoughPerSecond;
+    if (slow && now - this.lastStepMs < kAliveMs) this.payReady();
   }
 
   private fetchFailed(error: unknown) {
-    ++this.fetchFailures;
     if (this.scene.can_simulate && !this.live.connected) return;
     this.toast(`Not loaded, trying again: ${(error as Error).message}`);
   }
@@ -193,7 +218,12 @@ export class App {
 
   private fillOverlay() {
     const { overlay } = this.view.stage;
-    overlay.add(this.driven.object, this.recordedCloud.object, this.liveCloud.object, this.sensor.object);
+    overlay.add(
+      this.driven.object,
+      this.recordedCloud.object,
+      this.liveCloud.object,
+      this.sensor.object,
+    );
     const can = this.scene.can_simulate;
     this.sensor.object.visible = this.driven.object.visible = can;
     byId('strip').hidden = !can;
@@ -226,26 +256,39 @@ export class App {
     const parts: HTMLElement[] = [this.cameraButtons];
     if (this.scene.can_simulate) {
       parts.push(
-        tick('Keep the height over the ground', this.driver.followGround, (on) => this.driver.setFollowGround(on)),
+        tick('Keep the height over the ground', this.driver.followGround, (on) =>
+          this.driver.setFollowGround(on),
+        ),
         row('Speed', this.speed),
-        make('div', { className: 'buttons small' },
+        make(
+          'div',
+          { className: 'buttons small' },
           button('Start pose', 'Back to where it began', () => this.setPose(this.scene.start_pose)),
           button('Clear path', 'The path begins here', () => {
             this.driver.clearPath();
             this.placeSensor();
-          })),
+          }),
+        ),
       );
     }
     return make('div', {}, ...parts);
   }
 
   private scanPointsPanel(): HTMLElement {
-    const modes = segments('Colour of scan points', kScanModes.map((m) => ({ value: m, text: m[0].toUpperCase() + m.slice(1) })),
-      this.scanMode, (mode) => this.setScanMode(mode as ScanMode));
-    const size = slider('Size of scan points', { low: 1, high: 8, step: 0.5, value: this.scanPixels }, (value) => {
-      this.scanPixels = value;
-      this.styleScans();
-    });
+    const modes = segments(
+      'Colour of scan points',
+      kScanModes.map((m) => ({ value: m, text: m[0].toUpperCase() + m.slice(1) })),
+      this.scanMode,
+      (mode) => this.setScanMode(mode as ScanMode),
+    );
+    const size = slider(
+      'Size of scan points',
+      { low: 1, high: 8, step: 0.5, value: this.scanPixels },
+      (value) => {
+        this.scanPixels = value;
+        this.styleScans();
+      },
+    );
     const show = tick('Live scan', this.liveCloud.object.visible, (on) => {
       this.liveCloud.object.visible = on;
       this.view.invalidate();
@@ -272,10 +315,14 @@ export class App {
   private drawingPanel(): HTMLElement {
     const { stage } = this.view;
     const usual = stage.outline;
-    return make('div', {}, tick('Darken edges', stage.outline > 0, (on) => {
-      stage.outline = on ? usual : 0;
-      this.view.invalidate();
-    }));
+    return make(
+      'div',
+      {},
+      tick('Darken edges', stage.outline > 0, (on) => {
+        stage.outline = on ? usual : 0;
+        this.view.invalidate();
+      }),
+    );
   }
 
   private fillTools() {
@@ -283,18 +330,36 @@ export class App {
     fill(
       byId('tools'),
       button('Screenshot', 'Saves the picture as PNG', () => this.screenshot()),
-      can ? button('Copy command line', 'What simulates this path with this LiDAR', () => void this.showCommand()) : null,
+      can
+        ? button(
+            'Copy command line',
+            'What simulates this path with this LiDAR',
+            () => void this.showCommand(),
+          )
+        : null,
       button('Help', 'Keys and mouse (?)', () => byId<HTMLDialogElement>('help').showModal()),
     );
   }
 
   private fillStrip() {
-    const modes = segments('Range image', ['range', 'class', 'intensity'].map((m) => ({ value: m, text: m[0].toUpperCase() + m.slice(1) })),
-      'range', (mode) => {
+    const modes = segments(
+      'Range image',
+      ['range', 'class', 'intensity'].map((m) => ({
+        value: m,
+        text: m[0].toUpperCase() + m.slice(1),
+      })),
+      'range',
+      (mode) => {
         this.image.mode = mode as ImageMode;
         this.drawImage();
-      });
-    fill(byId('strip-bar'), make('strong', {}, 'Range image'), modes, make('span', { id: 'strip-facts', className: 'facts' }));
+      },
+    );
+    fill(
+      byId('strip-bar'),
+      make('strong', {}, 'Range image'),
+      modes,
+      make('span', { id: 'strip-facts', className: 'facts' }),
+    );
   }
 
   private drawImage() {
@@ -302,18 +367,22 @@ export class App {
   }
 
   private showFigures() {
+    this.colors?.update();
     const s = this.view.statistics;
     const rate = s.framesPerSecond > 0 ? `${s.framesPerSecond.toFixed(0)} frames/s` : 'at rest';
     byId('figures').textContent =
-      `${short(s.elements)} of ${short(this.shownElements())} elements, ${s.nodes} nodes${s.loading ? ' (loading)' : ''}, ${rate}`;
+      `${short(s.elements)} of ${short(this.shownElements())} elements, ` +
+      `${s.nodes} nodes${s.loading ? ' (loading)' : ''}, ${rate}`;
     showLiveFigures(byId('live'), this.liveCloud.packet, this.rate, this.lidar.running);
     this.speed.textContent = `${(3.6 * this.driver.speed_m_s).toFixed(0)} km/h`;
     const packet = this.liveCloud.packet;
-    if (packet) byId('strip-facts').textContent = `${packet.rings} rings × ${packet.columns} columns, to ${packet.max_range_m.toFixed(0)} m`;
+    if (packet)
+      byId('strip-facts').textContent =
+        `${packet.rings} rings × ${packet.columns} columns, to ${packet.max_range_m.toFixed(0)} m`;
   }
 
   private shownElements(): number {
-    return this.view.layers.reduce((sum, l) => sum + (l.visible ? l.info.count : 0), 0);
+    return this.view.shownLayers.reduce((sum, l) => sum + l.info.count, 0);
   }
 
   private toast(message: string, note = false) {
@@ -416,7 +485,9 @@ export class App {
   }
 
   private nextColor() {
-    const options = [...(this.colors?.element.querySelector('select')?.options ?? [])].filter((o) => !o.disabled);
+    const options = [...(this.colors?.element.querySelector('select')?.options ?? [])].filter(
+      (o) => !o.disabled,
+    );
     const next = (options.findIndex((o) => o.value === this.view.colorMode) + 1) % options.length;
     if (options[next]) this.colors.choose(options[next].value as ColorMode);
   }
@@ -442,7 +513,8 @@ export class App {
     caster.setFromCamera(place, camera);
     const { origin, direction } = caster.ray;
     const reach = kEchoPixels;
-    const echo = this.liveCloud.nearest(camera, place.x, place.y, this.view.height_px, reach) ??
+    const echo =
+      this.liveCloud.nearest(camera, place.x, place.y, this.view.height_px, reach) ??
       this.recordedCloud.nearest(camera, place.x, place.y, this.view.height_px, reach);
     const found = await this.live.pick(origin.toArray(), direction.toArray());
     // An echo behind what the ray meets is not what was clicked.
@@ -472,98 +544,30 @@ export class App {
     const count = this.driver.finishedPath().length;
     const dialog = byId<HTMLDialogElement>('command');
     const save = button(`Save ${kPosesFile}`, 'The poses that were driven', () =>
-      download(kPosesFile, new Blob([poses], { type: 'text/csv' })));
+      download(kPosesFile, new Blob([poses], { type: 'text/csv' })),
+    );
     save.className = 'primary';
-    const copied = await navigator.clipboard.writeText(command).then(() => true, () => false);
+    const copied = await navigator.clipboard.writeText(command).then(
+      () => true,
+      () => false,
+    );
     fill(
-      dialog, make('h2', {}, copied ? 'Copied' : 'Command line'), make('pre', { id: 'command-text' }, command),
-      make('p', {}, `${kPosesFile} holds the driven path: ${short(count)} ${count === 1 ? 'pose' : 'poses'}, one a revolution.`),
-      make('div', { className: 'buttons' }, save, button('Close', 'Close (Esc)', () => dialog.close())),
+      dialog,
+      make('h2', {}, copied ? 'Copied' : 'Command line'),
+      make('pre', { id: 'command-text' }, command),
+      make(
+        'p',
+        {},
+        `${kPosesFile} holds the driven path: ` +
+          `${short(count)} ${count === 1 ? 'pose' : 'poses'}, one a revolution.`,
+      ),
+      make(
+        'div',
+        { className: 'buttons' },
+        save,
+        button('Close', 'Close (Esc)', () => dialog.close()),
+      ),
     );
     if (!dialog.open) dialog.showModal();
-  }
-
-  /** For tests, and for whoever likes the console. */
-  private handle() {
-    const { view } = this;
-    const box = byId('view');
-    return {
-      state: () => ({
-        ...view.statistics,
-        connected: this.live.connected,
-        scansReceived: this.rate.received,
-        scansPerSecond: this.rate.perSecond(performance.now()),
-        scan: this.liveCloud.packet && {
-          number: this.liveCloud.packet.number,
-          points: this.liveCloud.packet.points,
-          rings: this.liveCloud.packet.rings,
-          columns: this.liveCloud.packet.columns,
-          rays: this.liveCloud.packet.rays,
-          seconds: this.liveCloud.packet.seconds,
-          pose: this.liveCloud.packet.pose,
-          maxRange_m: this.farthest(),
-        },
-        sensor: this.lidar.confirmed?.name ?? null,
-        settings: this.lidar.confirmed?.settings ?? null,
-        pose: this.driver.pose,
-        pathPoses: this.driver.finishedPath().length,
-        running: this.lidar.running,
-        colorMode: view.colorMode,
-        camera: { eye: view.rig.camera.position.toArray(), target: view.rig.controls.target.toArray(), mode: view.rig.mode },
-        fetchFailures: this.fetchFailures,
-        software: view.stage.software,
-      }),
-      setPose: (pose: Pose) => this.setPose(pose),
-      setColor: (mode: string) => {
-        const known = kColorModes.find((m) => m === mode);
-        if (known) this.colors.choose(known);
-      },
-      setSensor: (name: string) => this.lidar.chooseSensor(name),
-      setSetting: (key: string, value: number | boolean | null) => this.lidar.set(key, value),
-      setRunning: (on: boolean) => this.lidar.setRunning(on),
-      setCameraMode: (mode: CameraMode) => this.chooseCamera(mode),
-      setCamera: ({ eye, target }: { eye: number[]; target: number[] }) => {
-        view.rig.set(new Vector3(...eye), new Vector3(...target));
-        view.moved();
-      },
-      /** The place of a point on the page, in pixels; null behind the eye. */
-      project: (x: number, y: number, z: number) => {
-        const at = new Vector3(x, y, z).project(view.rig.camera);
-        const { left, top, width, height } = box.getBoundingClientRect();
-        return at.z > 1 ? null : [left + ((at.x + 1) / 2) * width, top + ((1 - at.y) / 2) * height];
-      },
-      /** Colour of a pixel of the canvas. */
-      pixel: (x: number, y: number) => {
-        view.drawNow();
-        const ratio = view.stage.pixelRatio;
-        return Array.from(view.stage.read(Math.floor(x * ratio), Math.floor(y * ratio), 1, 1));
-      },
-      /** Colours of `columns` x `rows` pixels all over the canvas. */
-      pixels: (columns: number, rows: number) => {
-        view.drawNow();
-        const { x: width, y: height } = view.stage.pixels;
-        const all = view.stage.read(0, 0, width, height);
-        const found: number[][] = [];
-        for (let j = 0; j < rows; ++j)
-          for (let i = 0; i < columns; ++i) {
-            const x = Math.floor(((i + 0.5) * width) / columns);
-            const y = height - 1 - Math.floor(((j + 0.5) * height) / rows);
-            found.push(Array.from(all.subarray(4 * (y * width + x), 4 * (y * width + x) + 3)));
-          }
-        return found;
-      },
-      command: () => this.command,
-      posesCsv: () => this.poses,
-      yaw: () => yawOf(rotationOf(this.driver.pose)),
-    };
-  }
-
-  private farthest(): number {
-    const { packet } = this.liveCloud;
-    if (!packet) return 0;
-    const floats = new Float32Array(packet.words.buffer, packet.words.byteOffset, packet.words.length);
-    let most = 0;
-    for (let i = 0; i < floats.length; i += 6) most = Math.max(most, Math.hypot(floats[i], floats[i + 1], floats[i + 2]));
-    return most;
   }
 }

@@ -33,13 +33,14 @@ export class Budget {
     return Math.min(this.moving * (this.software ? 5 : 3), kMost);
   }
 
-  /** Two pictures in a row took so long; `limited`: with more budget there would be more to draw. */
+  /** Two pictures in a row took so long; `limited`: a larger budget would be used. */
   frame(ms: number, limited: boolean) {
     if (ms > kOddMs) return;
     this.smoothedMs += (ms - this.smoothedMs) * 0.25;
     const slow = this.software ? kSlowSoftwareMs : kSlowMs;
     const less = Math.max(kMostAtOnce, slow / this.smoothedMs);
     if (less < 1) this.moving = Math.max(this.moving * less, kLeast);
-    else if (this.smoothedMs < kQuickMs && limited) this.moving = Math.min(this.moving * 1.05, kMost);
+    else if (this.smoothedMs < kQuickMs && limited)
+      this.moving = Math.min(this.moving * 1.05, kMost);
   }
 }

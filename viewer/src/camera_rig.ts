@@ -58,7 +58,7 @@ export class CameraRig {
     const middle = low.clone().add(high).multiplyScalar(0.5);
     const reach = Math.max(high.distanceTo(low) / 2, 2);
     const away = reach / Math.tan((kFieldOfViewDeg * Math.PI) / 360);
-    const towardsEye = new Vector3(-0.62, -0.6, 0.5).normalize();
+    const towardsEye = new Vector3(-0.5, -0.48, 0.72).normalize();
     this.set(middle.clone().addScaledVector(towardsEye, away * 0.85), middle);
   }
 
@@ -69,7 +69,9 @@ export class CameraRig {
     controls.enableRotate = true;
     controls.maxPolarAngle = top ? 0 : Math.PI * 0.96;
     controls.mouseButtons = {
-      LEFT: top ? MOUSE.PAN : MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: top ? MOUSE.ROTATE : MOUSE.PAN,
+      LEFT: top ? MOUSE.PAN : MOUSE.ROTATE,
+      MIDDLE: MOUSE.DOLLY,
+      RIGHT: top ? MOUSE.ROTATE : MOUSE.PAN,
     };
     controls.touches = { ONE: top ? TOUCH.PAN : TOUCH.ROTATE, TWO: TOUCH.DOLLY_PAN };
     controls.enablePan = mode !== 'follow';
@@ -106,12 +108,19 @@ export class CameraRig {
 
   private goBehindSensor() {
     this.followedYaw_rad = this.yaw_rad;
-    const back = new Vector3(-kFollowBackM * Math.cos(this.yaw_rad), -kFollowBackM * Math.sin(this.yaw_rad), kFollowUpM);
+    const back = new Vector3(
+      -kFollowBackM * Math.cos(this.yaw_rad),
+      -kFollowBackM * Math.sin(this.yaw_rad),
+      kFollowUpM,
+    );
     this.set(this.sensor.clone().add(back), this.sensor);
   }
 
   private goAboveSensor() {
-    const height = Math.min(Math.max(this.camera.position.distanceTo(this.controls.target), 40), 400);
+    const height = Math.min(
+      Math.max(this.camera.position.distanceTo(this.controls.target), 40),
+      400,
+    );
     this.set(this.sensor.clone().add(new Vector3(0, -1e-3 * height, height)), this.sensor);
   }
 
@@ -120,7 +129,10 @@ export class CameraRig {
     const offset = this.camera.position.clone().sub(target);
     if (offset.x ** 2 + offset.y ** 2 > 0.01 * offset.z ** 2) return;
     const away = offset.length();
-    this.set(target.clone().add(new Vector3(-0.5, -0.5, 0.6).normalize().multiplyScalar(away)), target.clone());
+    this.set(
+      target.clone().add(new Vector3(-0.5, -0.5, 0.6).normalize().multiplyScalar(away)),
+      target.clone(),
+    );
   }
 }
 

@@ -10,7 +10,11 @@ import type { SceneView } from './scene_view';
 import { kColorModes, type ColorMode } from './shaders';
 
 const kNames: Record<ColorMode, string> = {
-  class: 'Class', intensity: 'Intensity', normal: 'Normal', shading: 'Shading', height: 'Height',
+  class: 'Class',
+  intensity: 'Intensity',
+  normal: 'Normal',
+  shading: 'Shading',
+  height: 'Height',
   error: 'Error',
 };
 
@@ -23,8 +27,8 @@ function available(scene: SceneInfo, mode: ColorMode): boolean {
 
 /** The mode that tells most of a scene. */
 export function firstMode(scene: SceneInfo): ColorMode {
-  if (available(scene, 'error') && !available(scene, 'class')) return 'error';
-  return (['class', 'intensity'] as const).find((m) => available(scene, m)) ?? 'shading';
+  if (available(scene, 'class') && scene.classes.length > 0) return 'class';
+  return (['error', 'intensity'] as const).find((m) => available(scene, m)) ?? 'shading';
 }
 
 export class ColorPanel {
@@ -38,11 +42,17 @@ export class ColorPanel {
     private readonly legend: HTMLElement,
     private readonly changed: () => void,
   ) {
-    const options = kColorModes.map((m) => ({ value: m, text: kNames[m], disabled: !available(scene, m) }));
-    this.select = choice('Colour by', options, view.colorMode, (value) => this.choose(value as ColorMode));
+    const options = kColorModes.map((m) => ({
+      value: m,
+      text: kNames[m],
+      disabled: !available(scene, m),
+    }));
+    this.select = choice('Colour by', options, view.colorMode, (value) =>
+      this.choose(value as ColorMode),
+    );
     this.select.id = 'color';
-    this.fillClasses();
     fill(this.element, this.select, this.classes);
+    this.update();
     this.choose(view.colorMode);
   }
 
@@ -60,14 +70,35 @@ export class ColorPanel {
     const bar = make('div', { className: 'bar' });
     bar.style.background = cssGradient(range.map, range.from);
     fill(
-      this.legend, make('strong', {}, range.title), bar,
-      make('div', { className: 'ends' }, make('span', {}, range.low), make('span', {}, range.middle), make('span', {}, range.high)),
+      this.legend,
+      make('strong', {}, range.title),
+      bar,
+      make(
+        'div',
+        { className: 'ends' },
+        make('span', {}, range.low),
+        make('span', {}, range.middle),
+        make('span', {}, range.high),
+      ),
     );
   }
 
   private range(mode: ColorMode) {
-    const ends = (title: string, map: 'viridis' | 'plasma' | 'inferno', from: number, low: number, high: number, digits: number, more = '') => ({
-      title, map, from, low: low.toFixed(digits), middle: ((low + high) / 2).toFixed(digits), high: more + high.toFixed(digits),
+    const ends = (
+      title: string,
+      map: 'viridis' | 'plasma' | 'inferno',
+      from: number,
+      low: number,
+      high: number,
+      digits: number,
+      more = '',
+    ) => ({
+      title,
+      map,
+      from,
+      low: low.toFixed(digits),
+      middle: ((low + high) / 2).toFixed(digits),
+      high: more + high.toFixed(digits),
     });
     const { layers, origin_m, middle_box } = this.scene;
     if (mode === 'height') {
@@ -85,28 +116,40 @@ export class ColorPanel {
     return null;
   }
 
-  private fillClasses() {
+  /** Lists the classes that have been seen; a scheme has many that a scene has not. */
+  update() {
+    const seen = new Set(this.view.layers.flatMap((l) => [...l.classes]));
+    if (seen.size === this.listed) return;
+    this.listed = seen.size;
+    this.fillClasses([...seen].sort((a, b) => a - b));
+  }
+  private listed = 0;
+
+  private fillClasses(ids: number[]) {
     const { palette } = this.view;
     const all = (on: boolean) => {
-      for (const { id } of this.scene.classes) palette.show(id, on);
-      this.update();
+      for (const id of ids) palette.show(id, on);
+      for (const box of this.classes.querySelectorAll('input')) box.checked = on;
+      this.shown();
     };
-    const rows = this.scene.classes.map(({ id, name }) => {
+    const rows = ids.map((id) => {
       const swatch = make('i', { className: 'swatch' });
       swatch.style.background = cssColor(palette.color(id));
-      return tick(make('span', {}, swatch, name), palette.shows(id), (on) => {
+      return tick(make('span', {}, swatch, palette.name(id)), palette.shows(id), (on) => {
         palette.show(id, on);
-        this.update();
+        this.shown();
       });
     });
-    const buttons = make('div', { className: 'buttons small' },
-      button('All', 'Show all classes', () => all(true)), button('None', 'Hide all classes', () => all(false)));
+    const buttons = make(
+      'div',
+      { className: 'buttons small' },
+      button('All', 'Show all classes', () => all(true)),
+      button('None', 'Hide all classes', () => all(false)),
+    );
     fill(this.classes, ...(rows.length > 0 ? [buttons, ...rows] : []));
   }
 
-  private update() {
-    const boxes = this.classes.querySelectorAll<HTMLInputElement>('input');
-    this.scene.classes.forEach(({ id }, i) => (boxes[i].checked = this.view.palette.shows(id)));
+  private shown() {
     this.view.invalidateModel();
     this.changed();
   }

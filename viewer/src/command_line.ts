@@ -14,7 +14,16 @@ export function quoted(word: string): string {
 }
 
 export function commandLine(begin: string[], sensor: string, options: string[]): string {
-  const words = [...begin, '--sensor', sensor, '--trajectory', kPosesFile, ...options, '-o', 'scans'];
+  const words = [
+    ...begin,
+    '--sensor',
+    sensor,
+    '--trajectory',
+    kPosesFile,
+    ...options,
+    '-o',
+    'scans',
+  ];
   return words.map(quoted).join(' ');
 }
 

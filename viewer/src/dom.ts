@@ -26,10 +26,19 @@ export function fill(element: HTMLElement, ...children: Child[]) {
 }
 
 /** A box to tick, and its text. */
-export function tick(text: Child, checked: boolean, changed: (on: boolean) => void): HTMLLabelElement {
+export function tick(
+  text: Child,
+  checked: boolean,
+  changed: (on: boolean) => void,
+): HTMLLabelElement {
   const box = make('input', { type: 'checkbox', checked });
   box.onchange = () => changed(box.checked);
-  return make('label', { className: 'tick' }, box, typeof text === 'string' ? make('span', {}, text) : text);
+  return make(
+    'label',
+    { className: 'tick' },
+    box,
+    typeof text === 'string' ? make('span', {}, text) : text,
+  );
 }
 
 export function choice(
@@ -38,9 +47,13 @@ export function choice(
   value: string,
   changed: (value: string) => void,
 ): HTMLSelectElement {
-  const select = make('select', {}, ...options.map((o) =>
-    make('option', { value: o.value, textContent: o.text, disabled: o.disabled ?? false }),
-  ));
+  const select = make(
+    'select',
+    {},
+    ...options.map((o) =>
+      make('option', { value: o.value, textContent: o.text, disabled: o.disabled ?? false }),
+    ),
+  );
   select.value = value;
   select.ariaLabel = label;
   select.onchange = () => {

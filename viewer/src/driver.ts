@@ -9,12 +9,25 @@ import type { PickedMessage, Pose } from './protocol';
 import { drive, moves, type Controls, type Vehicle } from './vehicle';
 
 const kKeys: Record<string, keyof Controls> = {
-  KeyW: 'forward', KeyS: 'backward', KeyA: 'left', KeyD: 'right', KeyE: 'up', KeyQ: 'down',
-  Space: 'stop', ShiftLeft: 'fast', ShiftRight: 'fast',
+  KeyW: 'forward',
+  KeyS: 'backward',
+  KeyA: 'left',
+  KeyD: 'right',
+  KeyE: 'up',
+  KeyQ: 'down',
+  Space: 'stop',
+  ShiftLeft: 'fast',
+  ShiftRight: 'fast',
 };
 const kIdle: Controls = {
-  forward: false, backward: false, left: false, right: false, up: false, down: false,
-  fast: false, stop: false,
+  forward: false,
+  backward: false,
+  left: false,
+  right: false,
+  up: false,
+  down: false,
+  fast: false,
+  stop: false,
 };
 /** A slow page drives as fast as a quick one. */
 const kLongestStepS = 0.05;
@@ -36,7 +49,8 @@ export type Pick = (origin: number[], direction: number[]) => Promise<PickedMess
 /** Whether a key belongs to what has the focus: a field that is typed in, a button to press. */
 export function typing(event: KeyboardEvent): boolean {
   const { target } = event;
-  if (event.ctrlKey || event.metaKey || event.altKey || !(target instanceof HTMLElement)) return true;
+  if (event.ctrlKey || event.metaKey || event.altKey || !(target instanceof HTMLElement))
+    return true;
   if (document.querySelector('dialog[open]')) return true;
   if (target instanceof HTMLInputElement && /^(checkbox|range)$/.test(target.type))
     return event.code === 'Space';

@@ -33,8 +33,15 @@ export function fillHelp(dialog: HTMLDialogElement) {
   ]);
   const mouse = kMouse.flatMap(([name, text]) => [make('dt', {}, name), make('dd', {}, text)]);
   fill(
-    dialog, make('h2', {}, 'Keys and mouse'), make('dl', {}, ...keys, ...mouse),
-    make('p', {}, 'Splats are drawn merged where they are small on the screen; the LiDAR always meets the whole model.'),
+    dialog,
+    make('h2', {}, 'Keys and mouse'),
+    make('dl', {}, ...keys, ...mouse),
+    make(
+      'p',
+      {},
+      'Splats are drawn merged where they are small on the screen; ' +
+        'the LiDAR always meets the whole model.',
+    ),
     button('Close', 'Close (Esc)', () => dialog.close()),
   );
 }

@@ -4,8 +4,17 @@
 // A layer of splats or points: its tree, and a mesh for each node that is there.
 
 import {
-  Box3, BufferAttribute, BufferGeometry, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry,
-  Mesh, Points, RawShaderMaterial, Vector3, type IUniform,
+  Box3,
+  BufferAttribute,
+  BufferGeometry,
+  GLSL3,
+  InstancedBufferAttribute,
+  InstancedBufferGeometry,
+  Mesh,
+  Points,
+  RawShaderMaterial,
+  Vector3,
+  type IUniform,
 } from 'three';
 import { nodeBox, parentsOf, type Tree } from './lod';
 import { kElementBytes, parseElements, type LayerInfo, type TreeNode } from './protocol';
@@ -42,6 +51,8 @@ function forget(attribute: BufferAttribute) {
 export class Layer implements Tree {
   visible = true;
   bytes = 0;
+  /** Of the nodes that have come so far. */
+  readonly classes = new Set<number>();
   readonly boxes: Box3[];
   readonly parents: Int32Array;
   private readonly loaded = new Map<number, Loaded>();
@@ -89,6 +100,8 @@ export class Layer implements Tree {
     if (this.loaded.has(node)) return;
     const count = this.nodes[node].count;
     const elements = parseElements(bytes, count);
+    if (this.info.has_classes)
+      for (let i = 3; i < elements.length; i += 4) this.classes.add(elements[i] & 0xffff);
     const object = this.info.kind === 'splats' ? this.disks(elements) : this.points(elements);
     object.frustumCulled = false;
     object.matrixAutoUpdate = false;

@@ -18,15 +18,23 @@ export function layersPanel(view: SceneView): HTMLElement {
     view.moved();
   };
   const side = (which: 0 | 1, label: string) =>
-    choice(label, view.layers.map((l, i) => ({ value: String(i), text: `${label}: ${l.info.name}` })),
-      String(sides[which]), (value) => {
+    choice(
+      label,
+      view.layers.map((l, i) => ({ value: String(i), text: `${label}: ${l.info.name}` })),
+      String(sides[which]),
+      (value) => {
         sides = which === 0 ? [Number(value), sides[1]] : [sides[0], Number(value)];
         arrange(true);
-      });
+      },
+    );
   const list = view.layers.map((layer) =>
     tick(
-      make('span', {}, layer.info.name,
-        make('small', {}, `${short(layer.info.count)} ${layer.info.kind}`)),
+      make(
+        'span',
+        {},
+        layer.info.name,
+        make('small', {}, `${short(layer.info.count)} ${layer.info.kind}`),
+      ),
       layer.visible,
       (on) => {
         layer.visible = on;
@@ -35,15 +43,37 @@ export function layersPanel(view: SceneView): HTMLElement {
     ),
   );
   fill(pair, side(0, 'Left'), side(1, 'Right'));
-  const split = segments('Arrangement', [{ value: 'over', text: 'Overlay' }, { value: 'split', text: 'Side by side' }],
-    'over', (value) => arrange(value === 'split'));
+  const split = segments(
+    'Arrangement',
+    [
+      { value: 'over', text: 'Overlay' },
+      { value: 'split', text: 'Side by side' },
+    ],
+    'over',
+    (value) => arrange(value === 'split'),
+  );
   split.id = 'arrangement';
-  const points = slider('Size of points', { low: 1, high: 8, step: 0.5, value: view.shared.point_px.value }, (value) => {
-    view.shared.point_px.value = value;
-    view.invalidateModel();
-  });
+  const points = slider(
+    'Size of points',
+    { low: 1, high: 8, step: 0.5, value: view.shared.point_px.value },
+    (value) => {
+      view.shared.point_px.value = value;
+      view.invalidateModel();
+    },
+  );
   const hasPoints = view.layers.some((l) => l.info.kind === 'points');
   arrange(false);
-  fill(element, ...list, many ? split : null, many ? pair : null, hasPoints ? row('Points', points) : null);
+  view.layersChanged = () =>
+    view.layers.forEach((l, i) => {
+      const box = list[i]?.querySelector('input');
+      if (box) box.checked = l.visible;
+    });
+  fill(
+    element,
+    ...list,
+    many ? split : null,
+    many ? pair : null,
+    hasPoints ? row('Points', points) : null,
+  );
   return element;
 }

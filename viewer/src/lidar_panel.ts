@@ -19,21 +19,100 @@ interface Field {
 }
 
 const kFields: Field[] = [
-  { key: 'range_noise_m', text: 'Range noise', unit: 'm', low: 0, high: 1, step: 0.005, help: 'Standard deviation of the noise on ranges' },
-  { key: 'rotation_hz', text: 'Rotation', unit: 'Hz', low: 0.5, high: 50, step: 0.5, help: 'Revolutions a second' },
-  { key: 'min_range_m', text: 'Nearest', unit: 'm', low: 0, high: 100, step: 0.1, help: 'Echoes nearer than this are not told' },
-  { key: 'max_range_m', text: 'Farthest', unit: 'm', low: 1, high: 1000, step: 1, help: 'Echoes farther than this are not told' },
-  { key: 'sub_rays', text: 'Rays a beam', unit: '', low: 1, high: 19, step: 1, help: 'Rays over the cross-section of a beam', general: true },
-  { key: 'returns', text: 'Returns', unit: '', low: 1, high: 3, step: 1, help: 'Most returns of a firing' },
-  { key: 'rain_mm_h', text: 'Rain', unit: 'mm/h', low: 0, high: 200, step: 1, help: 'Rate of rain', general: true },
-  { key: 'fog_visibility_m', text: 'Fog, visibility', unit: 'm', low: 0, high: 10000, step: 10, help: 'How far one sees in the fog; empty: no fog', general: true },
-  { key: 'snow_mm_h', text: 'Snow', unit: 'mm/h', low: 0, high: 50, step: 0.5, help: 'Rate of snow, as water', general: true },
+  {
+    key: 'range_noise_m',
+    text: 'Range noise',
+    unit: 'm',
+    low: 0,
+    high: 1,
+    step: 0.005,
+    help: 'Standard deviation of the noise on ranges',
+  },
+  {
+    key: 'rotation_hz',
+    text: 'Rotation',
+    unit: 'Hz',
+    low: 0.5,
+    high: 50,
+    step: 0.5,
+    help: 'Revolutions a second',
+  },
+  {
+    key: 'min_range_m',
+    text: 'Nearest',
+    unit: 'm',
+    low: 0,
+    high: 100,
+    step: 0.1,
+    help: 'Echoes nearer than this are not told',
+  },
+  {
+    key: 'max_range_m',
+    text: 'Farthest',
+    unit: 'm',
+    low: 1,
+    high: 1000,
+    step: 1,
+    help: 'Echoes farther than this are not told',
+  },
+  {
+    key: 'sub_rays',
+    text: 'Rays a beam',
+    unit: '',
+    low: 1,
+    high: 19,
+    step: 1,
+    help: 'Rays over the cross-section of a beam',
+    general: true,
+  },
+  {
+    key: 'returns',
+    text: 'Returns',
+    unit: '',
+    low: 1,
+    high: 3,
+    step: 1,
+    help: 'Most returns of a firing',
+  },
+  {
+    key: 'rain_mm_h',
+    text: 'Rain',
+    unit: 'mm/h',
+    low: 0,
+    high: 200,
+    step: 1,
+    help: 'Rate of rain',
+    general: true,
+  },
+  {
+    key: 'fog_visibility_m',
+    text: 'Fog, visibility',
+    unit: 'm',
+    low: 0,
+    high: 10000,
+    step: 10,
+    help: 'How far one sees in the fog; empty: no fog',
+    general: true,
+  },
+  {
+    key: 'snow_mm_h',
+    text: 'Snow',
+    unit: 'mm/h',
+    low: 0,
+    high: 50,
+    step: 0.5,
+    help: 'Rate of snow, as water',
+    general: true,
+  },
 ];
 const kSwitches = [
   { key: 'noise', text: 'Noise', help: 'Of the sensor, on ranges and angles' },
   { key: 'rolling_shutter', text: 'Rolling shutter', help: 'The sensor moves while it turns' },
 ];
-const kGeneral = new Set([...kSwitches.map((s) => s.key), ...kFields.filter((f) => f.general).map((f) => f.key)]);
+const kGeneral = new Set([
+  ...kSwitches.map((s) => s.key),
+  ...kFields.filter((f) => f.general).map((f) => f.key),
+]);
 
 /** Whether two values of a setting mean the same; null and 0 are both "none". */
 function same(a: number | boolean | null, b: number | boolean | null | undefined): boolean {
@@ -72,12 +151,16 @@ export class LidarPanel {
     if (!sensors.some((s) => s.name === chosen)) options.unshift({ value: chosen, text: chosen });
     this.select = choice('LiDAR', options, chosen, (name) => this.chooseSensor(name));
     this.select.id = 'sensor';
-    this.runButton = button('', 'Scan without end, or stop (R)', () => this.setRunning(!this.running));
+    this.runButton = button('', 'Scan without end, or stop (R)', () =>
+      this.setRunning(!this.running),
+    );
     this.runButton.id = 'run';
     this.runButton.className = 'primary';
     const reset = button('Reset', "The sensor's own parameters", () => this.reset());
     fill(
-      this.element, this.select, this.facts,
+      this.element,
+      this.select,
+      this.facts,
       make('div', { className: 'buttons' }, this.runButton, reset),
       make('div', { className: 'ticks' }, ...kSwitches.map((s) => this.makeSwitch(s))),
       make('div', { className: 'fields' }, ...kFields.map((f) => this.makeField(f))),
@@ -94,7 +177,9 @@ export class LidarPanel {
   chooseSensor(name: string) {
     this.name = name;
     this.select.value = name;
-    this.changed = Object.fromEntries(Object.entries(this.changed).filter(([key]) => kGeneral.has(key)));
+    this.changed = Object.fromEntries(
+      Object.entries(this.changed).filter(([key]) => kGeneral.has(key)),
+    );
     this.ask();
   }
 
@@ -112,7 +197,7 @@ export class LidarPanel {
     this.ask();
   }
 
-  /** The server's answer; one to an earlier question, or what it begins with, is not the last word. */
+  /** The server's answer; one to an earlier question is not the last word. */
   confirm(message: SensorMessage) {
     this.confirmed = message;
     if (this.asked && !this.isAnswer(message)) return;
@@ -133,7 +218,9 @@ export class LidarPanel {
   }
 
   private isAnswer({ name, settings }: SensorMessage): boolean {
-    return name === this.name && Object.entries(this.changed).every(([key, v]) => same(v, settings[key]));
+    return (
+      name === this.name && Object.entries(this.changed).every(([key, v]) => same(v, settings[key]))
+    );
   }
 
   private reset() {
@@ -147,7 +234,8 @@ export class LidarPanel {
   }
 
   private showSettings({ rings, rays, columns, settings }: SensorMessage) {
-    this.facts.textContent = `${rings} rings × ${grouped(columns)} columns, ${grouped(rays)} rays a scan`;
+    const image = `${rings} rings × ${grouped(columns)} columns`;
+    this.facts.textContent = `${image}, ${grouped(rays)} rays a scan`;
     for (const [key, input] of this.inputs) {
       const value = settings[key];
       input.parentElement?.classList.toggle('changed', key in this.changed);
@@ -168,12 +256,23 @@ export class LidarPanel {
 
   private makeField({ key, text, unit, low, high, step, help }: Field): HTMLElement {
     const input = make('input', { type: 'number', id: `setting-${key}` });
-    Object.assign(input, { min: String(low), max: String(high), step: String(step), ariaLabel: text });
+    Object.assign(input, {
+      min: String(low),
+      max: String(high),
+      step: String(step),
+      ariaLabel: text,
+    });
     input.onchange = () => {
       const value = input.valueAsNumber;
       this.set(key, Number.isFinite(value) ? value : null);
     };
     this.inputs.set(key, input);
-    return make('label', { className: 'field', title: help }, make('span', {}, text), input, make('em', {}, unit));
+    return make(
+      'label',
+      { className: 'field', title: help },
+      make('span', {}, text),
+      input,
+      make('em', {}, unit),
+    );
   }
 }

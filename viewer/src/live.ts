@@ -4,7 +4,12 @@
 // The live channel: keeps itself connected, and tells a new server what the last one knew.
 
 import {
-  parseMessage, parseScan, type PickedMessage, type Pose, type ScanPacket, type SensorMessage,
+  parseMessage,
+  parseScan,
+  type PickedMessage,
+  type Pose,
+  type ScanPacket,
+  type SensorMessage,
   type Settings,
 } from './protocol';
 

@@ -8,7 +8,10 @@ import type { ScanPacket } from './protocol';
 import type { ScanRate } from './scan_rate';
 
 export function showLiveFigures(
-  element: HTMLElement, packet: ScanPacket | null, rate: ScanRate, running: boolean,
+  element: HTMLElement,
+  packet: ScanPacket | null,
+  rate: ScanRate,
+  running: boolean,
 ) {
   element.hidden = packet === null;
   if (!packet) return;
@@ -20,9 +23,14 @@ export function showLiveFigures(
     'Points a ray': `${hits.toFixed(1)} %`,
     Scan: grouped(packet.number),
   };
-  const table = make('dl', {}, ...Object.entries(lines).flatMap(([name, value]) => [
-    make('dt', {}, name), make('dd', {}, value),
-  ]));
+  const table = make(
+    'dl',
+    {},
+    ...Object.entries(lines).flatMap(([name, value]) => [
+      make('dt', {}, name),
+      make('dd', {}, value),
+    ]),
+  );
   const figure = rate.perSecond(performance.now()).toFixed(1);
   const head = running
     ? make('div', { className: 'rate' }, figure, make('small', {}, 'scans/s'))

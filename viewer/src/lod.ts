@@ -90,9 +90,7 @@ function projected(tree: Tree, node: number, view: View): NodeRef {
 
 function childrenOf(ref: NodeRef, view: View): NodeRef[] {
   const { first_child, child_count } = ref.tree.nodes[ref.node];
-  return Array.from({ length: child_count }, (_, i) =>
-    projected(ref.tree, first_child + i, view),
-  );
+  return Array.from({ length: child_count }, (_, i) => projected(ref.tree, first_child + i, view));
 }
 
 /**
@@ -145,8 +143,7 @@ export function chooseCut(trees: Tree[], view: View, budget: number): Cut {
 /** Tells the store which nodes are in use: those drawn, and above them what may return. */
 export function ancestors(tree: Tree, drawn: Set<number>, parents: Int32Array): Set<number> {
   const used = new Set<number>();
-  for (const node of drawn)
-    for (let n = node; n >= 0 && !used.has(n); n = parents[n]) used.add(n);
+  for (const node of drawn) for (let n = node; n >= 0 && !used.has(n); n = parents[n]) used.add(n);
   if (tree.nodes.length > 0) used.add(0);
   return used;
 }

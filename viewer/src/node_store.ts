@@ -73,7 +73,10 @@ export class FetchQueue {
       this.pauses.delete(one.key);
     } catch (error) {
       if (controller.signal.aborted) return;
-      const length = Math.min((this.pauses.get(one.key)?.length ?? kFirstPauseMs / 2) * 2, kLongestPauseMs);
+      const length = Math.min(
+        (this.pauses.get(one.key)?.length ?? kFirstPauseMs / 2) * 2,
+        kLongestPauseMs,
+      );
       this.pauses.set(one.key, { until: performance.now() + length, length });
       this.wanted.push(one);
       this.failed(one.key, error);

@@ -56,7 +56,7 @@ export function mapsTexture(): DataTexture {
 }
 
 const kSide = 256;
-const kUnknownColor: Vec3 = [150, 156, 164];
+const kNoColor: Vec3 = [150, 156, 164];
 /** The darkest class is still seen before the background. */
 const kLeastBrightness = 70;
 
@@ -66,6 +66,17 @@ export function visibleColor(color: Vec3): Vec3 {
   if (brightest >= kLeastBrightness) return color;
   if (brightest === 0) return [kLeastBrightness, kLeastBrightness, kLeastBrightness];
   return color.map((c) => (c * kLeastBrightness) / brightest) as Vec3;
+}
+
+/** Of a class that no scheme tells of: neighbouring ids differ by the golden angle. */
+function colorOfUnknown(id: number): Vec3 {
+  if (id === 0) return kNoColor;
+  const hue = (id * 137.508) % 360;
+  const channel = (shift: number) => {
+    const k = (shift + hue / 30) % 12;
+    return Math.round(255 * (0.6 - 0.28 * Math.max(-1, Math.min(k - 3, 9 - k, 1))));
+  };
+  return [channel(0), channel(8), channel(4)];
 }
 
 /** What each of the 65,536 classes looks like: colour, and alpha 0 where it is hidden. */
@@ -81,7 +92,7 @@ export class ClassPalette {
   }
 
   setClasses(classes: ClassInfo[]) {
-    for (let i = 0; i < kSide * kSide; ++i) this.bytes.set([...kUnknownColor, 255], 4 * i);
+    for (let i = 0; i < kSide * kSide; ++i) this.bytes.set([...colorOfUnknown(i), 255], 4 * i);
     this.names.clear();
     for (const { id, name, color } of classes) {
       if (!(id >= 0 && id < kSide * kSide)) continue;

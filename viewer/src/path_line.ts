@@ -20,7 +20,10 @@ export class PathLine {
     const found = geometry.getAttribute('position') as BufferAttribute | undefined;
     if (!found || found.count < poses.length) {
       geometry.dispose();
-      const attribute = new BufferAttribute(new Float32Array(3 * Math.max(256, 2 * poses.length)), 3);
+      const attribute = new BufferAttribute(
+        new Float32Array(3 * Math.max(256, 2 * poses.length)),
+        3,
+      );
       geometry.setAttribute('position', attribute.setUsage(DynamicDrawUsage));
     }
     const positions = geometry.getAttribute('position') as BufferAttribute;

@@ -36,11 +36,17 @@ export class PickCard {
     if (echo) lines.push(...this.echoLines(echo));
     if (found?.hit) lines.push(...this.splatLines(found, echo, sensor));
     if (lines.length === 0) return this.hide();
-    const title = make('header', {}, make('strong', {}, echo ? 'Echo' : 'Splat'),
-      button('×', 'Close (Esc)', () => this.hide()));
-    const table = make('dl', {}, ...lines.flatMap(([name, value]) => [
-      make('dt', {}, name), make('dd', {}, value),
-    ]));
+    const title = make(
+      'header',
+      {},
+      make('strong', {}, echo ? 'Echo' : 'Splat'),
+      button('×', 'Close (Esc)', () => this.hide()),
+    );
+    const table = make(
+      'dl',
+      {},
+      ...lines.flatMap(([name, value]) => [make('dt', {}, name), make('dd', {}, value)]),
+    );
     fill(this.element, title, table);
     this.element.hidden = false;
   }
@@ -48,7 +54,10 @@ export class PickCard {
   private echoLines(echo: Echo): Line[] {
     const lines: Line[] = [];
     if (echo.class !== null) lines.push(['Class', this.className(echo.class)]);
-    lines.push(['Range', `${echo.range_m.toFixed(3)} m`], ['Ring, column', `${echo.ring}, ${echo.column}`]);
+    lines.push(
+      ['Range', `${echo.range_m.toFixed(3)} m`],
+      ['Ring, column', `${echo.ring}, ${echo.column}`],
+    );
     lines.push(['Position', this.world(echo.position.toArray() as Vec3)]);
     if (echo.intensity !== null) lines.push(['Intensity', echo.intensity.toFixed(3)]);
     if (echo.return_index > 0) lines.push(['Return', String(echo.return_index + 1)]);
@@ -64,7 +73,8 @@ export class PickCard {
     lines.push(['Splat', grouped(found.primitive)], ['Radius', `${found.radius_m.toFixed(3)} m`]);
     if (!echo) lines.push(['Position', this.world(found.position)]);
     lines.push(['Normal', triple(found.normal, 3)]);
-    if (found.intensity !== undefined) lines.push([echo ? 'Splat intensity' : 'Intensity', found.intensity.toFixed(3)]);
+    if (found.intensity !== undefined)
+      lines.push([echo ? 'Splat intensity' : 'Intensity', found.intensity.toFixed(3)]);
     return lines;
   }
 

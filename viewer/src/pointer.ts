@@ -78,6 +78,7 @@ export class Pointer {
     caster.setFromCamera(this.view.screenPlace(event.clientX, event.clientY), this.view.rig.camera);
     const at = this.sensor.object.position;
     const hit = caster.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -at.z), new Vector3());
-    if (hit && hit.distanceTo(this.view.rig.camera.position) < kFarthestDragM) this.events.dragged(hit.x, hit.y);
+    if (hit && hit.distanceTo(this.view.rig.camera.position) < kFarthestDragM)
+      this.events.dragged(hit.x, hit.y);
   }
 }

@@ -13,7 +13,11 @@ export function rotationOf(pose: Pose): Quaternion {
 }
 
 export function matrixOf(pose: Pose): Matrix4 {
-  return new Matrix4().compose(new Vector3(pose[0], pose[1], pose[2]), rotationOf(pose), new Vector3(1, 1, 1));
+  return new Matrix4().compose(
+    new Vector3(pose[0], pose[1], pose[2]),
+    rotationOf(pose),
+    new Vector3(1, 1, 1),
+  );
 }
 
 /** Where the sensor's x axis points in the plane of the ground, from x to y. */

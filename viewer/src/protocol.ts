@@ -224,7 +224,9 @@ export function parseScene(value: unknown): SceneInfo {
     can_simulate: canSimulate,
     sensors: list(v.sensors, 'sensors', sensorInfo),
     sensor: typeof v.sensor === 'string' ? v.sensor : '',
-    start_pose: Array.isArray(v.start_pose) ? pose(v.start_pose, 'start_pose') : [0, 0, 0, 0, 0, 0, 1],
+    start_pose: Array.isArray(v.start_pose)
+      ? pose(v.start_pose, 'start_pose')
+      : [0, 0, 0, 0, 0, 0, 1],
     device: typeof v.device === 'string' ? v.device : '',
     command: list(v.command, 'command', text),
   };
@@ -264,8 +266,14 @@ export function parseMessage(line: string): ServerMessage | null {
 function picked(v: Fields): PickedMessage {
   const id = number(v.id, 'picked.id');
   const miss: PickedMessage = {
-    type: 'picked', id, hit: false, range_m: 0, primitive: 0,
-    position: [0, 0, 0], normal: [0, 0, 1], radius_m: 0,
+    type: 'picked',
+    id,
+    hit: false,
+    range_m: 0,
+    primitive: 0,
+    position: [0, 0, 0],
+    normal: [0, 0, 1],
+    radius_m: 0,
   };
   if (v.hit !== true) return miss;
   return {

@@ -36,7 +36,11 @@ export class RangeImage {
   }
 
   draw(packet: ScanPacket) {
-    const floats = new Float32Array(packet.words.buffer, packet.words.byteOffset, packet.words.length);
+    const floats = new Float32Array(
+      packet.words.buffer,
+      packet.words.byteOffset,
+      packet.words.length,
+    );
     const grid = packet.rings < kFewRings ? angleGrid(packet, floats) : ringGrid(packet);
     if (!this.context || grid.width * grid.height > kMostPixels) return;
     const image = this.blank(grid.width, grid.height);
@@ -45,7 +49,8 @@ export class RangeImage {
       const cell = grid.cell(i);
       if (cell < 0) continue;
       const at = i * kScanPointWords;
-      const range = Math.hypot(floats[at], floats[at + 1], floats[at + 2]);
+      // Not Math.hypot: it is ten times as slow.
+      const range = Math.sqrt(floats[at] ** 2 + floats[at + 1] ** 2 + floats[at + 2] ** 2);
       if (range >= nearest[cell]) continue;
       nearest[cell] = range;
       this.paint(image.data, 4 * cell, packet, at, range);
@@ -57,7 +62,13 @@ export class RangeImage {
     this.context?.putImageData(this.blank(this.canvas.width, this.canvas.height), 0, 0);
   }
 
-  private paint(pixels: Uint8ClampedArray, to: number, packet: ScanPacket, at: number, range: number) {
+  private paint(
+    pixels: Uint8ClampedArray,
+    to: number,
+    packet: ScanPacket,
+    at: number,
+    range: number,
+  ) {
     const { words } = packet;
     if (this.mode === 'class' && packet.has_classes) {
       const [r, g, b] = this.palette.color(words[at + 3] >>> 16);
@@ -66,8 +77,10 @@ export class RangeImage {
       pixels[to + 2] = b;
       return;
     }
-    const t = this.mode === 'intensity' ? (words[at + 5] & 0xffff) / 65535
-                                        : Math.sqrt(range / (packet.max_range_m || 100));
+    const t =
+      this.mode === 'intensity'
+        ? (words[at + 5] & 0xffff) / 65535
+        : Math.sqrt(range / (packet.max_range_m || 100));
     const map = this.map(this.mode === 'intensity' ? 'inferno' : 'viridis');
     const from = 3 * Math.round(255 * Math.min(0.15 + 0.85 * t, 1));
     pixels[to] = map[from];

@@ -4,8 +4,17 @@
 // The points of a scan, in one buffer that is written again for each.
 
 import {
-  BufferGeometry, DynamicDrawUsage, GLSL3, InterleavedBuffer, InterleavedBufferAttribute, Matrix4,
-  PerspectiveCamera, Points, RawShaderMaterial, Vector3, type IUniform,
+  BufferGeometry,
+  DynamicDrawUsage,
+  GLSL3,
+  InterleavedBuffer,
+  InterleavedBufferAttribute,
+  Matrix4,
+  PerspectiveCamera,
+  Points,
+  RawShaderMaterial,
+  Vector3,
+  type IUniform,
 } from 'three';
 import { matrixOf } from './pose';
 import { kScanPointWords, type ScanPacket } from './protocol';
@@ -36,9 +45,13 @@ export class ScanCloud {
       vertexShader: kScanVertex,
       fragmentShader: kPointFragment,
       uniforms: {
-        classes, maps,
-        scan_mode: { value: 0 }, has: { value: 0 }, point_px: { value: 3 },
-        rings: { value: 1 }, max_range_m: { value: 100 },
+        classes,
+        maps,
+        scan_mode: { value: 0 },
+        has: { value: 0 },
+        point_px: { value: 3 },
+        rings: { value: 1 },
+        max_range_m: { value: 100 },
       },
     });
     this.buffer = this.makeBuffer(0);
@@ -57,7 +70,8 @@ export class ScanCloud {
 
   set(packet: ScanPacket) {
     this.packet = packet;
-    if (packet.words.length > this.buffer.array.length) this.buffer = this.makeBuffer(packet.points);
+    if (packet.words.length > this.buffer.array.length)
+      this.buffer = this.makeBuffer(packet.points);
     (this.buffer.array as Uint32Array).set(packet.words);
     this.buffer.clearUpdateRanges();
     this.buffer.addUpdateRange(0, packet.words.length);
@@ -77,11 +91,23 @@ export class ScanCloud {
   }
 
   /** The echo that is seen nearest to a place on the screen (-1..1), within `pixels`; else null. */
-  nearest(camera: PerspectiveCamera, x: number, y: number, height_px: number, pixels: number): Echo | null {
+  nearest(
+    camera: PerspectiveCamera,
+    x: number,
+    y: number,
+    height_px: number,
+    pixels: number,
+  ): Echo | null {
     const { packet } = this;
     if (!packet || !this.object.visible) return null;
-    const matrix = new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).multiply(this.object.matrix);
-    const floats = new Float32Array(packet.words.buffer, packet.words.byteOffset, packet.words.length);
+    const matrix = new Matrix4()
+      .multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
+      .multiply(this.object.matrix);
+    const floats = new Float32Array(
+      packet.words.buffer,
+      packet.words.byteOffset,
+      packet.words.length,
+    );
     const place = new Vector3();
     const reach = (2 * pixels) / height_px;
     let best = -1;

@@ -67,11 +67,15 @@ export class ScansPanel {
       this.view.invalidate();
     });
     show.querySelector('input')!.id = 'show-scan';
-    const pick = slider('Recorded scan', { low: 0, high: scans.length - 1, step: 1, value: 0 }, (value) => {
-      this.index = value;
-      this.tell();
-      if (this.shown) void this.load();
-    });
+    const pick = slider(
+      'Recorded scan',
+      { low: 0, high: scans.length - 1, step: 1, value: 0 },
+      (value) => {
+        this.index = value;
+        this.tell();
+        if (this.shown) void this.load();
+      },
+    );
     const go = button('Go there', 'Puts the sensor where the scan was taken', () =>
       this.events.goTo(scans[this.index].pose),
     );

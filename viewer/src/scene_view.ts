@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What is seen: layers at the detail that the screen and the machine allow, and what lies over them.
+// What is seen: layers at the detail that the screen and the machine allow, and what lies over
+// them.
 
 import { Frustum, Matrix4, Object3D, Vector2 } from 'three';
 import { Budget } from './budget';
@@ -41,8 +42,8 @@ export class SceneView {
   arrangement: Arrangement = { split: false };
   /** Called before each frame with the seconds since the last. */
   beforeFrame: (dt: number) => void = () => {};
-  /** Called after a frame that drew something. */
-  drawn: () => void = () => {};
+  /** Called when layers were shown or hidden by other means than the user's. */
+  layersChanged: () => void = () => {};
   private readonly budget: Budget;
   private readonly queue: FetchQueue;
   private cuts: Cut[] = [];
@@ -89,7 +90,10 @@ export class SceneView {
   }
 
   set colorMode(mode: ColorMode) {
+    const before = this.colorMode;
     this.shared.color_mode.value = kColorModes.indexOf(mode);
+    if (mode !== before && (mode === 'error' || before === 'error'))
+      this.showErrors(mode === 'error');
     this.invalidateModel();
   }
 
@@ -115,6 +119,20 @@ export class SceneView {
     this.queue.retry();
   }
 
+  /** Errors lie on what they are the errors of: layers without any would hide them. */
+  private showErrors(on: boolean) {
+    if (on && this.layers.some((l) => l.info.has_errors)) {
+      this.usual = this.layers.map((l) => l.visible);
+      for (const layer of this.layers) layer.visible = layer.info.has_errors;
+    } else if (!on && this.usual) {
+      this.usual.forEach((visible, i) => (this.layers[i].visible = visible));
+      this.usual = null;
+    }
+    this.layersChanged();
+  }
+  /** Which layers were visible before errors were looked at. */
+  private usual: boolean[] | null = null;
+
   /** Replaces all layers. Errors: ProtocolError; whatever fetch throws. */
   async load(scene: SceneInfo) {
     const generation = ++this.generation;
@@ -126,6 +144,8 @@ export class SceneView {
     // The cloud that a model was made of would only hide it.
     const splats = layers.some((l) => l.info.kind === 'splats');
     for (const layer of layers) layer.visible = !splats || layer.info.kind === 'splats';
+    this.usual = null;
+    if (this.colorMode === 'error') this.showErrors(true);
     this.cuts = [];
     this.palette.setClasses(scene.classes);
     const [low, high] = scene.middle_box;
@@ -151,7 +171,10 @@ export class SceneView {
     const { x: width, y: height } = this.stage.pixels;
     if (!this.arrangement.split) return [{ x: 0, y: 0, width, height }];
     const half = Math.floor(width / 2);
-    return [{ x: 0, y: 0, width: half, height }, { x: half, y: 0, width: width - half, height }];
+    return [
+      { x: 0, y: 0, width: half, height },
+      { x: half, y: 0, width: width - half, height },
+    ];
   }
 
   /** A place of the page on the camera's screen, -1..1. */
@@ -159,7 +182,10 @@ export class SceneView {
     const box = this.canvas.getBoundingClientRect();
     const parts = this.arrangement.split ? 2 : 1;
     const x = ((clientX - box.left) / box.width) * parts;
-    return new Vector2(2 * (x - Math.min(Math.floor(x), parts - 1)) - 1, 1 - (2 * (clientY - box.top)) / box.height);
+    return new Vector2(
+      2 * (x - Math.min(Math.floor(x), parts - 1)) - 1,
+      1 - (2 * (clientY - box.top)) / box.height,
+    );
   }
 
   get height_px(): number {
@@ -168,6 +194,8 @@ export class SceneView {
 
   /** Draws what is due now, in the caller's task; for pictures of it. */
   drawNow() {
+    const now = performance.now();
+    if (this.modelDirty) this.drawModel(now - this.movedMs > kRestMs, now);
     this.drawScreen();
   }
 
@@ -193,13 +221,16 @@ export class SceneView {
     const refine = still && !this.wasStill && this.cuts.some((c) => c.limited);
     const pause = this.stage.software ? 350 : 60;
     if (this.arrivals && (now - this.lastModelMs > pause || !still)) this.invalidateModel();
-    if (this.modelInLastFrame && !still) this.budget.frame(ms, this.cuts.some((c) => c.limited));
+    if (this.modelInLastFrame && !still)
+      this.budget.frame(
+        ms,
+        this.cuts.some((c) => c.limited),
+      );
     this.modelInLastFrame = this.modelDirty || refine;
     if (this.modelInLastFrame) this.drawModel(still, now);
     if (!this.screenDirty && !this.modelInLastFrame) return;
     this.drawScreen();
     this.frameTimes.push(now);
-    this.drawn();
   }
 
   private drawModel(still: boolean, now: number) {
@@ -228,12 +259,20 @@ export class SceneView {
 
   private view(height: number): View {
     const { camera } = this.rig;
-    const matrix = new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+    const matrix = new Matrix4().multiplyMatrices(
+      camera.projectionMatrix,
+      camera.matrixWorldInverse,
+    );
     return {
       frustum: new Frustum().setFromProjectionMatrix(matrix),
       eye: camera.position,
       focal_px: height / 2 / Math.tan((camera.fov * Math.PI) / 360),
     };
+  }
+
+  /** Of all areas. */
+  get shownLayers(): Layer[] {
+    return this.areas.flatMap((_, i) => this.layersOf(i));
   }
 
   private layersOf(area: number): Layer[] {
@@ -245,7 +284,10 @@ export class SceneView {
 
   private keepUsed(now: number) {
     for (const layer of this.layers) {
-      const nodes = this.cuts.flatMap((c) => c.drawn).filter((r) => r.tree === layer).map((r) => r.node);
+      const nodes = this.cuts
+        .flatMap((c) => c.drawn)
+        .filter((r) => r.tree === layer)
+        .map((r) => r.node);
       layer.touch(ancestors(layer, new Set(nodes), layer.parents), now);
     }
     let bytes = this.layers.reduce((sum, l) => sum + l.bytes, 0);

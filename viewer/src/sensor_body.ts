@@ -4,8 +4,19 @@
 // The LiDAR as it stands in the scene: a small drum with its axes, never too small to be taken.
 
 import {
-  AmbientLight, BufferAttribute, BufferGeometry, CylinderGeometry, DirectionalLight, Group,
-  LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, PerspectiveCamera, Vector2, Vector3,
+  AmbientLight,
+  BufferAttribute,
+  BufferGeometry,
+  CylinderGeometry,
+  DirectionalLight,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  Vector2,
+  Vector3,
 } from 'three';
 import { rotationOf } from './pose';
 import type { Pose } from './protocol';
@@ -23,12 +34,22 @@ export class SensorBody {
     this.shell = new MeshLambertMaterial({ color: 0xdfe6ee });
     const glass = new MeshLambertMaterial({ color: 0x2f9be0, emissive: 0x0d4a78 });
     const drum = new CylinderGeometry(kRadiusM, kRadiusM, kHeightM, 32).rotateX(Math.PI / 2);
-    const band = new CylinderGeometry(kRadiusM * 1.02, kRadiusM * 1.02, kHeightM * 0.5, 32, 1, true);
+    const band = new CylinderGeometry(
+      kRadiusM * 1.02,
+      kRadiusM * 1.02,
+      kHeightM * 0.5,
+      32,
+      1,
+      true,
+    );
     const light = new DirectionalLight(0xffffff, 2.2);
     light.position.set(-1, -2, 4);
     this.object.add(
-      new Mesh(drum, this.shell), new Mesh(band.rotateX(Math.PI / 2), glass), makeAxes(),
-      light, new AmbientLight(0xffffff, 1.3),
+      new Mesh(drum, this.shell),
+      new Mesh(band.rotateX(Math.PI / 2), glass),
+      makeAxes(),
+      light,
+      new AmbientLight(0xffffff, 1.3),
     );
   }
 
@@ -53,9 +74,13 @@ export class SensorBody {
     if (!this.object.visible) return false;
     const seen = this.object.position.clone().project(camera);
     if (seen.z > 1) return false;
-    const edge = this.object.position.clone().add(
-      new Vector3(0, 1, 0).applyQuaternion(camera.quaternion).multiplyScalar(kRadiusM * this.object.scale.x),
-    );
+    const edge = this.object.position
+      .clone()
+      .add(
+        new Vector3(0, 1, 0)
+          .applyQuaternion(camera.quaternion)
+          .multiplyScalar(kRadiusM * this.object.scale.x),
+      );
     const reach = Math.max(edge.project(camera).y - seen.y, (2 * kLeastPixels) / height_px) * 1.3;
     return Math.hypot((seen.x - place.x) * camera.aspect, seen.y - place.y) < reach;
   }
@@ -64,8 +89,18 @@ export class SensorBody {
 function makeAxes(): LineSegments {
   const geometry = new BufferGeometry();
   const l = 4 * kRadiusM;
-  geometry.setAttribute('position', new BufferAttribute(new Float32Array([0, 0, 0, l, 0, 0, 0, 0, 0, 0, l, 0, 0, 0, 0, 0, 0, l]), 3));
-  const colors = [[1, 0.25, 0.25], [0.3, 0.9, 0.35], [0.35, 0.6, 1]].flatMap((c) => [...c, ...c]);
+  geometry.setAttribute(
+    'position',
+    new BufferAttribute(
+      new Float32Array([0, 0, 0, l, 0, 0, 0, 0, 0, 0, l, 0, 0, 0, 0, 0, 0, l]),
+      3,
+    ),
+  );
+  const colors = [
+    [1, 0.25, 0.25],
+    [0.3, 0.9, 0.35],
+    [0.35, 0.6, 1],
+  ].flatMap((c) => [...c, ...c]);
   geometry.setAttribute('color', new BufferAttribute(new Float32Array(colors), 3));
   return new LineSegments(geometry, new LineBasicMaterial({ vertexColors: true }));
 }

@@ -50,7 +50,8 @@ vec4 class_texel() {
 
 // Row r of the maps: 0 viridis, 1 plasma, 2 inferno.
 vec3 map_color(int r, float t) {
-  return texture(maps, vec2((0.5 + 255.0 * clamp(t, 0.0, 1.0)) / 256.0, (float(r) + 0.5) / 3.0)).rgb;
+  float x = (0.5 + 255.0 * clamp(t, 0.0, 1.0)) / 256.0;
+  return texture(maps, vec2(x, (float(r) + 0.5) / 3.0)).rgb;
 }
 
 const vec3 kPlain = vec3(0.74, 0.77, 0.80);
@@ -64,7 +65,8 @@ vec3 base_color(vec3 position, vec3 normal) {
   if (color_mode == 2) return 0.5 + 0.5 * normal;
   if (color_mode == 4)
     return map_color(0, (position.z - height_range_m.x) / (height_range_m.y - height_range_m.x));
-  if (color_mode == 5) return (has & 4) != 0 ? map_color(1, float(element.w >> 24) / 255.0) : kUnknown;
+  if (color_mode == 5)
+    return (has & 4) != 0 ? map_color(1, float(element.w >> 24) / 255.0) : kUnknown;
   return kPlain;
 }
 
@@ -98,7 +100,8 @@ void main() {
   vec3 n = element_normal();
   float radius = largest_radius_m * float(element.y >> 16) / 65535.0;
   if (hidden()) { gl_Position = kNowhere; return; }
-  vec3 u = normalize(abs(n.z) < 0.9 ? cross(n, vec3(0.0, 0.0, 1.0)) : cross(n, vec3(1.0, 0.0, 0.0)));
+  vec3 other = abs(n.z) < 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
+  vec3 u = normalize(cross(n, other));
   vec3 position = center + radius * (corner.x * u + corner.y * cross(n, u));
   vec4 seen = viewMatrix * vec4(position, 1.0);
   gl_Position = projectionMatrix * seen;
@@ -166,7 +169,8 @@ in uvec3 echo;              // ring and class, column, intensity and return
 flat out vec3 color;
 
 vec3 map_color(int r, float t) {
-  return texture(maps, vec2((0.5 + 255.0 * clamp(t, 0.0, 1.0)) / 256.0, (float(r) + 0.5) / 3.0)).rgb;
+  float x = (0.5 + 255.0 * clamp(t, 0.0, 1.0)) / 256.0;
+  return texture(maps, vec2(x, (float(r) + 0.5) / 3.0)).rgb;
 }
 
 void main() {
@@ -176,7 +180,8 @@ void main() {
   gl_Position = projectionMatrix * seen;
   gl_PointSize = point_px;
   int id = int(echo.x >> 16);
-  if (scan_mode == 1 && (has & 1) != 0) color = texelFetch(classes, ivec2(id & 255, id >> 8), 0).rgb;
+  if (scan_mode == 1 && (has & 1) != 0)
+    color = texelFetch(classes, ivec2(id & 255, id >> 8), 0).rgb;
   else if (scan_mode == 2) color = map_color(2, 0.15 + 0.85 * float(echo.z & 0xffffu) / 65535.0);
   else if (scan_mode == 3) color = map_color(1, float(echo.x & 0xffffu) / max(rings - 1.0, 1.0));
   // The root: most of what a LiDAR sees is near.
@@ -203,7 +208,8 @@ out vec4 pixel;
 
 float log_depth(ivec2 at) {
   float z = texelFetch(depths, clamp(at, ivec2(0), ivec2(pixels) - 1), 0).r;
-  return z >= 1.0 ? 40.0 : log2(near_far.x * near_far.y / (near_far.y - z * (near_far.y - near_far.x)));
+  float depth = near_far.x * near_far.y / (near_far.y - z * (near_far.y - near_far.x));
+  return z >= 1.0 ? 40.0 : log2(depth);
 }
 
 vec3 background(float t) { return mix(vec3(0.043, 0.051, 0.063), vec3(0.106, 0.125, 0.149), t); }
@@ -216,8 +222,10 @@ void main() {
   if (outline > 0.0) {
     float own = log_depth(at);
     int r = int(max(1.0, pixel_ratio));
-    float sum = max(0.0, own - log_depth(at + ivec2(r, 0))) + max(0.0, own - log_depth(at - ivec2(r, 0))) +
-                max(0.0, own - log_depth(at + ivec2(0, r))) + max(0.0, own - log_depth(at - ivec2(0, r)));
+    float sum = max(0.0, own - log_depth(at + ivec2(r, 0))) +
+                max(0.0, own - log_depth(at - ivec2(r, 0))) +
+                max(0.0, own - log_depth(at + ivec2(0, r))) +
+                max(0.0, own - log_depth(at - ivec2(0, r)));
     // The background gets a rim, not a shadow.
     color *= z >= 1.0 ? 1.0 : max(0.35, exp(-outline * sum));
   }

@@ -5,9 +5,22 @@
 // paths and the sensor are drawn over it, against its depth.
 
 import {
-  BufferAttribute, BufferGeometry, Camera, DepthTexture, GLSL3, Mesh, NearestFilter, Object3D,
-  OrthographicCamera, PerspectiveCamera, RawShaderMaterial, Scene, UnsignedIntType, Vector2,
-  WebGLRenderTarget, WebGLRenderer,
+  BufferAttribute,
+  BufferGeometry,
+  Camera,
+  DepthTexture,
+  GLSL3,
+  Mesh,
+  NearestFilter,
+  Object3D,
+  OrthographicCamera,
+  PerspectiveCamera,
+  RawShaderMaterial,
+  Scene,
+  UnsignedIntType,
+  Vector2,
+  WebGLRenderTarget,
+  WebGLRenderer,
 } from 'three';
 import { kScreenFragment, kScreenVertex } from './shaders';
 
@@ -47,7 +60,10 @@ export class Stage {
   /** Fits the canvas to its element; whether it changed. */
   resize(width: number, height: number): boolean {
     const ratio = this.software ? 1 : Math.min(window.devicePixelRatio, kLargestPixelRatio);
-    const pixels = new Vector2(Math.max(1, Math.floor(width * ratio)), Math.max(1, Math.floor(height * ratio)));
+    const pixels = new Vector2(
+      Math.max(1, Math.floor(width * ratio)),
+      Math.max(1, Math.floor(height * ratio)),
+    );
     if (pixels.equals(this.size)) return false;
     this.size.copy(pixels);
     this.renderer.setPixelRatio(ratio);
@@ -99,7 +115,9 @@ export class Stage {
     renderer.render(this.screen, this.screenCamera);
     renderer.setScissorTest(true);
     for (const area of areas) {
-      const [x, y, w, h] = [area.x, area.y, area.width, area.height].map((v) => v / this.pixelRatio);
+      const [x, y, w, h] = [area.x, area.y, area.width, area.height].map(
+        (v) => v / this.pixelRatio,
+      );
       renderer.setViewport(x, y, w, h);
       renderer.setScissor(x, y, w, h);
       renderer.render(this.overlay, camera);
@@ -139,7 +157,10 @@ function makeTarget(width: number, height: number): WebGLRenderTarget {
 
 function makeScreen(): Mesh<BufferGeometry, RawShaderMaterial> {
   const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
+  geometry.setAttribute(
+    'position',
+    new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3),
+  );
   const material = new RawShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: kScreenVertex,

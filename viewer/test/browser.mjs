@@ -6,9 +6,16 @@ import { accessSync, constants } from 'node:fs';
 import { delimiter, join } from 'node:path';
 
 const kFlags = [
-  '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-  '--disable-background-networking', '--disable-component-update', '--disable-sync',
-  '--disable-extensions', '--no-first-run', '--disable-default-apps', '--no-default-browser-check',
+  '--no-sandbox',
+  '--use-angle=swiftshader',
+  '--enable-unsafe-swiftshader',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+  '--disable-extensions',
+  '--no-first-run',
+  '--disable-default-apps',
+  '--no-default-browser-check',
 ];
 
 function isProgram(path) {
@@ -22,7 +29,9 @@ function isProgram(path) {
 
 /** CHROMIUM names another browser. */
 export function findBrowser() {
-  const names = [process.env.CHROMIUM, 'chromium', 'chromium-browser', 'google-chrome'].filter(Boolean);
+  const names = [process.env.CHROMIUM, 'chromium', 'chromium-browser', 'google-chrome'].filter(
+    Boolean,
+  );
   const folders = (process.env.PATH ?? '').split(delimiter);
   const places = names.flatMap((n) => (n.includes('/') ? [n] : folders.map((f) => join(f, n))));
   return places.find(isProgram);
@@ -34,7 +43,13 @@ export function findBrowser() {
  */
 export async function openPage(url, size, files = null) {
   const { chromium } = await import('playwright-core');
-  const browser = await chromium.launch({ executablePath: findBrowser(), args: kFlags, timeout: 60_000 });
+  // Chromium takes a page that a test put in place for one from elsewhere.
+  const flags = files ? [...kFlags, '--disable-features=LocalNetworkAccessChecks'] : kFlags;
+  const browser = await chromium.launch({
+    executablePath: findBrowser(),
+    args: flags,
+    timeout: 60_000,
+  });
   const context = await browser.newContext({ viewport: size, acceptDownloads: true });
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   const page = await context.newPage();
@@ -43,12 +58,15 @@ export async function openPage(url, size, files = null) {
   const own = new URL(url);
   page.on('request', (request) => {
     const to = new URL(request.url());
-    if (!['data:', 'blob:'].includes(to.protocol) && to.host !== own.host) seen.faults.push(`asked ${to}`);
+    if (!['data:', 'blob:'].includes(to.protocol) && to.host !== own.host)
+      seen.faults.push(`asked ${to}`);
   });
   page.on('pageerror', (error) => seen.faults.push(`exception: ${error.message}`));
   page.on('console', (message) => {
     if (!['error', 'warning'].includes(message.type())) return;
-    const lost = /ERR_CONNECTION|WebSocket|Failed to load resource|ERR_EMPTY_RESPONSE/.test(message.text());
+    const lost = /ERR_CONNECTION|WebSocket|Failed to load resource|ERR_EMPTY_RESPONSE/.test(
+      message.text(),
+    );
     // Chromium's own remark about drawing without a GPU and reading pixels back.
     if (/GPU stall due to ReadPixels|GroupMarkerNotSet/.test(message.text())) return;
     if (!(seen.offline && lost)) seen.faults.push(`console: ${message.text()}`);

@@ -13,7 +13,15 @@
 // program. Needs no GPU.
 import assert from 'node:assert/strict';
 import { execFileSync, spawn } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
+import {
+  mkdirSync,
+  mkdtempSync,
+  readFileSync,
+  rmSync,
+  statSync,
+  symlinkSync,
+  writeFileSync,
+} from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -22,7 +30,7 @@ import { findBrowser, openPage } from './browser.mjs';
 
 const kSize = { width: 1100, height: 760 };
 const kSkipped = 77;
-const kPatienceMs = 60_000;
+const kPatienceMs = 40_000;
 const kToken = '0123456789abcdef0123456789abcdef';
 
 function skip(why) {
@@ -117,7 +125,8 @@ class Check {
     for (;;) {
       const state = await this.state();
       if (holds(state)) return state;
-      if (Date.now() > end) throw new Error(`${what}: not within ${patience / 1000} s; ${JSON.stringify(state)}`);
+      if (Date.now() > end)
+        throw new Error(`${what}: not within ${patience / 1000} s; ${JSON.stringify(state)}`);
       await sleep(60);
     }
   }
@@ -132,10 +141,14 @@ class Check {
 
   /** Whose number is beyond all that is under way: made with what was asked for before. */
   async freshScan() {
-    const { scan } = await this.state();
-    const number = scan?.number ?? 0;
-    const received = (await this.state()).scansReceived;
-    return (await this.until('a new scan', (s) => s.scansReceived >= received + 4 && s.scan && s.scan.number !== number)).scan;
+    const before = await this.state();
+    const there = (s) => Math.hypot(...[0, 1].map((i) => s.scan.pose[i] - s.pose[i])) < 0.01;
+    const isFresh = (s) =>
+      s.scansReceived >= before.scansReceived + 4 &&
+      s.scan &&
+      s.scan.number !== before.scan?.number &&
+      there(s);
+    return (await this.until('a new scan', isFresh)).scan;
   }
 
   pixels() {
@@ -153,7 +166,8 @@ class Check {
   }
 }
 
-const isBackground = ([r, g, b]) => Math.max(r, g, b) < 42 && Math.max(r, g, b) - Math.min(r, g, b) < 16;
+const isBackground = ([r, g, b]) =>
+  Math.max(r, g, b) < 42 && Math.max(r, g, b) - Math.min(r, g, b) < 16;
 
 function shareOf(pixels, holds) {
   return pixels.filter(holds).length / pixels.length;
@@ -172,7 +186,10 @@ function classesSeen(pixels, classes) {
   const drawn = pixels.filter((p) => !isBackground(p)).map(unit);
   return classes.filter(({ color }) => {
     const wanted = unit(color);
-    return drawn.filter((p) => Math.hypot(...p.map((v, i) => v - wanted[i])) < 0.04).length > drawn.length * 0.004;
+    return (
+      drawn.filter((p) => Math.hypot(...p.map((v, i) => v - wanted[i])) < 0.04).length >
+      drawn.length * 0.004
+    );
   });
 }
 
@@ -182,7 +199,10 @@ async function checkLoading(t) {
   assert.ok(state.loadedNodes > 0 && state.elements > 0);
   assert.equal(await t.page.title(), `${t.scene.name} – adasplats`);
   const unlabelled = await t.page.$$eval('input, select, button', (all) =>
-    all.filter((e) => !e.labels?.length && !e.ariaLabel && !e.title && !e.textContent.trim()).map((e) => e.outerHTML));
+    all
+      .filter((e) => !e.labels?.length && !e.ariaLabel && !e.title && !e.textContent.trim())
+      .map((e) => e.outerHTML),
+  );
   assert.deepEqual(unlabelled, [], 'inputs without a label');
 }
 
@@ -193,7 +213,10 @@ async function checkDrawing(t) {
   await t.settled();
   const byClass = await t.pixels();
   assert.ok(shareOf(byClass, (p) => !isBackground(p)) > 0.25, 'little is drawn');
-  const found = classesSeen(byClass, t.scene.classes.filter((c) => Math.max(...c.color) >= 70));
+  const found = classesSeen(
+    byClass,
+    t.scene.classes.filter((c) => Math.max(...c.color) >= 70),
+  );
   assert.ok(found.length >= 3, `classes seen: ${found.map((c) => c.name)}`);
   await t.shot('class');
   await t.page.selectOption('#color', 'normal');
@@ -202,7 +225,10 @@ async function checkDrawing(t) {
   await t.page.selectOption('#color', 'shading');
   await t.settled();
   const shaded = await t.pixels();
-  const grey = shareOf(shaded.filter((p) => !isBackground(p)), (p) => Math.max(...p) - Math.min(...p) < 30);
+  const grey = shareOf(
+    shaded.filter((p) => !isBackground(p)),
+    (p) => Math.max(...p) - Math.min(...p) < 30,
+  );
   assert.ok(grey > 0.6, `shading is not grey: ${grey}`);
   await t.shot('shading');
   await t.page.selectOption('#color', 'height');
@@ -223,9 +249,14 @@ async function checkErrors(t) {
 async function checkDetail(t) {
   const far = await t.lookFrom(25);
   const near = await t.lookFrom(0.3);
-  assert.ok(near.elements > 1.5 * far.elements || far.nodes === near.loadedNodes,
-    `far ${far.elements}, near ${near.elements} elements`);
-  console.log(`      ${far.elements} elements from afar, ${near.elements} from near, ${near.loadedNodes} nodes loaded`);
+  const small = t.scene.layers.every((l) => l.nodes === 1);
+  assert.ok(
+    small || near.elements > 1.5 * far.elements,
+    `far ${far.elements}, near ${near.elements} elements`,
+  );
+  console.log(
+    `      ${far.elements} elements from afar, ${near.elements} from near, ${near.loadedNodes} nodes loaded`,
+  );
 }
 
 async function checkClasses(t) {
@@ -260,7 +291,9 @@ async function checkScans(t) {
   const { scansReceived } = await t.until('ten scans', (s) => s.scansReceived >= first + 10);
   const rate = ((scansReceived - first) * 1000) / (Date.now() - began);
   const state = await t.until('a rate', (s) => s.scansPerSecond > 0);
-  console.log(`      ${rate.toFixed(1)} scans/s, ${state.scan.points} points, ${(1000 * state.scan.seconds).toFixed(1)} ms each`);
+  console.log(
+    `      ${rate.toFixed(1)} scans/s, ${state.scan.points} points, ${(1000 * state.scan.seconds).toFixed(1)} ms each`,
+  );
   assert.ok(state.scan.points > 100 && state.scan.rings > 0);
   await t.settled();
   const drawn = await t.pixels();
@@ -282,37 +315,49 @@ async function checkDriving(t) {
   await t.call('setCameraMode', 'follow');
   const before = await t.state();
   await t.page.focus('#view');
+  const wayOf = (s) => Math.hypot(s.pose[0] - before.pose[0], s.pose[1] - before.pose[1]);
+  // Cosine of half the angle between the poses.
+  const turnOf = (s) =>
+    Math.abs([3, 4, 5, 6].reduce((sum, i) => sum + s.pose[i] * before.pose[i], 0));
   await t.page.keyboard.down('w');
-  await sleep(2500);
+  await t.until('a way', (s) => wayOf(s) > 5);
   await t.page.keyboard.down('a');
-  await sleep(1500);
+  await t.until('a turn', (s) => turnOf(s) < 0.995);
   await t.page.keyboard.up('a');
   await t.page.keyboard.up('w');
   const driven = await t.state();
   await t.shot('drive');
   await t.page.keyboard.down(' ');
-  await sleep(800);
+  await t.until('a stop', (s) => s.speed_m_s === 0);
   await t.page.keyboard.up(' ');
-  const way = Math.hypot(driven.pose[0] - before.pose[0], driven.pose[1] - before.pose[1]);
   const eye = Math.hypot(...driven.camera.eye.map((v, i) => v - before.camera.eye[i]));
-  assert.ok(way > 1, `the sensor moved ${way} m`);
   assert.ok(eye > 0.5, `the camera moved ${eye} m`);
-  assert.ok(Math.abs(driven.pose[5] - before.pose[5]) + Math.abs(driven.pose[6] - before.pose[6]) > 1e-3, 'it did not turn');
   assert.ok(driven.pathPoses > 5, `${driven.pathPoses} poses in the path`);
   await sleep(1500);
   const rest = await t.state();
   const scan = await t.freshScan();
-  assert.ok(Math.hypot(scan.pose[0] - rest.pose[0], scan.pose[1] - rest.pose[1]) < 0.1, 'the scan is from elsewhere');
+  assert.ok(
+    Math.hypot(scan.pose[0] - rest.pose[0], scan.pose[1] - rest.pose[1]) < 0.1,
+    'the scan is from elsewhere',
+  );
   await t.page.fill('#setting-max_range_m', '50');
   await t.page.keyboard.press('w');
-  assert.deepEqual((await t.state()).pose, rest.pose, 'a key in a field drives');
+  // The height may still settle over the ground.
+  assert.deepEqual(
+    (await t.state()).pose.slice(0, 2),
+    rest.pose.slice(0, 2),
+    'a key in a field drives',
+  );
   await t.page.fill('#setting-max_range_m', String((await t.state()).settings.max_range_m));
   await t.call('setCameraMode', 'orbit');
 }
 
 async function checkDragging(t) {
   const { pose } = await t.state();
-  await t.call('setCamera', { eye: [pose[0] - 8, pose[1] - 1, pose[2] + 8], target: pose.slice(0, 3) });
+  await t.call('setCamera', {
+    eye: [pose[0] - 8, pose[1] - 1, pose[2] + 8],
+    target: pose.slice(0, 3),
+  });
   await sleep(600);
   const place = await t.call('project', ...pose.slice(0, 3));
   await t.page.mouse.move(...place);
@@ -320,8 +365,11 @@ async function checkDragging(t) {
   await t.page.mouse.move(place[0] + 60, place[1] - 40, { steps: 5 });
   await t.page.mouse.up();
   const moved = (await t.state()).pose;
-  assert.ok(Math.hypot(moved[0] - pose[0], moved[1] - pose[1]) > 0.3, 'the sensor does not follow the mouse');
-  assert.equal(moved[2], pose[2]);
+  assert.ok(
+    Math.hypot(moved[0] - pose[0], moved[1] - pose[1]) > 0.3,
+    'the sensor does not follow the mouse',
+  );
+  assert.ok(Math.abs(moved[2] - pose[2]) < 0.3, 'it left its plane');
 }
 
 async function checkSensors(t) {
@@ -340,7 +388,9 @@ async function checkSensors(t) {
   const cut = await t.freshScan();
   assert.ok(cut.points < whole.points, `${cut.points} of ${whole.points} points`);
   assert.ok(cut.maxRange_m < 12.5, `a point at ${cut.maxRange_m} m`);
-  console.log(`      ${before.rings} rings ${before.points} points; ${other.name}: ${whole.rings} rings ${whole.points} points, within 12 m ${cut.points}`);
+  console.log(
+    `      ${before.rings} rings ${before.points} points; ${other.name}: ${whole.rings} rings ${whole.points} points, within 12 m ${cut.points}`,
+  );
   await t.page.click('button:text-is("Reset")');
   await t.until('its own range again', (s) => s.settings.max_range_m !== 12);
   await t.page.selectOption('#sensor', t.scene.sensor);
@@ -354,7 +404,10 @@ async function checkRefusal(t) {
   await sleep(300);
   const after = await t.state();
   assert.equal(after.settings.max_range_m, before.settings.max_range_m);
-  assert.equal(Number(await t.page.inputValue('#setting-max_range_m')), Number(before.settings.max_range_m.toPrecision(5)));
+  assert.equal(
+    Number(await t.page.inputValue('#setting-max_range_m')),
+    Number(before.settings.max_range_m.toPrecision(5)),
+  );
 }
 
 async function checkPicking(t) {
@@ -364,7 +417,12 @@ async function checkPicking(t) {
   await t.page.click('label:has-text("Live scan")');
   const box = await t.page.locator('#view').boundingBox();
   const classes = t.scene.classes.map((c) => c.name);
-  for (const [u, v] of [[0.5, 0.6], [0.4, 0.7], [0.6, 0.5], [0.5, 0.8]]) {
+  for (const [u, v] of [
+    [0.5, 0.6],
+    [0.4, 0.7],
+    [0.6, 0.5],
+    [0.5, 0.8],
+  ]) {
     await t.page.mouse.click(box.x + u * box.width, box.y + v * box.height);
     await sleep(700);
     if (await t.page.isVisible('#card')) break;
@@ -372,7 +430,10 @@ async function checkPicking(t) {
   const text = await t.page.textContent('#card');
   assert.match(text, /Splat/);
   assert.match(text, /Position/);
-  assert.ok(classes.some((name) => text.includes(name)), `no class in: ${text}`);
+  assert.ok(
+    classes.some((name) => text.includes(name)),
+    `no class in: ${text}`,
+  );
   console.log(`      ${await t.page.innerText('#card').then((s) => s.replace(/\s+/g, ' '))}`);
   await t.shot('pick');
   await t.page.keyboard.press('Escape');
@@ -381,7 +442,10 @@ async function checkPicking(t) {
 }
 
 async function checkScreenshot(t) {
-  const [file] = await Promise.all([t.page.waitForEvent('download'), t.page.click('text=Screenshot')]);
+  const [file] = await Promise.all([
+    t.page.waitForEvent('download'),
+    t.page.click('text=Screenshot'),
+  ]);
   const bytes = readFileSync(await file.path());
   assert.equal(bytes.subarray(1, 4).toString('latin1'), 'PNG');
   const box = await t.page.locator('#view').boundingBox();
@@ -399,7 +463,10 @@ async function checkCommand(t, folder) {
   const text = await t.page.textContent('#command-text');
   assert.equal(await t.page.evaluate(() => navigator.clipboard.readText()), text);
   assert.ok(text.includes(`--sensor ${t.scene.sensor}`), text);
-  const [file] = await Promise.all([t.page.waitForEvent('download'), t.page.click('text=Save poses.csv')]);
+  const [file] = await Promise.all([
+    t.page.waitForEvent('download'),
+    t.page.click('text=Save poses.csv'),
+  ]);
   await t.page.click('#command >> text=Close');
   const poses = readFileSync(await file.path(), 'utf8');
   assert.match(poses, /^time,x,y,z,qw,qx,qy,qz\n0\.0+,/);
@@ -409,9 +476,13 @@ async function checkCommand(t, folder) {
     symlinkSync(t.server.program, join(folder, 'adasplats'));
     const env = { ...process.env, PATH: `${folder}:${process.env.PATH}` };
     execFileSync('sh', ['-c', text], { cwd: folder, env, stdio: 'pipe' });
-    const points = statSync(join(folder, 'scans', 'sequences', '00', 'velodyne', '000000.bin')).size / 16;
+    const points =
+      statSync(join(folder, 'scans', 'sequences', '00', 'velodyne', '000000.bin')).size / 16;
     console.log(`      ${points} points by the command, ${live.points} live`);
-    assert.ok(Math.abs(points - live.points) <= 0.002 * live.points, `${points} points, live ${live.points}`);
+    assert.ok(
+      Math.abs(points - live.points) <= 0.002 * live.points,
+      `${points} points, live ${live.points}`,
+    );
   }
   await t.page.locator('#setting-noise').check();
 }
@@ -425,10 +496,11 @@ async function checkRestart(t) {
   await t.page.waitForSelector('#banner:not([hidden])');
   await t.shot('offline');
   await sleep(500);
+  const { scansReceived } = await t.state();
   await t.server.start();
   const began = Date.now();
   await t.until('connected again', (s) => s.connected);
-  const after = await t.until('scans again', (s) => s.scansReceived >= before.scansReceived + 5);
+  const after = await t.until('scans again', (s) => s.scansReceived >= scansReceived + 5);
   console.log(`      scans again ${((Date.now() - began) / 1000).toFixed(1)} s after the server`);
   assert.equal(await t.page.isVisible('#banner'), false);
   assert.equal(after.sensor, before.sensor);
@@ -445,9 +517,13 @@ async function checkLayout(t) {
   const outside = await t.page.evaluate(() => {
     const fits = (e) => {
       const b = e.getBoundingClientRect();
-      return b.left >= -1 && b.top >= -1 && b.right <= innerWidth + 1 && b.bottom <= innerHeight + 1;
+      return (
+        b.left >= -1 && b.top >= -1 && b.right <= innerWidth + 1 && b.bottom <= innerHeight + 1
+      );
     };
-    return ['panel', 'stage', 'tools', 'live', 'strip'].filter((id) => !fits(document.getElementById(id)));
+    return ['panel', 'stage', 'tools', 'live', 'strip'].filter(
+      (id) => !fits(document.getElementById(id)),
+    );
   });
   assert.deepEqual(outside, [], 'parts outside the window');
   await t.shot('small');
@@ -482,6 +558,7 @@ async function checkAll(server, { shots, page }, folder) {
   try {
     await t.page.waitForFunction(() => window.adasplats !== undefined);
     await t.part('loads', () => checkLoading(t));
+    if (t.failed > 0) return t;
     await t.part('draws', () => checkDrawing(t));
     await t.part('shows errors', () => checkErrors(t));
     await t.part('shows more detail from near', () => checkDetail(t));
@@ -512,12 +589,15 @@ function readArguments() {
   const given = process.argv.slice(2);
   while (given.length > 0) {
     const word = given.shift();
-    if (word === '--shots' || word === '--page') options[word.slice(2)] = resolve(given.shift() ?? '.');
+    if (word === '--shots' || word === '--page')
+      options[word.slice(2)] = resolve(given.shift() ?? '.');
     else if (word === '--with') options.with.push(given.shift());
     else words.push(word);
   }
   if (words.length === 2) return { ...options, words };
-  console.error('usage: check_viewer.mjs PROGRAM MODEL | --mock PAGE [--shots FOLDER] [--page FOLDER] [--with OPTION]');
+  console.error(
+    'usage: check_viewer.mjs PROGRAM MODEL | --mock PAGE [--shots FOLDER] [--page FOLDER] [--with OPTION]',
+  );
   return process.exit(64);
 }
 
@@ -525,11 +605,15 @@ const options = readArguments();
 const { shots, words } = options;
 if (!findBrowser()) skip('no Chromium (CHROMIUM names one)');
 for (const needed of ['playwright-core', 'ws'])
-  await import(needed).catch(() => skip(`no ${needed}: run 'npm ci' in ${dirname(dirname(fileURLToPath(import.meta.url)))}`));
+  await import(needed).catch(() =>
+    skip(`no ${needed}: run 'npm ci' in ${dirname(dirname(fileURLToPath(import.meta.url)))}`),
+  );
 if (shots) mkdirSync(shots, { recursive: true });
 const folder = mkdtempSync(join(tmpdir(), 'adasplats-viewer-'));
 const mock = words[0] === '--mock';
-const server = mock ? madeUpServer(resolve(words[1])) : realServer(resolve(words[0]), resolve(words[1]), options.with);
+const server = mock
+  ? madeUpServer(resolve(words[1]))
+  : realServer(resolve(words[0]), resolve(words[1]), options.with);
 let passed = 0;
 let failed = 0;
 try {

@@ -16,10 +16,32 @@ const kToken = 'mock';
 const kPauseMs = 60;
 const kOrigin = [650000, 6860000, 40];
 const kSensors = [
-  { name: 'mock-64', title: 'Mock 64', rings: 64, columns: 450, low: -24, high: 2, rotation_hz: 10, max_range_m: 100 },
-  { name: 'mock-16', title: 'Mock 16', rings: 16, columns: 450, low: -15, high: 15, rotation_hz: 10, max_range_m: 60 },
+  {
+    name: 'mock-64',
+    title: 'Mock 64',
+    rings: 64,
+    columns: 450,
+    low: -24,
+    high: 2,
+    rotation_hz: 10,
+    max_range_m: 100,
+  },
+  {
+    name: 'mock-16',
+    title: 'Mock 16',
+    rings: 16,
+    columns: 450,
+    low: -15,
+    high: 15,
+    rotation_hz: 10,
+    max_range_m: 60,
+  },
 ];
-const kTypes = { html: 'text/html; charset=utf-8', js: 'text/javascript; charset=utf-8', css: 'text/css; charset=utf-8' };
+const kTypes = {
+  html: 'text/html; charset=utf-8',
+  js: 'text/javascript; charset=utf-8',
+  css: 'text/css; charset=utf-8',
+};
 const kPolicy =
   "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; connect-src 'self'; worker-src 'self' blob:";
 
@@ -39,7 +61,8 @@ function scanPacket(number, sensor, settings, pose, random) {
   const found = [];
   for (let column = 0; column < sensor.columns; ++column)
     for (let ring = 0; ring < sensor.rings; ++ring) {
-      const e = ((sensor.high - ((sensor.high - sensor.low) * ring) / (sensor.rings - 1)) * Math.PI) / 180;
+      const e =
+        ((sensor.high - ((sensor.high - sensor.low) * ring) / (sensor.rings - 1)) * Math.PI) / 180;
       const a = Math.PI - (2 * Math.PI * column) / sensor.columns;
       const own = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
       const hit = meet(pose[0], pose[1], pose[2], ...rotated(pose.slice(3), own));
@@ -51,8 +74,11 @@ function scanPacket(number, sensor, settings, pose, random) {
   const bytes = Buffer.alloc(80 + 24 * found.length);
   const rays = sensor.rings * sensor.columns;
   [0x4e435341, 1, number, found.length, rays, sensor.rings, sensor.columns, 3].forEach((v, i) =>
-    bytes.writeUInt32LE(v, 4 * i));
-  [...pose, (performance.now() - began) / 1000, sensor.max_range_m].forEach((v, i) => bytes.writeFloatLE(v, 32 + 4 * i));
+    bytes.writeUInt32LE(v, 4 * i),
+  );
+  [...pose, (performance.now() - began) / 1000, sensor.max_range_m].forEach((v, i) =>
+    bytes.writeFloatLE(v, 32 + 4 * i),
+  );
   found.forEach(({ own, range, ring, column, id }, k) => {
     const at = 80 + 24 * k;
     own.forEach((d, i) => bytes.writeFloatLE(d * range, at + 4 * i));
@@ -67,23 +93,59 @@ function scanPacket(number, sensor, settings, pose, random) {
 const kStart = [-45, -2, 1.9, 0, 0, 0, 1];
 
 function makeScene(trees) {
-  const poses = Array.from({ length: 90 }, (_, i) => [kStart[0] + i, kStart[1], kStart[2], 0, 0, 0, 1]);
+  const poses = Array.from({ length: 90 }, (_, i) => [
+    kStart[0] + i,
+    kStart[1],
+    kStart[2],
+    0,
+    0,
+    0,
+    1,
+  ]);
   const layer = (id, kind, name, tree) => ({
-    id, kind, name, count: tree.count, nodes: tree.elements.length, has_classes: true,
-    has_intensities: true, has_errors: kind === 'splats', intensity_range: [0, 1],
-    error_range_m: [0, 0.3], box: [tree.box.low, tree.box.high],
+    id,
+    kind,
+    name,
+    count: tree.count,
+    nodes: tree.elements.length,
+    has_classes: true,
+    has_intensities: true,
+    has_errors: kind === 'splats',
+    intensity_range: [0, 1],
+    error_range_m: [0, 0.3],
+    box: [tree.box.low, tree.box.high],
   });
   return {
-    version: 1, name: 'made-up street', origin_m: kOrigin,
-    layers: [layer(0, 'splats', 'street.ply', trees[0]), layer(1, 'points', 'street.laz', trees[1])],
-    middle_box: [[-60, -24, 0], [60, 24, 10]],
+    version: 1,
+    name: 'made-up street',
+    origin_m: kOrigin,
+    layers: [
+      layer(0, 'splats', 'street.ply', trees[0]),
+      layer(1, 'points', 'street.laz', trees[1]),
+    ],
+    middle_box: [
+      [-60, -24, 0],
+      [60, 24, 10],
+    ],
     classes: kClasses,
     trajectories: [{ name: '00', poses }],
-    scans: poses.filter((_, i) => i % 10 === 0).map((pose, i) => ({ name: String(i).padStart(6, '0'), trajectory: 0, pose, points: 40000 })),
+    scans: poses
+      .filter((_, i) => i % 10 === 0)
+      .map((pose, i) => ({ name: String(i).padStart(6, '0'), trajectory: 0, pose, points: 40000 })),
     can_simulate: true,
     sensors: kSensors.map(({ name, title, rings, columns, rotation_hz, max_range_m }) => ({
-      name, title, rings, rays: rings * columns, rotation_hz, min_range_m: 0.9, max_range_m })),
-    sensor: 'mock-64', start_pose: kStart, device: 'cpu', command: ['adasplats', 'simulate', 'made up.ply'],
+      name,
+      title,
+      rings,
+      rays: rings * columns,
+      rotation_hz,
+      min_range_m: 0.9,
+      max_range_m,
+    })),
+    sensor: 'mock-64',
+    start_pose: kStart,
+    device: 'cpu',
+    command: ['adasplats', 'simulate', 'made up.ply'],
   };
 }
 
@@ -106,9 +168,17 @@ class Session {
 
   usual() {
     return {
-      noise: true, range_noise_m: 0.02, rotation_hz: 10, min_range_m: 0.9,
-      max_range_m: this.sensor.max_range_m, sub_rays: 1, returns: 1, rolling_shutter: false,
-      rain_mm_h: 0, fog_visibility_m: null, snow_mm_h: 0,
+      noise: true,
+      range_noise_m: 0.02,
+      rotation_hz: 10,
+      min_range_m: 0.9,
+      max_range_m: this.sensor.max_range_m,
+      sub_rays: 1,
+      returns: 1,
+      rolling_shutter: false,
+      rain_mm_h: 0,
+      fog_visibility_m: null,
+      snow_mm_h: 0,
     };
   }
 
@@ -126,11 +196,20 @@ class Session {
 
   choose({ name, settings }) {
     const found = kSensors.find((s) => s.name === name);
-    if (!found || settings.max_range_m < 0) return this.tell({ type: 'error', message: `no such LiDAR or parameter: ${name}` });
+    if (!found || settings.max_range_m < 0)
+      return this.tell({ type: 'error', message: `no such LiDAR or parameter: ${name}` });
     this.sensor = found;
     this.settings = { ...this.usual(), ...settings };
     const options = Object.entries(settings).flatMap(([key, value]) => [`--${key}`, String(value)]);
-    this.tell({ type: 'sensor', name, rings: found.rings, columns: found.columns, rays: found.rings * found.columns, settings: this.settings, options });
+    this.tell({
+      type: 'sensor',
+      name,
+      rings: found.rings,
+      columns: found.columns,
+      rays: found.rings * found.columns,
+      settings: this.settings,
+      options,
+    });
   }
 
   pick({ id, origin, direction }) {
@@ -138,8 +217,17 @@ class Session {
     if (!hit) return this.tell({ type: 'picked', id, hit: false });
     const found = kClasses.find((c) => c.id === hit.id);
     this.tell({
-      type: 'picked', id, hit: true, range_m: hit.t, primitive: 4711, normal: hit.normal, radius_m: 0.1,
-      position: origin.map((o, i) => o + hit.t * direction[i]), class: hit.id, class_name: found.name, intensity: 0.3,
+      type: 'picked',
+      id,
+      hit: true,
+      range_m: hit.t,
+      primitive: 4711,
+      normal: hit.normal,
+      radius_m: 0.1,
+      position: origin.map((o, i) => o + hit.t * direction[i]),
+      class: hit.id,
+      class_name: found.name,
+      intensity: 0.3,
     });
   }
 
@@ -152,22 +240,50 @@ class Session {
 
 /** What no real server sends. */
 function sendNonsense(socket) {
-  const packet = scanPacket(1, kSensors[1], { max_range_m: 60, min_range_m: 0 }, kStart, Math.random);
+  const packet = scanPacket(
+    1,
+    kSensors[1],
+    { max_range_m: 60, min_range_m: 0 },
+    kStart,
+    Math.random,
+  );
   const wrongPose = Buffer.from(packet);
   wrongPose.writeFloatLE(NaN, 44);
   const manyPoints = Buffer.from(packet);
   manyPoints.writeUInt32LE(0xffffffff, 12);
-  for (const text of ['no JSON', '[]', '7', 'null', '{"type": "sensor"}', '{"type": "picked", "id": "x"}',
-    '{"type": "unheard-of"}', '{"type": "error"}', '{"type": "sensor", "name": "mock-64", "rings": null}'])
+  for (const text of [
+    'no JSON',
+    '[]',
+    '7',
+    'null',
+    '{"type": "sensor"}',
+    '{"type": "picked", "id": "x"}',
+    '{"type": "unheard-of"}',
+    '{"type": "error"}',
+    '{"type": "sensor", "name": "mock-64", "rings": null}',
+  ])
     socket.send(text);
-  for (const bytes of [Buffer.alloc(0), Buffer.alloc(79), Buffer.alloc(200, 255), packet.subarray(0, 5000), wrongPose, manyPoints])
+  for (const bytes of [
+    Buffer.alloc(0),
+    Buffer.alloc(79),
+    Buffer.alloc(200, 255),
+    packet.subarray(0, 5000),
+    wrongPose,
+    manyPoints,
+  ])
     socket.send(bytes);
 }
 
 /** Serves until the process ends; its address. With `nonsense` every fifth node is cut short. */
 async function serve(folder, options) {
   const elements = makeElements(options.count);
-  const trees = [makeTree(elements, false), makeTree(elements.filter((_, i) => i % 2 === 0), true)];
+  const trees = [
+    makeTree(elements, false),
+    makeTree(
+      elements.filter((_, i) => i % 2 === 0),
+      true,
+    ),
+  ];
   trees[0].count = elements.length;
   trees[1].count = Math.ceil(elements.length / 2);
   const scene = makeScene(trees);
@@ -181,7 +297,13 @@ async function serve(folder, options) {
     if (tree) return trees[Number(tree[1])]?.nodes;
     const scan = path.match(/^scans\/(\d+)\.bin$/);
     if (scan && scene.scans[Number(scan[1])])
-      return scanPacket(Number(scan[1]), kSensors[0], { noise: true, min_range_m: 0, max_range_m: 100 }, scene.scans[Number(scan[1])].pose, randomOf(3));
+      return scanPacket(
+        Number(scan[1]),
+        kSensors[0],
+        { noise: true, min_range_m: 0, max_range_m: 100 },
+        scene.scans[Number(scan[1])].pose,
+        randomOf(3),
+      );
     if (path === 'scene.json') return JSON.stringify(scene);
     const file = path === '' ? 'index.html' : path;
     if (['index.html', 'app.js', 'app.css'].includes(file)) return readFile(join(folder, file));
@@ -191,7 +313,11 @@ async function serve(folder, options) {
     const path = request.url.startsWith(`/${kToken}/`) ? request.url.slice(kToken.length + 2) : '?';
     const body = await answer(path);
     const type = kTypes[path === '' ? 'html' : path.split('.').pop()] ?? 'application/octet-stream';
-    reply.writeHead(body === undefined ? 404 : 200, { 'Content-Type': type, 'Content-Security-Policy': kPolicy, 'Cache-Control': 'no-store' });
+    reply.writeHead(body === undefined ? 404 : 200, {
+      'Content-Type': type,
+      'Content-Security-Policy': kPolicy,
+      'Cache-Control': 'no-store',
+    });
     reply.end(body);
   });
   const sockets = new WebSocketServer({ server, path: `/${kToken}/live` });
@@ -204,9 +330,12 @@ async function serve(folder, options) {
 }
 
 const words = process.argv.slice(2);
-const option = (name, usual) => (words.includes(name) ? Number(words[words.indexOf(name) + 1]) : usual);
-console.log(await serve(words[0] ?? 'dist', {
-  port: option('--port', 0),
-  count: option('--count', 300_000),
-  nonsense: words.includes('--nonsense'),
-}));
+const option = (name, usual) =>
+  words.includes(name) ? Number(words[words.indexOf(name) + 1]) : usual;
+console.log(
+  await serve(words[0] ?? '../build/page', {
+    port: option('--port', 0),
+    count: option('--count', 300_000),
+    nonsense: words.includes('--nonsense'),
+  }),
+);

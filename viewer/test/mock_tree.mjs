@@ -33,7 +33,9 @@ function octants(elements, { low, high }) {
   const middle = low.map((v, i) => (v + high[i]) / 2);
   const parts = Array.from({ length: 8 }, () => []);
   for (const e of elements)
-    parts[(e.x > middle[0] ? 1 : 0) | (e.y > middle[1] ? 2 : 0) | (e.z > middle[2] ? 4 : 0)].push(e);
+    parts[(e.x > middle[0] ? 1 : 0) | (e.y > middle[1] ? 2 : 0) | (e.z > middle[2] ? 4 : 0)].push(
+      e,
+    );
   return parts.filter((p) => p.length > 0);
 }
 
@@ -50,7 +52,10 @@ function elementBytes(elements, box, largest, points) {
     const at = 16 * k;
     [e.x, e.y, e.z].forEach((value, i) => {
       const size = box.high[i] - box.low[i];
-      bytes.writeUInt16LE(size > 0 ? Math.round((65535 * (value - box.low[i])) / size) : 0, at + 2 * i);
+      bytes.writeUInt16LE(
+        size > 0 ? Math.round((65535 * (value - box.low[i])) / size) : 0,
+        at + 2 * i,
+      );
     });
     bytes.writeUInt16LE(largest > 0 ? Math.round((65535 * e.radius) / largest) : 0, at + 6);
     const [u, v] = points ? [0, 0] : octahedral(e.normal);

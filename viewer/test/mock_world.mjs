@@ -115,7 +115,11 @@ export function makeElements(count) {
       const length = Math.hypot(...tilt);
       const stripe = id === -1 && Math.abs(y) < 0.15 && Math.floor(x / 3) % 2 === 0;
       elements.push({
-        x, y, z, radius: radius * (0.9 + 0.2 * random()), normal: tilt.map((c) => c / length),
+        x,
+        y,
+        z,
+        radius: radius * (0.9 + 0.2 * random()),
+        normal: tilt.map((c) => c / length),
         id: id === -1 ? groundClass(y) : id,
         intensity: stripe ? 0.95 : 0.25 + 0.3 * random() + 0.2 * (id === 50 ? 1 : 0),
         error: Math.min(1, Math.abs(z) / 12 + 0.1 * random()),

@@ -8,6 +8,8 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <array>
+#include <thread>
+#include <utility>
 
 namespace adasplats {
 
@@ -22,17 +24,33 @@ std::unique_ptr<global_control> allow(int threads) {
                                           static_cast<std::size_t>(threads));
 }
 
+/// Whether this thread is in a chunk of a loop.
+thread_local bool inside_loop = false;
+
+class InsideLoop {
+ public:
+  InsideLoop() : before_(std::exchange(inside_loop, true)) {}
+  ~InsideLoop() { inside_loop = before_; }
+  InsideLoop(const InsideLoop&) = delete;
+  InsideLoop& operator=(const InsideLoop&) = delete;
+
+ private:
+  bool before_;
+};
+
 }  // namespace
 
 struct Executor::Impl {
   std::unique_ptr<global_control> limit;
   mutable oneapi::tbb::task_arena arena;
-  explicit Impl(int threads) : limit(allow(threads)), arena(threads) {}
+  std::function<void()> interruption;
+  Impl(int threads, std::function<void()> interruption_in)
+      : limit(allow(threads)), arena(threads), interruption(std::move(interruption_in)) {}
 };
 
-Executor::Executor(int threads)
-    : impl_(std::make_unique<Impl>(threads > 0 ? threads
-                                               : oneapi::tbb::info::default_concurrency())) {}
+Executor::Executor(int threads, std::function<void()> interruption)
+    : impl_(std::make_unique<Impl>(threads > 0 ? threads : oneapi::tbb::info::default_concurrency(),
+                                   std::move(interruption))) {}
 
 Executor::~Executor() = default;
 
@@ -42,7 +60,11 @@ void Executor::for_chunks(std::size_t count, std::size_t grain,
                           FunctionRef<void(std::size_t, std::size_t)> body) const {
   if (count == 0) return;
   const std::size_t chunks = (count + grain - 1) / grain;
+  const bool may_stop = impl_->interruption && !inside_loop;
+  const std::thread::id caller = std::this_thread::get_id();
   const auto run_chunk = [&](std::size_t chunk) {
+    if (may_stop && std::this_thread::get_id() == caller) impl_->interruption();
+    const InsideLoop inside;
     body(chunk * grain, std::min(count, (chunk + 1) * grain));
   };
   if (chunks == 1) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -16,8 +17,10 @@ namespace adasplats {
 /// depend on the sizes alone and reductions add chunks in their order.
 class Executor {
  public:
-  /// `threads` = 0 takes what the process may use (its CPU affinity).
-  explicit Executor(int threads = 0);
+  /// `threads` = 0 takes what the process may use (its CPU affinity). `interruption`, where given,
+  /// is called between the chunks of a loop on the thread that started it (not in loops within
+  /// loops); what it throws stops the loop and reaches the caller, so work can be cancelled.
+  explicit Executor(int threads = 0, std::function<void()> interruption = {});
   ~Executor();
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <numeric>
@@ -115,6 +116,36 @@ TEST(Executor, LoopsMayNest) {
     executor.for_chunks(10, 1, [&](std::size_t, std::size_t) { ++visits; });
   });
   EXPECT_EQ(visits, 100);
+}
+
+TEST(Executor, AnInterruptionStopsALoopOnTheThreadThatStartedIt) {
+  for (const int threads : {1, 3}) {
+    const std::thread::id caller = std::this_thread::get_id();
+    std::atomic<int> calls = 0;
+    const Executor executor(threads, [&] {
+      EXPECT_EQ(std::this_thread::get_id(), caller);
+      if (++calls == 5) throw std::runtime_error("stop");
+    });
+    std::atomic<std::size_t> done = 0;
+    EXPECT_THROW(executor.for_chunks(1'000'000, 1,
+                                     [&](std::size_t begin, std::size_t end) {
+                                       std::this_thread::sleep_for(std::chrono::microseconds(10));
+                                       done += end - begin;
+                                     }),
+                 std::runtime_error);
+    EXPECT_LT(done, 1'000'000U);
+    executor.for_chunks(10, 1, [](std::size_t, std::size_t) {});
+    EXPECT_GT(calls, 5) << "it may be used again";
+  }
+}
+
+TEST(Executor, LoopsWithinLoopsAreNotInterrupted) {
+  std::atomic<int> calls = 0;
+  const Executor executor(1, [&] { ++calls; });
+  executor.for_chunks(4, 1, [&](std::size_t, std::size_t) {
+    executor.for_chunks(100, 1, [](std::size_t, std::size_t) {});
+  });
+  EXPECT_EQ(calls, 4);
 }
 
 }  // namespace

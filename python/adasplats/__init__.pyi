@@ -1,0 +1,628 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""Types of the module; docstrings tell shapes and units."""
+from __future__ import annotations
+
+import os
+from typing import Any, Callable, Iterator, Literal, Sequence, Union, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import evaluate as evaluate
+
+Path = Union[str, bytes, os.PathLike[str]]
+Poses = Union["Trajectory", ArrayLike]
+"""world_from_sensor, (N, 4, 4) or (4, 4)."""
+Progress = Callable[[str, int, int], object]
+"""Hears (step, done, total); 0 where the total is not known."""
+Device = Literal["auto", "cpu", "cuda", "optix"]
+Selection = Literal["most-discards-first", "largest-first", "curve", "scattered"]
+
+__version__: str
+NO_PRIMITIVE: int
+"""Stands for the primitive where nothing is hit."""
+
+class Error(Exception):
+    """What every error of adasplats is besides the class of Python's own."""
+
+class UsageError(Error, ValueError): ...
+class DataError(Error, ValueError): ...
+class ConfigError(Error, ValueError): ...
+class InputError(Error, FileNotFoundError): ...
+class OutputError(Error, OSError): ...
+class UnavailableError(Error, RuntimeError): ...
+class SoftwareError(Error, RuntimeError): ...
+
+def read(
+    paths: Path | Sequence[Path],
+    *,
+    label_field: str | None = None,
+    sensor_x_field: str | None = None,
+    sensor_y_field: str | None = None,
+    sensor_z_field: str | None = None,
+    viewpoint: ArrayLike | None = None,
+    trajectory: Path | None = None,
+    first_scan: int = 0,
+    scan_count: int | None = None,
+    scan_stride: int = 1,
+    strict: bool = False,
+    beams_from_poses: bool = False,
+    salvage: bool = False,
+    max_distance_m: float = 100000.0,
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> PointCloud: ...
+
+def model(
+    points: PointCloud | Path | Sequence[Path],
+    *,
+    labels: Path | None = None,
+    method: Literal["consistent", "basic", "descriptors", "semantic"] = "consistent",
+    neighbors: int = 40,
+    alpha: float = 0.2,
+    smoothness: float = 0.6,
+    radius: float | None = None,
+    error_bound: float | None = None,
+    selection: Selection = "most-discards-first",
+    remove: Literal["none", "moving", "movable"] = "movable",
+    cell: float = 0.05,
+    small_cell: float = 0.02,
+    largest_radius: float = 0.5,
+    balance_rounds: int = 4,
+    strict_rounds: int = 5,
+    settle_rounds: int = 2,
+    fill: bool = True,
+    denoise: bool = True,
+    denoise_sigmas: float = 3.0,
+    denoise_votes: float = 0.5,
+    resample: bool = True,
+    resample_density: float = 1.0,
+    resample_base: Literal["points", "centers", "mixed"] = "mixed",
+    ground_scale: ArrayLike = (3.0, 3.0, 3.0),
+    surface_scale: ArrayLike = (1.0, 1.0, 1.0),
+    linear_scale: ArrayLike = (0.33, 0.33, 0.33),
+    non_surface_scale: ArrayLike = (0.25, 0.25, 0.25),
+    planar_scale: ArrayLike = (2.0, 2.0, 2.0),
+    group_normals: bool = True,
+    reflectance: bool = True,
+    label_field: str | None = None,
+    sensor_x_field: str | None = None,
+    sensor_y_field: str | None = None,
+    sensor_z_field: str | None = None,
+    viewpoint: ArrayLike | None = None,
+    trajectory: Path | None = None,
+    first_scan: int = 0,
+    scan_count: int | None = None,
+    scan_stride: int = 1,
+    strict: bool = False,
+    beams_from_poses: bool = False,
+    salvage: bool = False,
+    max_distance_m: float = 100000.0,
+    device: Device = "auto",
+    gpus: Sequence[int] | None = None,
+    threads: int = 0,
+    seed: int = 1,
+    progress: Progress | None = None,
+) -> Model: ...
+
+def label_scheme(name_or_path: Path) -> LabelScheme: ...
+
+def sensors() -> list[str]: ...
+
+def devices() -> list[dict[str, Any]]: ...
+
+def why_no_gpu() -> str: ...
+
+def synth_street(
+    folder: Path,
+    *,
+    points: int = 300000,
+    length: float = 0.0,
+    range_noise: float = 0.005,
+    passes: int = 2,
+    driving_spacing: float = 2.0,
+    threads: int = 0,
+    seed: int = 1,
+    progress: Progress | None = None,
+) -> dict[str, Any]: ...
+
+class PointCloud:
+    """Points of one or many scans."""
+
+    def __init__(
+        self,
+        positions: ArrayLike,
+        *,
+        classes: ArrayLike | None = None,
+        instances: ArrayLike | None = None,
+        intensities: ArrayLike | None = None,
+        sensor_positions: ArrayLike | None = None,
+        scan_indices: ArrayLike | None = None,
+        origin: ArrayLike | None = None,
+    ) -> None: ...
+    def __len__(self) -> int: ...
+    @property
+    def positions(self) -> NDArray[np.float32]:
+        """(N, 3) float32, m, relative to origin."""
+    @property
+    def sensor_positions(self) -> NDArray[np.float32] | None:
+        """(N, 3) float32, m, relative to origin, or None."""
+    @property
+    def intensities(self) -> NDArray[np.float32] | None:
+        """(N,) float32 in the unit of the file, or None."""
+    @property
+    def classes(self) -> NDArray[np.uint16] | None:
+        """(N,) uint16, ids of a label scheme, or None."""
+    @property
+    def instances(self) -> NDArray[np.uint16] | None:
+        """(N,) uint16, 0 for none, or None."""
+    @property
+    def scan_indices(self) -> NDArray[np.uint32] | None:
+        """(N,) uint32, the scan that a point is from, or None."""
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """(3,) float64, world coordinates of the local origin, m."""
+    @property
+    def world_positions(self) -> NDArray[np.float64]:
+        """(N, 3) float64, origin + positions: a new array."""
+    def save(self, path: Path) -> None: ...
+
+class LabelScheme:
+    """What the numbers of classes mean; made by label_scheme()."""
+
+    def __len__(self) -> int: ...
+    @property
+    def name(self) -> str:
+        """Of the scheme."""
+    @property
+    def ids(self) -> NDArray[np.uint16]:
+        """(C,) uint16, ascending: the numbers of the classes."""
+    @property
+    def names(self) -> list[str]:
+        """Names of the classes, in the order of ids."""
+    @property
+    def groups(self) -> list[str]:
+        """ground, surface, linear or non-surface, in the order of ids."""
+    @property
+    def mobilities(self) -> list[str]:
+        """fixed, movable or moving, in the order of ids."""
+    @property
+    def colors(self) -> NDArray[np.uint8]:
+        """(C, 3) uint8, RGB, in the order of ids."""
+    def id_of(self, name: str) -> int: ...
+
+class Trajectory:
+    """Where a sensor was when."""
+
+    def __init__(self, poses: Poses, times: ArrayLike | None = None) -> None: ...
+    def __getitem__(self, slice: slice) -> Trajectory: ...
+    def __len__(self) -> int: ...
+    @staticmethod
+    def read(path: Path) -> Trajectory: ...
+    def save(self, path: Path) -> None: ...
+    @property
+    def poses(self) -> NDArray[np.float64]:
+        """(N, 4, 4) float64, world_from_sensor: a new array."""
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """(N,) float64, s: a new array."""
+    def resampled(
+        self,
+        *,
+        rate_hz: float | None = None,
+        spacing_m: float | None = None,
+    ) -> Trajectory: ...
+    def shifted(self, offset: ArrayLike) -> Trajectory: ...
+    def mounted(self, vehicle_from_sensor: ArrayLike) -> Trajectory: ...
+    def interpolate(self, time: float) -> NDArray[np.float64]: ...
+
+class Firings:
+    """The rays of one scan, made by Sensor.firings(). Arrays are read-only views without a copy."""
+
+    def __len__(self) -> int: ...
+    @property
+    def directions(self) -> NDArray[np.float32]:
+        """(N, 3) float32, unit vectors in the sensor's frame."""
+    @property
+    def origins(self) -> NDArray[np.float32]:
+        """(N, 3) float32, m: where the beams leave, sensor's frame."""
+    @property
+    def rings(self) -> NDArray[np.uint16]:
+        """(N,) uint16, 0 the topmost."""
+    @property
+    def columns(self) -> NDArray[np.uint32]:
+        """(N,) uint32."""
+    @property
+    def times(self) -> NDArray[np.float32]:
+        """(N,) float32, s since the scan began."""
+
+class Sensor:
+    """A LiDAR: which rays one revolution holds."""
+
+    def __init__(self, name_or_file: Path) -> None: ...
+    @property
+    def name(self) -> str:
+        """Of the sensor."""
+    @property
+    def source(self) -> str:
+        """Where its numbers are from."""
+    @property
+    def rotation_hz(self) -> float:
+        """Scans a second."""
+    @property
+    def columns(self) -> int:
+        """Azimuth steps; 0: none."""
+    @property
+    def min_range_m(self) -> float:
+        """Nearer surfaces are not told, m."""
+    @property
+    def max_range_m(self) -> float:
+        """Farther surfaces are not told, m."""
+    @property
+    def range_noise_m(self) -> float:
+        """Standard deviation, m."""
+    @property
+    def angular_noise_rad(self) -> float:
+        """Standard deviation, rad."""
+    @property
+    def range_resolution_m(self) -> float:
+        """Ranges are multiples of it, m; 0: any."""
+    @property
+    def most_returns(self) -> int:
+        """Echoes a firing."""
+    @property
+    def rings(self) -> int:
+        """How many beams."""
+    @property
+    def rays_per_scan(self) -> int:
+        """Firings of one scan."""
+    @property
+    def repeats(self) -> bool:
+        """Whether every scan has the same rays."""
+    @property
+    def elevations_rad(self) -> NDArray[np.float64]:
+        """(B,) float64, topmost first; empty where it is a list of rays or a rosette."""
+    @property
+    def divergence_rad(self) -> tuple[float, float]:
+        """Full angles of a beam, horizontal and vertical."""
+    @staticmethod
+    def from_beams(
+        elevations_rad: ArrayLike,
+        *,
+        azimuth_offsets_rad: ArrayLike | None = None,
+        firing_times_s: ArrayLike | None = None,
+        beam_origins_m: ArrayLike | None = None,
+        columns: int = 1800,
+        first_azimuth_rad: float = 0.0,
+        clockwise: bool = False,
+        name: str = "beams",
+        rotation_hz: float = 10.0,
+        min_range_m: float = 0.0,
+        max_range_m: float = 120.0,
+        range_noise_m: float = 0.0,
+        angular_noise_rad: float = 0.0,
+        range_resolution_m: float = 0.0,
+        divergence_horizontal_rad: float = 0.0,
+        divergence_vertical_rad: float = 0.0,
+        most_returns: int = 1,
+    ) -> Sensor: ...
+    @staticmethod
+    def from_rays(
+        directions: ArrayLike,
+        *,
+        origins_m: ArrayLike | None = None,
+        times_s: ArrayLike | None = None,
+        rings: ArrayLike | None = None,
+        columns: ArrayLike | None = None,
+        name: str = "rays",
+        rotation_hz: float = 10.0,
+        min_range_m: float = 0.0,
+        max_range_m: float = 120.0,
+        range_noise_m: float = 0.0,
+        angular_noise_rad: float = 0.0,
+        range_resolution_m: float = 0.0,
+        divergence_horizontal_rad: float = 0.0,
+        divergence_vertical_rad: float = 0.0,
+        most_returns: int = 1,
+    ) -> Sensor: ...
+    def replaced(self, **changes: object) -> Sensor: ...
+    def firings(self, scan_index: int = 0) -> Firings: ...
+
+class Model:
+    """A place as oriented disks."""
+
+    def __init__(
+        self,
+        centers: ArrayLike,
+        normals: ArrayLike,
+        radii: ArrayLike,
+        *,
+        classes: ArrayLike | None = None,
+        intensities: ArrayLike | None = None,
+        labels: Path | None = None,
+        origin: ArrayLike | None = None,
+    ) -> None: ...
+    def __len__(self) -> int: ...
+    @staticmethod
+    def load(path: Path) -> Model: ...
+    def save(self, path: Path) -> None: ...
+    @property
+    def centers(self) -> NDArray[np.float32]:
+        """(N, 3) float32, m, relative to origin."""
+    @property
+    def normals(self) -> NDArray[np.float32]:
+        """(N, 3) float32, of unit length."""
+    @property
+    def radii(self) -> NDArray[np.float32]:
+        """(N,) float32, m."""
+    @property
+    def classes(self) -> NDArray[np.uint16] | None:
+        """(N,) uint16, ids of the label scheme, or None."""
+    @property
+    def groups(self) -> NDArray[np.uint8] | None:
+        """(N,) uint8: 0 ground, 1 surface, 2 linear, 3 non-surface; None for basic splats."""
+    @property
+    def intensities(self) -> NDArray[np.float32] | None:
+        """(N,) float32: reflectances where there is a response, else as measured; or None."""
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """(3,) float64, world coordinates of the local origin, m."""
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """(2, 3) float64: least and greatest world coordinates of the disks."""
+    @property
+    def labels(self) -> str:
+        """Name or path of the label scheme; empty where there is none."""
+    @property
+    def method(self) -> str:
+        """How it was made."""
+    @property
+    def response(self) -> dict[str, NDArray[np.float32]] | None:
+        """How intensity depends on range and incidence: a dict of arrays ranges_m, range_gains,
+        cos_incidences, incidence_gains; or None."""
+    @property
+    def report(self) -> dict[str, Any] | None:
+        """What model() did, with the keys of 'adasplats model --report'; None if loaded."""
+
+class Mesh:
+    """A place as triangles."""
+
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        triangles: ArrayLike,
+        *,
+        classes: ArrayLike | None = None,
+        labels: Path | None = None,
+        origin: ArrayLike | None = None,
+    ) -> None: ...
+    def __len__(self) -> int: ...
+    @staticmethod
+    def load(path: Path) -> Mesh: ...
+    def save(self, path: Path) -> None: ...
+    @property
+    def vertices(self) -> NDArray[np.float32]:
+        """(V, 3) float32, m, relative to origin."""
+    @property
+    def triangles(self) -> NDArray[np.uint32]:
+        """(T, 3) uint32, vertex numbers."""
+    @property
+    def classes(self) -> NDArray[np.uint16] | None:
+        """(T,) uint16, ids of the label scheme, or None."""
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """(3,) float64, world coordinates of the local origin, m."""
+    @property
+    def labels(self) -> str:
+        """Name or path of the label scheme; empty where there is none."""
+
+class Scan:
+    """The returns of one revolution of a LiDAR, in the order of its firings. Arrays are read-only
+    views without a copy."""
+
+    def __len__(self) -> int: ...
+    @property
+    def positions(self) -> NDArray[np.float32]:
+        """(N, 3) float32, m, in the sensor's frame."""
+    @property
+    def ranges(self) -> NDArray[np.float32]:
+        """(N,) float32, m."""
+    @property
+    def rings(self) -> NDArray[np.uint16]:
+        """(N,) uint16, 0 the topmost."""
+    @property
+    def columns(self) -> NDArray[np.uint32]:
+        """(N,) uint32, azimuth steps."""
+    @property
+    def times(self) -> NDArray[np.float32]:
+        """(N,) float32, s since the revolution began."""
+    @property
+    def intensities(self) -> NDArray[np.float32] | None:
+        """(N,) float32 or None."""
+    @property
+    def classes(self) -> NDArray[np.uint16] | None:
+        """(N,) uint16 or None."""
+    @property
+    def instances(self) -> NDArray[np.uint16] | None:
+        """(N,) uint16 or None."""
+    @property
+    def return_indices(self) -> NDArray[np.uint8] | None:
+        """(N,) uint8, 0 for the first told of a firing; None where no firing can return twice."""
+    @property
+    def pose(self) -> NDArray[np.float64]:
+        """(4, 4) float64, world_from_sensor."""
+    @property
+    def time(self) -> float:
+        """Of the pose, s."""
+    @property
+    def rays(self) -> int:
+        """How many firings the revolution had."""
+
+class Scans:
+    """The scans of one drive: a sequence of Scan, made by Scene.simulate()."""
+
+    def __len__(self) -> int: ...
+    @overload
+    def __getitem__(self, index: int) -> Scan: ...
+    @overload
+    def __getitem__(self, slice: slice) -> Scans: ...
+    def __iter__(self) -> Iterator[Scan]: ...
+    def save(
+        self,
+        folder: Path,
+        *,
+        format: Literal["semantickitti", "ply", "npy", "npz", "pcd", "las"] = "semantickitti",
+    ) -> None: ...
+
+class Hits:
+    """What rays hit, made by Scene.cast(): shapes are (N,), or (N, depth) for a depth above 1."""
+
+    def __len__(self) -> int: ...
+    @property
+    def ranges(self) -> NDArray[np.float32]:
+        """float32, m; inf where nothing is hit."""
+    @property
+    def primitives(self) -> NDArray[np.uint32]:
+        """uint32: number of the splat or triangle; NO_PRIMITIVE where nothing is hit."""
+    @property
+    def valid(self) -> NDArray[np.bool_]:
+        """bool, whether something is hit: a new array."""
+    @property
+    def classes(self) -> NDArray[np.uint16] | None:
+        """uint16, 0 where nothing is hit: a new array; None without classes."""
+    @property
+    def normals(self) -> NDArray[np.float32]:
+        """(..., 3) float32, NaN where nothing is hit: a new array."""
+
+class Scene:
+    """A place that rays are cast into, on the CPU or on GPUs."""
+
+    class DeviceArray:
+        """An array in GPU memory that other libraries read without a copy through DLPack."""
+
+        def __dlpack__(self, *, stream: Any = None) -> Any: ...
+        def __dlpack_device__(self) -> tuple[int, int]: ...
+        @property
+        def shape(self) -> tuple[int, ...]:
+            """As NumPy has it."""
+        @property
+        def pointer(self) -> int:
+            """Address of the first element in GPU memory."""
+
+    class DeviceHits:
+        """Hits in GPU memory: (scans, firings), or (scans, firings, depth) for a depth above 1."""
+
+        @property
+        def ranges(self) -> Scene.DeviceArray:
+            """float32, m; inf where nothing is hit."""
+        @property
+        def primitives(self) -> Scene.DeviceArray:
+            """uint32; NO_PRIMITIVE where nothing is hit."""
+
+    def __init__(
+        self,
+        model: Model | Mesh | Path,
+        *,
+        device: Device = "auto",
+        gpus: Sequence[int] | None = None,
+        threads: int = 0,
+        progress: Progress | None = None,
+        labels: Path | None = None,
+    ) -> None: ...
+    def __len__(self) -> int: ...
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """(3,) float64, world coordinates of the local origin, m."""
+    @property
+    def device(self) -> str:
+        """What casts: 'cpu', or 'cuda' or 'optix' and the names of GPUs."""
+    @property
+    def threads(self) -> int:
+        """Of the CPU."""
+    @property
+    def labels(self) -> LabelScheme | None:
+        """The LabelScheme of its classes, or None."""
+    def cast(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        *,
+        t_min: float = 0.0,
+        t_max: float | None = None,
+        depth: int = 1,
+        local: bool = False,
+    ) -> Hits: ...
+    def simulate(
+        self,
+        sensor: Sensor | Path,
+        poses: Poses,
+        *,
+        motion: Poses | None = None,
+        rolling_shutter: bool = False,
+        points: Literal["raw", "deskewed"] = "raw",
+        noise: bool = True,
+        range_noise: float | None = None,
+        depth: int = 1,
+        depth_gap: float = 0.1,
+        sub_rays: int = 1,
+        separation: float = 0.75,
+        returns: int = 1,
+        return_mode: Literal["strongest", "first", "last"] = "strongest",
+        ray_drop: Path | None = None,
+        rain: float = 0.0,
+        fog: float | None = None,
+        snow: float = 0.0,
+        white_intensity: float = 1.0,
+        seed: int = 1,
+        first_number: int = 0,
+        progress: Progress | None = None,
+    ) -> Scans: ...
+    def iter_scans(
+        self,
+        sensor: Sensor | Path,
+        poses: Poses,
+        *,
+        motion: Poses | None = None,
+        rolling_shutter: bool = False,
+        points: Literal["raw", "deskewed"] = "raw",
+        noise: bool = True,
+        range_noise: float | None = None,
+        depth: int = 1,
+        depth_gap: float = 0.1,
+        sub_rays: int = 1,
+        separation: float = 0.75,
+        returns: int = 1,
+        return_mode: Literal["strongest", "first", "last"] = "strongest",
+        ray_drop: Path | None = None,
+        rain: float = 0.0,
+        fog: float | None = None,
+        snow: float = 0.0,
+        white_intensity: float = 1.0,
+        seed: int = 1,
+        first_number: int = 0,
+        progress: Progress | None = None,
+    ) -> Iterator[Scan]: ...
+    def render(
+        self,
+        *,
+        eye: ArrayLike | None = None,
+        target: ArrayLike | None = None,
+        birds_eye: bool = False,
+        trajectory: Path | None = None,
+        pose: int = 0,
+        width: int = 2560,
+        height: int = 1440,
+        fov: float = 70.0,
+        color: Literal["auto", "semantic", "shading", "normal", "intensity", "range"] = "auto",
+        samples: int = 2,
+    ) -> NDArray[np.uint8]: ...
+    def cast_on_device(
+        self,
+        sensor: Sensor | Path,
+        poses: Poses,
+        *,
+        motion: Poses | None = None,
+        rolling_shutter: bool = False,
+        depth: int = 1,
+    ) -> Scene.DeviceHits: ...

@@ -1,0 +1,109 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""Types of adasplats.evaluate: dicts with the keys of 'adasplats evaluate --report'."""
+from typing import Any, Sequence
+
+from numpy.typing import ArrayLike
+
+from . import Device, Path, PointCloud, Progress, Scene
+
+def c2c(
+    simulated: PointCloud | Path,
+    original: PointCloud | Path,
+    *,
+    by_class: bool = False,
+    labels: Path | None = None,
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> dict[str, Any]: ...
+
+def echoes(
+    model: Path,
+    sequence: Path,
+    *,
+    first_scan: int = 0,
+    scan_count: int | None = None,
+    scan_stride: int = 1,
+    motion: Path | None = None,
+    sensor: Path = "velodyne-hdl-64e-kitti",
+    drop: Path | None = None,
+    device: Device = "auto",
+    gpus: Sequence[int] | None = None,
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> dict[str, Any]: ...
+
+def labels(
+    simulated: Path,
+    original: Path,
+    *,
+    window: int = 10,
+    every: int = 1,
+    labels: Path = "semantickitti",
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> dict[str, Any]: ...
+
+def presence(
+    model: Path,
+    points: Path,
+    *,
+    labels: Path | None = None,
+    within: float = 0.1,
+    min_range: float = 2.5,
+    max_range: float = 50.0,
+    label_field: str | None = None,
+    sensor_x_field: str | None = None,
+    sensor_y_field: str | None = None,
+    sensor_z_field: str | None = None,
+    viewpoint: ArrayLike | None = None,
+    trajectory: Path | None = None,
+    first_scan: int = 0,
+    scan_count: int | None = None,
+    scan_stride: int = 1,
+    strict: bool = False,
+    beams_from_poses: bool = False,
+    salvage: bool = False,
+    max_distance_m: float = 100000.0,
+    device: Device = "auto",
+    gpus: Sequence[int] | None = None,
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> dict[str, Any]: ...
+
+def resimulate(
+    model: Scene | Path,
+    sequence: Path,
+    *,
+    first_scan: int = 0,
+    scan_count: int | None = None,
+    scan_stride: int = 1,
+    beams_from_poses: bool = False,
+    motion: Path | None = None,
+    labels: Path = "semantickitti",
+    min_range: float = 2.5,
+    max_range: float = 50.0,
+    drop_moving: bool = True,
+    drop_movable: bool = False,
+    device: Device = "auto",
+    gpus: Sequence[int] | None = None,
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> dict[str, Any]: ...
+
+def truth(
+    model: Path,
+    truth: Path,
+    *,
+    trajectory: Path | None = None,
+    sensor: Path = "hdl-64-paper",
+    offset: ArrayLike = (0.0, 0.0, 0.0),
+    every: int = 1,
+    labels: Path | None = None,
+    drop_moving: bool = True,
+    drop_movable: bool = False,
+    device: Device = "auto",
+    gpus: Sequence[int] | None = None,
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> dict[str, Any]: ...

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/vec3.h"
+
+namespace adasplats::python {
+
+namespace py = pybind11;
+
+/// A read-only array over memory that `owner` keeps alive: no copy.
+py::array array_view(const py::dtype& type, const void* data, std::vector<py::ssize_t> shape,
+                     std::vector<py::ssize_t> strides, py::handle owner);
+
+/// Shape (N,).
+template <class T>
+py::array array_view(std::span<const T> values, py::handle owner) {
+  return array_view(py::dtype::of<T>(), values.data(), {static_cast<py::ssize_t>(values.size())},
+                    {static_cast<py::ssize_t>(sizeof(T))}, owner);
+}
+template <class T>
+py::array array_view(const std::vector<T>& values, py::handle owner) {
+  return array_view(std::span<const T>(values), owner);
+}
+/// Shape (N, 3).
+py::array array_view(const std::vector<Vec3f>& values, py::handle owner);
+/// Shape (N, 3) of the vectors at `first`, `stride` bytes apart.
+py::array vectors_view(const Vec3f* first, std::size_t count, std::size_t stride, py::handle owner);
+
+/// An attribute that may be missing of something with `count` of them: None for an empty one, but
+/// where there is nothing that could have it.
+template <class T>
+py::object optional_view(const std::vector<T>& values, std::size_t count, py::handle owner) {
+  if (values.empty() && count > 0) return py::none();
+  return array_view(values, owner);
+}
+
+/// An array of shape (N,) or (N, K) that keeps what `values` moved into it.
+template <class T>
+py::array owned_array(std::vector<T>&& values, std::vector<py::ssize_t> shape) {
+  auto* kept = new std::vector<T>(std::move(values));
+  const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<T>*>(p); });
+  return py::array(py::dtype::of<T>(), std::move(shape), kept->data(), owner);
+}
+
+/// Rows of `columns` numbers of an array argument, read where the caller's memory has them: float32
+/// and float64 with any strides are never copied as a whole; other numbers become float64 once. The
+/// array is kept alive.
+class Rows {
+ public:
+  /// Shape (N, columns), or (columns,), which is one row; empty: shape (0,) will do, too. Errors:
+  /// TypeError (no numbers), ValueError (another shape), both naming the argument.
+  Rows(py::handle value, py::ssize_t columns, const char* name);
+
+  std::size_t size() const { return count_; }
+  /// Whether a lone row was given, without the axis of rows.
+  bool is_single() const { return is_single_; }
+  bool is_float32() const { return is_float32_; }
+  double at(std::size_t row, std::size_t column) const {
+    const std::byte* p = data_ + static_cast<std::ptrdiff_t>(row) * row_stride_ +
+                         static_cast<std::ptrdiff_t>(column) * column_stride_;
+    return is_float32_ ? read<float>(p) : read<double>(p);
+  }
+  Vec3d vector(std::size_t row) const { return {at(row, 0), at(row, 1), at(row, 2)}; }
+  /// Number of the first row with a number that is not finite, or size().
+  std::size_t first_not_finite() const;
+  /// Throws ValueError with that row where there is one.
+  void require_finite() const;
+
+ private:
+  template <class T>
+  static double read(const std::byte* p) {
+    T value;
+    __builtin_memcpy(&value, p, sizeof(T));  // an array of NumPy's may be unaligned
+    return value;
+  }
+
+  std::string name_;
+  py::array array_;
+  const std::byte* data_ = nullptr;
+  std::size_t count_ = 0;
+  std::size_t columns_ = 0;
+  std::ptrdiff_t row_stride_ = 0;
+  std::ptrdiff_t column_stride_ = 0;
+  bool is_single_ = false;
+  bool is_float32_ = false;
+};
+
+/// One vector of three finite numbers.
+Vec3d vector_of(py::handle value, const char* name);
+
+/// Whole numbers of an array argument of shape (`count`,); nothing for None. Errors: TypeError (no
+/// whole numbers), ValueError (another shape; a value outside [0, `most`]).
+std::vector<std::uint64_t> whole_numbers_of(py::handle value, std::size_t count, std::uint64_t most,
+                                            const char* name);
+template <class T>
+std::vector<T> whole_numbers_of(py::handle value, std::size_t count, const char* name) {
+  const std::vector<std::uint64_t> wide =
+      whole_numbers_of(value, count, std::numeric_limits<T>::max(), name);
+  return std::vector<T>(wide.begin(), wide.end());
+}
+
+/// Finite numbers of an array argument of shape (`count`,); nothing for None.
+std::vector<double> numbers_of(py::handle value, std::size_t count, const char* name);
+
+/// Rigid transforms of an array argument of shape (N, 4, 4), or (4, 4) for one. Rotations are made
+/// orthonormal. Errors: TypeError, ValueError (shape; not finite; a last row that is not 0 0 0 1; a
+/// rotation not orthonormal to 1e-3).
+std::vector<RigidTransform> transforms_of(py::handle value, const char* name);
+/// The (4, 4) matrices of `transforms`, one after the other.
+py::array_t<double> matrices_of(std::span<const RigidTransform> transforms);
+/// Shape (4, 4).
+py::array matrix_of(const RigidTransform& transform);
+/// Shape (3,).
+py::array_t<double> array_of(Vec3d vector);
+
+}  // namespace adasplats::python

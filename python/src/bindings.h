@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+/// The Python module. Bindings convert arguments and results; the work is the library's. One file
+/// a topic, each with one function that adds it to the module.
+namespace adasplats::python {
+
+namespace py = pybind11;
+
+void bind_errors(py::module_& module);
+void bind_devices(py::module_& module);
+void bind_labels(py::module_& module);
+void bind_trajectories(py::module_& module);
+void bind_clouds(py::module_& module);
+void bind_sensors(py::module_& module);
+void bind_models(py::module_& module);
+void bind_meshes(py::module_& module);
+void bind_scans(py::module_& module);
+void bind_scenes(py::module_& module);
+void bind_hits(py::module_& module);
+void bind_evaluate(py::module_& module);
+void bind_synth(py::module_& module);
+
+}  // namespace adasplats::python

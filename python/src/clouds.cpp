@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "clouds.h"
+
+#include <algorithm>
+
+#include "bindings.h"
+#include "work.h"
+
+namespace adasplats::python {
+namespace {
+
+constexpr const char* kReadDoc =
+    "Read point files and SemanticKITTI sequence folders into one PointCloud.\n\n"
+    "paths: a path or a list of them (PLY, PCD, LAS/LAZ, KITTI bin, text, npy, a sequence folder, "
+    "a\n"
+    "folder of point files). Keywords are those of 'adasplats model' for loading: first_scan,\n"
+    "scan_count (None: all) and scan_stride choose scans of a sequence; viewpoint (3,) or "
+    "trajectory\n"
+    "(a path) tell where the sensor was; label_field names the column of classes. Points that are\n"
+    "not finite are dropped, with strict an error.\n"
+    "Raises FileNotFoundError, ValueError (what is in a file), OSError.";
+
+constexpr const char* kCloudDoc =
+    "Points of one or many scans.\n\n"
+    "positions: (N, 3), world coordinates in metres, any numbers. classes, instances: (N,) of 0 "
+    "to\n"
+    "65535. intensities: (N,). sensor_positions: (N, 3), where the LiDAR was when it measured "
+    "each\n"
+    "point, world coordinates; without them normals have no side and no ray checks the model.\n"
+    "scan_indices: (N,). origin: (3,), what positions are kept relative to as float32; chosen by\n"
+    "their extents where it is None. Raises ValueError with the first row that is not finite.\n"
+    "The arrays are read-only views without a copy; an attribute that the cloud lacks is None.";
+
+void take_read(Keywords& keywords, LoadOptions& load, WorkOptions& work) {
+  work.has_device = false;
+  take_load_options(keywords, load);
+  work.take(keywords);
+}
+
+std::shared_ptr<PointCloud> read(py::handle paths, const py::kwargs& kwargs) {
+  Keywords keywords("read", kwargs);
+  LoadOptions load;
+  WorkOptions options;
+  take_read(keywords, load, options);
+  keywords.finish();
+  const auto inputs = paths_of(paths, "paths");
+  Work work(options);
+  return work.run([&](Session& session) {
+    return std::make_shared<PointCloud>(
+        load_cloud(inputs, load, session.executor, session.progress).first);
+  });
+}
+
+std::vector<Vec3f> relative(const Rows& world, Vec3d origin) {
+  std::vector<Vec3f> vectors(world.size());
+  for (std::size_t i = 0; i < vectors.size(); ++i)
+    vectors[i] = vec_cast<float>(world.vector(i) - origin);
+  return vectors;
+}
+
+std::shared_ptr<PointCloud> make_cloud(py::handle positions, py::handle classes,
+                                       py::handle instances, py::handle intensities,
+                                       py::handle sensor_positions, py::handle scan_indices,
+                                       py::handle origin) {
+  auto cloud = std::make_shared<PointCloud>();
+  LocalVectors local = local_vectors(Rows(positions, 3, "positions"), origin);
+  cloud->origin = local.origin;
+  cloud->positions = std::move(local.vectors);
+  const std::size_t count = cloud->size();
+  cloud->classes = whole_numbers_of<std::uint16_t>(classes, count, "classes");
+  cloud->instances = whole_numbers_of<std::uint16_t>(instances, count, "instances");
+  cloud->scan_indices = whole_numbers_of<std::uint32_t>(scan_indices, count, "scan_indices");
+  const std::vector<double> measured = numbers_of(intensities, count, "intensities");
+  cloud->intensities.assign(measured.begin(), measured.end());
+  if (sensor_positions.is_none()) return cloud;
+  const Rows sensors(sensor_positions, 3, "sensor_positions");
+  if (sensors.size() != count || (sensors.is_single() && count == 1))
+    throw py::value_error("sensor_positions: expected shape (" + std::to_string(count) +
+                          ", 3), one row a point");
+  sensors.require_finite();
+  cloud->sensor_positions = relative(sensors, cloud->origin);
+  return cloud;
+}
+
+py::array world_positions(const PointCloud& cloud) {
+  std::vector<Vec3d> world(cloud.size());
+  for (std::size_t i = 0; i < world.size(); ++i) world[i] = cloud.world(i);
+  const auto count = static_cast<py::ssize_t>(world.size());
+  std::vector<double> numbers(3 * world.size());
+  if (!world.empty()) __builtin_memcpy(numbers.data(), world.data(), numbers.size() * 8);
+  return owned_array(std::move(numbers), {count, 3});
+}
+
+template <class T>
+auto attribute(std::vector<T> PointCloud::*member) {
+  return [member](const py::object& self) {
+    const auto& cloud = self.cast<const PointCloud&>();
+    return optional_view(cloud.*member, cloud.size(), self);
+  };
+}
+
+}  // namespace
+
+LocalVectors local_vectors(const Rows& world, py::handle origin) {
+  world.require_finite();
+  LocalVectors local;
+  if (!origin.is_none()) {
+    local.origin = vector_of(origin, "origin");
+  } else if (world.size() > 0) {
+    Vec3d low = world.vector(0);
+    Vec3d high = low;
+    for (std::size_t i = 1; i < world.size(); ++i) {
+      low = min(low, world.vector(i));
+      high = max(high, world.vector(i));
+    }
+    local.origin = choose_origin(low, high);
+  }
+  local.vectors = relative(world, local.origin);
+  return local;
+}
+
+void take_load_options(Keywords& keywords, LoadOptions& options) {
+  keywords.take("label_field", options.label_field);
+  keywords.take("sensor_x_field", options.sensor_x_field);
+  keywords.take("sensor_y_field", options.sensor_y_field);
+  keywords.take("sensor_z_field", options.sensor_z_field);
+  keywords.take("viewpoint", options.viewpoint);
+  keywords.take("trajectory", options.trajectory);
+  std::uint64_t first = options.first_scan;
+  std::optional<double> count;
+  std::uint64_t stride = options.scan_stride;
+  keywords.take("first_scan", first);
+  keywords.take("scan_count", count);
+  keywords.take("scan_stride", stride);
+  options.first_scan = first;
+  if (count) options.scan_count = static_cast<std::size_t>(std::max(0.0, *count));
+  options.scan_stride = stride;
+  keywords.take("strict", options.strict);
+  keywords.take("beams_from_poses", options.beams_from_poses);
+  keywords.take("salvage", options.salvage);
+  keywords.take("max_distance_m", options.max_distance_m);
+}
+
+bool is_path(py::handle value) {
+  return PyUnicode_Check(value.ptr()) || PyBytes_Check(value.ptr()) ||
+         py::hasattr(value, "__fspath__");
+}
+
+std::filesystem::path path_of(py::handle value, const char* name) {
+  if (!is_path(value))
+    throw py::type_error(std::string(name) + ": expected a path, got " +
+                         std::string(py::str(py::type::of(value).attr("__name__"))));
+  PyObject* bytes = nullptr;
+  if (PyUnicode_FSConverter(value.ptr(), &bytes) == 0) throw py::error_already_set();
+  return std::string(py::reinterpret_steal<py::bytes>(bytes));
+}
+
+std::vector<std::filesystem::path> paths_of(py::handle value, const char* name) {
+  std::vector<std::filesystem::path> paths;
+  if (is_path(value)) {
+    paths.push_back(path_of(value, name));
+    return paths;
+  }
+  if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value))
+    throw py::type_error(std::string(name) + ": expected a path or a list of paths, got " +
+                         std::string(py::str(py::type::of(value).attr("__name__"))));
+  for (const py::handle item : value) paths.push_back(path_of(item, name));
+  if (paths.empty()) throw py::value_error(std::string(name) + ": expected at least one path");
+  return paths;
+}
+
+void bind_clouds(py::module_& module) {
+  const std::string init_doc = documented(
+      "__init__",
+      "self, positions, *, classes=None, instances=None, intensities=None, sensor_positions=None, "
+      "scan_indices=None, origin=None",
+      "See the class.");
+  py::class_<PointCloud, std::shared_ptr<PointCloud>>(module, "PointCloud", kCloudDoc)
+      .def(py::init(&make_cloud), py::arg("positions"), py::kw_only(),
+           py::arg("classes") = py::none(), py::arg("instances") = py::none(),
+           py::arg("intensities") = py::none(), py::arg("sensor_positions") = py::none(),
+           py::arg("scan_indices") = py::none(), py::arg("origin") = py::none(), init_doc.c_str())
+      .def("__len__", &PointCloud::size)
+      .def("__repr__",
+           [](const PointCloud& cloud) {
+             return "<adasplats.PointCloud of " + std::to_string(cloud.size()) + " points>";
+           })
+      .def_property_readonly(
+          "positions",
+          [](const py::object& self) {
+            return array_view(self.cast<const PointCloud&>().positions, self);
+          },
+          "(N, 3) float32, m, relative to origin.")
+      .def_property_readonly("sensor_positions", attribute(&PointCloud::sensor_positions),
+                             "(N, 3) float32, m, relative to origin, or None.")
+      .def_property_readonly("intensities", attribute(&PointCloud::intensities),
+                             "(N,) float32 in the unit of the file, or None.")
+      .def_property_readonly("classes", attribute(&PointCloud::classes),
+                             "(N,) uint16, ids of a label scheme, or None.")
+      .def_property_readonly("instances", attribute(&PointCloud::instances),
+                             "(N,) uint16, 0 for none, or None.")
+      .def_property_readonly("scan_indices", attribute(&PointCloud::scan_indices),
+                             "(N,) uint32, the scan that a point is from, or None.")
+      .def_property_readonly(
+          "origin", [](const PointCloud& cloud) { return array_of(cloud.origin); },
+          "(3,) float64, world coordinates of the local origin, m.")
+      .def_property_readonly("world_positions", &world_positions,
+                             "(N, 3) float64, origin + positions: a new array.")
+      .def(
+          "save",
+          [](const PointCloud& cloud, py::handle path) {
+            const std::filesystem::path file = path_of(path, "path");
+            const py::gil_scoped_release released;
+            save_cloud_ply(file, cloud);
+          },
+          py::arg("path"),
+          documented("save", "self, path",
+                     "Write a PLY, whole or not at all, with every attribute. Raises OSError.")
+              .c_str());
+
+  const std::string read_doc = documented(
+      "read", "paths",
+      [](Keywords& keywords) {
+        LoadOptions load;
+        WorkOptions work;
+        take_read(keywords, load, work);
+      },
+      kReadDoc);
+  module.def("read", &read, py::arg("paths"), read_doc.c_str());
+}
+
+}  // namespace adasplats::python

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/point_cloud.h"
+#include "arrays.h"
+#include "keywords.h"
+
+namespace adasplats::python {
+
+/// Vectors in world coordinates as they are kept: relative to the origin that suits them.
+struct LocalVectors {
+  Vec3d origin;
+  std::vector<Vec3f> vectors;
+};
+/// `origin`: None for the one that choose_origin() gives. Errors: ValueError (not finite).
+LocalVectors local_vectors(const Rows& world, py::handle origin);
+
+/// The keywords of LoadOptions.
+void take_load_options(Keywords& keywords, LoadOptions& options);
+
+/// One path or several. Errors: TypeError.
+std::vector<std::filesystem::path> paths_of(py::handle value, const char* name);
+std::filesystem::path path_of(py::handle value, const char* name);
+bool is_path(py::handle value);
+
+}  // namespace adasplats::python

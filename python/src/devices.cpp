@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/gpu/device.h"
+#include "bindings.h"
+#include "keywords.h"
+
+namespace adasplats::python {
+namespace {
+
+constexpr const char* kDoc =
+    "The GPUs that can be used: a list of dicts index, name, compute (major, minor), "
+    "memory_bytes.\n"
+    "Empty where there is none; why_no_gpu() says why.";
+
+py::list devices() {
+  py::list found;
+  for (const GpuDevice& gpu : find_gpus().devices) {
+    py::dict values;
+    values["index"] = gpu.index;
+    values["name"] = gpu.name;
+    values["compute"] = py::make_tuple(gpu.compute_major, gpu.compute_minor);
+    values["memory_bytes"] = gpu.memory_bytes;
+    found.append(values);
+  }
+  return found;
+}
+
+}  // namespace
+
+void bind_devices(py::module_& module) {
+  module.def("devices", &devices, documented("devices", "", kDoc).c_str());
+  module.def(
+      "why_no_gpu", [] { return find_gpus().reason; },
+      documented("why_no_gpu", "",
+                 "Why no GPU can be used and what to do about it; empty where one can.")
+          .c_str());
+}
+
+}  // namespace adasplats::python

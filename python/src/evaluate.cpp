@@ -1,0 +1,262 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "adasplats/pipeline/evaluate_clouds.h"
+#include "adasplats/pipeline/evaluate_echoes.h"
+#include "adasplats/pipeline/evaluate_labels.h"
+#include "adasplats/pipeline/evaluate_presence.h"
+#include "adasplats/pipeline/evaluate_resimulation.h"
+#include "adasplats/pipeline/evaluate_truth.h"
+#include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/metrics_json.h"
+#include "clouds.h"
+#include "json.h"
+#include "scenes.h"
+
+namespace adasplats::python {
+namespace {
+
+/// Two positional arguments and the keywords of `Arguments`, the result as a dict.
+template <class Arguments>
+void define(py::module_& module, const char* name, const char* first, const char* second,
+            const char* text) {
+  const std::string doc = documented(
+      name, (std::string(first) + ", " + second).c_str(),
+      [](Keywords& keywords) {
+        Arguments arguments;
+        arguments.take(keywords);
+      },
+      text);
+  module.def(
+      name,
+      [name = std::string(name)](py::handle a, py::handle b, const py::kwargs& kwargs) {
+        Keywords keywords(name, kwargs);
+        Arguments arguments;
+        arguments.take(keywords);
+        keywords.finish();
+        return arguments.run(a, b);
+      },
+      py::arg(first), py::arg(second), doc.c_str());
+}
+
+/// Work's result through to_json().
+template <class F>
+py::object reported(const WorkOptions& options, F&& f) {
+  Work work(options);
+  return python_of(work.run([&](Session& session) { return to_json(f(session)); }));
+}
+
+void take_scans(Keywords& keywords, ScanRange& range) {
+  std::uint64_t first = range.first;
+  std::uint64_t stride = range.stride;
+  std::optional<double> count;
+  keywords.take("first_scan", first);
+  keywords.take("scan_count", count);
+  keywords.take("scan_stride", stride);
+  range.first = first;
+  range.stride = stride;
+  if (count) range.count = static_cast<std::size_t>(std::max(0.0, *count));
+}
+
+struct CloudArguments {
+  bool by_class = false;
+  std::string labels;
+  WorkOptions work{.has_device = false};
+
+  void take(Keywords& keywords) {
+    keywords.take("by_class", by_class);
+    keywords.take("labels", labels);
+    work.take(keywords);
+  }
+
+  py::object run(py::handle simulated, py::handle original) const {
+    std::array<std::shared_ptr<const PointCloud>, 2> clouds;
+    std::array<std::filesystem::path, 2> files;
+    const std::array<py::handle, 2> given = {simulated, original};
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (py::isinstance<PointCloud>(given[k]))
+        clouds[k] = given[k].cast<std::shared_ptr<PointCloud>>();
+      else
+        files[k] = path_of(given[k], k == 0 ? "simulated" : "original");
+    }
+    return reported(work, [&](Session& session) {
+      for (std::filesystem::path& file : files)
+        if (!file.empty()) file = resolve_cloud_input(file);
+      const auto scheme = label_scheme_for(labels, files);
+      for (std::size_t k = 0; k < 2; ++k)
+        if (!clouds[k])
+          clouds[k] = std::make_shared<PointCloud>(
+              load_cloud(std::span(files).subspan(k, 1), {}, session.executor, session.progress)
+                  .first);
+      return evaluate_clouds(*clouds[0], *clouds[1], by_class, scheme ? &*scheme : nullptr,
+                             session);
+    });
+  }
+};
+
+struct ResimulateArguments {
+  HeldOutScans scans;
+  std::string labels = "semantickitti";
+  ResimulateOptions options;
+  WorkOptions work;
+
+  void take(Keywords& keywords) {
+    take_scans(keywords, scans.scans);
+    keywords.take("beams_from_poses", scans.beams_from_poses);
+    keywords.take("motion", scans.motion);
+    keywords.take("labels", labels);
+    keywords.take("min_range", options.min_range_m);
+    keywords.take("max_range", options.max_range_m);
+    keywords.take("drop_moving", options.drop_moving);
+    keywords.take("drop_movable", options.drop_movable);
+    work.take(keywords);
+  }
+
+  py::object run(py::handle model, py::handle sequence) {
+    scans.sequence = path_of(sequence, "sequence");
+    const bool in_memory = py::isinstance<SceneObject>(model);
+    const auto object =
+        in_memory ? model.cast<std::shared_ptr<SceneObject>>() : std::shared_ptr<SceneObject>();
+    const std::filesystem::path file =
+        in_memory ? std::filesystem::path() : path_of(model, "model");
+    return reported(work, [&](Session& session) {
+      if (!in_memory) require_input(file);
+      const KittiSequence held_out = open_held_out(scans);
+      if (!in_memory)
+        return evaluate_resimulation(ModelScene(file, "", session), held_out, labels, options,
+                                     session);
+      const auto lock = object->lock();
+      return evaluate_resimulation(*object->scene, held_out, labels, options, session);
+    });
+  }
+};
+
+struct TruthArguments {
+  TruthJob job;
+  WorkOptions work;
+
+  void take(Keywords& keywords) {
+    keywords.take("trajectory", job.trajectory);
+    keywords.take("sensor", job.sensor);
+    keywords.take("offset", job.offset_m);
+    std::uint64_t every = job.every;
+    keywords.take("every", every);
+    job.every = every;
+    keywords.take("labels", job.labels);
+    keywords.take("drop_moving", job.options.drop_moving);
+    keywords.take("drop_movable", job.options.drop_movable);
+    work.take(keywords);
+  }
+
+  py::object run(py::handle model, py::handle truth) {
+    job.model = path_of(model, "model");
+    job.truth = path_of(truth, "truth");
+    if (job.trajectory.empty()) throw py::type_error("truth(): trajectory is missing");
+    return reported(work, [&](Session& session) { return evaluate_truth(job, session); });
+  }
+};
+
+struct PresenceArguments {
+  PresenceJob job;
+  WorkOptions work;
+
+  void take(Keywords& keywords) {
+    keywords.take("labels", job.labels);
+    keywords.take("within", job.options.within_m);
+    keywords.take("min_range", job.options.min_range_m);
+    keywords.take("max_range", job.options.max_range_m);
+    take_load_options(keywords, job.load);
+    work.take(keywords);
+  }
+
+  py::object run(py::handle model, py::handle points) {
+    job.model = path_of(model, "model");
+    job.points = path_of(points, "points");
+    return reported(work, [&](Session& session) { return evaluate_presence(job, session); });
+  }
+};
+
+struct EchoArguments {
+  EchoInputs inputs;
+  std::filesystem::path drop;
+  WorkOptions work;
+
+  void take(Keywords& keywords) {
+    take_scans(keywords, inputs.scans);
+    keywords.take("motion", inputs.motion);
+    keywords.take("sensor", inputs.sensor);
+    keywords.take("drop", drop);
+    work.take(keywords);
+  }
+
+  py::object run(py::handle model, py::handle sequence) {
+    inputs.model = path_of(model, "model");
+    inputs.sequence = path_of(sequence, "sequence");
+    return reported(work, [&](Session& session) { return evaluate_echoes(inputs, drop, session); });
+  }
+};
+
+struct LabelArguments {
+  LabelAgreementJob job;
+  WorkOptions work{.has_device = false};
+
+  void take(Keywords& keywords) {
+    std::uint64_t window = job.options.window;
+    std::uint64_t every = job.options.every;
+    keywords.take("window", window);
+    keywords.take("every", every);
+    job.options.window = window;
+    job.options.every = every;
+    keywords.take("labels", job.labels);
+    work.take(keywords);
+  }
+
+  py::object run(py::handle simulated, py::handle original) {
+    job.simulated = path_of(simulated, "simulated");
+    job.original = path_of(original, "original");
+    return reported(work, [&](Session& session) { return evaluate_labels(job, session); });
+  }
+};
+
+}  // namespace
+
+void bind_evaluate(py::module_& module) {
+  py::module_ evaluate = module.def_submodule(
+      "evaluate",
+      "How good models and scans are: dicts with the keys of 'adasplats evaluate --report'.");
+  define<CloudArguments>(
+      evaluate, "c2c", "simulated", "original",
+      "Distances between two clouds (paper: C2C), Chamfer distance, F-scores, completeness.\n\n"
+      "simulated, original: PointCloud or paths. by_class: also class by class, with labels as\n"
+      "label_scheme() takes them. Raises ValueError, OSError.");
+  define<ResimulateArguments>(
+      evaluate, "resimulate", "model", "sequence",
+      "Cast the measured beams of held-out scans again and compare ranges.\n\n"
+      "model: a Scene or the path of a model. sequence: a SemanticKITTI folder. Ranges in metres.\n"
+      "Raises ValueError, OSError.");
+  define<TruthArguments>(
+      evaluate, "truth", "model", "truth",
+      "Cast a sensor's rays into a model and into the true surface and compare.\n\n"
+      "model, truth, trajectory: paths (the model; a mesh; poses). sensor: a name or a file. "
+      "offset:\n"
+      "(3,) m, moves the poses. Raises TypeError, ValueError, OSError.");
+  define<PresenceArguments>(evaluate, "presence", "model", "points",
+                            "Which measured points a model has a surface at.\n\n"
+                            "model, points: paths. within, min_range, max_range: m; the other "
+                            "keywords are those of read().\n"
+                            "Raises ValueError, OSError.");
+  define<EchoArguments>(
+      evaluate, "echoes", "model", "sequence",
+      "Foretold intensities and beams without return against the measured ones.\n\n"
+      "model, sequence, motion: paths. drop: file of 'adasplats fit-drop'. Raises ValueError, "
+      "OSError.");
+  define<LabelArguments>(evaluate, "labels", "simulated", "original",
+                         "How many simulated points have the class of the nearest measured one.\n\n"
+                         "simulated, original: SemanticKITTI folders. window: original scans "
+                         "before and after the one\n"
+                         "of the same time. Raises ValueError, OSError.");
+}
+
+}  // namespace adasplats::python

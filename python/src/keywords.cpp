@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "keywords.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "adasplats/core/error.h"
+#include "arrays.h"
+
+namespace adasplats::python {
+namespace {
+
+std::string type_name(py::handle value) { return py::str(py::type::of(value).attr("__name__")); }
+
+/// Whole numbers of Python's and NumPy's, but no truth values.
+bool is_whole(py::handle value) {
+  return !PyBool_Check(value.ptr()) && PyIndex_Check(value.ptr()) == 1;
+}
+
+bool is_number(py::handle value) {
+  if (PyBool_Check(value.ptr()) || PyUnicode_Check(value.ptr())) return false;
+  return PyFloat_Check(value.ptr()) || is_whole(value) ||
+         (PyNumber_Check(value.ptr()) == 1 && py::hasattr(value, "__float__"));
+}
+
+double number_of(py::handle value) {
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+  return number;
+}
+
+/// None, or a list of its values, as a default in a signature.
+template <class T>
+py::object default_of(const std::optional<T>& value) {
+  return value ? py::object(py::cast(*value)) : py::none();
+}
+
+}  // namespace
+
+Keywords::Keywords(std::string function, const py::kwargs& given)
+    : function_(std::move(function)), given_(py::dict(given)) {}
+
+std::optional<py::object> Keywords::find(const char* name, const py::object& default_value) {
+  names_.emplace_back(name);
+  if (!given_) {
+    signature_ += std::string(", ") + name + "=" + std::string(py::repr(default_value));
+    return std::nullopt;
+  }
+  if (!given_->contains(name)) return std::nullopt;
+  return py::object((*given_)[name]);
+}
+
+void Keywords::wrong_type(const char* name, const char* expected, py::handle got) const {
+  throw py::type_error(function_ + "(): " + name + " must be " + expected + ", not " +
+                       type_name(got));
+}
+
+void Keywords::take(const char* name, bool& value) {
+  const auto given = find(name, given_ ? py::none() : py::object(py::bool_(value)));
+  if (!given) return;
+  const bool is_truth = PyBool_Check(given->ptr()) || type_name(*given).starts_with("bool");
+  if (!is_truth) wrong_type(name, "True or False", *given);
+  value = PyObject_IsTrue(given->ptr()) == 1;
+}
+
+void Keywords::take(const char* name, int& value) {
+  const auto given = find(name, given_ ? py::none() : py::object(py::int_(value)));
+  if (!given) return;
+  if (!is_whole(*given)) wrong_type(name, "a whole number", *given);
+  const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(given->ptr()));
+  int overflow = 0;
+  const long wide = PyLong_AsLongAndOverflow(number.ptr(), &overflow);
+  if (overflow != 0 || wide != static_cast<int>(wide))
+    throw py::value_error(function_ + "(): " + name + " is out of range");
+  value = static_cast<int>(wide);
+}
+
+void Keywords::take(const char* name, std::uint64_t& value) {
+  const auto given = find(name, given_ ? py::none() : py::object(py::int_(value)));
+  if (!given) return;
+  if (!is_whole(*given)) wrong_type(name, "a whole number", *given);
+  const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(given->ptr()));
+  value = PyLong_AsUnsignedLongLong(number.ptr());
+  if (PyErr_Occurred() == nullptr) return;
+  PyErr_Clear();
+  throw py::value_error(function_ + "(): " + name + " must be 0 to 2^64 - 1");
+}
+
+void Keywords::take(const char* name, double& value) {
+  const auto given = find(name, given_ || std::isfinite(value) ? py::object(py::float_(value))
+                                                               : py::object(py::none()));
+  // None stands for the infinite default: Python has no literal of it.
+  if (!given || (given->is_none() && !std::isfinite(value))) return;
+  if (!is_number(*given)) wrong_type(name, "a number", *given);
+  value = number_of(*given);
+}
+
+void Keywords::take(const char* name, std::optional<double>& value) {
+  const auto given = find(name, given_ ? py::object(py::none()) : default_of(value));
+  if (!given) return;
+  if (given->is_none()) return value.reset();
+  if (!is_number(*given)) wrong_type(name, "a number or None", *given);
+  value = number_of(*given);
+}
+
+void Keywords::take(const char* name, std::string& value) {
+  const py::object absent = value.empty() ? py::object(py::none()) : py::object(py::str(value));
+  const auto given = find(name, absent);
+  if (!given || (given->is_none() && value.empty())) return;
+  if (PyUnicode_Check(given->ptr())) {
+    value = py::str(*given);
+  } else if (py::hasattr(*given, "__fspath__")) {  // a name or a file
+    value = py::str(given->attr("__fspath__")());
+  } else {
+    wrong_type(name, "a string", *given);
+  }
+}
+
+void Keywords::take(const char* name, std::filesystem::path& value) {
+  const auto given = find(name, py::none());
+  if (!given || given->is_none()) return;
+  if (!PyUnicode_Check(given->ptr()) && !PyBytes_Check(given->ptr()) &&
+      !py::hasattr(*given, "__fspath__"))
+    wrong_type(name, "a path", *given);
+  PyObject* bytes = nullptr;
+  if (PyUnicode_FSConverter(given->ptr(), &bytes) == 0) throw py::error_already_set();
+  value = std::string(py::reinterpret_steal<py::bytes>(bytes));
+}
+
+void Keywords::take(const char* name, Vec3d& value) {
+  const auto given = find(name, py::make_tuple(value.x, value.y, value.z));
+  if (given) value = vector_of(*given, name);
+}
+
+void Keywords::take(const char* name, std::optional<Vec3d>& value) {
+  const auto given = find(name, py::none());
+  if (!given) return;
+  if (given->is_none()) return value.reset();
+  value = vector_of(*given, name);
+}
+
+void Keywords::take(const char* name, std::vector<int>& value) {
+  const auto given = find(name, py::none());
+  if (!given || given->is_none()) return;
+  value.clear();
+  if (!py::isinstance<py::sequence>(*given) || PyUnicode_Check(given->ptr()))
+    wrong_type(name, "a list of whole numbers", *given);
+  for (const py::handle item : py::reinterpret_borrow<py::sequence>(*given)) {
+    if (!is_whole(item)) wrong_type(name, "a list of whole numbers", *given);
+    value.push_back(py::cast<int>(item));
+  }
+}
+
+void Keywords::take(const char* name, py::object& value) {
+  if (auto given = find(name, py::none())) value = std::move(*given);
+}
+
+std::size_t Keywords::take_word(const char* name, std::size_t chosen,
+                                const std::vector<std::string>& known) {
+  const auto given = find(name, py::str(known[chosen]));
+  if (!given) return chosen;
+  if (!PyUnicode_Check(given->ptr())) wrong_type(name, "a string", *given);
+  const std::string word = py::str(*given);
+  const auto found = std::find(known.begin(), known.end(), word);
+  if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
+  std::string text = function_ + "(): " + name + " must be ";
+  for (std::size_t i = 0; i < known.size(); ++i)
+    text += (i == 0 ? "'" : (i + 1 == known.size() ? " or '" : ", '")) + known[i] + "'";
+  throw py::value_error(text + ", not '" + word + "'");
+}
+
+void Keywords::finish() const {
+  for (const auto& [key, value] : *given_) {
+    const std::string name = py::str(key);
+    if (std::find(names_.begin(), names_.end(), name) != names_.end()) continue;
+    const auto near = nearest_word(name, names_);
+    throw py::type_error(function_ + "() got an unexpected keyword argument '" + name + "'" +
+                         (near ? "; did you mean '" + *near + "'?" : ""));
+  }
+}
+
+std::string documented(const char* name, const char* leading,
+                       const std::function<void(Keywords&)>& take_all, const char* text) {
+  Keywords keywords;
+  take_all(keywords);
+  return documented(name, (std::string(leading) + ", *" + keywords.signature()).c_str(), text);
+}
+
+std::string documented(const char* name, const char* signature, const char* text) {
+  return std::string(name) + "(" + signature + ")\n--\n\n" + text;
+}
+
+}  // namespace adasplats::python

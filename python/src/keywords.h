@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "adasplats/core/vec3.h"
+
+namespace adasplats::python {
+
+namespace py = pybind11;
+
+/// Words that stand for the values of an enumeration.
+template <class T>
+using Words = std::span<const std::pair<std::string_view, T>>;
+
+/// The keyword arguments of one call. A function takes them one by one by name; what nobody took
+/// is a TypeError that names the nearest. The same taking, without a call, tells the signature: so
+/// names and defaults are written once.
+class Keywords {
+ public:
+  /// Of a call.
+  Keywords(std::string function, const py::kwargs& given);
+  /// Without a call: notes what is taken, with its default.
+  Keywords() = default;
+
+  /// Replaces `value` by the argument of that name, if it was given. Errors: TypeError that tells
+  /// what is expected, ValueError (out of range, an unknown word).
+  void take(const char* name, bool& value);
+  void take(const char* name, int& value);
+  void take(const char* name, std::uint64_t& value);
+  void take(const char* name, double& value);
+  void take(const char* name, std::string& value);
+  void take(const char* name, std::filesystem::path& value);  ///< None: no path
+  void take(const char* name, Vec3d& value);
+  void take(const char* name, std::optional<double>& value);
+  void take(const char* name, std::optional<Vec3d>& value);
+  void take(const char* name, std::vector<int>& value);  ///< None: none
+  void take(const char* name, py::object& value);
+
+  template <class T>
+  void take(const char* name, T& value, Words<T> words) {
+    std::vector<std::string> known;
+    std::size_t chosen = 0;
+    for (const auto& [word, meaning] : words) {
+      if (meaning == value) chosen = known.size();
+      known.emplace_back(word);
+    }
+    value = words[take_word(name, chosen, known)].second;
+  }
+
+  /// To be called when everything was taken. Errors: TypeError.
+  void finish() const;
+
+  /// ", name=default" of everything that was taken; "" where nothing was.
+  const std::string& signature() const { return signature_; }
+
+ private:
+  /// The argument of that name, or nothing; notes the name and the default.
+  std::optional<py::object> find(const char* name, const py::object& default_value);
+  std::size_t take_word(const char* name, std::size_t chosen,
+                        const std::vector<std::string>& known);
+  [[noreturn]] void wrong_type(const char* name, const char* expected, py::handle got) const;
+
+  std::string function_;
+  std::optional<py::dict> given_;
+  std::vector<std::string> names_;
+  std::string signature_;
+};
+
+/// A docstring that begins with the signature, as inspect.signature wants it: `leading` are the
+/// arguments before the keywords, `take_all` takes every keyword.
+std::string documented(const char* name, const char* leading,
+                       const std::function<void(Keywords&)>& take_all, const char* text);
+std::string documented(const char* name, const char* signature, const char* text);
+
+}  // namespace adasplats::python

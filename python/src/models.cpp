@@ -1,0 +1,328 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "models.h"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "adasplats/pipeline/make_model.h"
+#include "clouds.h"
+#include "json.h"
+#include "work.h"
+
+namespace adasplats::python {
+namespace {
+
+constexpr const char* kModelDoc =
+    "Make a model of splats from points.\n\n"
+    "points: a PointCloud, or a path or paths as read() takes them (which needs less memory, as\n"
+    "nothing is kept twice). labels: a name or a file as label_scheme() takes them, for the "
+    "method\n"
+    "'semantic' and for removing what moves; sequence folders have 'semantickitti' by default. "
+    "The\n"
+    "other keywords are the options of 'adasplats model' by name; lengths in metres. Scales are\n"
+    "three factors, on neighbours, radius and error bound. device: 'auto', 'cpu', 'cuda'. "
+    "progress:\n"
+    "a function of (step: str, done: int, total: int), 0 where the total is not known.\n"
+    "The result depends on the set of points alone, not on order or threads; Model.report tells "
+    "what\n"
+    "was done. Raises ValueError, OSError, RuntimeError (a GPU that is not there).";
+
+constexpr const char* kClassDoc =
+    "A place as oriented disks.\n\n"
+    "centers: (N, 3), world coordinates, m. normals: (N, 3), of unit length. radii: (N,), m, > 0.\n"
+    "classes: (N,) of 0 to 65535. intensities: (N,). labels: a name or file as label_scheme() "
+    "takes\n"
+    "them. origin: as of PointCloud. The arrays are read-only views without a copy (centers, "
+    "normals\n"
+    "and radii are strided). Raises TypeError, ValueError.";
+
+void take_scale(Keywords& keywords, const char* name, GroupScale& scale) {
+  Vec3d factors{scale.neighbors, scale.radius, scale.error};
+  keywords.take(name, factors);
+  scale = {factors.x, factors.y, factors.z};
+}
+
+constexpr std::pair<std::string_view, SplatMethod> kMethods[] = {
+    {"consistent", SplatMethod::consistent},
+    {"basic", SplatMethod::basic},
+    {"descriptors", SplatMethod::descriptors},
+    {"semantic", SplatMethod::semantic}};
+constexpr std::pair<std::string_view, DynamicRemoval> kRemovals[] = {
+    {"none", DynamicRemoval::none},
+    {"moving", DynamicRemoval::moving},
+    {"movable", DynamicRemoval::movable}};
+constexpr std::pair<std::string_view, SelectionOrder> kSelections[] = {
+    {"most-discards-first", SelectionOrder::most_discards_first},
+    {"largest-first", SelectionOrder::largest_first},
+    {"curve", SelectionOrder::curve},
+    {"scattered", SelectionOrder::scattered}};
+using ResampleBase = BuildOptions::ResampleBase;
+constexpr std::pair<std::string_view, ResampleBase> kResampleBases[] = {
+    {"points", ResampleBase::points},
+    {"centers", ResampleBase::centers},
+    {"mixed", ResampleBase::mixed}};
+
+/// By the names of the command line.
+void take_consistent(Keywords& keywords, ConsistentOptions& options) {
+  keywords.take("cell", options.cell_m);
+  keywords.take("small_cell", options.small_cell_m);
+  double largest_radius_m = static_cast<double>(options.cover.largest_radius_m);
+  keywords.take("largest_radius", largest_radius_m);
+  options.cover.largest_radius_m =
+      static_cast<decltype(options.cover.largest_radius_m)>(largest_radius_m);
+  keywords.take("balance_rounds", options.balance_rounds);
+  keywords.take("strict_rounds", options.strict_rounds);
+  keywords.take("settle_rounds", options.settle_rounds);
+  keywords.take("fill", options.fill);
+}
+
+void take_build(Keywords& keywords, BuildOptions& options) {
+  keywords.take<SplatMethod>("method", options.method, kMethods);
+  keywords.take("neighbors", options.neighbors);
+  keywords.take("alpha", options.alpha);
+  keywords.take("smoothness", options.smoothness);
+  keywords.take("radius", options.radius_m);
+  keywords.take("error_bound", options.error_m);
+  keywords.take<SelectionOrder>("selection", options.selection, kSelections);
+  keywords.take<DynamicRemoval>("remove", options.remove, kRemovals);
+  take_consistent(keywords, options.consistent);
+  keywords.take("denoise", options.denoise);
+  keywords.take("denoise_sigmas", options.denoise_sigmas);
+  keywords.take("denoise_votes", options.denoise_votes);
+  keywords.take("resample", options.resample);
+  keywords.take("resample_density", options.resample_density);
+  keywords.take<ResampleBase>("resample_base", options.resample_base, kResampleBases);
+  for (std::size_t group = 0; group < options.semantic_scales.size(); ++group) {
+    std::string name(adasplats::name_of(static_cast<SemanticGroup>(group)));
+    std::replace(name.begin(), name.end(), '-', '_');
+    take_scale(keywords, (name + "_scale").c_str(), options.semantic_scales[group]);
+  }
+  take_scale(keywords, "planar_scale", options.planar_scale);
+  keywords.take("group_normals", options.group_normals);
+}
+
+/// Loading has words of its own; `load` is for paths alone.
+void take_model(Keywords& keywords, ModelJob& job, WorkOptions& work) {
+  keywords.take("labels", job.labels);
+  take_build(keywords, job.build);
+  keywords.take("reflectance", job.reflectance);
+  take_load_options(keywords, job.load);
+  work.has_seed = true;
+  work.take(keywords);
+}
+
+std::shared_ptr<ModelObject> finished(std::pair<SplatModel, ModelResult>&& made) {
+  auto object = std::make_shared<ModelObject>();
+  object->model = std::move(made.first);
+  object->report = python_of(to_json(made.second));
+  return object;
+}
+
+std::shared_ptr<ModelObject> model(py::handle points, const py::kwargs& kwargs) {
+  Keywords keywords("model", kwargs);
+  ModelJob job;
+  WorkOptions options;
+  take_model(keywords, job, options);
+  keywords.finish();
+  const bool in_memory = py::isinstance<PointCloud>(points);
+  if (!in_memory) job.inputs = paths_of(points, "points");
+  const auto cloud =
+      in_memory ? points.cast<std::shared_ptr<PointCloud>>() : std::shared_ptr<PointCloud>();
+  Work work(options);
+  return finished(work.run([&](Session& session) {
+    return in_memory ? make_model(*cloud, job, session) : make_model(job, session);
+  }));
+}
+
+void add_disks(SplatModel& model, LocalVectors&& centers, const Rows& normals,
+               const std::vector<double>& radii) {
+  model.origin = centers.origin;
+  model.disks.resize(radii.size());
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const Vec3d normal = normals.vector(i);
+    if (!(std::fabs(length(normal) - 1) <= 1e-3))
+      throw py::value_error("normals: row " + std::to_string(i) + " is not of unit length");
+    const auto radius = static_cast<float>(radii[i]);
+    if (!(radius > 0))
+      throw py::value_error("radii[" + std::to_string(i) + "] is not greater than 0");
+    model.disks[i] = {centers.vectors[i], radius, vec_cast<float>(normal)};
+  }
+}
+
+std::shared_ptr<ModelObject> make_object(py::handle centers, py::handle normals, py::handle radii,
+                                         py::handle classes, py::handle intensities,
+                                         const std::optional<std::string>& labels,
+                                         py::handle origin) {
+  auto object = std::make_shared<ModelObject>();
+  LocalVectors local = local_vectors(Rows(centers, 3, "centers"), origin);
+  const std::size_t count = local.vectors.size();
+  const Rows normal_rows(normals, 3, "normals");
+  if (normal_rows.size() != count)
+    throw py::value_error("normals: expected shape (" + std::to_string(count) + ", 3)");
+  normal_rows.require_finite();
+  if (radii.is_none()) throw py::type_error("radii: expected an array of numbers, got None");
+  SplatModel& model = object->model;
+  add_disks(model, std::move(local), normal_rows, numbers_of(radii, count, "radii"));
+  model.classes = whole_numbers_of<std::uint16_t>(classes, count, "classes");
+  const std::vector<double> measured = numbers_of(intensities, count, "intensities");
+  model.intensities.assign(measured.begin(), measured.end());
+  model.label_scheme = labels.value_or("");
+  model.method = "arrays";
+  return object;
+}
+
+std::shared_ptr<ModelObject> load(py::handle path) {
+  const std::filesystem::path file = path_of(path, "path");
+  auto object = std::make_shared<ModelObject>();
+  const py::gil_scoped_release released;
+  object->model = load_model(file);
+  return object;
+}
+
+void save(const ModelObject& object, py::handle path) {
+  const std::filesystem::path file = path_of(path, "path");
+  const py::gil_scoped_release released;
+  save_model(file, object.model);
+}
+
+const SplatModel& model_of(const py::object& self) { return self.cast<const ModelObject&>().model; }
+
+constexpr auto kDiskStride = static_cast<py::ssize_t>(sizeof(Disk));
+const Disk kNoDisk;
+
+const Disk* first_disk(const SplatModel& model) {
+  return model.disks.empty() ? &kNoDisk : model.disks.data();
+}
+
+py::object groups(const py::object& self) {
+  const SplatModel& model = model_of(self);
+  if (model.groups.empty()) return py::none();
+  static_assert(sizeof(SemanticGroup) == 1);
+  return array_view(py::dtype::of<std::uint8_t>(), model.groups.data(),
+                    {static_cast<py::ssize_t>(model.groups.size())}, {1}, self);
+}
+
+py::object response(const py::object& self) {
+  const IntensityResponse& response = model_of(self).response;
+  if (response.empty()) return py::none();
+  py::dict tables;
+  tables["ranges_m"] = array_view(response.ranges_m, self);
+  tables["range_gains"] = array_view(response.range_gains, self);
+  tables["cos_incidences"] = array_view(response.cos_incidences, self);
+  tables["incidence_gains"] = array_view(response.incidence_gains, self);
+  return tables;
+}
+
+py::array world_bounds(const ModelObject& object) {
+  const auto [low, high] = bounds(object.model);
+  py::array_t<double> box({2, 3});
+  for (int axis = 0; axis < 3; ++axis) {
+    box.mutable_at(0, axis) = object.model.origin[axis] + static_cast<double>(low[axis]);
+    box.mutable_at(1, axis) = object.model.origin[axis] + static_cast<double>(high[axis]);
+  }
+  return box;
+}
+
+using ModelClass = py::class_<ModelObject, std::shared_ptr<ModelObject>>;
+
+void add_arrays(ModelClass& type) {
+  type.def_property_readonly(
+          "centers",
+          [](const py::object& self) {
+            const SplatModel& model = model_of(self);
+            return vectors_view(&first_disk(model)->center, model.size(), sizeof(Disk), self);
+          },
+          "(N, 3) float32, m, relative to origin.")
+      .def_property_readonly(
+          "normals",
+          [](const py::object& self) {
+            const SplatModel& model = model_of(self);
+            return vectors_view(&first_disk(model)->normal, model.size(), sizeof(Disk), self);
+          },
+          "(N, 3) float32, of unit length.")
+      .def_property_readonly(
+          "radii",
+          [](const py::object& self) {
+            const SplatModel& model = model_of(self);
+            return array_view(py::dtype::of<float>(), &first_disk(model)->radius,
+                              {static_cast<py::ssize_t>(model.size())}, {kDiskStride}, self);
+          },
+          "(N,) float32, m.")
+      .def_property_readonly(
+          "classes",
+          [](const py::object& self) {
+            return optional_view(model_of(self).classes, model_of(self).size(), self);
+          },
+          "(N,) uint16, ids of the label scheme, or None.")
+      .def_property_readonly(
+          "groups", &groups,
+          "(N,) uint8: 0 ground, 1 surface, 2 linear, 3 non-surface; None for basic splats.")
+      .def_property_readonly(
+          "intensities",
+          [](const py::object& self) {
+            return optional_view(model_of(self).intensities, model_of(self).size(), self);
+          },
+          "(N,) float32: reflectances where there is a response, else as measured; or None.");
+}
+
+void add_properties(ModelClass& type) {
+  type.def_property_readonly(
+          "origin", [](const ModelObject& o) { return array_of(o.model.origin); },
+          "(3,) float64, world coordinates of the local origin, m.")
+      .def_property_readonly("bounds", &world_bounds,
+                             "(2, 3) float64: least and greatest world coordinates of the disks.")
+      .def_property_readonly(
+          "labels", [](const ModelObject& o) { return o.model.label_scheme; },
+          "Name or path of the label scheme; empty where there is none.")
+      .def_property_readonly(
+          "method", [](const ModelObject& o) { return o.model.method; }, "How it was made.")
+      .def_property_readonly("response", &response,
+                             "How intensity depends on range and incidence: a dict of arrays "
+                             "ranges_m, range_gains, cos_incidences, incidence_gains; or None.")
+      .def_property_readonly(
+          "report", [](const ModelObject& o) { return o.report; },
+          "What model() did, with the keys of 'adasplats model --report'; None if loaded.");
+}
+
+}  // namespace
+
+void bind_models(py::module_& module) {
+  ModelClass type(module, "Model", kClassDoc);
+  type.def(py::init(&make_object), py::arg("centers"), py::arg("normals"), py::arg("radii"),
+           py::kw_only(), py::arg("classes") = py::none(), py::arg("intensities") = py::none(),
+           py::arg("labels") = py::none(), py::arg("origin") = py::none(),
+           documented("__init__",
+                      "self, centers, normals, radii, *, classes=None, intensities=None, "
+                      "labels=None, origin=None",
+                      "See the class.")
+               .c_str());
+  type.def("__len__", [](const ModelObject& o) { return o.model.size(); });
+  type.def("__repr__", [](const ModelObject& o) {
+    return "<adasplats.Model of " + std::to_string(o.model.size()) + " splats>";
+  });
+  type.def_static("load", &load, py::arg("path"),
+                  documented("load", "path",
+                             "Read a PLY of splats: x y z nx ny nz radius and what else it has.\n"
+                             "Raises FileNotFoundError, ValueError.")
+                      .c_str());
+  type.def("save", &save, py::arg("path"),
+           documented("save", "self, path", "Write a PLY, whole or not at all. Raises OSError.")
+               .c_str());
+  add_arrays(type);
+  add_properties(type);
+  const std::string doc = documented(
+      "model", "points",
+      [](Keywords& keywords) {
+        ModelJob job;
+        WorkOptions work;
+        take_model(keywords, job, work);
+      },
+      kModelDoc);
+  module.def("model", &model, py::arg("points"), doc.c_str());
+}
+
+}  // namespace adasplats::python

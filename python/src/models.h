@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "adasplats/scene/mesh_model.h"
+#include "adasplats/splats/splat_model.h"
+#include "bindings.h"
+
+namespace adasplats::python {
+
+/// A splat model with what its making told.
+struct ModelObject {
+  SplatModel model;
+  py::object report = py::none();
+};
+
+}  // namespace adasplats::python

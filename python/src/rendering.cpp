@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/pipeline/view_choice.h"
+#include "clouds.h"
+#include "scenes.h"
+
+namespace adasplats::python {
+namespace {
+
+constexpr const char* kDoc =
+    "A picture of the scene: (height, width, 3) uint8, RGB, rows from the top.\n\n"
+    "eye, target: (3,) world coordinates, m; without target the middle of the scene, without eye\n"
+    "from above a corner of it. birds_eye: straight down, north up. trajectory (a path) and pose:\n"
+    "ahead from a pose of it. fov: horizontal, degrees. color: 'semantic', 'shading', 'normal',\n"
+    "'intensity', 'range', or 'auto' for semantic where the model has it, else shading. samples: "
+    "rays\n"
+    "a pixel, the square of this. Raises TypeError, ValueError, OSError.";
+
+using Color = std::optional<ImageColor>;
+constexpr std::pair<std::string_view, Color> kColors[] = {{"auto", std::nullopt},
+                                                          {"semantic", ImageColor::semantic},
+                                                          {"shading", ImageColor::shading},
+                                                          {"normal", ImageColor::normal},
+                                                          {"intensity", ImageColor::intensity},
+                                                          {"range", ImageColor::range}};
+
+struct RenderArguments {
+  ViewChoice view;
+  Color color;
+  int samples = 2;
+
+  void take(Keywords& keywords) {
+    keywords.take("eye", view.eye);
+    keywords.take("target", view.target);
+    keywords.take("birds_eye", view.birds_eye);
+    keywords.take("trajectory", view.trajectory);
+    std::uint64_t pose = view.pose;
+    keywords.take("pose", pose);
+    view.pose = pose;
+    keywords.take("width", view.width);
+    keywords.take("height", view.height);
+    keywords.take("fov", view.horizontal_fov_deg);
+    keywords.take<Color>("color", color, kColors);
+    keywords.take("samples", samples);
+  }
+};
+
+py::array render(SceneObject& object, const py::kwargs& kwargs) {
+  Keywords keywords("render", kwargs);
+  RenderArguments arguments;
+  arguments.take(keywords);
+  keywords.finish();
+  if (arguments.samples < 1 || arguments.samples > 64)
+    throw py::value_error("samples must be 1 to 64");
+  check(arguments.view);
+  Image image;
+  {
+    const py::gil_scoped_release released;
+    const auto lock = object.lock();
+    const ModelScene& scene = *object.scene;
+    const auto [low, high] = scene.middle_box();
+    ImageOptions options;
+    options.color = arguments.color.value_or(scene.default_color());
+    options.samples_per_axis = arguments.samples;
+    image = scene.render(camera_of(arguments.view, low, high), options);
+  }
+  return owned_array(std::move(image.pixels), {image.height, image.width, 3});
+}
+
+}  // namespace
+
+void add_rendering(SceneClass& type) {
+  const std::string doc = documented(
+      "render", "self",
+      [](Keywords& keywords) {
+        RenderArguments arguments;
+        arguments.take(keywords);
+      },
+      kDoc);
+  type.def("render", &render, doc.c_str());
+}
+
+}  // namespace adasplats::python

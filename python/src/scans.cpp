@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scans.h"
+
+#include "adasplats/dataset/scan_writer.h"
+#include "clouds.h"
+
+namespace adasplats::python {
+namespace {
+
+constexpr const char* kScanDoc =
+    "The returns of one revolution of a LiDAR, in the order of its firings. Arrays are read-only\n"
+    "views without a copy; what the scene has none of is None.";
+
+constexpr const char* kSaveDoc =
+    "Write the scans into a folder, which is made where it is not there.\n\n"
+    "format: 'semantickitti' (FOLDER/sequences/00), 'ply', 'npy', 'npz', 'pcd' or 'las'.\n"
+    "Raises OSError, ValueError.";
+
+template <class T>
+auto required(std::vector<T> Scan::*member) {
+  return [member](const py::object& self) {
+    return array_view(self.cast<const Scan&>().*member, self);
+  };
+}
+
+template <class T>
+auto optional(std::vector<T> Scan::*member) {
+  return [member](const py::object& self) {
+    const auto& scan = self.cast<const Scan&>();
+    return optional_view(scan.*member, scan.size(), self);
+  };
+}
+
+void bind_scan(py::module_& module) {
+  py::class_<Scan, std::shared_ptr<Scan>>(module, "Scan", kScanDoc)
+      .def("__len__", &Scan::size)
+      .def("__repr__",
+           [](const Scan& scan) {
+             return "<adasplats.Scan of " + std::to_string(scan.size()) + " points>";
+           })
+      .def_property_readonly("positions", required(&Scan::positions),
+                             "(N, 3) float32, m, in the sensor's frame.")
+      .def_property_readonly("ranges", required(&Scan::ranges_m), "(N,) float32, m.")
+      .def_property_readonly("rings", required(&Scan::rings), "(N,) uint16, 0 the topmost.")
+      .def_property_readonly("columns", required(&Scan::columns), "(N,) uint32, azimuth steps.")
+      .def_property_readonly("times", required(&Scan::times_s),
+                             "(N,) float32, s since the revolution began.")
+      .def_property_readonly("intensities", optional(&Scan::intensities), "(N,) float32 or None.")
+      .def_property_readonly("classes", optional(&Scan::classes), "(N,) uint16 or None.")
+      .def_property_readonly("instances", optional(&Scan::instances), "(N,) uint16 or None.")
+      .def_property_readonly("return_indices", optional(&Scan::return_indices),
+                             "(N,) uint8, 0 for the first told of a firing; None where no firing "
+                             "can return twice.")
+      .def_property_readonly(
+          "pose", [](const Scan& scan) { return matrix_of(scan.world_from_sensor); },
+          "(4, 4) float64, world_from_sensor.")
+      .def_readonly("time", &Scan::time_s, "Of the pose, s.")
+      .def_readonly("rays", &Scan::rays, "How many firings the revolution had.");
+}
+
+std::shared_ptr<Scan> scan_at(const ScanList& list, py::ssize_t index) {
+  const auto count = static_cast<py::ssize_t>(list.scans.size());
+  if (index < 0) index += count;
+  if (index < 0 || index >= count) throw py::index_error("no scan of that number");
+  return list.scans[static_cast<std::size_t>(index)];
+}
+
+ScanList scans_of(const ScanList& list, const py::slice& slice) {
+  std::size_t start = 0, stop = 0, step = 0, count = 0;
+  if (!slice.compute(list.scans.size(), &start, &stop, &step, &count))
+    throw py::error_already_set();
+  ScanList part;
+  for (std::size_t k = 0; k < count; ++k) part.scans.push_back(list.scans[start + k * step]);
+  return part;
+}
+
+constexpr std::pair<std::string_view, ScanFormat> kFormats[] = {
+    {"semantickitti", ScanFormat::semantickitti},
+    {"ply", ScanFormat::ply},
+    {"npy", ScanFormat::npy},
+    {"npz", ScanFormat::npz},
+    {"pcd", ScanFormat::pcd},
+    {"las", ScanFormat::las}};
+
+void take_format(Keywords& keywords, ScanFormat& format) {
+  keywords.take<ScanFormat>("format", format, kFormats);
+}
+
+void save(const ScanList& list, py::handle folder, const py::kwargs& kwargs) {
+  Keywords keywords("save", kwargs);
+  ScanFormat format = ScanFormat::semantickitti;
+  take_format(keywords, format);
+  keywords.finish();
+  const std::filesystem::path path = path_of(folder, "folder");
+  const py::gil_scoped_release released;
+  std::filesystem::create_directories(path);
+  const auto writer = make_scan_writer(path, format);
+  for (std::size_t i = 0; i < list.scans.size(); ++i) writer->write(i, *list.scans[i]);
+  writer->finish();
+}
+
+}  // namespace
+
+void bind_scans(py::module_& module) {
+  bind_scan(module);
+  const std::string doc = documented(
+      "save", "self, folder",
+      [](Keywords& keywords) {
+        ScanFormat format = ScanFormat::semantickitti;
+        take_format(keywords, format);
+      },
+      kSaveDoc);
+  py::class_<ScanList, std::shared_ptr<ScanList>>(
+      module, "Scans", "The scans of one drive: a sequence of Scan, made by Scene.simulate().")
+      .def("__len__", [](const ScanList& list) { return list.scans.size(); })
+      .def("__getitem__", &scan_at, py::arg("index"), "One scan; a slice gives Scans.")
+      .def("__getitem__", &scans_of, py::arg("slice"))
+      .def(
+          "__iter__",
+          [](const py::object& self) {
+            return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr()));
+          },
+          "Scan by scan.")
+      .def("__repr__",
+           [](const ScanList& list) {
+             return "<adasplats.Scans: " + std::to_string(list.scans.size()) + ">";
+           })
+      .def("save", &save, py::arg("folder"), doc.c_str());
+}
+
+}  // namespace adasplats::python

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <mutex>
+
+#include "adasplats/pipeline/model_scene.h"
+#include "adasplats/pipeline/scan_simulator.h"
+#include "bindings.h"
+#include "work.h"
+
+namespace adasplats::python {
+
+/// A place that rays are cast into, with the threads that do it. Holds nothing of Python's: results
+/// on a GPU keep it alive, and may be freed without the GIL.
+struct SceneObject {
+  Executor executor;
+  DeviceChoice device;
+  std::unique_ptr<ModelScene> scene;
+  std::mutex gpu;  ///< a GpuScene is for one thread at a time
+
+  explicit SceneObject(int threads) : executor(threads) {}
+  /// Holds off other threads where they must; to be taken without the GIL.
+  std::unique_lock<std::mutex> lock() {
+    return scene->on_gpu() ? std::unique_lock(gpu) : std::unique_lock<std::mutex>();
+  }
+};
+
+using SceneClass = py::class_<SceneObject, std::shared_ptr<SceneObject>>;
+
+/// Each adds methods to Scene.
+void add_casting(SceneClass& type);
+void add_simulation(SceneClass& type);
+void add_rendering(SceneClass& type);
+void add_device_results(SceneClass& type);
+
+/// The scans of a sensor at poses: what simulate() has in its keywords.
+struct DriveArguments {
+  py::object motion = py::none();
+  bool rolling_shutter = false;
+
+  void take(Keywords& keywords);
+  /// Errors: TypeError, ValueError.
+  std::vector<ScanMotion> scans_at(py::handle poses, const LidarModel& sensor) const;
+};
+
+}  // namespace adasplats::python

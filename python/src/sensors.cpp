@@ -1,0 +1,314 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sensors.h"
+
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <memory>
+
+#include "clouds.h"
+
+namespace adasplats::python {
+namespace {
+
+constexpr const char* kClassDoc =
+    "A LiDAR: which rays one revolution holds.\n\n"
+    "name_or_file: a name of sensors(), or a file: TOML, Ouster JSON, Velodyne YAML, a CSV of "
+    "rays\n"
+    "azimuth_deg,elevation_deg[,time_s[,ring]] (docs/sensors.md). Angles in radians: azimuth\n"
+    "counter-clockwise from +x, elevation up. Raises ValueError, FileNotFoundError.";
+
+constexpr const char* kBeamsDoc =
+    "A LiDAR whose head turns.\n\n"
+    "elevations_rad: (B,), topmost first. azimuth_offsets_rad, firing_times_s: (B,) or None.\n"
+    "beam_origins_m: (B, 3) or None, in the frame of the head. columns: azimuth steps a "
+    "revolution.\n"
+    "The divergences are full angles of a beam. Raises TypeError, ValueError.";
+
+constexpr const char* kRaysDoc =
+    "A LiDAR that fires a list of rays in every scan.\n\n"
+    "directions: (N, 3), made unit vectors, in the sensor's frame. origins_m: (N, 3) or None, "
+    "where\n"
+    "they leave. times_s: (N,) since the scan began, or None for all at once. rings: (N,) of 0 to\n"
+    "65535, 0 the topmost; columns: (N,). Raises TypeError, ValueError.";
+
+/// What every kind of pattern has.
+void take_common(Keywords& keywords, LidarModel& model) {
+  keywords.take("name", model.name);
+  keywords.take("rotation_hz", model.rotation_hz);
+  keywords.take("min_range_m", model.min_range_m);
+  keywords.take("max_range_m", model.max_range_m);
+  keywords.take("range_noise_m", model.range_noise_m);
+  keywords.take("angular_noise_rad", model.angular_noise_rad);
+  keywords.take("range_resolution_m", model.range_resolution_m);
+  keywords.take("divergence_horizontal_rad", model.divergence_rad[0]);
+  keywords.take("divergence_vertical_rad", model.divergence_rad[1]);
+  keywords.take("most_returns", model.most_returns);
+}
+
+void require(bool holds, const char* message) {
+  if (!holds) throw py::value_error(message);
+}
+
+void check_common(const LidarModel& model) {
+  require(model.rotation_hz > 0 && std::isfinite(model.rotation_hz),
+          "rotation_hz must be greater than 0");
+  require(model.min_range_m >= 0 && model.max_range_m > model.min_range_m,
+          "ranges must hold 0 <= min_range_m < max_range_m");
+  require(model.range_noise_m >= 0 && model.angular_noise_rad >= 0 &&
+              model.range_resolution_m >= 0 && model.divergence_rad[0] >= 0 &&
+              model.divergence_rad[1] >= 0,
+          "noise, resolution and divergence must not be negative");
+}
+
+LidarModel default_beams() {
+  LidarModel model;
+  model.name = "beams";
+  model.columns = 1800;
+  return model;
+}
+
+LidarModel default_rays() {
+  LidarModel model;
+  model.name = "rays";
+  return model;
+}
+
+struct BeamArrays {
+  py::object azimuth_offsets_rad = py::none();
+  py::object firing_times_s = py::none();
+  py::object beam_origins_m = py::none();
+};
+
+void take_beams(Keywords& keywords, LidarModel& model, BeamArrays& arrays) {
+  keywords.take("azimuth_offsets_rad", arrays.azimuth_offsets_rad);
+  keywords.take("firing_times_s", arrays.firing_times_s);
+  keywords.take("beam_origins_m", arrays.beam_origins_m);
+  std::uint64_t columns = model.columns;
+  keywords.take("columns", columns);
+  require(columns >= 1 && columns <= 1U << 24, "columns must be 1 to 16777216");
+  model.columns = static_cast<std::uint32_t>(columns);
+  keywords.take("first_azimuth_rad", model.first_azimuth_rad);
+  keywords.take("clockwise", model.clockwise);
+  take_common(keywords, model);
+}
+
+LidarModel from_beams(py::handle elevations_rad, const py::kwargs& kwargs) {
+  Keywords keywords("from_beams", kwargs);
+  LidarModel model = default_beams();
+  BeamArrays arrays;
+  take_beams(keywords, model, arrays);
+  keywords.finish();
+  check_common(model);
+  const std::size_t beams = py::len(elevations_rad);
+  model.elevations_rad = numbers_of(elevations_rad, beams, "elevations_rad");
+  require(beams >= 1 && beams <= 65536, "elevations_rad: expected 1 to 65536 beams");
+  for (std::size_t i = 1; i < beams; ++i)
+    require(model.elevations_rad[i] <= model.elevations_rad[i - 1],
+            "elevations_rad: expected the topmost beam first");
+  model.azimuth_offsets_rad = numbers_of(arrays.azimuth_offsets_rad, beams, "azimuth_offsets_rad");
+  model.firing_times_s = numbers_of(arrays.firing_times_s, beams, "firing_times_s");
+  if (arrays.beam_origins_m.is_none()) return model;
+  const Rows origins(arrays.beam_origins_m, 3, "beam_origins_m");
+  require(origins.size() == beams, "beam_origins_m: expected one row a beam");
+  origins.require_finite();
+  for (std::size_t i = 0; i < beams; ++i) model.beam_origins_m.push_back(origins.vector(i));
+  return model;
+}
+
+struct RayArrays {
+  py::object origins_m = py::none();
+  py::object times_s = py::none();
+  py::object rings = py::none();
+  py::object columns = py::none();
+};
+
+void take_rays(Keywords& keywords, LidarModel& model, RayArrays& arrays) {
+  keywords.take("origins_m", arrays.origins_m);
+  keywords.take("times_s", arrays.times_s);
+  keywords.take("rings", arrays.rings);
+  keywords.take("columns", arrays.columns);
+  take_common(keywords, model);
+}
+
+std::vector<Firing> pattern_of(const Rows& directions, const RayArrays& arrays) {
+  const std::size_t count = directions.size();
+  directions.require_finite();
+  const auto rings = whole_numbers_of<std::uint16_t>(arrays.rings, count, "rings");
+  const auto columns = whole_numbers_of<std::uint32_t>(arrays.columns, count, "columns");
+  const std::vector<double> times_s = numbers_of(arrays.times_s, count, "times_s");
+  std::vector<Firing> pattern(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3d direction = directions.vector(i);
+    if (!(length(direction) > 0))
+      throw py::value_error("directions: row " + std::to_string(i) + " has no length");
+    Firing& firing = pattern[i];
+    firing.direction = vec_cast<float>(normalized(direction));
+    firing.ring = rings.empty() ? std::uint16_t{0} : rings[i];
+    firing.column = columns.empty() ? static_cast<std::uint32_t>(i) : columns[i];
+    firing.time_s = times_s.empty() ? 0.0F : static_cast<float>(times_s[i]);
+  }
+  return pattern;
+}
+
+LidarModel from_rays(py::handle directions, const py::kwargs& kwargs) {
+  Keywords keywords("from_rays", kwargs);
+  LidarModel model = default_rays();
+  RayArrays arrays;
+  take_rays(keywords, model, arrays);
+  keywords.finish();
+  check_common(model);
+  model.free_pattern = pattern_of(Rows(directions, 3, "directions"), arrays);
+  require(!model.free_pattern.empty(), "directions: expected at least one ray");
+  if (arrays.origins_m.is_none()) return model;
+  const Rows origins(arrays.origins_m, 3, "origins_m");
+  require(origins.size() == model.free_pattern.size(), "origins_m: expected one row a ray");
+  origins.require_finite();
+  for (std::size_t i = 0; i < model.free_pattern.size(); ++i)
+    model.free_pattern[i].origin = vec_cast<float>(origins.vector(i));
+  return model;
+}
+
+LidarModel replaced(const LidarModel& sensor, const py::kwargs& kwargs) {
+  Keywords keywords("replaced", kwargs);
+  LidarModel model = sensor;
+  take_common(keywords, model);
+  keywords.finish();
+  check_common(model);
+  return model;
+}
+
+/// The rays of one scan; what views look into.
+struct Firings {
+  std::vector<Firing> firings;
+};
+
+constexpr Firing kNoFiring{};
+
+template <class T>
+auto firing_view(T Firing::*member) {
+  return [member](const py::object& self) {
+    const std::vector<Firing>& firings = self.cast<const Firings&>().firings;
+    const Firing* const first = firings.empty() ? &kNoFiring : firings.data();
+    if constexpr (std::is_same_v<T, Vec3f>) {
+      return vectors_view(&(first->*member), firings.size(), sizeof(Firing), self);
+    } else {
+      return array_view(py::dtype::of<T>(), &(first->*member),
+                        {static_cast<py::ssize_t>(firings.size())},
+                        {static_cast<py::ssize_t>(sizeof(Firing))}, self);
+    }
+  };
+}
+
+void bind_firings(py::module_& module) {
+  py::class_<Firings, std::shared_ptr<Firings>>(
+      module, "Firings",
+      "The rays of one scan, made by Sensor.firings(). Arrays are read-only views without a copy.")
+      .def("__len__", [](const Firings& f) { return f.firings.size(); })
+      .def_property_readonly("directions", firing_view(&Firing::direction),
+                             "(N, 3) float32, unit vectors in the sensor's frame.")
+      .def_property_readonly("origins", firing_view(&Firing::origin),
+                             "(N, 3) float32, m: where the beams leave, sensor's frame.")
+      .def_property_readonly("rings", firing_view(&Firing::ring), "(N,) uint16, 0 the topmost.")
+      .def_property_readonly("columns", firing_view(&Firing::column), "(N,) uint32.")
+      .def_property_readonly("times", firing_view(&Firing::time_s),
+                             "(N,) float32, s since the scan began.");
+}
+
+using SensorClass = py::class_<LidarModel, std::shared_ptr<LidarModel>>;
+
+void add_attributes(SensorClass& type) {
+  type.def_readonly("name", &LidarModel::name, "Of the sensor.")
+      .def_readonly("source", &LidarModel::source, "Where its numbers are from.")
+      .def_readonly("rotation_hz", &LidarModel::rotation_hz, "Scans a second.")
+      .def_readonly("columns", &LidarModel::columns, "Azimuth steps; 0: none.")
+      .def_readonly("min_range_m", &LidarModel::min_range_m, "Nearer surfaces are not told, m.")
+      .def_readonly("max_range_m", &LidarModel::max_range_m, "Farther surfaces are not told, m.")
+      .def_readonly("range_noise_m", &LidarModel::range_noise_m, "Standard deviation, m.")
+      .def_readonly("angular_noise_rad", &LidarModel::angular_noise_rad, "Standard deviation, rad.")
+      .def_readonly("range_resolution_m", &LidarModel::range_resolution_m,
+                    "Ranges are multiples of it, m; 0: any.")
+      .def_readonly("most_returns", &LidarModel::most_returns, "Echoes a firing.")
+      .def_property_readonly("rings", &LidarModel::rings, "How many beams.")
+      .def_property_readonly("rays_per_scan", &LidarModel::rays_per_scan, "Firings of one scan.")
+      .def_property_readonly(
+          "repeats", [](const LidarModel& model) { return repeats(model); },
+          "Whether every scan has the same rays.")
+      .def_property_readonly(
+          "elevations_rad",
+          [](const py::object& self) {
+            return array_view(self.cast<const LidarModel&>().elevations_rad, self);
+          },
+          "(B,) float64, topmost first; empty where it is a list of rays or a rosette.")
+      .def_property_readonly(
+          "divergence_rad",
+          [](const LidarModel& m) {
+            return py::make_tuple(m.divergence_rad[0], m.divergence_rad[1]);
+          },
+          "Full angles of a beam, horizontal and vertical.");
+}
+
+void add_makers(SensorClass& type) {
+  const std::string beams_doc = documented(
+      "from_beams", "elevations_rad",
+      [](Keywords& keywords) {
+        LidarModel model = default_beams();
+        BeamArrays arrays;
+        take_beams(keywords, model, arrays);
+      },
+      kBeamsDoc);
+  const std::string rays_doc = documented(
+      "from_rays", "directions",
+      [](Keywords& keywords) {
+        LidarModel model = default_rays();
+        RayArrays arrays;
+        take_rays(keywords, model, arrays);
+      },
+      kRaysDoc);
+  type.def_static("from_beams", &from_beams, py::arg("elevations_rad"), beams_doc.c_str())
+      .def_static("from_rays", &from_rays, py::arg("directions"), rays_doc.c_str())
+      .def("replaced", &replaced,
+           "replaced(self, **changes)\n--\n\n"
+           "The same pattern with other numbers: the keywords of from_rays() from name on.")
+      .def(
+          "firings",
+          [](const LidarModel& sensor, std::uint64_t scan_index) {
+            return std::make_shared<Firings>(Firings{firings_of(sensor, scan_index)});
+          },
+          py::arg("scan_index") = 0,
+          documented("firings", "self, scan_index=0",
+                     "The rays of a scan; scan_index matters where they do not repeat.")
+              .c_str());
+}
+
+}  // namespace
+
+LidarModel sensor_of(py::handle value) {
+  if (py::isinstance<LidarModel>(value)) return value.cast<const LidarModel&>();
+  if (!is_path(value))
+    throw py::type_error("sensor: expected a Sensor, a name or a path, got " +
+                         std::string(py::str(py::type::of(value).attr("__name__"))));
+  return load_lidar_model(path_of(value, "sensor").string());
+}
+
+void bind_sensors(py::module_& module) {
+  bind_firings(module);
+  SensorClass type(module, "Sensor", kClassDoc);
+  type.def(py::init([](py::handle name_or_file) {
+             return std::make_shared<LidarModel>(
+                 load_lidar_model(path_of(name_or_file, "name_or_file").string()));
+           }),
+           py::arg("name_or_file"),
+           documented("__init__", "self, name_or_file", "See the class.").c_str());
+  type.def("__repr__", [](const LidarModel& model) {
+    return "<adasplats.Sensor '" + model.name + "' of " + std::to_string(model.rays_per_scan()) +
+           " rays a scan>";
+  });
+  add_attributes(type);
+  add_makers(type);
+  module.def("sensors", &lidar_model_names,
+             documented("sensors", "", "Names of the sensors that come with adasplats.").c_str());
+}
+
+}  // namespace adasplats::python

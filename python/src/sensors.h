@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "adasplats/sensors/lidar_model.h"
+#include "bindings.h"
+
+namespace adasplats::python {
+
+/// A Sensor of Python's, or what load_lidar_model() makes of a name or a path. Errors: TypeError.
+LidarModel sensor_of(py::handle value);
+
+}  // namespace adasplats::python

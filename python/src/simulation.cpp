@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <deque>
+
+#include "adasplats/simulate/scan_motion.h"
+#include "clouds.h"
+#include "scans.h"
+#include "scenes.h"
+#include "sensors.h"
+#include "trajectories.h"
+
+namespace adasplats::python {
+namespace {
+
+constexpr const char* kSimulateDoc =
+    "Drive a LiDAR through the scene; one Scan a pose.\n\n"
+    "sensor: a Sensor, or what Sensor() takes. poses: a Trajectory, or world_from_sensor (N, 4, 4) "
+    "or\n"
+    "(4, 4), 0.1 s apart. rolling_shutter: the sensor moves while it turns, as motion (a "
+    "Trajectory)\n"
+    "or else the poses tell; points: 'raw' as measured, or 'deskewed'. noise: of the sensor;\n"
+    "range_noise: its standard deviation on ranges instead of the sensor's, m. depth: splats along "
+    "a\n"
+    "ray whose weighted mean is the echo. sub_rays: rays over the cross-section of a beam. "
+    "returns:\n"
+    "most a firing; return_mode: 'strongest', 'first' or 'last'. ray_drop: file of 'adasplats\n"
+    "fit-drop'. rain, snow: mm/h; fog: visibility, m. seed names the noise; scan i has the number\n"
+    "first_number + i. Results do not depend on threads or device. Raises TypeError, ValueError,\n"
+    "OSError.";
+
+constexpr const char* kIterDoc =
+    "As simulate(), but gives scan by scan while one iterates, with the memory of a few scans.";
+
+/// Scans at once where launches and copies overlap.
+constexpr std::size_t kGpuBatch = 16;
+
+constexpr std::pair<std::string_view, ReturnMode> kReturnModes[] = {
+    {"strongest", ReturnMode::strongest}, {"first", ReturnMode::first}, {"last", ReturnMode::last}};
+constexpr std::pair<std::string_view, PointFrame> kFrames[] = {{"raw", PointFrame::raw},
+                                                               {"deskewed", PointFrame::deskewed}};
+
+struct SimulateArguments {
+  ScanSettings settings;
+  DriveArguments drive;
+  std::optional<double> range_noise_m;
+  std::filesystem::path ray_drop;
+  std::uint64_t first_number = 0;
+  py::object progress = py::none();
+
+  void take(Keywords& keywords) {
+    drive.take(keywords);
+    keywords.take<PointFrame>("points", settings.frame, kFrames);
+    keywords.take("noise", settings.noise);
+    keywords.take("range_noise", range_noise_m);
+    keywords.take("depth", settings.beam.depth);
+    keywords.take("depth_gap", settings.beam.depth_gap_m);
+    keywords.take("sub_rays", settings.beam.sub_rays);
+    keywords.take("separation", settings.beam.separation_m);
+    keywords.take("returns", settings.beam.returns);
+    keywords.take<ReturnMode>("return_mode", settings.beam.mode, kReturnModes);
+    keywords.take("ray_drop", ray_drop);
+    keywords.take("rain", settings.weather.rain_mm_h);
+    keywords.take("fog", settings.weather.fog_visibility_m);
+    keywords.take("snow", settings.weather.snow_mm_h);
+    keywords.take("white_intensity", settings.weather.white_intensity);
+    keywords.take("seed", settings.seed);
+    keywords.take("first_number", first_number);
+    keywords.take("progress", progress);
+  }
+};
+
+/// Sensor, keywords and poses of a call.
+struct Drive {
+  SimulateArguments arguments;
+  std::vector<ScanMotion> scans;
+
+  Drive(const char* function, py::handle sensor, py::handle poses, const py::kwargs& kwargs) {
+    Keywords keywords(function, kwargs);
+    arguments.take(keywords);
+    keywords.finish();
+    ScanSettings& settings = arguments.settings;
+    settings.sensor = sensor_of(sensor);
+    if (arguments.range_noise_m) settings.sensor.range_noise_m = *arguments.range_noise_m;
+    if (!arguments.ray_drop.empty()) settings.ray_drop = load_ray_drop(arguments.ray_drop);
+    check(settings);
+    scans = arguments.drive.scans_at(poses, settings.sensor);
+  }
+};
+
+std::shared_ptr<ScanList> simulate(const std::shared_ptr<SceneObject>& object, py::handle sensor,
+                                   py::handle poses, const py::kwargs& kwargs) {
+  Drive drive("simulate", sensor, poses, kwargs);
+  PythonProgress progress(drive.arguments.progress);
+  auto list = std::make_shared<ScanList>();
+  const py::gil_scoped_release released;
+  const auto lock = object->lock();
+  ScanSimulator simulator(*object->scene, std::move(drive.arguments.settings), object->executor);
+  progress.begin_step("simulate", drive.scans.size());
+  simulator.run(drive.scans, drive.arguments.first_number, [&](std::size_t i, Scan scan) {
+    list->scans.push_back(std::make_shared<Scan>(std::move(scan)));
+    progress.advance(i + 1);
+  });
+  progress.end_step();
+  return list;
+}
+
+/// Gives the scans of a drive one by one.
+class ScanIterator {
+ public:
+  ScanIterator(std::shared_ptr<SceneObject> object, Drive&& drive)
+      : object_(std::move(object)),
+        scans_(std::move(drive.scans)),
+        first_number_(drive.arguments.first_number),
+        progress_(drive.arguments.progress),
+        simulator_(*object_->scene, std::move(drive.arguments.settings), object_->executor) {
+    progress_.begin_step("simulate", scans_.size());
+  }
+
+  std::shared_ptr<Scan> next() {
+    std::shared_ptr<Scan> scan = [this] {
+      const py::gil_scoped_release released;
+      return next_without_gil();
+    }();
+    if (!scan) throw py::stop_iteration();
+    return scan;
+  }
+
+ private:
+  std::shared_ptr<Scan> next_without_gil() {
+    const std::scoped_lock one_at_a_time(mutex_);
+    if (ready_.empty() && taken_ < scans_.size()) simulate_batch();
+    if (ready_.empty()) return nullptr;
+    std::shared_ptr<Scan> scan = std::move(ready_.front());
+    ready_.pop_front();
+    return scan;
+  }
+
+  void simulate_batch() {
+    const auto lock = object_->lock();
+    const std::size_t most = object_->scene->on_gpu() ? kGpuBatch : 1;
+    const std::size_t count = std::min(most, scans_.size() - taken_);
+    simulator_.run(std::span(scans_).subspan(taken_, count), first_number_ + taken_,
+                   [this](std::size_t, Scan scan) {
+                     ready_.push_back(std::make_shared<Scan>(std::move(scan)));
+                   });
+    taken_ += count;
+    progress_.advance(taken_);
+  }
+
+  std::shared_ptr<SceneObject> object_;
+  std::vector<ScanMotion> scans_;
+  std::uint64_t first_number_;
+  PythonProgress progress_;
+  ScanSimulator simulator_;
+  std::size_t taken_ = 0;
+  std::deque<std::shared_ptr<Scan>> ready_;
+  std::mutex mutex_;
+};
+
+std::string doc_of(const char* name, const char* text) {
+  return documented(
+      name, "self, sensor, poses",
+      [](Keywords& keywords) {
+        SimulateArguments arguments;
+        arguments.take(keywords);
+      },
+      text);
+}
+
+}  // namespace
+
+void DriveArguments::take(Keywords& keywords) {
+  keywords.take("motion", motion);
+  keywords.take("rolling_shutter", rolling_shutter);
+}
+
+std::vector<ScanMotion> DriveArguments::scans_at(py::handle poses, const LidarModel& sensor) const {
+  const Trajectory at = trajectory_of(poses, "poses");
+  if (!rolling_shutter) {
+    if (!motion.is_none())
+      throw py::value_error("motion is of use with rolling_shutter=True alone");
+    return still_scans(at);
+  }
+  const Trajectory moves = motion.is_none() ? at : trajectory_of(motion, "motion");
+  if (moves.size() < 2)
+    throw py::value_error("a rolling shutter needs at least two poses to know the motion");
+  return moving_scans(at, moves, 1 / sensor.rotation_hz);
+}
+
+void add_simulation(SceneClass& type) {
+  py::class_<ScanIterator, std::shared_ptr<ScanIterator>>(type, "ScanIterator",
+                                                          "Gives the scans of Scene.iter_scans().")
+      .def("__iter__", [](const py::object& self) { return self; })
+      .def("__next__", &ScanIterator::next);
+  type.def("simulate", &simulate, py::arg("sensor"), py::arg("poses"),
+           doc_of("simulate", kSimulateDoc).c_str());
+  type.def(
+      "iter_scans",
+      [](const std::shared_ptr<SceneObject>& object, py::handle sensor, py::handle poses,
+         const py::kwargs& kwargs) {
+        return std::make_shared<ScanIterator>(object, Drive("iter_scans", sensor, poses, kwargs));
+      },
+      py::arg("sensor"), py::arg("poses"), doc_of("iter_scans", kIterDoc).c_str());
+}
+
+}  // namespace adasplats::python

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+
+#include "adasplats/synth/street.h"
+#include "bindings.h"
+#include "clouds.h"
+#include "work.h"
+
+namespace adasplats::python {
+namespace {
+
+constexpr const char* kDoc =
+    "Make a procedural street with labels and its recordings, for trying things out.\n\n"
+    "Writes into folder, which is made where it is not there: mapping.ply, "
+    "mapping_trajectory.csv,\n"
+    "sequences/00 (SemanticKITTI), mesh.ply (the truth) and the true trajectories. points: how "
+    "many\n"
+    "the mapping cloud has, to 10 %. length: of the road, m; 0 for what suits. Returns the keys "
+    "of\n"
+    "'adasplats synth street --report'. Raises ValueError, OSError.";
+
+struct StreetArguments {
+  StreetOptions street{.seed = 1, .length_m = 0};
+  StreetScanOptions scan;
+  WorkOptions work{.has_device = false, .has_seed = true};
+
+  void take(Keywords& keywords) {
+    std::uint64_t points = scan.points;
+    keywords.take("points", points);
+    scan.points = points;
+    keywords.take("length", street.length_m);
+    keywords.take("range_noise", scan.range_noise_m);
+    keywords.take("passes", scan.passes);
+    keywords.take("driving_spacing", scan.driving_spacing_m);
+    work.take(keywords);
+    street.seed = scan.seed = work.seed;
+  }
+};
+
+py::dict synth_street(py::handle folder, const py::kwargs& kwargs) {
+  Keywords keywords("synth_street", kwargs);
+  StreetArguments arguments;
+  arguments.take(keywords);
+  keywords.finish();
+  const std::filesystem::path path = path_of(folder, "folder");
+  Work work(arguments.work);
+  const StreetReport report = work.run([&](Session& session) {
+    std::filesystem::create_directories(path);
+    return write_street(path, arguments.street, arguments.scan, session.executor, session.progress);
+  });
+  py::dict values;
+  values["length_m"] = report.length_m;
+  values["mesh_triangles"] = report.mesh_triangles;
+  values["moving_objects"] = report.moving_objects;
+  values["mapping_points"] = report.mapping_points;
+  values["mapping_scans"] = report.mapping_scans;
+  values["driving_scans"] = report.driving_scans;
+  return values;
+}
+
+}  // namespace
+
+void bind_synth(py::module_& module) {
+  const std::string doc = documented(
+      "synth_street", "folder",
+      [](Keywords& keywords) {
+        StreetArguments arguments;
+        arguments.take(keywords);
+      },
+      kDoc);
+  module.def("synth_street", &synth_street, py::arg("folder"), doc.c_str());
+}
+
+}  // namespace adasplats::python

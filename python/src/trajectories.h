@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "adasplats/cloud/trajectory.h"
+#include "arrays.h"
+
+namespace adasplats::python {
+
+/// A Trajectory of Python's, or an array of world_from_sensor (N, 4, 4) or (4, 4) whose poses are
+/// 0.1 s apart. Errors: TypeError, ValueError.
+Trajectory trajectory_of(py::handle value, const char* name);
+
+}  // namespace adasplats::python

@@ -1,0 +1,360 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every function against the command line on the same data: the same bytes, the same keys."""
+import struct
+import warnings
+import zlib
+
+import numpy as np
+import pytest
+from conftest import report_of, run_program
+
+import adasplats
+
+# What a report says of the run, not of the result.
+OF_THE_RUN = {"program", "version", "command", "parameters", "threads", "device", "warnings",
+              "peak_memory_bytes", "seconds"}
+
+
+def without_times(report):
+    return {key: value for key, value in report.items() if key not in OF_THE_RUN}
+
+
+def files_of(folder):
+    return {str(path.relative_to(folder)): path.read_bytes()
+            for path in sorted(folder.rglob("*")) if path.is_file()
+            and path.name != "adasplats.json"}
+
+
+def png_pixels(path):
+    """A PNG of 8-bit RGB; oracle of the pictures. PNG specification, sections 5 and 9."""
+    data = path.read_bytes()
+    place, packed = 8, b""
+    while place < len(data):
+        length, kind = struct.unpack(">I4s", data[place:place + 8])
+        body = data[place + 8:place + 8 + length]
+        if kind == b"IHDR":
+            width, height = struct.unpack(">II", body[:8])
+        if kind == b"IDAT":
+            packed += body
+        place += 12 + length
+    raw = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(height, 1 + 3 * width)
+    pixels = np.zeros((height + 1, width + 1, 3), np.int64)
+    for y in range(height):
+        method, row = raw[y, 0], raw[y, 1:].reshape(width, 3).astype(np.int64)
+        for x in range(width):
+            left, up, corner = pixels[y + 1, x], pixels[y, x + 1], pixels[y, x]
+            if method == 4:
+                estimate = left + up - corner
+                away = [np.abs(estimate - c) for c in (left, up, corner)]
+                guess = np.where((away[0] <= away[1]) & (away[0] <= away[2]), left,
+                                 np.where(away[1] <= away[2], up, corner))
+            else:
+                guess = [0 * left, left, up, (left + up) // 2][method]
+            pixels[y + 1, x + 1] = (row[x] + guess) % 256
+    return pixels[1:, 1:].astype(np.uint8)
+
+
+def test_street(street, tmp_path):
+    report = adasplats.synth_street(tmp_path / "s", points=20000, driving_spacing=10)
+    assert files_of(tmp_path / "s") == files_of(street.folder / "street")
+    assert report["mapping_points"] == len(adasplats.read(street.cloud))
+
+
+def test_read(street):
+    cloud = adasplats.read(street.cloud)
+    facts = report_of(street.folder, "info", street.cloud)
+    assert str(len(cloud)) in str(facts)
+    sequence = adasplats.read(street.sequence, first_scan=1, scan_count=2)
+    assert len(np.unique(sequence.scan_indices)) == 2
+    both = adasplats.read([street.cloud, str(street.cloud)])
+    assert len(both) == 2 * len(cloud)
+    assert len(adasplats.read(bytes(street.cloud))) == len(cloud)
+
+
+def test_cloud_file(street, tmp_path):
+    cloud = adasplats.read(street.cloud)
+    cloud.save(tmp_path / "again.ply")
+    again = adasplats.read(tmp_path / "again.ply")
+    for name in ("positions", "sensor_positions", "intensities", "classes", "origin"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(cloud, name))
+
+
+def quiet_model(points, **options):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # labels without a scheme
+        return adasplats.model(points, **options)
+
+
+@pytest.mark.parametrize("options", [
+    {"labels": "semantickitti"},
+    {"method": "basic", "neighbors": 20, "remove": "none", "labels": "semantickitti"},
+    {"method": "semantic", "labels": "semantickitti", "alpha": 0.3,
+     "linear_scale": (0.5, 0.5, 0.5)},
+    {"method": "descriptors", "resample": False, "threads": 1, "seed": 7},
+])
+def test_model(street, tmp_path, options):
+    arguments = []
+    for name, value in options.items():
+        flag = "--" + name.replace("_", "-")
+        if isinstance(value, bool):
+            arguments.append(flag if value else "--no-" + name)
+        elif isinstance(value, tuple):
+            arguments += [flag, ",".join(map(str, value))]
+        else:
+            arguments += [flag, value]
+    report = report_of(tmp_path, "model", street.cloud, "-o", tmp_path / "cli.ply", *arguments)
+    quiet_model(street.cloud, **options).save(tmp_path / "files.ply")
+    made = quiet_model(adasplats.read(street.cloud), **options)
+    made.save(tmp_path / "arrays.ply")
+    expected = (tmp_path / "cli.ply").read_bytes()
+    assert (tmp_path / "files.ply").read_bytes() == expected
+    assert (tmp_path / "arrays.ply").read_bytes() == expected
+    assert set(made.report) == set(report) - OF_THE_RUN | {"seconds"}
+    assert without_times(made.report) == without_times(report)
+    assert set(made.report["seconds"]) | {"save", "total"} == set(report["seconds"])
+
+
+def test_cloud_from_numpy_gives_the_same_model(street, tmp_path):
+    cloud = adasplats.read(street.cloud)
+    copy = adasplats.PointCloud(cloud.world_positions, classes=cloud.classes,
+                                intensities=cloud.intensities,
+                                sensor_positions=cloud.sensor_positions + cloud.origin)
+    adasplats.model(copy, labels="semantickitti").save(tmp_path / "numpy.ply")
+    assert (tmp_path / "numpy.ply").read_bytes() == street.model.read_bytes()
+
+
+def test_model_file(street, tmp_path):
+    model = adasplats.Model.load(street.model)
+    model.save(tmp_path / "again.ply")
+    assert (tmp_path / "again.ply").read_bytes() == street.model.read_bytes()
+    assert model.labels == "semantickitti" and model.report is None
+    assert set(model.response) == {"ranges_m", "range_gains", "cos_incidences", "incidence_gains"}
+    low, high = model.bounds
+    assert np.all(model.centers + model.origin >= low) and np.all(model.centers <= high)
+    copy = adasplats.Model(model.centers, model.normals, model.radii, classes=model.classes)
+    np.testing.assert_array_equal(copy.centers, model.centers)
+    np.testing.assert_array_equal(copy.normals, model.normals)
+
+
+SIMULATIONS = [
+    {},
+    {"seed": 5, "noise": False},
+    {"rolling_shutter": True, "points": "deskewed"},
+    {"depth": 5, "sub_rays": 7, "returns": 2, "return_mode": "last", "sensor": "velodyne-vlp-16"},
+    {"rain": 20.0, "fog": 100.0, "snow": 1.0, "range_noise": 0.05, "threads": 1},
+    {"sensor": "livox"},
+]
+
+
+@pytest.mark.parametrize("options", SIMULATIONS)
+def test_simulate(street, poses, tmp_path, options):
+    options = dict(options)
+    sensor = options.pop("sensor", street.sensor)
+    if sensor == "livox":
+        sensor = next(name for name in adasplats.sensors() if name.startswith("livox"))
+    arguments = []
+    for name, value in options.items():
+        flag = "--" + name.replace("_", "-")
+        if value is True:
+            arguments.append(flag)
+        elif value is False:
+            arguments.append("--no-" + name)
+        else:
+            arguments += [flag, value]
+    run_program("simulate", street.model, "--sensor", sensor, "--trajectory", street.sequence, "-o",
+                tmp_path / "cli", "--format", "npy", *arguments)
+    scene = adasplats.Scene(street.model, device="cpu", threads=options.pop("threads", 0))
+    scans = scene.simulate(sensor, poses, **options)
+    scans.save(tmp_path / "python", format="npy")
+    assert files_of(tmp_path / "python") == files_of(tmp_path / "cli")
+    assert len(scans) == len(poses) and len(scans[0]) > 0
+    one_by_one = list(scene.iter_scans(sensor, poses, **options))
+    assert len(one_by_one) == len(scans)
+    for a, b in zip(scans, one_by_one):
+        for name in ("positions", "ranges", "intensities", "classes", "rings", "columns", "times",
+                     "return_indices", "pose"):
+            np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
+
+
+def test_scans_as_a_sequence(street, scene, poses, tmp_path):
+    scans = scene.simulate(street.sensor, poses)
+    assert [scan.time for scan in scans] == list(poses.times)
+    np.testing.assert_array_equal(scans[-1].pose, poses.poses[-1])
+    assert len(scans[1:3]) == 2 and scans[1:3][0] is scans[1]
+    with pytest.raises(IndexError):
+        scans[len(scans)]
+    from_two = scene.simulate(street.sensor, poses[2:], first_number=2)
+    np.testing.assert_array_equal(from_two[0].ranges, scans[2].ranges)
+    run_program("simulate", street.model, "--sensor", street.sensor, "--trajectory",
+                street.sequence, "-o", tmp_path / "cli")
+    scans.save(tmp_path / "python")
+    assert files_of(tmp_path / "python") == files_of(tmp_path / "cli")
+
+
+def test_scene_of_a_model_in_memory(street, scene, poses):
+    in_memory = adasplats.Scene(adasplats.Model.load(street.model), device="cpu")
+    for a, b in zip(in_memory.simulate(street.sensor, poses), scene.simulate(street.sensor, poses)):
+        np.testing.assert_array_equal(a.positions, b.positions)
+    assert in_memory.labels.name == "semantickitti"
+    mesh = adasplats.Scene(adasplats.Mesh.load(street.mesh), device="cpu", labels="semantickitti")
+    assert len(mesh) == len(adasplats.Mesh.load(street.mesh))
+    assert len(mesh.simulate(street.sensor, poses)[0]) > 0
+
+
+def test_cast_gives_what_simulate_gives(street, scene, poses):
+    """Without noise a scan is the hits of its firings."""
+    sensor = adasplats.Sensor(street.sensor)
+    scan = scene.simulate(sensor, poses[:1], noise=False)[0]
+    firings = sensor.firings()
+    pose = poses.poses[0]
+    hits = scene.cast(pose[:3, 3], firings.directions @ pose[:3, :3].T, t_max=sensor.max_range_m)
+    assert abs(int(hits.valid.sum()) - len(scan)) <= 2  # directions are rounded in another order
+    number = scan.rings.astype(int) * 180 + scan.columns
+    close = np.abs(hits.ranges[number] - scan.ranges) < 1e-3
+    assert close.mean() > 0.99
+    np.testing.assert_array_equal(hits.classes[number][close], scan.classes[close])
+
+
+VIEWS = [
+    ({}, []),
+    ({"eye": (0, 0, 20), "target": (30, 5, 0), "fov": 60, "color": "normal"},
+     ["--eye", "0,0,20", "--target", "30,5,0", "--fov", 60, "--color", "normal"]),
+    ({"birds_eye": True, "color": "shading", "samples": 1},
+     ["--birds-eye", "--color", "shading", "--samples", 1]),
+]
+
+
+@pytest.mark.parametrize("options, arguments", VIEWS)
+def test_render(street, scene, tmp_path, options, arguments):
+    size = {"width": 64, "height": 40}
+    run_program("render", street.model, "-o", tmp_path / "cli.png", "--width", 64, "--height", 40,
+                *arguments)
+    picture = scene.render(**size, **options)
+    assert picture.shape == (40, 64, 3) and picture.dtype == np.uint8
+    np.testing.assert_array_equal(picture, png_pixels(tmp_path / "cli.png"))
+    if not options:
+        ahead = scene.render(trajectory=street.sequence, pose=1, **size)
+        run_program("render", street.model, "-o", tmp_path / "cli.png", "--width", 64, "--height",
+                    40, "--trajectory", street.sequence, "--pose", 1)
+        np.testing.assert_array_equal(ahead, png_pixels(tmp_path / "cli.png"))
+
+
+def test_c2c(street):
+    expected = report_of(street.folder, "evaluate", "c2c", street.cloud, street.sequence,
+                         "--by-class", "--labels", "semantickitti")
+    result = adasplats.evaluate.c2c(street.cloud, street.sequence, by_class=True,
+                                    labels="semantickitti")
+    assert result == without_times(expected)
+    in_memory = adasplats.evaluate.c2c(adasplats.read(street.cloud),
+                                       adasplats.read(street.sequence), by_class=True,
+                                       labels="semantickitti")
+    assert in_memory == result
+
+
+def test_resimulate(street, scene):
+    expected = report_of(street.folder, "evaluate", "resimulate", street.model, street.sequence)
+    result = adasplats.evaluate.resimulate(street.model, street.sequence)
+    assert result == without_times(expected)
+    assert adasplats.evaluate.resimulate(scene, street.sequence) == result
+
+
+def test_truth(street):
+    expected = report_of(street.folder, "evaluate", "truth", street.model, street.mesh,
+                         "--trajectory", street.true_poses, "--sensor", street.sensor, "--every", 2)
+    result = adasplats.evaluate.truth(street.model, street.mesh, trajectory=street.true_poses,
+                                      sensor=street.sensor, every=2)
+    assert result == without_times(expected)
+    with pytest.raises(TypeError, match="trajectory"):
+        adasplats.evaluate.truth(street.model, street.mesh)
+
+
+def test_presence(street):
+    expected = report_of(street.folder, "evaluate", "presence", street.model, street.cloud,
+                         "--labels", "semantickitti", "--within", 0.2)
+    result = adasplats.evaluate.presence(street.model, street.cloud, labels="semantickitti",
+                                         within=0.2)
+    assert result == without_times(expected)
+
+
+def test_echoes(street):
+    expected = report_of(street.folder, "evaluate", "echoes", street.model, street.sequence)
+    assert adasplats.evaluate.echoes(street.model, street.sequence) == without_times(expected)
+
+
+def test_labels(street, scene, poses, tmp_path):
+    scene.simulate(street.sensor, poses).save(tmp_path)
+    simulated = tmp_path / "sequences" / "00"
+    expected = report_of(street.folder, "evaluate", "labels", simulated, street.sequence)
+    assert adasplats.evaluate.labels(simulated, street.sequence) == without_times(expected)
+
+
+def test_sensors(street):
+    report = run_program("sensors").stdout
+    names = adasplats.sensors()
+    assert len(names) > 10 and all(name in report for name in names)
+    sensor = adasplats.Sensor("hdl-64-paper")
+    assert (sensor.rings, sensor.columns, sensor.rays_per_scan) == (64, 2250, 144000)
+    firings = sensor.firings()
+    elevations = np.arcsin(firings.directions[:, 2]).reshape(64, 2250)
+    np.testing.assert_allclose(elevations[:, 0], sensor.elevations_rad, atol=1e-6)
+    np.testing.assert_allclose(np.degrees(sensor.elevations_rad[[0, -1]]), [2, -24.8])
+    assert firings.origins.shape == (144000, 3) and firings.times.max() < 0.1
+    assert adasplats.Sensor(str(street.sensor)).name == "tiny"
+
+
+def test_sensors_from_arrays(scene, poses, street):
+    sensor = adasplats.Sensor("hdl-32-paper")
+    beams = adasplats.Sensor.from_beams(sensor.elevations_rad, columns=1800, max_range_m=100,
+                                        range_noise_m=sensor.range_noise_m)
+    f = sensor.firings()
+    rays = adasplats.Sensor.from_rays(f.directions, rings=f.rings, columns=f.columns,
+                                      times_s=f.times, max_range_m=100,
+                                      range_noise_m=sensor.range_noise_m)
+    np.testing.assert_array_equal(rays.firings().rings, f.rings)
+    np.testing.assert_allclose(rays.firings().directions, f.directions, atol=1e-7)
+    ranges = [scene.simulate(s, poses[:1], noise=False)[0].ranges
+              for s in (sensor.replaced(max_range_m=100), beams)]
+    np.testing.assert_array_equal(*ranges)
+    with pytest.raises(ValueError, match="topmost"):
+        adasplats.Sensor.from_beams([-0.1, 0.1])
+    with pytest.raises(ValueError, match="row 1 has no length"):
+        adasplats.Sensor.from_rays([[1.0, 0, 0], [0, 0, 0]])
+    with pytest.raises(ValueError, match="rotation_hz"):
+        sensor.replaced(rotation_hz=0)
+    with pytest.raises(TypeError, match="did you mean 'max_range_m'"):
+        sensor.replaced(max_range=3)
+
+
+def test_label_schemes():
+    scheme = adasplats.label_scheme("semantickitti")
+    assert scheme.id_of("road") == 40 and scheme.names[list(scheme.ids).index(40)] == "road"
+    assert len(scheme) == len(scheme.ids) == len(scheme.groups) == len(scheme.mobilities)
+    assert scheme.colors.shape == (len(scheme), 3)
+    assert set(scheme.groups) == {"ground", "surface", "linear", "non-surface"}
+    with pytest.raises(KeyError):
+        scheme.id_of("roda")
+
+
+def test_trajectories(street, poses, tmp_path):
+    again = adasplats.Trajectory(poses.poses, poses.times)
+    again.save(tmp_path / "poses.csv")
+    read = adasplats.Trajectory.read(tmp_path / "poses.csv")
+    np.testing.assert_allclose(read.poses, poses.poses, atol=1e-8)
+    shifted = poses.shifted([1, 2, 3])
+    np.testing.assert_allclose(shifted.poses[:, :3, 3] - poses.poses[:, :3, 3],
+                               [[1, 2, 3]] * len(poses))
+    mount = np.eye(4)
+    mount[:3, 3] = [0.5, 0, 1]
+    np.testing.assert_allclose(poses.mounted(mount).poses, poses.poses @ mount, atol=1e-12)
+    middle = (poses.times[0] + poses.times[1]) / 2
+    np.testing.assert_allclose(poses.interpolate(middle)[:3, 3],
+                               poses.poses[:2, :3, 3].mean(axis=0), atol=1e-9)
+    dense = poses.resampled(rate_hz=10)
+    np.testing.assert_allclose(np.diff(dense.times), 0.1)
+    way = np.linalg.norm(np.diff(poses.resampled(spacing_m=2).poses[:, :3, 3], axis=0), axis=1)
+    assert np.all(way < 2.001)
+    with pytest.raises(TypeError):
+        poses.resampled()
+    with pytest.raises(ValueError, match="ascend"):
+        adasplats.Trajectory(np.stack([np.eye(4)] * 2), [1, 1])

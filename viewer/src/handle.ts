@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// window.adasplats: for tests, and for whoever likes the console.
+
+import { Vector3 } from 'three';
+import type { CameraMode } from './camera_rig';
+import { byId } from './dom';
+import type { Driver } from './driver';
+import type { LidarPanel } from './lidar_panel';
+import type { Live } from './live';
+import { kScanPointWords, type Pose, type ScanPacket } from './protocol';
+import type { ScanCloud } from './scan_cloud';
+import type { ScanRate } from './scan_rate';
+import type { SceneView } from './scene_view';
+import { kColorModes, type ColorMode } from './shaders';
+
+export interface HandleParts {
+  view: SceneView;
+  live: Live;
+  driver: Driver;
+  lidar: LidarPanel;
+  rate: ScanRate;
+  cloud: ScanCloud;
+  setPose(pose: Pose): void;
+  setCameraMode(mode: CameraMode): void;
+  setColor(mode: ColorMode): void;
+  command(): string;
+  poses(): string;
+}
+
+export function publishHandle(parts: HandleParts) {
+  const handle = { state: () => stateOf(parts), ...actionsOf(parts), ...picturesOf(parts.view) };
+  (window as unknown as { adasplats: unknown }).adasplats = handle;
+}
+
+function stateOf({ view, live, driver, lidar, rate, cloud }: HandleParts) {
+  return {
+    ...view.statistics,
+    connected: live.connected,
+    scansReceived: rate.received,
+    scansPerSecond: rate.perSecond(performance.now()),
+    scan: cloud.packet && scanState(cloud.packet),
+    sensor: lidar.confirmed?.name ?? null,
+    settings: lidar.confirmed?.settings ?? null,
+    pose: driver.pose,
+    speed_m_s: driver.speed_m_s,
+    pathPoses: driver.finishedPath().length,
+    running: lidar.running,
+    colorMode: view.colorMode,
+    camera: {
+      eye: view.rig.camera.position.toArray(),
+      target: view.rig.controls.target.toArray(),
+      mode: view.rig.mode,
+    },
+    software: view.stage.software,
+  };
+}
+
+function scanState(packet: ScanPacket) {
+  const { words, number, points, rings, columns, rays, seconds, pose } = packet;
+  const floats = new Float32Array(words.buffer, words.byteOffset, words.length);
+  let maxRange_m = 0;
+  for (let i = 0; i < floats.length; i += kScanPointWords)
+    maxRange_m = Math.max(maxRange_m, floats[i] ** 2 + floats[i + 1] ** 2 + floats[i + 2] ** 2);
+  return { number, points, rings, columns, rays, seconds, pose, maxRange_m: Math.sqrt(maxRange_m) };
+}
+
+function actionsOf(parts: HandleParts) {
+  const { view, lidar } = parts;
+  return {
+    setPose: (pose: Pose) => parts.setPose(pose),
+    setColor: (mode: string) => {
+      const known = kColorModes.find((m) => m === mode);
+      if (known) parts.setColor(known);
+    },
+    setSensor: (name: string) => lidar.chooseSensor(name),
+    setSetting: (key: string, value: number | boolean | null) => lidar.set(key, value),
+    setRunning: (on: boolean) => lidar.setRunning(on),
+    setCameraMode: (mode: CameraMode) => parts.setCameraMode(mode),
+    setCamera: ({ eye, target }: { eye: number[]; target: number[] }) => {
+      view.rig.set(new Vector3(...eye), new Vector3(...target));
+      view.moved();
+    },
+    command: () => parts.command(),
+    posesCsv: () => parts.poses(),
+  };
+}
+
+function picturesOf(view: SceneView) {
+  return {
+    /** The place of a point on the page, in pixels; null behind the eye. */
+    project: (x: number, y: number, z: number) => {
+      const at = new Vector3(x, y, z).project(view.rig.camera);
+      const { left, top, width, height } = byId('view').getBoundingClientRect();
+      return at.z > 1 ? null : [left + ((at.x + 1) / 2) * width, top + ((1 - at.y) / 2) * height];
+    },
+    /** Colour of a pixel of the canvas. */
+    pixel: (x: number, y: number) => {
+      view.drawNow();
+      const ratio = view.stage.pixelRatio;
+      return Array.from(view.stage.read(Math.floor(x * ratio), Math.floor(y * ratio), 1, 1));
+    },
+    /** Colours of `columns` x `rows` pixels all over the canvas. */
+    pixels: (columns: number, rows: number) => {
+      view.drawNow();
+      const { x: width, y: height } = view.stage.pixels;
+      const all = view.stage.read(0, 0, width, height);
+      const found: number[][] = [];
+      for (let j = 0; j < rows; ++j)
+        for (let i = 0; i < columns; ++i) {
+          const x = Math.floor(((i + 0.5) * width) / columns);
+          const y = height - 1 - Math.floor(((j + 0.5) * height) / rows);
+          found.push(Array.from(all.subarray(4 * (y * width + x), 4 * (y * width + x) + 3)));
+        }
+      return found;
+    },
+  };
+}
