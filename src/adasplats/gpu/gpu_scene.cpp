@@ -3,8 +3,12 @@
 #if defined(ADASPLATS_HAVE_CUDA)
 #include "adasplats/gpu/gpu_scene.h"
 
+#include <algorithm>
 #include <chrono>
+#include <mutex>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/device.h"
@@ -22,7 +26,14 @@ using gpu::SceneParts;
 
 namespace {
 
-/// Makes a scanner a call: simulations scan whole trajectories in one.
+bool same_firing(const Firing& a, const Firing& b) {
+  const auto same = [](Vec3f u, Vec3f v) { return u.x == v.x && u.y == v.y && u.z == v.z; };
+  return same(a.direction, b.direction) && same(a.origin, b.origin) && a.ring == b.ring &&
+         a.column == b.column && a.time_s == b.time_s;
+}
+
+/// Keeps the scanner of the sensor that was used last: a sensor that is driven casts scan by scan,
+/// and putting its rays in order and on the GPU takes longer than casting them.
 class SceneScanCaster final : public ScanCaster {
  public:
   explicit SceneScanCaster(const SceneParts& parts) : parts_(parts) {}
@@ -30,16 +41,50 @@ class SceneScanCaster final : public ScanCaster {
   CastTimes cast(const LidarModel& sensor, std::span<const Firing> firings,
                  std::span<const ScanMotion> scans, int depth, Sink sink) const override {
     if (scans.empty()) return {};
-    const std::size_t hits = firings.size() * static_cast<std::size_t>(depth);
-    return GpuScanner::Impl(parts_, sensor, firings)
-        .cast(scans, GpuScanner::Impl::Results::hits, depth,
-              [&](std::size_t scan, const std::uint8_t* results) {
-                sink(scan, {reinterpret_cast<const Hit*>(results), hits});
-              });
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    // Another thread, or a sink that casts, has the kept one.
+    if (!lock) return cast_with(GpuScanner::Impl(parts_, sensor, firings), scans, depth, sink);
+    if (!kept_ || !is_kept(sensor, firings)) {
+      kept_.reset();  // its memory is free before the next one needs some
+      kept_.emplace(parts_, sensor, firings);
+    }
+    return cast_with(kept_->scanner, scans, depth, sink);
   }
 
  private:
+  struct Kept {
+    Kept(const SceneParts& parts, const LidarModel& sensor, std::span<const Firing> firings_in)
+        : scanner(parts, sensor, firings_in),
+          firings(firings_in.begin(), firings_in.end()),
+          min_range_m(sensor.min_range_m),
+          max_range_m(sensor.max_range_m) {}
+    GpuScanner::Impl scanner;
+    std::vector<Firing> firings;
+    double min_range_m, max_range_m;
+  };
+
+  bool is_kept(const LidarModel& sensor, std::span<const Firing> firings) const {
+    return kept_->min_range_m == sensor.min_range_m && kept_->max_range_m == sensor.max_range_m &&
+           std::equal(firings.begin(), firings.end(), kept_->firings.begin(), kept_->firings.end(),
+                      same_firing);
+  }
+
+  static CastTimes cast_with(GpuScanner::Impl&& scanner, std::span<const ScanMotion> scans,
+                             int depth, Sink sink) {
+    return cast_with(scanner, scans, depth, sink);
+  }
+  static CastTimes cast_with(GpuScanner::Impl& scanner, std::span<const ScanMotion> scans,
+                             int depth, Sink sink) {
+    const std::size_t hits = scanner.firings() * static_cast<std::size_t>(depth);
+    return scanner.cast(scans, GpuScanner::Impl::Results::hits, depth,
+                        [&](std::size_t scan, const std::uint8_t* results) {
+                          sink(scan, {reinterpret_cast<const Hit*>(results), hits});
+                        });
+  }
+
   const SceneParts& parts_;
+  mutable std::mutex mutex_;
+  mutable std::optional<Kept> kept_;
 };
 
 void check_devices(const std::vector<int>& devices) {
@@ -66,6 +111,7 @@ struct GpuScene::Impl {
   double build_seconds = 0;
 
   ~Impl() {
+    caster.reset();
     tracer.reset();
     for (DevicePart& part : parts.parts) {
       const DeviceGuard guard(part.device);

@@ -120,6 +120,31 @@ TEST_P(OnGpu, ScansComeInTheOrderOfTheirPoses) {
   }
 }
 
+// The caster keeps what it made for a sensor; another one, other ranges, and a sink that casts
+// itself must not get that.
+TEST_P(OnGpu, EverySensorGetsItsOwnRays) {
+  const auto scans = motions(1);
+  const auto cast = [&](auto&& also) {
+    scene_->scan_caster().cast(sensor_, firings_, scans, 1,
+                               [&](std::size_t, std::span<const Hit> hits) {
+                                 const std::vector<Hit> taken(hits.begin(), hits.end());
+                                 also();
+                                 EXPECT_EQ(taken, expected(scans[0]));
+                               });
+  };
+  const auto nothing = [] {};
+  cast(nothing);
+  cast(nothing);
+  sensor_.max_range_m *= 0.5;
+  cast(nothing);
+  firings_.pop_back();
+  cast(nothing);
+  firings_.front().direction = firings_.back().direction;
+  cast(nothing);
+  cast([&] { cast(nothing); });
+  cast(nothing);
+}
+
 TEST_P(OnGpu, PointsAreRangesAlongTheFirings) {
   const auto scanner = scene_->scanner(sensor_, firings_);
   const auto trajectory = motions(3);
