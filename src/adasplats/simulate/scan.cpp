@@ -35,6 +35,13 @@ struct FiringReturn {
   Return echo;
 };
 
+/// Returns of consecutive firings.
+struct ChunkedReturns {
+  std::vector<std::vector<FiringReturn>> chunks;
+  std::vector<std::size_t> firsts;  ///< number of each chunk's first return among all
+  std::size_t count = 0;
+};
+
 /// Makes the returns of one scan from its hits, step by step.
 class ScanMaker {
  public:
@@ -50,55 +57,37 @@ class ScanMaker {
         executor_(executor) {}
 
   /// Chunk by chunk, in their order, so that threads do not show.
-  std::vector<FiringReturn> returns(std::span<const Hit> hits) const {
-    const std::size_t chunks = (firings_.size() + kRaysPerChunk - 1) / kRaysPerChunk;
-    std::vector<std::vector<FiringReturn>> parts(chunks);
+  ChunkedReturns returns(std::span<const Hit> hits) const {
+    ChunkedReturns returns;
+    returns.chunks.resize((firings_.size() + kRaysPerChunk - 1) / kRaysPerChunk);
     executor_.for_chunks(firings_.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
-      parts[begin / kRaysPerChunk] = returns_of_firings(hits, begin, end);
+      returns.chunks[begin / kRaysPerChunk] = returns_of_firings(hits, begin, end);
     });
-    std::vector<FiringReturn> all;
-    std::size_t count = 0;
-    for (const auto& part : parts) count += part.size();
-    all.reserve(count);
-    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-    return all;
+    for (const auto& chunk : returns.chunks) {
+      returns.firsts.push_back(returns.count);
+      returns.count += chunk.size();
+    }
+    return returns;
   }
 
-  Scan scan(std::span<const FiringReturn> returns) const {
+  Scan scan(const ChunkedReturns& returns) const {
     Scan scan;
     scan.world_from_sensor = motion_.reference.world_from_sensor;
     scan.time_s = motion_.reference.time_s;
     scan.rays = firings_.size();
-    scan.positions.resize(returns.size());
-    scan.ranges_m.resize(returns.size());
-    executor_.for_chunks(returns.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        scan.positions[i] = position(returns[i]);
-        scan.ranges_m[i] = returns[i].echo.range_m;
-      }
+    scan.positions.resize(returns.count);
+    scan.ranges_m.resize(returns.count);
+    scan.rings.resize(returns.count);
+    scan.columns.resize(returns.count);
+    scan.times_s.resize(returns.count);
+    if (options_.beam.returns > 1) scan.return_indices.resize(returns.count);
+    if (!attributes_.classes.empty()) scan.classes.resize(returns.count);
+    if (!attributes_.instances.empty()) scan.instances.resize(returns.count);
+    if (!attributes_.intensities.empty()) scan.intensities.resize(returns.count);
+    executor_.for_chunks(returns.chunks.size(), 1, [&](std::size_t chunk, std::size_t) {
+      std::size_t i = returns.firsts[chunk];
+      for (const FiringReturn& point : returns.chunks[chunk]) fill(scan, i++, point);
     });
-    scan.rings.reserve(returns.size());
-    scan.columns.reserve(returns.size());
-    scan.times_s.reserve(returns.size());
-    for (const FiringReturn& point : returns) {
-      const Firing& firing = firings_[point.firing];
-      scan.rings.push_back(firing.ring);
-      scan.columns.push_back(firing.column);
-      scan.times_s.push_back(firing.time_s);
-    }
-    if (options_.beam.returns > 1)
-      for (const FiringReturn& point : returns) scan.return_indices.push_back(point.index);
-    scan.classes = gathered(attributes_.classes, returns);
-    scan.instances = gathered(attributes_.instances, returns);
-    scan.intensities = gathered(attributes_.intensities, returns);
-    // Things without a reflectance, as inserted meshes, send back nothing that could be told.
-    for (float& intensity : scan.intensities)
-      if (std::isnan(intensity)) intensity = 0;
-    if (attributes_.response != nullptr) {
-      for (std::size_t i = 0; i < scan.intensities.size(); ++i)
-        scan.intensities[i] *=
-            attributes_.response->gain(returns[i].echo.range_m, cos_incidence(returns[i]));
-    }
     return scan;
   }
 
@@ -195,18 +184,33 @@ class ScanMaker {
     return vec_cast<float>(normalized(d + left * to_left + up * cross(d, to_left)));
   }
 
-  /// The values of the primitives that were hit; empty where the scene has none.
+  /// Point i of the scan, in every attribute that the scan has.
+  void fill(Scan& scan, std::size_t i, const FiringReturn& point) const {
+    const Firing& firing = firings_[point.firing];
+    scan.positions[i] = position(point);
+    scan.ranges_m[i] = point.echo.range_m;
+    scan.rings[i] = firing.ring;
+    scan.columns[i] = firing.column;
+    scan.times_s[i] = firing.time_s;
+    if (!scan.return_indices.empty()) scan.return_indices[i] = point.index;
+    if (!scan.classes.empty()) scan.classes[i] = value_of(attributes_.classes, point);
+    if (!scan.instances.empty()) scan.instances[i] = value_of(attributes_.instances, point);
+    if (!scan.intensities.empty()) scan.intensities[i] = intensity(point);
+  }
+
+  /// Things without a reflectance, as inserted meshes, send back nothing that could be told.
+  float intensity(const FiringReturn& point) const {
+    const float value = value_of(attributes_.intensities, point);
+    if (std::isnan(value)) return 0;
+    if (attributes_.response == nullptr) return value;
+    return value * attributes_.response->gain(point.echo.range_m, cos_incidence(point));
+  }
+
+  /// That of the primitive that was hit.
   template <class T>
-  static std::vector<T> gathered(std::span<const T> values, std::span<const FiringReturn> returns) {
-    std::vector<T> result;
-    if (values.empty()) return result;
-    result.reserve(returns.size());
-    for (const FiringReturn& point : returns) {
-      if (point.echo.primitive >= values.size())
-        throw std::logic_error("an attribute has fewer values than the scene has primitives");
-      result.push_back(values[point.echo.primitive]);
-    }
-    return result;
+  static T value_of(std::span<const T> values, const FiringReturn& point) {
+    if (point.echo.primitive < values.size()) return values[point.echo.primitive];
+    throw std::logic_error("an attribute has fewer values than the scene has primitives");
   }
 
   const PrimitiveAttributes& attributes_;
