@@ -156,14 +156,16 @@ std::filesystem::path path_of(py::handle value, const char* name) {
   return std::string(py::reinterpret_steal<py::bytes>(bytes));
 }
 
-std::vector<std::filesystem::path> paths_of(py::handle value, const char* name) {
+std::vector<std::filesystem::path> paths_of(py::handle value, const char* name,
+                                            const char* else_expected) {
   std::vector<std::filesystem::path> paths;
   if (is_path(value)) {
     paths.push_back(path_of(value, name));
     return paths;
   }
   if (!py::isinstance<py::list>(value) && !py::isinstance<py::tuple>(value))
-    throw py::type_error(std::string(name) + ": expected a path or a list of paths, got " +
+    throw py::type_error(std::string(name) + ": expected " + else_expected +
+                         "a path or a list of paths, got " +
                          std::string(py::str(py::type::of(value).attr("__name__"))));
   for (const py::handle item : value) paths.push_back(path_of(item, name));
   if (paths.empty()) throw py::value_error(std::string(name) + ": expected at least one path");

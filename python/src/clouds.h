@@ -24,7 +24,8 @@ LocalVectors local_vectors(const Rows& world, py::handle origin);
 void take_load_options(Keywords& keywords, LoadOptions& options);
 
 /// One path or several. Errors: TypeError.
-std::vector<std::filesystem::path> paths_of(py::handle value, const char* name);
+std::vector<std::filesystem::path> paths_of(py::handle value, const char* name,
+                                            const char* else_expected = "");
 std::filesystem::path path_of(py::handle value, const char* name);
 bool is_path(py::handle value);
 

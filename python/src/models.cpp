@@ -129,7 +129,7 @@ std::shared_ptr<ModelObject> model(py::handle points, const py::kwargs& kwargs) 
   take_model(keywords, job, options);
   keywords.finish();
   const bool in_memory = py::isinstance<PointCloud>(points);
-  if (!in_memory) job.inputs = paths_of(points, "points");
+  if (!in_memory) job.inputs = paths_of(points, "points", "a PointCloud, ");
   const auto cloud =
       in_memory ? points.cast<std::shared_ptr<PointCloud>>() : std::shared_ptr<PointCloud>();
   Work work(options);

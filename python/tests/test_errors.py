@@ -44,6 +44,11 @@ def test_what_is_wrong(tmp_path, scene):
         scene.simulate("hdl-64-papr", np.eye(4))
 
 
+def test_arrays_are_no_clouds():
+    with pytest.raises(TypeError, match="expected a PointCloud, a path or a list of paths, got nda"):
+        adasplats.model(np.zeros((5, 3)))
+
+
 def test_where_nothing_can_be_written(tmp_path, scene):
     model = adasplats.Model([[0.0, 0, 0]], [[0, 0, 1.0]], [1.0])
     with pytest.raises(OSError):
