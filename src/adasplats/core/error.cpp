@@ -52,10 +52,37 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
+/// Letters and digits, small: "OS-1_64" and "os1-64" are the same name to who types it.
+std::string bare(const std::string& word) {
+  std::string letters;
+  for (const char c : word) {
+    if (c >= 'A' && c <= 'Z') {
+      letters += static_cast<char>(c - 'A' + 'a');
+    } else if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
+      letters += c;
+    }
+  }
+  return letters;
+}
+
+std::vector<std::string> words_containing(const std::string& word,
+                                          const std::vector<std::string>& candidates) {
+  constexpr std::size_t kLeastLetters = 2;
+  constexpr std::size_t kMostWords = 6;  // of a line that a person reads
+  const std::string part = bare(word);
+  std::vector<std::string> found;
+  if (part.size() < kLeastLetters) return found;
+  for (const std::string& candidate : candidates)
+    if (bare(candidate).find(part) != std::string::npos) found.push_back(candidate);
+  if (found.size() > kMostWords) found.clear();
+  std::ranges::stable_sort(found, {}, &std::string::size);
+  return found;
+}
+
 }  // namespace
 
-std::optional<std::string> nearest_word(const std::string& word,
-                                        const std::vector<std::string>& candidates) {
+std::vector<std::string> similar_words(const std::string& word,
+                                       const std::vector<std::string>& candidates) {
   std::optional<std::string> best;
   // More edits than half the word's letters is another word, not a slip.
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 2) + 1;
@@ -66,7 +93,24 @@ std::optional<std::string> nearest_word(const std::string& word,
       best = candidate;
     }
   }
-  return best;
+  if (best) return {*best};
+  return words_containing(word, candidates);
+}
+
+std::optional<std::string> nearest_word(const std::string& word,
+                                        const std::vector<std::string>& candidates) {
+  std::vector<std::string> similar = similar_words(word, candidates);
+  if (similar.empty()) return std::nullopt;
+  return std::move(similar.front());
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
+  const std::vector<std::string> similar = similar_words(word, candidates);
+  std::string text;
+  for (std::size_t i = 0; i < similar.size(); ++i)
+    text += (i == 0 ? ", did you mean '" : (i + 1 == similar.size() ? " or '" : ", '")) +
+            similar[i] + "'";
+  return text.empty() ? text : text + "?";
 }
 
 }  // namespace adasplats

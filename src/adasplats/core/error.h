@@ -52,9 +52,17 @@ Error data_error(const FilePlace& place, const std::string& message);
 Error system_error(ErrorKind kind, const std::filesystem::path& file, const std::string& message,
                    int errno_value);
 
-/// The candidate nearest to `word` by edit distance, or nothing where none is close: for "unknown
-/// option 'radus', did you mean 'radius'?".
+/// The candidates that `word` may stand for: the nearest by edit distance; where none is close,
+/// those that contain it, shortest first, for "vlp-16" of "velodyne-vlp-16" (letters and digits
+/// alone, of any case). None where more than six contain it: it says too little.
+std::vector<std::string> similar_words(const std::string& word,
+                                       const std::vector<std::string>& candidates);
+
+/// The first of similar_words(), or nothing: for "unknown option 'radus', did you mean 'radius'?".
 std::optional<std::string> nearest_word(const std::string& word,
                                         const std::vector<std::string>& candidates);
+
+/// ", did you mean 'x'?" or ", did you mean 'x', 'y' or 'z'?" of similar_words(); "" for none.
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace adasplats

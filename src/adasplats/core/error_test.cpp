@@ -57,6 +57,21 @@ TEST(NearestWord, EmptyWordsAndTies) {
   EXPECT_EQ(nearest_word("cat", {"bat", "rat"}), "bat");  // the first of equals
 }
 
+TEST(NearestWord, FindsNamesByAPartOfThem) {
+  const std::vector<std::string> sensors = {"hdl-64-paper", "ouster-os1-64", "velodyne-hdl-64e-s2",
+                                            "velodyne-vlp-16"};
+  EXPECT_EQ(nearest_word("vlp-16", sensors), "velodyne-vlp-16");
+  EXPECT_EQ(nearest_word("os1-64", sensors), "ouster-os1-64");
+  EXPECT_EQ(nearest_word("OS-1-64", sensors), "ouster-os1-64");
+  EXPECT_EQ(nearest_word("hdl64", sensors), "hdl-64-paper");  // the shortest
+  EXPECT_EQ(did_you_mean("hdl64", sensors),
+            ", did you mean 'hdl-64-paper' or 'velodyne-hdl-64e-s2'?");
+  EXPECT_EQ(did_you_mean("velodyne-vlp-17", sensors), ", did you mean 'velodyne-vlp-16'?");
+  EXPECT_EQ(did_you_mean("s", sensors), "");
+  EXPECT_EQ(did_you_mean("64", std::vector<std::string>(7, "hdl-64-paper")), "") << "says nothing";
+  EXPECT_EQ(did_you_mean("--", sensors), "");
+}
+
 TEST(Memory, PeakCountsWhatWasTouched) {
   constexpr std::size_t kBytes = std::size_t{64} << 20;
   const std::vector<char> block(kBytes, 1);

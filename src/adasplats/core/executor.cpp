@@ -7,9 +7,13 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <thread>
 #include <utility>
+
+#include "adasplats/core/progress_meter.h"
 
 namespace adasplats {
 
@@ -44,28 +48,52 @@ struct Executor::Impl {
   std::unique_ptr<global_control> limit;
   mutable oneapi::tbb::task_arena arena;
   std::function<void()> interruption;
-  Impl(int threads, std::function<void()> interruption_in)
-      : limit(allow(threads)), arena(threads), interruption(std::move(interruption_in)) {}
+  ProgressMeter* meter;
+  Impl(int threads, std::function<void()> interruption_in, ProgressMeter* meter_in)
+      : limit(allow(threads)),
+        arena(threads),
+        interruption(std::move(interruption_in)),
+        meter(meter_in) {}
 };
 
-Executor::Executor(int threads, std::function<void()> interruption)
+Executor::Executor(int threads, std::function<void()> interruption, ProgressMeter* meter)
     : impl_(std::make_unique<Impl>(threads > 0 ? threads : oneapi::tbb::info::default_concurrency(),
-                                   std::move(interruption))) {}
+                                   std::move(interruption), meter)) {}
 
 Executor::~Executor() = default;
 
 int Executor::threads() const { return impl_->arena.max_concurrency(); }
 
+ProgressMeter* Executor::meter() const { return impl_->meter; }
+
+void Executor::check_interruption() const {
+  if (inside_loop) return;
+  if (impl_->interruption) impl_->interruption();
+  if (impl_->meter != nullptr && impl_->meter->hears()) impl_->meter->tell();
+}
+
 void Executor::for_chunks(std::size_t count, std::size_t grain,
                           FunctionRef<void(std::size_t, std::size_t)> body) const {
   if (count == 0) return;
   const std::size_t chunks = (count + grain - 1) / grain;
-  const bool may_stop = impl_->interruption && !inside_loop;
+  const bool is_outermost = !inside_loop;
   const std::thread::id caller = std::this_thread::get_id();
+  ProgressMeter* const meter =
+      is_outermost && impl_->meter != nullptr && impl_->meter->hears() ? impl_->meter : nullptr;
+  // TBB gives a thread many chunks at once, which it would all do after another one has thrown.
+  std::atomic<bool> stopped = false;
   const auto run_chunk = [&](std::size_t chunk) {
-    if (may_stop && std::this_thread::get_id() == caller) impl_->interruption();
-    const InsideLoop inside;
-    body(chunk * grain, std::min(count, (chunk + 1) * grain));
+    if (stopped.load(std::memory_order_relaxed)) return;
+    try {
+      if (is_outermost && std::this_thread::get_id() == caller) check_interruption();
+      const InsideLoop inside;
+      const std::size_t begin = chunk * grain, end = std::min(count, begin + grain);
+      body(begin, end);
+      if (meter != nullptr) meter->add(end - begin);
+    } catch (...) {
+      stopped = true;
+      throw;
+    }
   };
   if (chunks == 1) {
     run_chunk(0);

@@ -12,6 +12,8 @@
 
 namespace adasplats {
 
+class ProgressMeter;
+
 /// Runs loops on a fixed number of threads. Two executors do not share threads' work; there is no
 /// global one. Results of the library never depend on the number of threads: chunk boundaries
 /// depend on the sizes alone and reductions add chunks in their order.
@@ -20,16 +22,22 @@ class Executor {
   /// `threads` = 0 takes what the process may use (its CPU affinity). `interruption`, where given,
   /// is called between the chunks of a loop on the thread that started it (not in loops within
   /// loops); what it throws stops the loop and reaches the caller, so work can be cancelled.
-  explicit Executor(int threads = 0, std::function<void()> interruption = {});
+  /// `meter`, which has to outlive this, hears how far loops are.
+  explicit Executor(int threads = 0, std::function<void()> interruption = {},
+                    ProgressMeter* meter = nullptr);
   ~Executor();
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
 
   int threads() const;
+  ProgressMeter* meter() const;  ///< nullptr: there is none
+
+  /// For long work on one thread: what a loop does between its chunks. In a loop: nothing.
+  void check_interruption() const;
 
   /// Calls body(begin, end) for consecutive chunks of [0, count), at most `grain` long, in any
   /// order and on any thread. Chunk k is [k * grain, min(count, (k + 1) * grain)). An exception of
-  /// the body stops the loop and reaches the caller.
+  /// the body stops the loop (chunks that have begun are ended) and reaches the caller.
   void for_chunks(std::size_t count, std::size_t grain,
                   FunctionRef<void(std::size_t begin, std::size_t end)> body) const;
 

@@ -139,6 +139,31 @@ TEST(Executor, AnInterruptionStopsALoopOnTheThreadThatStartedIt) {
   }
 }
 
+TEST(Executor, AfterAnExceptionNoOtherChunkBegins) {
+  // One thread throws at once; the others must not go through the chunks that TBB gave them.
+  const Executor executor(4);
+  std::atomic<int> begun = 0;
+  EXPECT_THROW(executor.for_chunks(4000, 1,
+                                   [&](std::size_t begin, std::size_t) {
+                                     ++begun;
+                                     if (begin == 0) throw std::runtime_error("chunk 0");
+                                     std::this_thread::sleep_for(std::chrono::milliseconds(2));
+                                   }),
+               std::runtime_error);
+  EXPECT_LT(begun, 200);
+}
+
+TEST(Executor, LongWorkOnOneThreadCanBeInterrupted) {
+  std::atomic<int> calls = 0;
+  const Executor executor(2, [&] {
+    if (++calls == 3) throw std::runtime_error("stop");
+  });
+  executor.check_interruption();
+  executor.check_interruption();
+  EXPECT_THROW(executor.check_interruption(), std::runtime_error);
+  Executor(1).check_interruption();  // nobody to ask
+}
+
 TEST(Executor, LoopsWithinLoopsAreNotInterrupted) {
   std::atomic<int> calls = 0;
   const Executor executor(1, [&] { ++calls; });

@@ -29,8 +29,9 @@ class Random {
   ADASPLATS_HD constexpr double uniform(double low, double high) {
     return low + (high - low) * uniform();
   }
-  /// Standard normal (Box-Muller; two uniforms a draw, the second value is not kept).
-  ADASPLATS_HD double normal() {
+  /// Standard normal (Box-Muller; two uniforms a draw, the second value is not kept). Not for
+  /// device code: the logarithm and the cosine of a GPU have other last bits.
+  double normal() {
     const double u = 1.0 - uniform();  // in (0, 1]: the logarithm is finite
     const double v = uniform();
     return std::sqrt(-2.0 * std::log(u)) * std::cos(6.283185307179586 * v);
