@@ -100,8 +100,8 @@ TEST(ScanFiles, EmptyScansAndScansWithoutAttributes) {
   }
 }
 
-// Oracle: round trip through read_las; LAS holds millimetres, 16 bits of intensity, the class's low
-// byte.
+// Oracle: round trip through read_las; LAS holds millimetres, 16 bits of intensity, classes
+// up to 255 in the field of its own and all of them in `label`.
 TEST(ScanFiles, Las) {
   const TemporaryFolder folder;
   Scan scan = scan_with_returns();
@@ -116,7 +116,8 @@ TEST(ScanFiles, Las) {
     EXPECT_EQ(column(table, "gps_time")[i], scan.time_s + static_cast<double>(scan.times_s[i]));
   }
   EXPECT_EQ(column(table, "intensity"), (Doubles{0, 32768, 65535, 65535, 0}));
-  EXPECT_EQ(column(table, "classification"), (Doubles{0, 40, 255, 0, 3}));
+  EXPECT_EQ(column(table, "classification"), (Doubles{0, 40, 255, 0, 0}));
+  EXPECT_EQ(column(table, "label"), (Doubles{0, 40, 255, 256, 259}));
   EXPECT_EQ(column(table, "return_number"), (Doubles{1, 1, 2, 2, 1}));
   EXPECT_EQ(column(table, "number_of_returns"), (Doubles{1, 2, 2, 2, 1}));
   const std::string bytes = read_file(folder.path() / "scan.las");

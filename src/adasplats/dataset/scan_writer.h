@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string_view>
+#include <utility>
 
 #include "adasplats/cloud/label_scheme.h"
 #include "adasplats/dataset/range_image.h"
@@ -15,6 +17,15 @@ namespace adasplats {
 
 /// What scans are written as: a sequence folder, files of one kind, pictures, or messages.
 enum class ScanFormat : std::uint8_t { semantickitti, ply, npy, npz, pcd, las, range_image, mcap };
+inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
+    {"semantickitti", ScanFormat::semantickitti},
+    {"ply", ScanFormat::ply},
+    {"npy", ScanFormat::npy},
+    {"npz", ScanFormat::npz},
+    {"pcd", ScanFormat::pcd},
+    {"las", ScanFormat::las},
+    {"range-image", ScanFormat::range_image},
+    {"mcap", ScanFormat::mcap}};
 
 struct ScanWriterOptions {
   ImageSize image_size;                 ///< of range images (image_size_of)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -141,6 +142,56 @@ TEST(KittiBin, PartOfAPointIsAnError) {
                [&] { read_kitti_bin(folder.file("a.bin", std::string(17, 'x'))); });
   expect_error(ErrorKind::data, {"empty"}, [&] { read_kitti_bin(folder.file("b.bin", "")); });
   expect_error(ErrorKind::no_input, {}, [&] { read_kitti_bin(folder.path() / "c.bin"); });
+}
+
+/// `points` points on a circle around the sensor, of 4 floats or, with a ring, of 5.
+std::string circle(int points, int floats) {
+  std::string content;
+  for (int k = 0; k < points; ++k) {
+    const double angle = 0.1 * k;
+    for (const double value : {9.5 * std::cos(angle), 9.5 * std::sin(angle), -1.7, 12.0 + k % 90})
+      content += bytes_of(static_cast<float>(value));
+    if (floats == 5) content += bytes_of(static_cast<float>(k % 32));
+  }
+  return content;
+}
+
+TEST(KittiBin, FiveFloatsAPointAreReadByName) {
+  const TemporaryFolder folder;
+  const Table table = read_points(folder.file("n__LIDAR_TOP__1.pcd.bin", circle(50, 5)));
+  ASSERT_EQ(table.rows, 50U);
+  EXPECT_EQ(table.columns[4].name, "ring");
+  EXPECT_EQ(table.columns[4].as_double(33), 1.0);
+  EXPECT_EQ(table.columns[3].as_double(33), 45.0);
+  EXPECT_EQ(table.columns[0].as_double(0), 9.5);
+  expect_error(ErrorKind::data, {"a.pcd.bin", "20 bytes a point", "found 16 bytes"},
+               [&] { read_points(folder.file("a.pcd.bin", circle(51, 4))); });
+  expect_error(ErrorKind::data, {"a.pcd.bin", "rings"},
+               [&] { read_points(folder.file("a.pcd.bin", circle(50, 4))); });
+}
+
+TEST(KittiBin, FiveFloatsAreNotTakenForFour) {
+  const TemporaryFolder folder;
+  // 80 bytes divide 400: both sizes fit, the values do not. 51 x 20 is no multiple of 16.
+  for (const int points : {20, 40, 51, 500})
+    expect_error(ErrorKind::data, {"b.bin", "nuScenes", "*.pcd.bin"},
+                 [&] { read_points(folder.file("b.bin", circle(points, 5))); });
+  for (const int points : {20, 40, 51, 500})
+    EXPECT_EQ(read_points(folder.file("b.bin", circle(points, 4))).rows,
+              static_cast<std::size_t>(points));
+}
+
+TEST(KittiBin, OtherFilesAreNotTakenForScans) {
+  const TemporaryFolder folder;
+  expect_error(ErrorKind::data, {"c.bin", "CloudCompare"},
+               [&] { read_points(folder.file("c.bin", "CCB2" + std::string(60, '\0'))); });
+  // Three floats a point: the fourth is the next one's x.
+  std::string three;
+  for (int k = 0; k < 16; ++k)
+    for (const double value : {9.5 * std::cos(0.5 * k), 9.5 * std::sin(0.5 * k), -1.7})
+      three += bytes_of(static_cast<float>(value));
+  expect_error(ErrorKind::data, {"d.bin", "point 2", "-1.7", "0 to 65535", "not a KITTI scan"},
+               [&] { read_points(folder.file("d.bin", three)); });
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/core/recordings_test.h"
 #include "adasplats/io/atomic_file.h"
 #include "adasplats/io/ply.h"
 #include "adasplats/io/point_files.h"
@@ -80,13 +81,11 @@ std::vector<Seed> small_seeds() {
           {"a.ptx",
            "1\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n9 9 9 1\n"
            "1 2 3 0.5\n0 0 0 0.5\n"},
-          {"a.bin", std::string(64, 'k')}};
+          {"a.bin", std::string(64, '?')}};
 }
 
-std::vector<Seed> real_seeds() {
+std::vector<Seed> real_seeds(const std::filesystem::path& folder) {
   std::vector<Seed> seeds;
-  const std::filesystem::path folder = std::filesystem::path(ADASPLATS_TEST_DATA) / "formats";
-  if (!std::filesystem::exists(folder)) return seeds;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string extension = entry.path().extension().string();
     if (extension == ".tsv" || entry.file_size() == 0) continue;
@@ -221,8 +220,10 @@ TEST(Fuzz, TheSmallSeedsAreValid) {
 TEST(Fuzz, SmallFilesOfEveryFormat) { fuzz(small_seeds(), 400, 1); }
 
 TEST(Fuzz, RealFiles) {
-  const std::vector<Seed> seeds = real_seeds();
-  if (seeds.empty()) GTEST_SKIP() << "no real files in " << ADASPLATS_TEST_DATA;
+  const auto folder = recording("formats");
+  if (!folder) GTEST_SKIP() << kNoRecordings;
+  const std::vector<Seed> seeds = real_seeds(*folder);
+  ASSERT_FALSE(seeds.empty());
   fuzz(seeds, 25, 2);
 }
 

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "adasplats/io/las_header.h"
 #include "adasplats/io/las_records.h"
+#include "adasplats/io/las_vlrs.h"
 #include "adasplats/io/laz.h"
 #include "adasplats/io/point_files.h"
+#include "adasplats/io/records.h"
 
 namespace adasplats {
 namespace {
@@ -61,6 +65,41 @@ std::uint64_t records_to_read(const InputFile& file, const LasHeader& header, bo
                         std::to_string(header.points) + " (salvage reads what is there)");
 }
 
+/// The columns of what a file describes itself, filled as records come.
+class ExtraColumns {
+ public:
+  ExtraColumns(std::vector<LasExtraField> fields, std::size_t rows) : fields_(std::move(fields)) {
+    for (const LasExtraField& field : fields_)
+      columns_.push_back(make_column(field.name, field.type, rows));
+  }
+
+  void take(const std::byte* records, std::size_t record_bytes, std::size_t first,
+            std::size_t count) {
+    for (std::size_t k = 0; k < fields_.size(); ++k) {
+      const std::size_t bytes = type_bytes(fields_[k].type);
+      gather_values(records + fields_[k].offset_bytes, record_bytes, bytes, false, count,
+                    column_bytes(columns_[k]) + first * bytes);
+    }
+  }
+
+  void append_to(Table& table) {
+    for (std::size_t k = 0; k < fields_.size(); ++k)
+      table.columns.push_back(fields_[k].is_scaled ? scaled(fields_[k], columns_[k])
+                                                   : std::move(columns_[k]));
+  }
+
+ private:
+  static Column scaled(const LasExtraField& field, const Column& stored) {
+    std::vector<double> values(stored.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = field.scale * stored.as_double(i) + field.offset;
+    return {field.name, std::move(values)};
+  }
+
+  std::vector<LasExtraField> fields_;
+  std::vector<Column> columns_;
+};
+
 }  // namespace
 
 Table read_las(const std::filesystem::path& path, const LasReadOptions& options) {
@@ -71,15 +110,20 @@ Table read_las(const std::filesystem::path& path, const LasReadOptions& options)
   file.skip(header.points_offset_bytes);
   const auto rows = static_cast<std::size_t>(records_to_read(file, header, options.salvage));
   LasColumns columns(format, rows);
+  LasDescription description = read_las_description(path, header);
+  ExtraColumns extras(std::move(description.extra_fields), rows);
   const std::size_t chunk_rows = std::max<std::size_t>(1, kChunkBytes / header.record_bytes);
   for (std::size_t first = 0; first < rows; first += chunk_rows) {
     const std::size_t count = std::min(chunk_rows, rows - first);
     const std::byte* const records = file.peek(count * header.record_bytes).data();
     for (std::size_t row = 0; row < count; ++row)
       columns.push(decode_point(header, format, records + row * header.record_bytes));
+    extras.take(records, header.record_bytes, first, count);
     file.skip(count * header.record_bytes);
   }
   Table table = columns.take();
+  extras.append_to(table);
+  if (description.geographic) table.comments.push_back("geographic: " + *description.geographic);
   if (rows < header.points) {
     table.comments.push_back("salvaged " + std::to_string(rows) + " of " +
                              std::to_string(header.points) + " records");

@@ -117,6 +117,71 @@ TEST(Las, ClassificationFlagsAreNoClass) {
 }
 
 // Fault 21.
+/// A variable length record.
+std::string las_vlr(const std::string& user, std::uint16_t number, const std::string& content) {
+  std::string record(54, '\0');
+  for (std::size_t k = 0; k < user.size(); ++k) record[2 + k] = user[k];
+  put(record, 18, number);
+  put(record, 20, static_cast<std::uint16_t>(content.size()));
+  return record + content;
+}
+
+/// A file of one point with extra bytes and the given records.
+std::string las_with(const std::string& records, std::uint32_t count, std::size_t extra_bytes) {
+  const std::size_t bytes = 20 + extra_bytes;
+  std::string header = las_header(2, 0, static_cast<int>(bytes), 1);
+  put(header, 96, static_cast<std::uint32_t>(header.size() + records.size()));
+  put(header, 100, count);
+  return header + records + las_record(bytes, 1, 2, 3);
+}
+
+/// Table 24: type, options and name.
+std::string extra_descriptor(std::uint8_t type, std::uint8_t options, const std::string& name) {
+  std::string descriptor(192, '\0');
+  put(descriptor, 2, type);
+  put(descriptor, 3, options);
+  for (std::size_t k = 0; k < name.size(); ++k) descriptor[4 + k] = name[k];
+  return descriptor;
+}
+
+// Oracle: table 24 of the specification.
+TEST(Las, AttributesInExtraBytes) {
+  std::string scaled = extra_descriptor(4, 0x18, "height");
+  put(scaled, 112, 0.5);
+  put(scaled, 136, 100.0);
+  const std::string fields = extra_descriptor(0, 3, "nothing") + extra_descriptor(3, 0, "label") +
+                             extra_descriptor(13, 0, "pair") + scaled +
+                             extra_descriptor(10, 0, "beyond the record");
+  // 3 bytes of nothing, u16, two u16, i16, and one byte that nobody describes.
+  const Table table = read(las_with(las_vlr("LASF_Spec", 4, fields), 1, 3 + 2 + 4 + 2 + 1));
+  EXPECT_EQ(values_of(table, "label"), Doubles{u16_at(23)});
+  EXPECT_EQ(values_of(table, "height"), Doubles{0.5 * u16_at(29) + 100});
+  EXPECT_EQ(table.find("pair"), nullptr);
+  EXPECT_EQ(table.find("beyond the record"), nullptr);
+  EXPECT_EQ(table.columns.back().name, "height");
+}
+
+TEST(Las, LongitudesAndLatitudesAreSaid) {
+  const auto comments = [](const std::string& record) {
+    return read(las_with(record, 1, 0)).comments;
+  };
+  const auto keys = [](std::uint16_t model) {
+    std::string directory;
+    for (const int value : {1, 1, 0, 1, 1024, 0, 1, 0})
+      directory += bytes_of(static_cast<std::uint16_t>(value));
+    put(directory, 14, model);
+    return las_vlr("LASF_Projection", 34735, directory);
+  };
+  EXPECT_EQ(comments(keys(2)), std::vector<std::string>{"geographic: GTModelType 2, geographic"});
+  EXPECT_TRUE(comments(keys(1)).empty());
+  const auto text = [](const std::string& wkt) { return las_vlr("LASF_Projection", 2112, wkt); };
+  EXPECT_EQ(comments(text("GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\"]]")),
+            std::vector<std::string>{"geographic: GEOGCS[\"WGS 84\""});
+  EXPECT_TRUE(comments(text("PROJCS[\"UTM 31N\",GEOGCS[\"WGS 84\"]]")).empty());
+  EXPECT_TRUE(comments(text("GEOCCS[\"ECEF\"]")).empty());
+  EXPECT_TRUE(comments(las_vlr("other", 2112, "GEOGCS[\"x\"]")).empty());
+}
+
 TEST(Las, NoPointsIsAnEmptyTable) {
   const Table table = read(las_header(2, 3, 34, 0));
   EXPECT_EQ(table.rows, 0U);

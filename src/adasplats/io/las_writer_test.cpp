@@ -71,6 +71,8 @@ TEST(LasWriter, RoundTrip) {
   EXPECT_EQ(values_of(table, "number_of_returns"), doubles(points.returns));
   EXPECT_EQ(values_of(table, "classification"), doubles(points.classification));
   EXPECT_EQ(values_of(table, "gps_time"), points.time);
+  EXPECT_EQ(values_of(table, "label"), doubles(points.label));
+  EXPECT_EQ(values_of(table, "range"), doubles(points.range));
 }
 
 // Oracle: ASPRS LAS 1.4 R15, tables 3, 16 and 24, written down here a second time.

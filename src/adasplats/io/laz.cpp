@@ -9,6 +9,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/las_records.h"
+#include "adasplats/io/las_vlrs.h"
 #include "adasplats/io/laz_layout.h"
 #include "adasplats/io/laz_process.h"
 
@@ -51,6 +52,10 @@ Table read_laz(const std::filesystem::path& path, const LasReadOptions& options)
                                          std::to_string(header.points) + ": " + fault);
   }
   Table table = columns.take();
+  const LasDescription description = read_las_description(path, header);
+  if (description.geographic) table.comments.push_back("geographic: " + *description.geographic);
+  for (const LasExtraField& field : description.extra_fields)
+    table.comments.push_back("not read: " + field.name);
   if (rows < header.points) {
     table.comments.push_back("salvaged " + std::to_string(rows) + " of " +
                              std::to_string(header.points) + " records");

@@ -22,10 +22,12 @@ struct LasReadOptions {
 
 /// LAS 1.0-1.4, point formats 0-10, with scale and offset applied: x, y, z (f64), intensity (u16),
 /// classification (u8), return_number, number_of_returns (u8), and where the format has them
-/// gps_time (f64), red, green, blue (u16), point_source_id (u16), user_data (u8). LAZ through
-/// LASzip where it was found at build time, else an error that says what to install.
-/// Memory: at most 2x the file's size (LAS), what the points take (LAZ). Errors: no_input, io,
-/// data.
+/// gps_time (f64), red, green, blue (u16), point_source_id (u16), user_data (u8), and of LAS (not
+/// LAZ) the attributes in extra bytes that the file describes, in their types (scaled ones f64).
+/// Comments: "geographic: WHAT SAYS SO" where x and y are longitude and latitude, "not read: NAME"
+/// of an attribute of LAZ. LAZ through LASzip where it was found at build time, else an error that
+/// says what to install. Memory: at most 2x the file's size (LAS), what the points take (LAZ).
+/// Errors: no_input, io, data.
 Table read_las(const std::filesystem::path& path, const LasReadOptions& options = {});
 
 /// Text: XYZ, PTS (a line with a count of points alone), CSV (comma, semicolon, tab or blank; a
@@ -38,8 +40,16 @@ Table read_las(const std::filesystem::path& path, const LasReadOptions& options 
 /// left out, a comment says how many. All columns are f64. Locale-independent.
 Table read_text_points(const std::filesystem::path& path);
 
-/// KITTI / SemanticKITTI scan: float32 x, y, z, intensity ("remission"), little-endian.
+/// KITTI / SemanticKITTI scan: float32 x, y, z, intensity ("remission"), little-endian. The file
+/// does not say what it holds, so its values must be possible. Errors: data for an intensity below
+/// 0 or above 65535, and for what is recognised as five floats a point or CloudCompare's own
+/// format.
 Table read_kitti_bin(const std::filesystem::path& path);
+
+/// A `.bin` by its name: of nuScenes (`*.pcd.bin`: float32 x, y, z, intensity, ring), else
+/// read_kitti_bin. Errors: data, likewise for a fifth column that holds no rings (whole numbers
+/// from 0 to 255).
+Table read_bin(const std::filesystem::path& path);
 
 /// Any of the formats above and PLY, by the file's extension (any case) and first bytes, which must
 /// not contradict each other.

@@ -74,10 +74,10 @@ PointFormat format_of(const std::filesystem::path& path) {
   }
   if (by_extension) return *by_extension;
   if (by_bytes) return *by_bytes;
-  throw data_error({path, {}, {}},
-                   "unknown format " + shown(path.extension().string()) +
-                       ", understood are .ply, .pcd, .las, .laz, .bin (KITTI), .xyz, .txt, .asc, "
-                       ".csv, .pts and .ptx");
+  throw data_error({path, {}, {}}, "unknown format " + shown(path.extension().string()) +
+                                       ", understood are .ply, .pcd, .las, .laz, .bin (KITTI; "
+                                       "*.pcd.bin: nuScenes), .xyz, .txt, .asc, "
+                                       ".csv, .pts and .ptx");
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ Table read_points(const std::filesystem::path& path, const LasReadOptions& optio
     case PointFormat::ply: return read_ply(path);
     case PointFormat::pcd: return read_pcd(path);
     case PointFormat::las: return read_las(path, options);
-    case PointFormat::kitti_bin: return read_kitti_bin(path);
+    case PointFormat::kitti_bin: return read_bin(path);
     case PointFormat::text: return read_text_points(path);
     case PointFormat::e57: break;
   }

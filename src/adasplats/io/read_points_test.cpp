@@ -28,7 +28,7 @@ TEST(ReadPoints, ByExtensionInAnyCase) {
   const TemporaryFolder folder;
   EXPECT_EQ(read_points(folder.file("a.PLY", kPly)).rows, 1U);
   EXPECT_EQ(read_points(folder.file("a.Pcd", kPcd)).rows, 1U);
-  EXPECT_EQ(read_points(folder.file("a.BIN", std::string(32, 'x'))).rows, 2U);
+  EXPECT_EQ(read_points(folder.file("a.BIN", std::string(32, '\0'))).rows, 2U);
   for (const char* name : {"a.xyz", "a.TXT", "a.asc", "a.csv", "a.pts"})
     EXPECT_EQ(read_points(folder.file(name, "1 2 3\n")).rows, 1U);
 }

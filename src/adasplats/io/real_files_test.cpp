@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/core/recordings_test.h"
 #include "adasplats/io/ply.h"
 #include "adasplats/io/point_files.h"
 #include "adasplats/io/test_files.h"
@@ -24,14 +25,13 @@ namespace {
 using io_test::expect_error;
 using io_test::values_of;
 
-const std::filesystem::path kFolder = std::filesystem::path(ADASPLATS_TEST_DATA) / "formats";
-
 class RealFiles : public testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(kFolder / "CATALOG.tsv"))
-      GTEST_SKIP() << "no real files in " << kFolder;
-    std::ifstream catalog(kFolder / "CATALOG.tsv");
+    const auto found = recording("formats");
+    if (!found) GTEST_SKIP() << kNoRecordings;
+    folder_ = *found;
+    std::ifstream catalog(folder_ / "CATALOG.tsv");
     for (std::string line; std::getline(catalog, line);) {
       std::istringstream fields(line);
       std::string name, size, what;
@@ -53,6 +53,7 @@ class RealFiles : public testing::Test {
     return error == std::errc() ? std::optional(number) : std::nullopt;
   }
 
+  std::filesystem::path folder_;
   std::map<std::string, std::string> catalog_;
 };
 
@@ -68,10 +69,10 @@ TEST_F(RealFiles, LasAndPcdHaveTheCataloguedPoints) {
     if (!name.ends_with(".las") && !name.ends_with(".pcd")) continue;
     SCOPED_TRACE(name);
     if (broken.contains(name)) {
-      expect_error(ErrorKind::data, {broken.at(name)}, [&] { read_points(kFolder / name); });
+      expect_error(ErrorKind::data, {broken.at(name)}, [&] { read_points(folder_ / name); });
       continue;
     }
-    const Table table = read_points(kFolder / name);
+    const Table table = read_points(folder_ / name);
     EXPECT_EQ(std::optional(table.rows), number_after(what, "points "));
     for (const Column& column : table.columns) EXPECT_EQ(column.size(), table.rows);
     EXPECT_NE(table.find("x"), nullptr);
@@ -87,7 +88,7 @@ TEST_F(RealFiles, LazIsReadOrSaysWhatToInstall) {
     if (!name.ends_with(".laz")) continue;
     SCOPED_TRACE(name);
     try {
-      const Table table = read_points(kFolder / name);
+      const Table table = read_points(folder_ / name);
       EXPECT_EQ(what.find("ERR"), std::string::npos) << "a broken file was read";
       EXPECT_EQ(std::optional(table.rows), number_after(what, "points "));
     } catch (const Error& error) {
@@ -106,15 +107,15 @@ TEST_F(RealFiles, PlyHaveTheCataloguedVertices) {
     if (!name.ends_with(".ply")) continue;
     SCOPED_TRACE(name);
     if (name == "assimp+assimp__test__models__invalid__empty.ply") {
-      expect_error(ErrorKind::data, {"empty"}, [&] { read_points(kFolder / name); });
+      expect_error(ErrorKind::data, {"empty"}, [&] { read_points(folder_ / name); });
       continue;
     }
-    const Table table = read_points(kFolder / name);
+    const Table table = read_points(folder_ / name);
     EXPECT_EQ(std::optional(table.rows), number_after(what, "'vertex', '"));
     const std::size_t faces = number_after(what, "'face', '").value_or(0);
-    EXPECT_EQ(ply_has_faces(kFolder / name), faces > 0);
+    EXPECT_EQ(ply_has_faces(folder_ / name), faces > 0);
     if (faces > 0) {
-      EXPECT_GE(read_ply_mesh(kFolder / name).faces.rows, faces);
+      EXPECT_GE(read_ply_mesh(folder_ / name).faces.rows, faces);
     }
   }
 }
@@ -124,7 +125,7 @@ TEST_F(RealFiles, CubeIsTheUnitCube) {
   for (const char* name :
        {"assimp+assimp__test__models__PLY__cube_binary.ply",
         "assimp+assimp__test__models__PLY__cube_binary_header_with_RN_newline.ply"}) {
-    const MeshTable mesh = read_ply_mesh(kFolder / name);
+    const MeshTable mesh = read_ply_mesh(folder_ / name);
     EXPECT_EQ(mesh.faces.rows, 12U);
     EXPECT_EQ(values_of(mesh.vertices, "x"), (std::vector<double>{0, 0, 0, 0, 1, 1, 1, 1}));
     EXPECT_EQ(values_of(mesh.vertices, "y"), (std::vector<double>{0, 0, 1, 1, 0, 0, 1, 1}));
@@ -134,7 +135,7 @@ TEST_F(RealFiles, CubeIsTheUnitCube) {
 
 // Compressed PCD: the images' 256 x 256 pixels as PCL wrote them.
 TEST_F(RealFiles, CompressedPcdUnpacksToAnImage) {
-  const Table table = read_pcd(kFolder / "PointCloudLibrary+pcl__test__2d__canny.pcd");
+  const Table table = read_pcd(folder_ / "PointCloudLibrary+pcl__test__2d__canny.pcd");
   std::size_t edges = 0;
   for (const double value : values_of(table, "intensity")) {
     EXPECT_TRUE(value == 0 || value == 255) << value;
@@ -151,10 +152,10 @@ TEST_F(RealFiles, LasPointsTouchTheHeadersBox) {
                            "PDAL+PDAL__test__data__las__wontcompress3.las",
                            "laz-rs+laz-rs__tests__data__point-time.las"}) {
     SCOPED_TRACE(name);
-    std::ifstream file(kFolder / name, std::ios::binary);
+    std::ifstream file(folder_ / name, std::ios::binary);
     std::string header(227, '\0');
     file.read(header.data(), 227);
-    const Table table = read_las(kFolder / name);
+    const Table table = read_las(folder_ / name);
     for (const std::size_t axis : {0U, 1U, 2U}) {
       double high = 0, low = 0;
       std::memcpy(&high, header.data() + 179 + 16 * axis, 8);
@@ -179,7 +180,7 @@ TEST_F(RealFiles, TextHasAPointALine) {
       {"PDAL+PDAL__test__data__ptx__complex-transform.ptx", {4, 10}}};
   for (const auto& [name, expected] : rows_and_columns) {
     SCOPED_TRACE(name);
-    const Table table = read_points(kFolder / name);
+    const Table table = read_points(folder_ / name);
     EXPECT_EQ(table.rows, expected.first);
     EXPECT_EQ(table.columns.size(), expected.second);
   }
@@ -188,7 +189,7 @@ TEST_F(RealFiles, TextHasAPointALine) {
 // Two scans of the same four points, one of them as (x - 600000, ..., (z - 400) / 2).
 TEST_F(RealFiles, PtxTransformGivesTheSamePoints) {
   const Table table =
-      read_points(kFolder / "PDAL+PDAL__test__data__ptx__multiple-and-transform.ptx");
+      read_points(folder_ / "PDAL+PDAL__test__data__ptx__multiple-and-transform.ptx");
   for (const char* name : {"x", "y", "z"}) {
     const std::vector<double> values = values_of(table, name);
     ASSERT_GE(values.size(), 8U);
@@ -201,7 +202,7 @@ TEST_F(RealFiles, E57IsRefusedWithTheCure) {
     const std::string& name = entry.first;
     if (!name.ends_with(".e57")) continue;
     expect_error(ErrorKind::data, {name, "E57 is not supported", "LAS or PLY"},
-                 [&] { read_points(kFolder / name); });
+                 [&] { read_points(folder_ / name); });
   }
 }
 

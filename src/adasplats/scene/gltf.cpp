@@ -225,6 +225,15 @@ class GltfReader {
     refuse_extensions();
   }
 
+  std::vector<std::filesystem::path> buffer_files() const {
+    std::vector<std::filesystem::path> files;
+    for (const Member& buffer : buffers_) {
+      const std::optional<Member> uri = buffer.find("uri");
+      if (uri && !uri->text().starts_with("data:")) files.push_back(file_beside(*uri));
+    }
+    return files;
+  }
+
   MeshTable read() {
     add_scene();
     MeshTable mesh;
@@ -253,6 +262,7 @@ class GltfReader {
 
   void refuse_other_versions() const;
   void refuse_extensions() const;
+  std::filesystem::path file_beside(const Member& uri) const;
   std::string read_buffer(const Member& buffer, std::size_t number) const;
   std::string_view buffer_bytes(std::size_t number);
   Elements elements(const Member& accessor, std::string_view type, std::size_t components);
@@ -310,11 +320,16 @@ std::string GltfReader::read_buffer(const Member& buffer, std::size_t number) co
     if (!bytes) throw uri->error("is not data in base64");
     return std::move(*bytes);
   }
+  return read_file(file_beside(*uri));
+}
+
+std::filesystem::path GltfReader::file_beside(const Member& uri) const {
+  const std::string& text = uri.text();
   const std::filesystem::path name = without_percents(text);
   if (name.empty() || name.is_absolute() || text.find("://") != std::string::npos ||
       text.find('\0') != std::string::npos)
-    throw uri->error("is not a file beside the document");
-  return read_file(path_.parent_path() / name);
+    throw uri.error("is not a file beside the document");
+  return path_.parent_path() / name;
 }
 
 std::string_view GltfReader::buffer_bytes(std::size_t number) {
@@ -482,6 +497,10 @@ void GltfReader::add_triangles(const Member& primitive, std::size_t first_vertex
 }  // namespace
 
 MeshTable read_gltf_mesh(const std::filesystem::path& path) { return GltfReader(path).read(); }
+
+std::vector<std::filesystem::path> gltf_buffer_files(const std::filesystem::path& path) {
+  return GltfReader(path).buffer_files();
+}
 
 bool is_gltf(const std::filesystem::path& path) {
   constexpr std::size_t kLookedAt = 64;

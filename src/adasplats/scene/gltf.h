@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "adasplats/io/table.h"
 
@@ -20,6 +21,9 @@ namespace adasplats {
 /// indices or ranges beyond their array or buffer, a node that stands under two others, sparse
 /// accessors, extensions that are required and change the geometry (compressed meshes).
 MeshTable read_gltf_mesh(const std::filesystem::path& path);
+
+/// The files beside a glTF file that hold its buffers. Errors: those of read_gltf_mesh.
+std::vector<std::filesystem::path> gltf_buffer_files(const std::filesystem::path& path);
 
 /// Whether the content begins as a .glb, or is JSON with the member "asset" that every glTF has.
 bool is_gltf(const std::filesystem::path& path);
