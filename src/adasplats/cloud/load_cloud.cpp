@@ -6,10 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
+#include "adasplats/cloud/cloud_inputs.h"
 #include "adasplats/cloud/cloud_part.h"
-#include "adasplats/cloud/kitti_sequence.h"
-#include "adasplats/cloud/nearest_pose.h"
+#include "adasplats/cloud/dropped_points.h"
+#include "adasplats/cloud/point_origins.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/number_text.h"
 
@@ -21,50 +23,15 @@ constexpr std::size_t kGrain = std::size_t{1} << 16;
 // Beyond it doubles do not hold 0.1 mm, and no place on Earth has such coordinates.
 constexpr double kLargestCoordinateM = 1e12;
 
-struct Input {
-  std::filesystem::path path;
-  bool is_sequence;
-};
-
-bool is_point_file_name(const std::filesystem::path& path) {
-  constexpr std::string_view kExtensions[] = {".ply", ".pcd", ".las", ".laz", ".xyz", ".pts",
-                                              ".csv", ".txt", ".asc", ".bin", ".ptx"};
-  return std::ranges::find(kExtensions, lower_case(path.extension().string())) !=
-         std::ranges::end(kExtensions);
-}
-
-std::vector<Input> inputs_of_folder(const std::filesystem::path& folder) {
-  std::vector<Input> inputs;
-  std::error_code problem;
-  std::filesystem::directory_iterator entry(folder, problem);
-  for (; !problem && entry != std::filesystem::directory_iterator(); entry.increment(problem)) {
-    const std::filesystem::path& path = entry->path();
-    std::error_code ignored;  // a broken link is no file
-    if (entry->is_regular_file(ignored) && path.filename().string().front() != '.' &&
-        is_point_file_name(path))
-      inputs.push_back({path, false});
-  }
-  if (problem) throw system_error(ErrorKind::no_input, folder, "cannot be listed", problem.value());
-  if (inputs.empty())
-    throw Error(ErrorKind::no_input,
-                folder.string() + ": holds neither a folder 'velodyne' nor files of points");
-  std::ranges::sort(inputs, {}, &Input::path);
-  return inputs;
-}
+using Input = CloudInput;
 
 std::vector<Input> list_inputs(std::span<const std::filesystem::path> paths) {
   if (paths.empty()) throw Error(ErrorKind::usage, "no inputs to load");
   std::vector<Input> inputs;
   for (const std::filesystem::path& path : paths) {
-    std::error_code ignored;  // what cannot be looked into fails when it is opened as a file
-    if (!std::filesystem::is_directory(path, ignored)) {
-      inputs.push_back({path, false});
-    } else if (is_kitti_sequence(path)) {
-      inputs.push_back({path, true});
-    } else {
-      const std::vector<Input> files = inputs_of_folder(path);
-      inputs.insert(inputs.end(), files.begin(), files.end());
-    }
+    const std::vector<Input> found = cloud_inputs(path);
+    if (found.size() > 1 && found.front().is_sequence) require_one_world(found);
+    inputs.insert(inputs.end(), found.begin(), found.end());
   }
   return inputs;
 }
@@ -87,6 +54,8 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Input>
     throw usage("the columns of the sensor position are three or none");
   if ((sensor_fields != 0 || !options.label_field.empty()) && !any_file)
     throw usage("columns are named, but no input is a file of points");
+  if (options.beams_from_poses && !any_sequence)
+    throw usage("beams are to start at poses, but no input is a sequence folder");
   if (options.viewpoint && !options.trajectory.empty())
     throw usage("a viewpoint and a trajectory both give the sensor position");
   if ((options.viewpoint || !options.trajectory.empty()) && !any_file)
@@ -94,6 +63,8 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Input>
   if (options.viewpoint && !is_finite(*options.viewpoint))
     throw usage("the viewpoint is not finite");
   if (!(options.max_distance_m > 0)) throw usage("a largest distance that is not positive");
+  if (!(options.max_dropped >= 0 && options.max_dropped <= 1))
+    throw usage("the largest share of points that may be dropped is 0 to 1");
 }
 
 std::vector<CloudPart> read_parts(std::span<const Input> inputs, const LoadOptions& options,
@@ -128,9 +99,7 @@ Kept finite_points(const CloudPart& part, const Executor& executor) {
   Kept kept(part.size());
   executor.for_chunks(part.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
-      const bool finite =
-          is_finite(world) && (part.world_sensors.empty() || is_place(part.world_sensors[i])) &&
-          (part.cloud.intensities.empty() || std::isfinite(part.cloud.intensities[i]));
+      const bool finite = is_finite(world);
       kept[i] = finite ? 1 : 0;
     });
   });
@@ -147,8 +116,36 @@ void require_all_finite(const CloudPart& part, const Kept& kept) {
   const auto i = static_cast<std::size_t>(dropped - kept.begin());
   const auto run = std::ranges::upper_bound(part.runs, i, {}, &PartRun::end);
   throw Error(ErrorKind::data, run->file.string() + ": point " + std::to_string(i - run->begin) +
-                                   " (from 0) is not finite in position, sensor position or "
-                                   "intensity");
+                                   " (from 0) is not finite in position");
+}
+
+/// How many points have NaN in all three coordinates.
+std::size_t count_no_returns(const CloudPart& part, const Kept& kept) {
+  std::size_t count = 0;
+  if (count_dropped(kept) == 0) return count;
+  part.for_each(0, part.size(), [&](std::size_t i, Vec3d, const PartRun&) {
+    const Vec3d p =
+        part.is_sequence ? vec_cast<double>(part.cloud.positions[i]) : part.world_positions[i];
+    if (std::isnan(p.x) && std::isnan(p.y) && std::isnan(p.z)) ++count;
+  });
+  return count;
+}
+
+/// Makes what is not finite NaN: not known. Gives how many of the points that are kept have that.
+std::size_t mark_unknown(std::vector<float>& intensities, const Kept& kept) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < intensities.size(); ++i) {
+    if (std::isfinite(intensities[i])) continue;
+    intensities[i] = std::numeric_limits<float>::quiet_NaN();
+    if (kept[i] != 0) ++count;
+  }
+  return count;
+}
+
+/// What the inputs are called in a message about all of them.
+std::string name_of(std::span<const std::filesystem::path> inputs) {
+  return inputs.front().string() +
+         (inputs.size() == 1 ? "" : " and " + std::to_string(inputs.size() - 1) + " more inputs");
 }
 
 struct Extents {
@@ -235,51 +232,29 @@ void keep_only(std::vector<T>& values, const Kept& kept) {
   values.shrink_to_fit();
 }
 
-/// Where the sensor was when it measured the points that do not say so themselves.
-struct SensorFallback {
-  std::optional<Vec3d> viewpoint;
-  Trajectory trajectory;
-  std::optional<NearestPose> nearest;
-
-  explicit SensorFallback(const LoadOptions& options) : viewpoint(options.viewpoint) {
-    if (options.trajectory.empty()) return;
-    trajectory = read_trajectory(options.trajectory);
-    nearest.emplace(trajectory);
-  }
-  bool given() const { return viewpoint || nearest; }
-  Vec3d at(Vec3d world) const {
-    if (viewpoint) return *viewpoint;
-    return trajectory[nearest->find(world.x, world.y)].world_from_sensor.translation;
-  }
-};
-
-/// Where the beam that measured a point of a scan started, world coordinates.
-Vec3d beam_origin(const ScanBeams& beams, const PartRun& run, Vec3d world) {
-  const RigidTransform& pose = run.world_from_local;
-  return pose * beams.origin_of(run.scan, pose.inverse() * world);
-}
-
 /// The part's cloud relative to `origin`, without the points that are dropped.
-PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin,
-                     const SensorFallback& fallback, const Executor& executor) {
+PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin, const PointOrigins& origins,
+                     const Executor& executor) {
   const std::size_t points = part.size();
-  const bool has_sensors = part.is_sequence || !part.world_sensors.empty() || fallback.given();
+  const bool has_sensors = origins.has_any(part);
+  const bool has_kinds = has_sensors && !part.is_sequence;
   PointCloud cloud = std::move(part.cloud);
   // The part keeps the positions, since for_each() reads them there; those of sequences are
-  // transformed in place, each read once, just before it is written.
+  // transformed in place, each read once, just before it is written. Likewise the kinds.
   std::vector<Vec3f>& positions = part.cloud.positions;
   positions = std::move(cloud.positions);
   positions.resize(points);
+  part.cloud.origin_kinds = std::exchange(cloud.origin_kinds, {});
   if (has_sensors) cloud.sensor_positions.resize(points);
+  if (has_kinds) cloud.origin_kinds.resize(points);
   executor.for_chunks(points, kGrain, [&](std::size_t begin, std::size_t end) {
     part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun& run) {
       if (kept[i] == 0) return;
       positions[i] = vec_cast<float>(world - origin);
       if (!has_sensors) return;
-      const Vec3d sensor = part.is_sequence             ? beam_origin(part.beams, run, world)
-                           : part.world_sensors.empty() ? fallback.at(world)
-                                                        : part.world_sensors[i];
-      cloud.sensor_positions[i] = vec_cast<float>(sensor - origin);
+      const PointOrigin from = origins.of(part, i, world, run);
+      cloud.sensor_positions[i] = vec_cast<float>(from.world - origin);
+      if (has_kinds) cloud.origin_kinds[i] = from.kind;
     });
   });
   cloud.origin = origin;
@@ -288,11 +263,36 @@ PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin,
   if (count_dropped(kept) == 0) return cloud;
   keep_only(cloud.positions, kept);
   keep_only(cloud.sensor_positions, kept);
+  keep_only(cloud.origin_kinds, kept);
   keep_only(cloud.intensities, kept);
   keep_only(cloud.classes, kept);
   keep_only(cloud.instances, kept);
   keep_only(cloud.scan_indices, kept);
   return cloud;
+}
+
+/// Gives every cloud sensor positions if any has them: a point without one has that of its own
+/// place and OriginKind::none. Leaves out the kinds where all are measured.
+void unify_origins(std::vector<PointCloud>& clouds) {
+  const auto has_sensors = [](const PointCloud& c) { return !c.sensor_positions.empty(); };
+  const auto all_measured = [](const PointCloud& c) {
+    return c.empty() ||
+           (!c.sensor_positions.empty() && std::ranges::all_of(c.origin_kinds, [](OriginKind kind) {
+             return kind == OriginKind::measured;
+           }));
+  };
+  if (std::ranges::none_of(clouds, has_sensors)) return;
+  const bool needs_kinds = !std::ranges::all_of(clouds, all_measured);
+  for (PointCloud& cloud : clouds) {
+    if (!needs_kinds) {
+      cloud.origin_kinds = {};
+    } else if (cloud.sensor_positions.empty()) {
+      cloud.sensor_positions = cloud.positions;
+      cloud.origin_kinds.assign(cloud.size(), OriginKind::none);
+    } else if (cloud.origin_kinds.empty()) {
+      cloud.origin_kinds.assign(cloud.size(), OriginKind::measured);
+    }
+  }
 }
 
 /// Empties an attribute that some clouds have and others lack.
@@ -313,7 +313,7 @@ void unify_attribute(std::vector<PointCloud>& clouds, std::vector<T> PointCloud:
 }
 
 PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, ProgressSink& progress) {
-  unify_attribute(clouds, &PointCloud::sensor_positions, "sensor positions", progress);
+  unify_origins(clouds);
   unify_attribute(clouds, &PointCloud::intensities, "intensities", progress);
   unify_attribute(clouds, &PointCloud::classes, "classes", progress);
   unify_attribute(clouds, &PointCloud::instances, "instances", progress);
@@ -332,29 +332,36 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
                                              ProgressSink& progress) {
   const std::vector<Input> listed = list_inputs(inputs);
   require_options_that_fit(options, listed);
-  const SensorFallback fallback(options);
+  const PointOrigins origins(options);
   Gathered gathered{read_parts(listed, options, executor, progress), {}};
 
   LoadReport report;
-  for (const CloudPart& part : gathered.parts) {
+  for (CloudPart& part : gathered.parts) {
     gathered.kept.push_back(finite_points(part, executor));
     if (options.strict) require_all_finite(part, gathered.kept.back());
     report.points_read += part.size();
     if (part.is_sequence) report.beams.push_back(part.beams.description());
     report.dropped_not_finite += count_dropped(gathered.kept.back());
+    report.no_returns += count_no_returns(part, gathered.kept.back());
+    report.unknown_intensities += mark_unknown(part.cloud.intensities, gathered.kept.back());
   }
   const Extents extents = drop_far(gathered, options.max_distance_m, executor);
+  std::size_t dropped = 0;
+  for (const Kept& kept : gathered.kept) dropped += count_dropped(kept);
+  report.dropped_far = dropped - report.dropped_not_finite;
+  tell_dropped(name_of(inputs), report, options, progress);
+  require_metres(name_of(inputs), extents.low, extents.high);
   const Vec3d origin = choose_origin(extents.low, extents.high);
 
   std::vector<PointCloud> clouds;
-  std::size_t dropped = 0;
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
-    dropped += count_dropped(gathered.kept[p]);
     clouds.push_back(
-        localized(std::move(gathered.parts[p]), gathered.kept[p], origin, fallback, executor));
+        localized(std::move(gathered.parts[p]), gathered.kept[p], origin, origins, executor));
+    if (!listed[p].is_sequence) check_origins(clouds.back(), listed[p].path, executor);
   }
-  report.dropped_far = dropped - report.dropped_not_finite;
-  return {joined(std::move(clouds), origin, progress), report};
+  PointCloud cloud = joined(std::move(clouds), origin, progress);
+  report.origins = count_origins(cloud);
+  return {std::move(cloud), report};
 }
 
 }  // namespace adasplats

@@ -23,10 +23,11 @@ struct LoadOptions {
   /// Columns of the sensor position; empty: the first triple found of x_lidar_position..,
   /// sensor_x.., x_origin.., scalar_x_lidar_position... (y and z likewise).
   std::string sensor_x_field, sensor_y_field, sensor_z_field;
-  /// One sensor position for every point that has none, world coordinates.
+  /// The station that measured every point that has no sensor position, world coordinates. It must
+  /// be possible (station_objection()). OriginKind::stated.
   std::optional<Vec3d> viewpoint;
   /// A trajectory whose nearest position (in the plane) becomes the sensor position of points that
-  /// have none.
+  /// have none. That is a guess, metres off: OriginKind::guessed, which turns normals alone.
   std::filesystem::path trajectory;
   /// Of a sequence: `count` scans (or as many as there are) from `first` on, every `stride`-th.
   std::size_t first_scan = 0;
@@ -40,6 +41,10 @@ struct LoadOptions {
   bool salvage = false;
   /// Points farther than this from the median of all points are dropped and counted, m.
   double max_distance_m = 100e3;
+  /// Where more than this share of all points would be dropped as far or as not finite, that is an
+  /// error: single faults are rarer, and more is a second place or another format. Of 51 small
+  /// real files none has any; no returns of organised clouds (NaN, NaN, NaN) do not count.
+  double max_dropped = 0.01;
 };
 
 /// What was dropped on the way.
@@ -47,31 +52,42 @@ struct LoadReport {
   std::size_t points_read = 0;
   /// Where the beams of the sequences started (ScanBeams::description), one each.
   std::vector<std::string> beams;
-  /// Position, sensor position or intensity not finite (sensor positions: or beyond 1e12 m).
+  /// How many points of the cloud have an origin of each kind, by OriginKind.
+  OriginCounts origins{};
+  /// Position not finite.
   std::size_t dropped_not_finite = 0;
+  /// Of these, points whose three coordinates are NaN.
+  std::size_t no_returns = 0;
+  /// Points kept whose intensity was not finite: NaN in the cloud, not known.
+  std::size_t unknown_intensities = 0;
   /// Farther than max_distance_m from the componentwise median, or beyond 1e12 m, where doubles no
   /// longer hold 0.1 mm.
   std::size_t dropped_far = 0;
 };
 
 /// Loads and accumulates point files and SemanticKITTI sequence folders (see read_points and
-/// open_kitti_sequence). World coordinates; the origin depends on the extents alone. A folder that
-/// holds no `velodyne` but files of points loads those by name. Inputs with and without an
-/// attribute together lose it, with a warning. Scans are numbered from 0 over all sequences.
-/// Files (names in any case): intensity from the first of intensity, reflectance, remission,
-/// reflectivity, luma and their scalar_ twins; classes are the low 16 bits of the label column,
-/// instances its high 16 bits or the column `instance`; `scan_index` as save_cloud_ply writes it.
-/// Memory: sequences 1.1x the cloud; files the reader's plus 24 bytes a point.
-/// Up to five scans of a sequence are read to recognise its sensor, whichever are chosen.
-/// Errors: those of the readers; usage for options that fit nothing and for named columns that
-/// are not there; data for labels that are no whole numbers from 0 to 2^32 - 1.
+/// open_kitti_sequence); what a folder means and which files are no points: cloud_inputs,
+/// require_points. World coordinates; the origin depends on the extents alone. Inputs with and
+/// without an attribute together lose it, with a warning; but sensor positions stay, and points
+/// without one (not finite, or of an input that has none) have OriginKind::none. Scans are numbered
+/// from 0 over all sequences. Files (names in any case): intensity from the first of intensity,
+/// reflectance, remission, reflectivity, luma and their scalar_ twins; classes are the low 16 bits
+/// of the label column, instances its high 16 bits or the column `instance`; `scan_index` as
+/// save_cloud_ply writes it. Memory: sequences 1.1x the cloud; files the reader's plus 24 bytes a
+/// point. Up to five scans of a sequence are read to recognise its sensor, whichever are chosen.
+/// What is dropped is told as warnings. Errors: those of the readers; data for sensor positions
+/// that are impossible (usage for options that state one); data for too much dropped (max_dropped)
+/// and for longitudes and latitudes instead of metres (require_metres); usage for options that fit
+/// nothing and for named columns that are not there; data for labels that are no whole numbers from
+/// 0 to 2^32 - 1.
 std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
                                              const LoadOptions& options, const Executor& executor,
                                              ProgressSink& progress);
 
 /// Writes a cloud as PLY with the columns x, y, z, x_lidar_position, y_lidar_position,
-/// z_lidar_position, intensity, label, instance, scan_index, as far as it has them (the layout of
-/// Paris-CARLA-3D). Doubles where the origin is not zero.
+/// z_lidar_position, origin_kind (OriginKind; where not all are measured), intensity, label,
+/// instance, scan_index, as far as it has them (the layout of Paris-CARLA-3D). Doubles where the
+/// origin is not zero.
 void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud);
 
 }  // namespace adasplats

@@ -10,6 +10,8 @@
 
 #include "adasplats/cloud/temporary_folder_test.h"
 #include "adasplats/core/random.h"
+#include "adasplats/core/recordings_test.h"
+#include "adasplats/io/las_writer.h"
 
 namespace adasplats {
 namespace {
@@ -38,11 +40,15 @@ void expect_same(const PointCloud& a, const PointCloud& b) {
   EXPECT_TRUE(a.origin == b.origin);
   expect_same_vectors(a.positions, b.positions);
   expect_same_vectors(a.sensor_positions, b.sensor_positions);
+  EXPECT_EQ(a.origin_kinds, b.origin_kinds);
   EXPECT_EQ(a.intensities, b.intensities);
   EXPECT_EQ(a.classes, b.classes);
   EXPECT_EQ(a.instances, b.instances);
   EXPECT_EQ(a.scan_indices, b.scan_indices);
 }
+
+/// Poses are the LiDAR's own.
+constexpr const char* kIdentity = "Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n";
 
 /// A sequence whose scan k has k + 1 points, turned by 90 degrees to the left and moved along x.
 void write_sequence(const TemporaryFolder& folder, int scans, double x0_m = 0,
@@ -61,6 +67,7 @@ void write_sequence(const TemporaryFolder& folder, int scans, double x0_m = 0,
     poses += "0 -1 0 " + std::to_string(x0_m + 10 * k) + " 1 0 0 0 0 0 1 0\n";
   }
   folder.write(name + "poses.txt", poses);
+  folder.write(name + "calib.txt", kIdentity);
 }
 
 // Oracle: analytic. A point (i, 0.5, 2) seen from (10 k, 0, 0) facing +y is at (10 k - 0.5, i, 2).
@@ -137,16 +144,25 @@ TEST(LoadCloud, SameForEveryNumberOfThreads) {
   const TemporaryFolder folder;
   std::vector<float> values;
   for (std::uint64_t i = 0; i < 4 * 200'000; ++i)
-    values.push_back(static_cast<float>(Random(1, 0, i).uniform(-3000, 3000)));
+    values.push_back(static_cast<float>(i % 4 == 3 ? 0.5 : Random(1, 0, i).uniform(-3000, 3000)));
   folder.write("velodyne/000000.bin", values);
+  folder.write("calib.txt", kIdentity);
   folder.write("velodyne/000001.bin", std::vector<float>(values.begin(), values.begin() + 40));
   folder.write("poses.txt", "0 -1 0 1000 1 0 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n");
   LoadOptions options;
+  options.max_dropped = 1;
   options.max_distance_m = 2500;
   const auto [one, report] = load({folder.path()}, options, 1);
   EXPECT_GT(report.dropped_far, 0U);
   EXPECT_GT(one.size(), 0U);
   for (const int threads : {2, 3}) expect_same(load({folder.path()}, options, threads).first, one);
+}
+
+/// Options that take whatever is dropped.
+LoadOptions any_share() {
+  LoadOptions options;
+  options.max_dropped = 1;
+  return options;
 }
 
 TEST(LoadCloud, PointsThatAreNotFiniteAreCounted) {
@@ -155,19 +171,23 @@ TEST(LoadCloud, PointsThatAreNotFiniteAreCounted) {
   const auto file = folder.write(
       "a.bin",
       std::vector<float>{1, 2, 3, 4, kNaN, 2, 3, 4, 1, 2, -inf, 4, 5, 6, 7, 8, 0, 0, 0, kNaN});
-  const auto [cloud, report] = load({file});
-  ASSERT_EQ(cloud.size(), 2U);
+  const auto [cloud, report] = load({file}, any_share());
+  ASSERT_EQ(cloud.size(), 3U);
   EXPECT_TRUE((cloud.positions[1] == Vec3f{5, 6, 7}));
   EXPECT_EQ(cloud.intensities[1], 8.0F);
+  EXPECT_TRUE(std::isnan(cloud.intensities[2]));  // not known: no reason to lose the point
   EXPECT_EQ(report.points_read, 5U);
-  EXPECT_EQ(report.dropped_not_finite, 3U);
+  EXPECT_EQ(report.dropped_not_finite, 2U);
+  EXPECT_EQ(report.unknown_intensities, 1U);
+  expect_error(ErrorKind::data, {"a.bin", "2 of 5 points (40 %)", "not finite", "--max-dropped"},
+               [&] { load({file}); });
   LoadOptions strict;
   strict.strict = true;
   expect_error(ErrorKind::data, {"a.bin", "point 1 "}, [&] { load({file}, strict); });
 
   write_sequence(folder, 2, 0, "s/");
   folder.write("s/velodyne/000001.bin", std::vector<float>{1, 2, 3, 4, 1, kNaN, 3, 4});
-  EXPECT_EQ(load({folder.path() / "s"}).second.dropped_not_finite, 1U);
+  EXPECT_EQ(load({folder.path() / "s"}, any_share()).second.dropped_not_finite, 1U);
   expect_error(ErrorKind::data, {"000001.bin", "point 1 "},
                [&] { load({folder.path() / "s"}, strict); });
 }
@@ -175,9 +195,62 @@ TEST(LoadCloud, PointsThatAreNotFiniteAreCounted) {
 TEST(LoadCloud, NothingLeft) {
   const TemporaryFolder folder;
   const auto file = folder.write("a.bin", std::vector<float>{kNaN, 2, 3, 4});
-  const auto [cloud, report] = load({file});
+  const auto [cloud, report] = load({file}, any_share());
   EXPECT_TRUE(cloud.empty());
   EXPECT_EQ(report.dropped_not_finite, 1U);
+}
+
+// Organised clouds hold NaN, NaN, NaN where no beam returned: said, however many there are.
+TEST(LoadCloud, NoReturnsAreSaid) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.xyz", "nan nan nan\n1 2 3\nnan nan nan\n");
+  Listener listener;
+  const auto [cloud, report] = load_cloud(std::span(&file, 1), {}, Executor(1), listener);
+  EXPECT_EQ(cloud.size(), 1U);
+  EXPECT_EQ(report.no_returns, 2U);
+  ASSERT_EQ(listener.warnings.size(), 1U);
+  EXPECT_NE(listener.warnings[0].find("2 of 3 points (66.7 %) are no returns"), std::string::npos)
+      << listener.warnings[0];
+}
+
+/// `near` points of a place and `far` of another, 500 km away.
+std::string two_places(int near, int far) {
+  std::string text;
+  for (int i = 0; i < near + far; ++i)
+    text += std::to_string(i < near ? 1000 + i : 501000 + i) + " 2000 3\n";
+  return text;
+}
+
+TEST(LoadCloud, TwoPlacesAreAnError) {
+  const TemporaryFolder folder;
+  const auto half = folder.write("half.xyz", two_places(52, 48));
+  expect_error(ErrorKind::data,
+               {"half.xyz", "48 of 100 points (48 %)", "100000 m", "--max-distance"},
+               [&] { load({half}); });
+  LoadOptions options;
+  options.max_dropped = 0.5;
+  EXPECT_EQ(load({half}, options).second.dropped_far, 48U);
+  options = {};
+  options.max_distance_m = 1e6;
+  EXPECT_EQ(load({half}, options).first.size(), 100U);
+  const auto few = folder.write("few.xyz", two_places(198, 2));
+  Listener listener;
+  EXPECT_EQ(load_cloud(std::span(&few, 1), {}, Executor(1), listener).first.size(), 198U);
+  ASSERT_EQ(listener.warnings.size(), 1U);
+  EXPECT_NE(listener.warnings[0].find("2 of 200 points (1 %) are farther"), std::string::npos);
+}
+
+TEST(LoadCloud, LongitudesAndLatitudesAreNoMetres) {
+  const TemporaryFolder folder;
+  // 50 m of a street in Paris, 12 m high.
+  const auto degrees =
+      folder.write("d.xyz", "2.34000 48.84000 35\n2.34060 48.84010 36.5\n2.34030 48.84040 47\n");
+  expect_error(ErrorKind::data, {"d.xyz", "longitudes and latitudes", "project"},
+               [&] { load({degrees}); });
+  // A pole of 10 cm and 30 m in its own frame, and a place of one point, are metres.
+  EXPECT_EQ(load({folder.write("p.xyz", "5 6 0\n5.1 6.1 30\n")}).first.size(), 2U);
+  EXPECT_EQ(load({folder.write("s.xyz", "-0.001 -0.001 0\n0.001 0.001 30\n")}).first.size(), 2U);
+  EXPECT_EQ(load({folder.write("one.xyz", "2.34 48.84 35\n")}).first.size(), 1U);
 }
 
 // Oracle: analytic. Outliers move neither the origin nor the rest.
@@ -185,7 +258,7 @@ TEST(LoadCloud, FarPointsAreDroppedAndDoNotMoveTheOrigin) {
   const TemporaryFolder folder;
   const auto file = folder.write("a.bin", std::vector<float>{1, 2, 3,     4, 1e30F, 0, 0, 0, 2, 3,
                                                              4, 5, -2e6F, 0, 0,     0, 3, 4, 5, 6});
-  const auto [cloud, report] = load({file});
+  const auto [cloud, report] = load({file}, any_share());
   ASSERT_EQ(cloud.size(), 3U);
   EXPECT_TRUE(cloud.origin == Vec3d{});
   EXPECT_EQ(cloud.intensities, (std::vector<float>{4, 5, 6}));
@@ -196,7 +269,7 @@ TEST(LoadCloud, FarPointsAreDroppedAndDoNotMoveTheOrigin) {
 TEST(LoadCloud, DistancesCountFromTheMedian) {
   const TemporaryFolder folder;
   const auto file = folder.write("a.xyz", "3 4 5\n1 2 3\n2 3 4\n");
-  LoadOptions options;
+  LoadOptions options = any_share();
   options.max_distance_m = 1.74;  // the median is (2, 3, 4), the others are sqrt(3) away
   EXPECT_EQ(load({file}, options).first.size(), 3U);
   options.max_distance_m = 1.73;
@@ -206,7 +279,7 @@ TEST(LoadCloud, DistancesCountFromTheMedian) {
 TEST(LoadCloud, CoordinatesThatNoPlaceHasAreFar) {
   const TemporaryFolder folder;
   const auto file = folder.write("a.xyz", "1e300 0 0\n-1e308 0 0\n1e308 1e308 1e308\n");
-  LoadOptions options;
+  LoadOptions options = any_share();
   options.max_distance_m = std::numeric_limits<double>::infinity();
   const auto [cloud, report] = load({file}, options);
   EXPECT_TRUE(cloud.empty());
@@ -256,6 +329,22 @@ TEST(LoadCloud, PackedLabelsAreSplit) {
   EXPECT_EQ(cloud.instances, (std::vector<std::uint16_t>{3, 65535, 0}));
 }
 
+// LAS's own field holds 8 bits; what our scans have beside it holds all.
+TEST(LoadCloud, ClassesAbove255ComeBackFromLas) {
+  const TemporaryFolder folder;
+  const std::vector<float> xyz = {1, 2, 3};
+  const std::vector<std::uint8_t> cut = {0};
+  const std::vector<std::uint16_t> label = {259};
+  const ColumnView columns[] = {{"x", ColumnType::f32, &xyz[0], 4},
+                                {"y", ColumnType::f32, &xyz[1], 4},
+                                {"z", ColumnType::f32, &xyz[2], 4},
+                                {"classification", ColumnType::u8, cut.data(), 1},
+                                {"label", ColumnType::u16, label.data(), 2}};
+  const auto file = folder.path() / "a.las";
+  write_las(file, 1, columns);
+  EXPECT_EQ(load({file}).first.classes, std::vector<std::uint16_t>{259});
+}
+
 TEST(LoadCloud, LabelsThatAreNoClassesAreErrors) {
   const TemporaryFolder folder;
   for (const std::string value : {"1.5", "-1", "4294967296", "nan", "inf", "1e300"}) {
@@ -294,16 +383,22 @@ TEST(LoadCloud, AttributesThatSomeInputsLackAreLostWithAWarning) {
   const auto none = folder.write("none.bin", std::vector<float>{kNaN, 0, 0, 0});
   Listener listener;
   const std::filesystem::path inputs[] = {folder.path() / "s", bare, none};
-  const PointCloud cloud = load_cloud(inputs, {}, Executor(1), listener).first;
+  LoadOptions options;
+  options.max_dropped = 1;
+  const PointCloud cloud = load_cloud(inputs, options, Executor(1), listener).first;
   EXPECT_EQ(cloud.size(), 4U);
-  EXPECT_TRUE(cloud.sensor_positions.empty() && cloud.intensities.empty() &&
-              cloud.classes.empty() && cloud.instances.empty() && cloud.scan_indices.empty());
-  EXPECT_EQ(listener.warnings.size(), 5U);
+  EXPECT_TRUE(cloud.intensities.empty() && cloud.classes.empty() && cloud.instances.empty() &&
+              cloud.scan_indices.empty());
+  EXPECT_EQ(listener.warnings.size(), 4U + 1U);  // and a point that is not finite
+  // But origins stay: those of the file's point are not known.
+  constexpr OriginKind kKnown = OriginKind::measured;
+  EXPECT_EQ(cloud.origin_kinds,
+            (std::vector<OriginKind>{kKnown, kKnown, kKnown, OriginKind::none}));
   // An input without points has no say.
   listener.warnings.clear();
   const std::filesystem::path others[] = {folder.path() / "s", none};
-  EXPECT_FALSE(load_cloud(others, {}, Executor(1), listener).first.classes.empty());
-  EXPECT_TRUE(listener.warnings.empty());
+  EXPECT_FALSE(load_cloud(others, options, Executor(1), listener).first.classes.empty());
+  EXPECT_EQ(listener.warnings.size(), 1U);
 }
 
 TEST(LoadCloud, FoldersOfFilesByName) {
@@ -319,6 +414,9 @@ TEST(LoadCloud, FoldersOfFilesByName) {
   expect_error(ErrorKind::no_input, {"empty", "velodyne"},
                [&] { load({folder.path() / "empty"}); });
   expect_error(ErrorKind::no_input, {"absent"}, [&] { load({folder.path() / "absent.ply"}); });
+  folder.write("files/c.csv", "x,y,z\n3,0,0\n");
+  expect_error(ErrorKind::usage, {"files", "a.XYZ", "c.csv"},
+               [&] { load({folder.path() / "files"}); });
 }
 
 TEST(LoadCloud, OptionsThatFitNothing) {
@@ -377,10 +475,9 @@ TEST(SaveCloud, EmptyAndBareClouds) {
 }
 
 TEST(LoadCloud, RealStreetFile) {
-  const std::filesystem::path file =
-      std::filesystem::path(ADASPLATS_TEST_DATA) / "lille-street-small.ply";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
-  const auto [cloud, report] = load({file});
+  const auto file = recording("lille-street-small.ply");
+  if (!file) GTEST_SKIP() << kNoRecordings;
+  const auto [cloud, report] = load({*file});
   EXPECT_EQ(cloud.size(), 170610U);  // its header says so
   EXPECT_EQ(report.points_read, 170610U);
   EXPECT_TRUE(cloud.classes.empty());

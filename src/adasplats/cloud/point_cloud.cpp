@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/cloud/point_cloud.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 namespace adasplats {
@@ -31,6 +33,7 @@ void append_values(std::vector<T>& values, std::vector<T>&& more) {
 
 bool same_attributes(const PointCloud& a, const PointCloud& b) {
   return a.sensor_positions.empty() == b.sensor_positions.empty() &&
+         a.origin_kinds.empty() == b.origin_kinds.empty() &&
          a.intensities.empty() == b.intensities.empty() && a.classes.empty() == b.classes.empty() &&
          a.instances.empty() == b.instances.empty() &&
          a.scan_indices.empty() == b.scan_indices.empty();
@@ -47,10 +50,43 @@ double choose_origin_along_axis(double low, double high) {
 
 }  // namespace
 
+bool PointCloud::has_beams() const {
+  if (sensor_positions.empty()) return false;
+  return origin_kinds.empty() || std::ranges::any_of(origin_kinds, is_beam);
+}
+
+bool PointCloud::has_all_origins() const {
+  return !sensor_positions.empty() && std::ranges::all_of(origin_kinds, is_known);
+}
+
+OriginCounts count_origins(const PointCloud& cloud) {
+  OriginCounts counts{};
+  if (cloud.origin_kinds.empty()) {
+    counts[static_cast<std::size_t>(
+        cloud.sensor_positions.empty() ? OriginKind::none : OriginKind::measured)] = cloud.size();
+  }
+  for (const OriginKind kind : cloud.origin_kinds) ++counts[static_cast<std::size_t>(kind)];
+  return counts;
+}
+
+std::string describe_origins(const OriginCounts& counts) {
+  constexpr std::array<std::string_view, 4> kWords = {"not known", "guessed", "stated", "measured"};
+  const auto kinds = std::ranges::count_if(counts, [](std::size_t count) { return count != 0; });
+  if (kinds == 0 || (kinds == 1 && counts[0] != 0)) return "no";
+  std::string text;
+  for (std::size_t kind = counts.size(); kind-- > 0;) {
+    if (counts[kind] == 0) continue;
+    text += (text.empty() ? "" : ", ") + std::string(kWords[kind]);
+    if (kinds > 1) text += " " + std::to_string(counts[kind]);
+  }
+  return text;
+}
+
 PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices) {
   return {cloud.origin,
           gathered(cloud.positions, indices),
           gathered(cloud.sensor_positions, indices),
+          gathered(cloud.origin_kinds, indices),
           gathered(cloud.intensities, indices),
           gathered(cloud.classes, indices),
           gathered(cloud.instances, indices),
@@ -68,6 +104,7 @@ void append(PointCloud& cloud, PointCloud&& other) {
     throw std::logic_error("append: clouds of two attribute sets");
   append_values(cloud.positions, std::move(other.positions));
   append_values(cloud.sensor_positions, std::move(other.sensor_positions));
+  append_values(cloud.origin_kinds, std::move(other.origin_kinds));
   append_values(cloud.intensities, std::move(other.intensities));
   append_values(cloud.classes, std::move(other.classes));
   append_values(cloud.instances, std::move(other.instances));

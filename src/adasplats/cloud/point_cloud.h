@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "adasplats/cloud/origin_kind.h"
 #include "adasplats/core/vec3.h"
 
 namespace adasplats {
@@ -18,15 +20,32 @@ struct PointCloud {
   Vec3d origin;                          ///< world coordinates of the local origin, m
   std::vector<Vec3f> positions;          ///< relative to `origin`, m; finite
   std::vector<Vec3f> sensor_positions;   ///< of the LiDAR when it measured the point, as positions
-  std::vector<float> intensities;        ///< as measured, in the unit of the file
+  std::vector<OriginKind> origin_kinds;  ///< of sensor_positions; empty: all are measured
+  std::vector<float> intensities;        ///< as measured, in the unit of the file; NaN: not known
   std::vector<std::uint16_t> classes;    ///< semantic class ids of the label scheme
   std::vector<std::uint16_t> instances;  ///< instance ids, 0 = none
   std::vector<std::uint32_t> scan_indices;  ///< number of the scan the point is from
 
   std::size_t size() const { return positions.size(); }
   bool empty() const { return positions.empty(); }
+  /// How the sensor position of a point is known.
+  OriginKind origin_kind(std::size_t i) const {
+    if (sensor_positions.empty()) return OriginKind::none;
+    return origin_kinds.empty() ? OriginKind::measured : origin_kinds[i];
+  }
+  /// Whether the beam of any point is known: a stated or measured origin.
+  bool has_beams() const;
+  /// Whether all normals can be turned to the sensor.
+  bool has_all_origins() const;
   Vec3d world(std::size_t i) const { return origin + vec_cast<double>(positions[i]); }
 };
+
+/// How many points have an origin of each kind, by its number.
+using OriginCounts = std::array<std::size_t, 4>;
+OriginCounts count_origins(const PointCloud& cloud);
+/// "measured", or "measured 812, not known 188": the kinds that there are; "no" where none is
+/// known.
+std::string describe_origins(const OriginCounts& counts);
 
 /// The points of `cloud` in the order of `indices`, every attribute along.
 PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices);

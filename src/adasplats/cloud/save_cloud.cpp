@@ -52,6 +52,7 @@ void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud) 
     add_vectors(columns, kPositionNames, ColumnType::f64, world_positions);
     add_vectors(columns, kSensorNames, ColumnType::f64, world_sensors);
   }
+  add_values(columns, "origin_kind", ColumnType::u8, cloud.origin_kinds);
   add_values(columns, "intensity", ColumnType::f32, cloud.intensities);
   add_values(columns, "label", ColumnType::u16, cloud.classes);
   add_values(columns, "instance", ColumnType::u16, cloud.instances);

@@ -90,6 +90,7 @@ void write_poses(const TemporaryFolder& folder, const Drive& drive) {
     times += std::to_string(drive.time_s(scan)) + "\n";
   }
   folder.write("poses.txt", poses);
+  folder.write("calib.txt", "Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n");
   folder.write("times.txt", times);
 }
 

@@ -22,11 +22,13 @@ using Trajectory = std::vector<TimedPose>;
 /// Reads a pose file.
 /// - KITTI `poses.txt`: 12 numbers a line, the upper 3x4 of a matrix by rows. In a folder with a
 ///   KITTI `calib.txt` with a `Tr:` line the poses are of the camera and are brought to the LiDAR:
-///   world_from_velodyne = inv(Tr) * pose * Tr. Without one they are world_from_sensor. Times from
-///   `times.txt` beside it, else 0.1 s apart.
+///   world_from_velodyne = inv(Tr) * pose * Tr. Without a calib.txt they are world_from_sensor,
+///   unless a folder `velodyne` is beside them: a sequence must say which frame its poses are in
+///   (the identity as Tr: the LiDAR's). Times from `times.txt` beside it, else 0.1 s apart.
 /// - CSV: time,x,y,z,qw,qx,qy,qz with or without that header line.
-/// Errors (ErrorKind::data with the line): wrong number of values, not finite, rotation not
-/// orthonormal to 1e-3, quaternion norm off by more than 1e-3, time that does not ascend.
+/// Errors (ErrorKind::data with the line): a sequence without Tr, wrong number of values, not
+/// finite, rotation not orthonormal to 1e-3, quaternion norm off by more than 1e-3, time that does
+/// not ascend.
 Trajectory read_trajectory(const std::filesystem::path& path);
 
 /// Writes a CSV as read_trajectory reads it, 9 digits behind the point.

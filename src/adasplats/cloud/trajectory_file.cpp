@@ -93,16 +93,32 @@ RigidTransform transform_from_rows(const std::filesystem::path& path, std::uint6
   return {orthonormalized(matrix), {v[3], v[7], v[11]}};
 }
 
-/// The `Tr:` line of a KITTI calib.txt: camera_from_velodyne.
-std::optional<RigidTransform> read_calibration(const std::filesystem::path& path) {
-  if (!is_there(path)) return std::nullopt;
+constexpr const char* kStateFrame =
+    "; where the poses are the LiDAR's own, say so by the line 'Tr: 1 0 0 0 0 1 0 0 0 0 1 0'";
+
+/// The `Tr:` line of a KITTI calib.txt: camera_from_velodyne. A sequence needs one, since its poses
+/// are the camera's.
+std::optional<RigidTransform> read_calibration(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / "calib.txt";
+  if (!is_there(path)) {
+    if (!is_there(folder / "velodyne")) return std::nullopt;
+    throw Error(ErrorKind::data, path.string() +
+                                     ": is missing; its line 'Tr:' brings the poses of a "
+                                     "sequence, which are the camera's, to the LiDAR" +
+                                     kStateFrame);
+  }
+  std::string names;
   for (const NumberedLine& line : filled_lines(path)) {
     std::vector<std::string_view> fields = split_blanks(line.text);
-    if (fields.front() != "Tr:") continue;
+    if (fields.front() != "Tr:") {
+      names += (names.empty() ? "" : ", ") + shown(fields.front());
+      continue;
+    }
     fields.erase(fields.begin());
     return transform_from_rows(path, line.number, fields);
   }
-  return std::nullopt;
+  throw Error(ErrorKind::data, path.string() + ": has no line 'Tr:' (camera_from_velodyne), but " +
+                                   names + kStateFrame);
 }
 
 void require_ascending(const std::filesystem::path& path, std::uint64_t line, double before_s,
@@ -135,7 +151,7 @@ std::vector<double> read_times(const std::filesystem::path& path, std::size_t co
 Trajectory read_kitti_poses(const std::filesystem::path& path,
                             const std::vector<NumberedLine>& lines) {
   const std::filesystem::path folder = path.parent_path();
-  const auto camera_from_sensor = read_calibration(folder / "calib.txt");
+  const auto camera_from_sensor = read_calibration(folder);
   const std::vector<double> times_s = read_times(folder / "times.txt", lines.size());
   Trajectory trajectory;
   trajectory.reserve(lines.size());

@@ -63,11 +63,13 @@ TEST(ReadTrajectory, KittiWithCalibrationIsBroughtToTheLidar) {
   EXPECT_LT(pose_distance(trajectory[1].world_from_sensor, yawed(-0.3, {2, 0, 0})), 2e-6);
 }
 
-TEST(ReadTrajectory, CalibrationWithoutTrIsIgnored) {
+TEST(ReadTrajectory, CalibrationWithoutTrSaysNoFrame) {
   const TemporaryFolder folder;
-  folder.write("calib.txt", "Tr_velo: 1 2 3\n");
   const auto file = folder.write("poses.txt", "1 0 0 7 0 1 0 0 0 0 1 0\n");
   EXPECT_EQ(read_trajectory(file)[0].world_from_sensor.translation.x, 7.0);
+  folder.write("calib.txt", "Tr_velo: 1 2 3\n");
+  expect_error(ErrorKind::data, {"calib.txt", "'Tr:'", "'Tr_velo:'"},
+               [&] { read_trajectory(file); });
 }
 
 // Oracle: R * transposed(R) = unit matrix.
