@@ -12,11 +12,12 @@
 namespace adasplats {
 namespace {
 
-/// Poses without calibration whose x is their number.
-std::string numbered_poses(int count) {
+/// Poses of the LiDAR whose x is their number.
+void write_poses(const TemporaryFolder& folder, int count) {
   std::string text;
   for (int i = 0; i < count; ++i) text += "1 0 0 " + std::to_string(i) + " 0 1 0 0 0 0 1 0\n";
-  return text;
+  folder.write("poses.txt", text);
+  folder.write("calib.txt", "Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n");
 }
 
 void write_scan(const TemporaryFolder& folder, const std::string& name, std::size_t points) {
@@ -36,7 +37,7 @@ TEST(KittiSequence, ReadsScansLabelsAndPosesInOrder) {
   write_scan(folder, "000001", 1);
   write_scan(folder, "000000", 3);
   folder.write("velodyne/.adasplats-1-0.tmp", "");
-  folder.write("poses.txt", numbered_poses(2));
+  write_poses(folder, 2);
   EXPECT_TRUE(is_kitti_sequence(folder.path()));
   const KittiSequence sequence = open_kitti_sequence(folder.path());
   ASSERT_EQ(sequence.scans.size(), 2U);
@@ -53,7 +54,7 @@ TEST(KittiSequence, ReadsScansLabelsAndPosesInOrder) {
 TEST(KittiSequence, WithoutLabelsAndEmptyScans) {
   const TemporaryFolder folder;
   folder.write("velodyne/000000.bin", "");
-  folder.write("poses.txt", numbered_poses(1));
+  write_poses(folder, 1);
   const KittiSequence sequence = open_kitti_sequence(folder.path());
   EXPECT_TRUE(sequence.labels.empty());
   const KittiScan scan = read_kitti_scan(sequence, 0);
@@ -65,7 +66,7 @@ TEST(KittiSequence, PointsThatAreNotFiniteAreKept) {
   const TemporaryFolder folder;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   folder.write("velodyne/000000.bin", std::vector<float>{nan, 0, 0, 1, 1, 2, 3, 4});
-  folder.write("poses.txt", numbered_poses(1));
+  write_poses(folder, 1);
   const KittiScan scan = read_kitti_scan(open_kitti_sequence(folder.path()), 0);
   ASSERT_EQ(scan.positions.size(), 2U);
   EXPECT_TRUE(std::isnan(scan.positions[0].x));
@@ -75,7 +76,7 @@ TEST(KittiSequence, PosesBeyondTheScansAreMatchedByNumber) {
   const TemporaryFolder folder;
   write_scan(folder, "000003", 1);
   write_scan(folder, "000005", 1);
-  folder.write("poses.txt", numbered_poses(9));
+  write_poses(folder, 9);
   const KittiSequence sequence = open_kitti_sequence(folder.path());
   EXPECT_EQ(sequence.trajectory[0].world_from_sensor.translation.x, 3.0);
   EXPECT_EQ(sequence.trajectory[1].world_from_sensor.translation.x, 5.0);
@@ -85,9 +86,9 @@ TEST(KittiSequence, OtherNamesAreMatchedOneByOne) {
   const TemporaryFolder folder;
   write_scan(folder, "a", 1);
   write_scan(folder, "b", 1);
-  folder.write("poses.txt", numbered_poses(2));
+  write_poses(folder, 2);
   EXPECT_EQ(open_kitti_sequence(folder.path()).trajectory[1].world_from_sensor.translation.x, 1.0);
-  folder.write("poses.txt", numbered_poses(3));
+  write_poses(folder, 3);
   expect_error(ErrorKind::data, {"poses.txt", "3 poses", "2 scans"},
                [&] { open_kitti_sequence(folder.path()); });
 }
@@ -96,10 +97,10 @@ TEST(KittiSequence, CountsThatDoNotFit) {
   const TemporaryFolder folder;
   write_scan(folder, "000000", 2);
   write_scan(folder, "000001", 2);
-  folder.write("poses.txt", numbered_poses(1));
+  write_poses(folder, 1);
   expect_error(ErrorKind::data, {"poses.txt", "1 poses", "2 scans"},
                [&] { open_kitti_sequence(folder.path()); });
-  folder.write("poses.txt", numbered_poses(2));
+  write_poses(folder, 2);
   folder.write("labels/000001.label", std::vector<std::uint32_t>{1, 2, 3});
   const KittiSequence sequence = open_kitti_sequence(folder.path());
   expect_error(ErrorKind::data, {"000001.label", "3 labels", "2 points"},
@@ -114,6 +115,19 @@ TEST(KittiSequence, CountsThatDoNotFit) {
                [&] { open_kitti_sequence(folder.path()); });
   std::filesystem::remove(folder.path() / "labels/000002.label");
   expect_error(ErrorKind::data, {"1 label files", "2 scans"},
+               [&] { open_kitti_sequence(folder.path()); });
+}
+
+// Without Tr the camera's poses would be taken for the LiDAR's: a smeared map.
+TEST(KittiSequence, MustSayWhichFrameItsPosesAreIn) {
+  const TemporaryFolder folder;
+  write_scan(folder, "000000", 1);
+  write_poses(folder, 1);
+  std::filesystem::remove(folder.path() / "calib.txt");
+  expect_error(ErrorKind::data, {"calib.txt", "missing", "'Tr: 1 0 0 0 0 1 0 0 0 0 1 0'"},
+               [&] { open_kitti_sequence(folder.path()); });
+  folder.write("calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr_velo_to_cam: 1 2 3\n");
+  expect_error(ErrorKind::data, {"calib.txt", "'Tr:'", "'P0:', 'Tr_velo_to_cam:'"},
                [&] { open_kitti_sequence(folder.path()); });
 }
 

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "adasplats/cloud/cloud_inputs.h"
 #include "adasplats/cloud/cloud_part.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/number_text.h"
@@ -154,6 +155,17 @@ void read_instances(const PointFile& file, const Column& column, PointCloud& clo
   }
 }
 
+/// As save_cloud_ply() writes them.
+void read_origin_kinds(const PointFile& file, const Column& column, PointCloud& cloud) {
+  const std::vector<std::uint32_t> numbers = read_whole_numbers(file, column);
+  cloud.origin_kinds.resize(file.table.rows);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (numbers[i] > static_cast<std::uint32_t>(OriginKind::measured))
+      throw file.value_error(column, i, "0 (not known), 1 (guessed), 2 (stated) or 3 (measured)");
+    cloud.origin_kinds[i] = static_cast<OriginKind>(numbers[i]);
+  }
+}
+
 std::vector<Vec3d> read_positions(const PointFile& file) {
   const auto& [x, y, z] = kPositionNames;
   if (!file.has_all(kPositionNames))
@@ -173,20 +185,40 @@ std::vector<Vec3d> read_sensor_positions(const PointFile& file, const LoadOption
   return {};
 }
 
+/// What a reader says beside the columns.
+void take_comment(const PointFile& file, const std::string& comment, ProgressSink& progress) {
+  constexpr std::string_view kNotRead = "not read: ";
+  if (comment.starts_with("salvaged")) progress.warn(file.path.string() + ": " + comment);
+  if (comment.starts_with("geographic: ") && file.table.rows > 0)
+    throw Error(ErrorKind::data,
+                file.path.string() + ": its coordinates are longitudes and latitudes (" + comment +
+                    "), not metres; project them first (UTM, say, with 'pdal translate IN OUT "
+                    "reprojection --filters.reprojection.out_srs=...')");
+  if (!comment.starts_with(kNotRead)) return;
+  const std::string name = lower_case(comment.substr(kNotRead.size()));
+  const auto is_class = [&](std::string_view known) { return known == name; };
+  if (std::ranges::any_of(kClassNames, is_class))
+    progress.warn(file.path.string() + ": its attribute '" + comment.substr(kNotRead.size()) +
+                  "' is not read from LAZ, the classes are those of the column "
+                  "'classification'; convert it to LAS to have it");
+}
+
 }  // namespace
 
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
                          ProgressSink& progress) {
+  require_points(path);
   const Table table = read_points(path, {.salvage = options.salvage});
   const PointFile file{path, table};
-  for (const std::string& comment : table.comments)
-    if (comment.starts_with("salvaged")) progress.warn(path.string() + ": " + comment);
+  for (const std::string& comment : table.comments) take_comment(file, comment, progress);
 
   CloudPart part;
   part.runs.push_back({0, table.rows, path, {}});
   part.world_positions = read_positions(file);
   part.world_sensors = read_sensor_positions(file, options);
   PointCloud& cloud = part.cloud;
+  if (const Column* column = file.find("origin_kind"); column && !part.world_sensors.empty())
+    read_origin_kinds(file, *column, cloud);
   if (!options.label_field.empty())
     read_labels(file, file.named(options.label_field), cloud);
   else if (const Column* column = file.first_of(kClassNames))

@@ -6,6 +6,7 @@
 
 #include "adasplats/cloud/cloud_part.h"
 #include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/pose_check.h"
 #include "adasplats/core/error.h"
 
 namespace adasplats {
@@ -64,6 +65,7 @@ CloudPart read_sequence_part(const std::filesystem::path& folder, const LoadOpti
                              std::uint32_t first_scan_index, const Executor& executor,
                              ProgressSink& progress) {
   const KittiSequence sequence = open_kitti_sequence(folder);
+  require_poses_that_fit(sequence);
   const std::vector<std::size_t> chosen = chosen_scans(sequence, options);
   CloudPart part;
   part.is_sequence = true;
