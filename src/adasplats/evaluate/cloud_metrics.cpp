@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/neighbors/point_index.h"
 
 namespace adasplats {
@@ -112,6 +113,8 @@ CloudDistance cloud_distance(const PointCloud& simulated, const PointCloud& orig
   require_points(original, "original");
   const PointIndex from = index_in_frame(simulated, original.origin, executor);
   const PointIndex to = index_in_frame(original, original.origin, executor);
+  // Each direction: nearest points, then sums over them.
+  const ProgressPass pass(executor, 2 * (from.size() + to.size()));
   const DistanceSums forward = sums_to_nearest(from, to, executor);
   const DistanceSums backward = sums_to_nearest(to, from, executor);
 
@@ -153,6 +156,9 @@ std::vector<ClassDistance> cloud_distance_by_class(const PointCloud& simulated,
   require_classes(simulated, "simulated");
   require_classes(original, "original");
   const PointIndex all = index_in_frame(original, original.origin, executor);
+  // Of each class: to all points and to its own, nearest points and sums over them; and two
+  // indices, of which this is but a guess.
+  const ProgressPass pass(executor, 5 * simulated.size() + original.size());
   std::vector<ClassDistance> result;
   for (auto [id, counts] : count_classes(simulated, original)) {
     counts.class_id = id;

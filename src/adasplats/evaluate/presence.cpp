@@ -9,6 +9,7 @@
 #include <map>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
 
 namespace adasplats {
 namespace {
@@ -23,17 +24,21 @@ void check(const PointCloud& cloud, const PresenceOptions& options) {
   if (!(options.min_range_m >= 0 && options.min_range_m < options.max_range_m)) {
     throw Error(ErrorKind::usage, "ranges must be 0 <= minimum < maximum");
   }
-  if (cloud.sensor_positions.empty()) {
-    throw Error(ErrorKind::data,
-                "no sensor positions: nothing tells the rays that measured the points");
+  if (!cloud.has_beams()) {
+    throw Error(ErrorKind::data, cloud.sensor_positions.empty()
+                                     ? "no sensor positions: nothing tells the rays that measured "
+                                       "the points"
+                                     : "the sensor positions are guessed: nothing tells the rays "
+                                       "that measured the points");
   }
 }
 
-/// Points within the ranges, in the cloud's order.
+/// Points with a beam within the ranges, in the cloud's order.
 std::vector<std::uint32_t> points_in_range(const PointCloud& cloud,
                                            const PresenceOptions& options) {
   std::vector<std::uint32_t> chosen;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!is_beam(cloud.origin_kind(i))) continue;
     const double range_m =
         static_cast<double>(length(cloud.positions[i] - cloud.sensor_positions[i]));
     if (range_m >= options.min_range_m && range_m <= options.max_range_m) {
@@ -88,6 +93,7 @@ PresenceResult presence(const Tracer& tracer, Vec3d scene_origin, const PointClo
 
   PresenceResult result;
   std::map<std::uint16_t, Presence> by_class;
+  const ProgressPass pass(executor, 2 * points.size());  // rays are made, then cast
   std::vector<Ray> rays;
   std::vector<Hit> hits;
   for (std::size_t first = 0; first < points.size(); first += kRaysAtOnce) {

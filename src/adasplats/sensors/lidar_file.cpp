@@ -74,15 +74,6 @@ void check_size(const LidarFile& file) {
                                        " rays a scan, expected at most " + std::to_string(most));
 }
 
-std::string unknown_name(const std::string& name) {
-  const auto nearest = nearest_word(name, lidar_model_names());
-  if (nearest) return "unknown sensor '" + name + "', did you mean '" + *nearest + "'?";
-  std::string known;
-  for (const std::string& each : lidar_model_names()) known += each + ", ";
-  return "unknown sensor '" + name + "': expected " + known +
-         "or a file: .toml, .json (Ouster), .yaml (Velodyne), .csv (rays, or Hesai's angles)";
-}
-
 enum class Format : std::uint8_t { toml, json, yaml, csv };
 
 /// By the extension, else by what it holds.
@@ -146,11 +137,23 @@ LidarFile unknown_turning_lidar() {
   return file;
 }
 
+std::string unknown_lidar_model(const std::string& name, const std::string& or_else) {
+  const std::vector<std::string> names = lidar_model_names();
+  const std::string found = "unknown sensor '" + name + "'";
+  if (const std::string meant = did_you_mean(name, names); !meant.empty()) return found + meant;
+  std::string known;
+  for (const std::string& each : names) known += (known.empty() ? "" : ", ") + each;
+  return found + ": expected " + known + or_else;
+}
+
 LidarFile read_lidar(const std::string& name_or_path, int nesting) {
   if (auto known = read_library_lidar(name_or_path)) return std::move(*known);
   const fs::path path(name_or_path);
   if (!names_a_format(path) && !fs::is_regular_file(path))
-    throw Error(ErrorKind::usage, unknown_name(name_or_path));
+    throw Error(ErrorKind::usage,
+                unknown_lidar_model(name_or_path,
+                                    " or a file: .toml, .json (Ouster), .yaml (Velodyne), .csv "
+                                    "(rays, or Hesai's angles)"));
   const std::string text = read_file(path);
   switch (format_of(path, text)) {
     case Format::toml: return read_lidar_toml(text, path, nesting);

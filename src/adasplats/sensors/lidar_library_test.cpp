@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <numbers>
 
+#include "adasplats/core/recordings_test.h"
 #include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {
@@ -208,9 +208,8 @@ void expect_same_beams(const LidarModel& found, const LidarModel& expected) {
 
 // Oracle: the makers' own files, which give what the library has.
 TEST(LidarLibrary, TheMakersFilesGiveTheSame) {
-  const std::filesystem::path folder =
-      std::filesystem::path(ADASPLATS_TEST_DATA).parent_path() / "sensors";
-  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "no real files in " << folder;
+  const auto folder = recording("../sensors");
+  if (!folder) GTEST_SKIP() << kNoRecordings;
   const std::map<std::string, std::string> files = {
       {"velodyne_vlp-16.yaml", "velodyne-vlp-16"},
       {"velodyne_hdl-32e.yaml", "velodyne-hdl-32e"},
@@ -224,7 +223,7 @@ TEST(LidarLibrary, TheMakersFilesGiveTheSame) {
       {"hesai_ot128_angle.csv", "hesai-ot128"}};
   for (const auto& [file, name] : files) {
     SCOPED_TRACE(file);
-    const LidarModel found = load_lidar_model((folder / file).string());
+    const LidarModel found = load_lidar_model((*folder / file).string());
     expect_same_beams(found, load_lidar_model(name));
     EXPECT_TRUE(found.source.starts_with(file)) << found.source;
   }

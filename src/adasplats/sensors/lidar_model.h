@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adasplats/core/vec3.h"
+#include "adasplats/sensors/divergence.h"
 
 namespace adasplats {
 
@@ -48,8 +49,10 @@ struct LidarModel {
   double range_noise_m = 0.0;       ///< standard deviation of white noise on the range
   double angular_noise_rad = 0.0;   ///< the same on the azimuth and elevation that are told
   double range_resolution_m = 0.0;  ///< ranges are multiples of it; 0: any
-  /// Full angles of the beam, horizontal and vertical, rad.
+  /// Full angles of the beam between 1/e^2 of the axis' intensity, horizontal and vertical, rad; 0:
+  /// not known. Whatever the source states was converted by full_e2_angle_rad().
   double divergence_rad[2] = {0, 0};
+  DivergenceKind divergence_kind = DivergenceKind::unknown;  ///< what the source states
   int most_returns = 1;                   ///< echoes that the sensor tells a firing
   bool clockwise = false;                 ///< seen from above
   std::vector<Firing> free_pattern;       ///< used instead of beams x columns where not empty
@@ -89,5 +92,8 @@ LidarModel load_lidar_model(const std::string& name_or_path);
 
 /// Names that load_lidar_model knows.
 std::vector<std::string> lidar_model_names();
+
+/// "unknown sensor 'vlp-16', did you mean 'velodyne-vlp-16'?", or all names and then `or_else`.
+std::string unknown_lidar_model(const std::string& name, const std::string& or_else = "");
 
 }  // namespace adasplats

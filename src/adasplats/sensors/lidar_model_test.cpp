@@ -246,7 +246,8 @@ TEST_F(LidarFiles, EveryNewKeyOfATomlFileIsRead) {
             "elevations_deg = [10, -10]\ncolumns = 8\nfirst_azimuth_deg = -90\n"
             "beam_origins_m = [[0.1, 0, 0.2], [0.3, 0.4, 0.5]]\nfiring_times_us = [1.5, 0]\n"
             "angular_noise_deg = 0.01\nrange_resolution_m = 0.002\n"
-            "divergence_deg = [0.2, 0.1]\nmost_returns = 3\nsource = \"a book\"\n"));
+            "divergence_deg = [0.2, 0.1]\ndivergence_kind = \"1/e2\"\nmost_returns = 3\nsource = "
+            "\"a book\"\n"));
   EXPECT_DOUBLE_EQ(model.first_azimuth_rad, -90 * kDegree);
   ASSERT_EQ(model.beam_origins_m.size(), 2U);
   EXPECT_EQ(model.beam_origins_m[1], (Vec3d{0.3, 0.4, 0.5}));
@@ -255,8 +256,28 @@ TEST_F(LidarFiles, EveryNewKeyOfATomlFileIsRead) {
   EXPECT_EQ(model.range_resolution_m, 0.002);
   EXPECT_DOUBLE_EQ(model.divergence_rad[0], 0.2 * kDegree);
   EXPECT_DOUBLE_EQ(model.divergence_rad[1], 0.1 * kDegree);
+  EXPECT_EQ(model.divergence_kind, DivergenceKind::full_e2);
   EXPECT_EQ(model.most_returns, 3);
   EXPECT_EQ(model.source, "a book");
+}
+
+// Oracle: a full width at half maximum is sqrt(2 ln 2) / 2 of the full angle at 1/e^2.
+TEST_F(LidarFiles, ADivergenceIsConvertedByItsKind) {
+  const auto horizontal_rad = [&](const std::string& kind) {
+    return load_lidar_model(write("kind.toml",
+                                  "elevations_deg = [0]\ncolumns = 4\n"
+                                  "divergence_deg = [0.2, 0.1]\n"
+                                  "divergence_kind = \"" +
+                                      kind + "\"\n"))
+        .divergence_rad[0];
+  };
+  EXPECT_NEAR(horizontal_rad("fwhm"), 0.2 * kDegree * 2 / std::sqrt(2 * std::log(2.0)), 1e-12);
+  EXPECT_NEAR(horizontal_rad("1/e2-half"), 0.4 * kDegree, 1e-12);
+  EXPECT_NEAR(horizontal_rad("unknown"), 0.2 * kDegree, 1e-12);
+  write("base.toml", "like = \"ouster-os1-128\"\nrange_noise_m = 0.5\n");
+  const LidarModel like = load_lidar_model((folder_ / "base.toml").string());
+  EXPECT_EQ(like.divergence_kind, DivergenceKind::fwhm);
+  EXPECT_EQ(like.divergence_rad[0], load_lidar_model("ouster-os1-128").divergence_rad[0]);
 }
 
 TEST_F(LidarFiles, OneOriginStandsForAllBeams) {
@@ -350,6 +371,11 @@ TEST_F(LidarFiles, WrongNewKeysAreRefusedWithTheirLine) {
   refuse("beam_origins_m = [[1, 2, 3]]", "has 1 values, expected 2");
   refuse("beam_origins_m = [[1, 2, 3], 4]", "not a list [x, y, z]");
   refuse("beam_origins_m = [[1, 2, 3], [1, 2, 'x']]", "bad.toml:3: beam_origins_m");
+  refuse("divergence_deg = [1, 1]", "bad.toml:3: divergence_deg needs divergence_kind");
+  refuse("divergence_deg = [1, 1]\ndivergence_kind = \"FWHM\"", "expected one of 'fwhm', '1/e2'");
+  refuse("divergence_deg = [1, 1]\ndivergence_kind = 1", "bad.toml:4: divergence_kind");
+  refuse("divergence_kind = \"fwhm\"", "bad.toml:3: divergence_kind needs divergence_deg");
+  refuse("divergence_deg = [60, 1]\ndivergence_kind = \"1/e2-half\"", "wider than 90 degrees");
   refuse("divergence_deg = [1]", "is not [horizontal, vertical]");
   refuse("divergence_deg = []", "is not a list of numbers");
   refuse("most_returns = 0", "bad.toml:3: most_returns");

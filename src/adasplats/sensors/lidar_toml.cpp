@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/words.h"
 #include "adasplats/sensors/lidar_files.h"
 
 namespace adasplats {
@@ -27,14 +28,31 @@ constexpr double kMicrosecond_s = 1e-6;
 using Keys = std::vector<std::string>;
 
 const Keys& sensor_keys() {
-  static const Keys keys = {"name",         "source",          "like",
-                            "beams",        "elevations_deg",  "elevation_top_deg",
-                            "columns",      "rotation_hz",     "elevation_bottom_deg",
-                            "clockwise",    "min_range_m",     "azimuth_offsets_deg",
-                            "max_range_m",  "range_noise_m",   "range_resolution_m",
-                            "most_returns", "divergence_deg",  "angular_noise_deg",
-                            "column_steps", "column_phases",   "first_azimuth_deg",
-                            "rosette",      "firing_times_us", "beam_origins_m"};
+  static const Keys keys = {"name",
+                            "source",
+                            "like",
+                            "beams",
+                            "elevations_deg",
+                            "elevation_top_deg",
+                            "columns",
+                            "rotation_hz",
+                            "elevation_bottom_deg",
+                            "clockwise",
+                            "min_range_m",
+                            "azimuth_offsets_deg",
+                            "max_range_m",
+                            "range_noise_m",
+                            "range_resolution_m",
+                            "most_returns",
+                            "divergence_deg",
+                            "divergence_kind",
+                            "angular_noise_deg",
+                            "column_steps",
+                            "column_phases",
+                            "first_azimuth_deg",
+                            "rosette",
+                            "firing_times_us",
+                            "beam_origins_m"};
   return keys;
 }
 
@@ -307,12 +325,42 @@ void read_measuring(const SensorTable& table, LidarModel& model) {
     model.angular_noise_rad = radians(table.number("angular_noise_deg", 0, 0, 90));
   if (table.has("most_returns"))
     model.most_returns = static_cast<int>(table.whole_number("most_returns", 1, 255));
-  if (!table.has("divergence_deg")) return;
-  const auto divergence_rad = table.angles_rad("divergence_deg", 0, 90);
-  if (divergence_rad.size() != 2)
-    throw table.error("divergence_deg", "is not [horizontal, vertical]");
-  model.divergence_rad[0] = divergence_rad[0];
-  model.divergence_rad[1] = divergence_rad[1];
+}
+
+/// "'fwhm', '1/e2', ...": what divergence_kind may say.
+std::string kinds_of_divergence() {
+  std::string all;
+  for (const std::string& word : list_of<DivergenceKind>(kDivergenceKinds))
+    all += (all.empty() ? "'" : ", '") + word + "'";
+  return all;
+}
+
+DivergenceKind read_divergence_kind(const SensorTable& table) {
+  if (!table.has("divergence_kind"))
+    throw table.error("divergence_deg",
+                      "needs divergence_kind, what the angles measure: " + kinds_of_divergence());
+  const std::string word = table.text("divergence_kind", "");
+  for (const auto& [known, kind] : kDivergenceKinds)
+    if (known == word) return kind;
+  throw table.error("divergence_kind",
+                    "is '" + word + "', expected one of " + kinds_of_divergence());
+}
+
+/// The one place where files' divergences become those of the model.
+void read_divergence(const SensorTable& table, LidarModel& model) {
+  if (!table.has("divergence_deg")) {
+    if (table.has("divergence_kind"))
+      throw table.error("divergence_kind", "needs divergence_deg, the angles that it speaks of");
+    return;
+  }
+  const auto stated_rad = table.angles_rad("divergence_deg", 0, 90);
+  if (stated_rad.size() != 2) throw table.error("divergence_deg", "is not [horizontal, vertical]");
+  model.divergence_kind = read_divergence_kind(table);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    model.divergence_rad[axis] = full_e2_angle_rad(stated_rad[axis], model.divergence_kind);
+    if (model.divergence_rad[axis] > radians(90))
+      throw table.error("divergence_deg", "is wider than 90 degrees at 1/e2");
+  }
 }
 
 /// A rosette or a list of rays has no beams that turn.
@@ -338,10 +386,9 @@ LidarFile read_base(const SensorTable& table, const std::filesystem::path& path,
   if (auto known = read_library_lidar(base)) return std::move(*known);
   const std::filesystem::path beside = path.parent_path() / base;
   if (!std::filesystem::is_regular_file(beside)) {
-    const auto nearest = nearest_word(base, lidar_model_names());
     throw table.error("like", "is '" + base +
                                   "', which is neither a sensor nor a file beside this" +
-                                  (nearest ? ", did you mean '" + *nearest + "'?" : ""));
+                                  did_you_mean(base, lidar_model_names()));
   }
   return read_lidar(beside.string(), nesting + 1);
 }
@@ -357,6 +404,7 @@ LidarFile read_lidar_toml(std::string_view text, const std::filesystem::path& pa
       table.text("source", model.source.empty() ? path.filename().string() : model.source);
   model.rotation_hz = table.number("rotation_hz", model.rotation_hz, 1e-3, 1e6);
   read_measuring(table, model);
+  read_divergence(table, model);
   if (table.has("rosette")) read_rosette(table, file);
   const bool new_beams = table.has("elevations_deg") || has_fan(table);
   if (!new_beams && (model.rosette || !model.free_pattern.empty())) {

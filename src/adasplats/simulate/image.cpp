@@ -8,6 +8,7 @@
 #include <string>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/simulate/shading.h"
 
 namespace adasplats {
@@ -56,6 +57,7 @@ class Renderer {
     const int tile_columns = (image.width + tile_pixels - 1) / tile_pixels;
     const int tile_rows = (image.height + tile_pixels - 1) / tile_pixels;
     const auto tiles = static_cast<std::size_t>(tile_columns) * static_cast<std::size_t>(tile_rows);
+    const ProgressPass pass(executor_, tiles);
     executor_.for_chunks(tiles, 1, [&](std::size_t tile, std::size_t) {
       const auto index = static_cast<int>(tile);
       render_tile({index % tile_columns * tile_pixels, index / tile_columns * tile_pixels},
@@ -78,27 +80,30 @@ class Renderer {
     std::vector<Hit> hits(rays.size());
     tracer_.nearest(rays, hits, executor_);
 
-    const auto width = static_cast<std::size_t>(right - corner.x);
-    std::vector<Vec3f> sums(width * static_cast<std::size_t>(bottom - corner.y));
+    const int width = (right - corner.x) * axis;
+    std::vector<Vec3f> colors(samples.size());  // row by row
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      const auto x = static_cast<std::size_t>(samples[i].x / axis - corner.x);
-      const auto y = static_cast<std::size_t>(samples[i].y / axis - corner.y);
-      sums[y * width + x] = sums[y * width + x] + shade(shading_.tables(), rays[i], hits[i]);
+      const int x = samples[i].x - corner.x * axis, y = samples[i].y - corner.y * axis;
+      colors[static_cast<std::size_t>(y * width + x)] = shade(shading_.tables(), rays[i], hits[i]);
     }
-    store(sums, corner, width, image);
+    for (int y = corner.y; y < bottom; ++y)
+      for (int x = corner.x; x < right; ++x)
+        store(
+            &colors[static_cast<std::size_t>((y - corner.y) * axis * width +
+                                             (x - corner.x) * axis)],
+            width,
+            &image.pixels[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                               static_cast<std::size_t>(x))]);
   }
 
-  void store(std::span<const Vec3f> sums, Sample corner, std::size_t width, Image& image) const {
-    const float weight =
-        1.0F / static_cast<float>(options_.samples_per_axis * options_.samples_per_axis);
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-      const std::size_t x = static_cast<std::size_t>(corner.x) + i % width;
-      const std::size_t y = static_cast<std::size_t>(corner.y) + i / width;
-      std::uint8_t* const pixel =
-          &image.pixels[3 * (y * static_cast<std::size_t>(image.width) + x)];
-      for (int channel = 0; channel < 3; ++channel)
-        pixel[channel] = to_byte(weight * sums[i][channel]);
-    }
+  /// The mean of a pixel's samples, added row by row as on a GPU.
+  void store(const Vec3f* first, int width, std::uint8_t* pixel) const {
+    const int axis = options_.samples_per_axis;
+    Vec3f sum;
+    for (int v = 0; v < axis; ++v)
+      for (int u = 0; u < axis; ++u) sum = sum + first[v * width + u];
+    const float weight = 1.0F / static_cast<float>(axis * axis);
+    for (int channel = 0; channel < 3; ++channel) pixel[channel] = to_byte(weight * sum[channel]);
   }
 
   const Tracer& tracer_;

@@ -12,6 +12,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/random.h"
 #include "adasplats/simulate/color_map.h"
+#include "adasplats/simulate/shading.h"
 
 namespace adasplats {
 namespace {
@@ -254,6 +255,37 @@ TEST(RenderImage, ThreadsDoNotChangeAByte) {
   const Image expected = shot.render(1);
   EXPECT_EQ(shot.render(2).pixels, expected.pixels);
   EXPECT_EQ(shot.render(3).pixels, expected.pixels);
+}
+
+// Oracle: the samples of every pixel one by one, added row by row as a GPU does it: the order of
+// floats decides the last bit of their sum, and that may be a step of a channel.
+TEST(RenderImage, SamplesAreAddedRowByRow) {
+  Shot shot;
+  shot.disks = random_disks();
+  shot.options.color = ImageColor::normal;
+  const ImageScene scene = {{shot.disks, nullptr}, {}, {}, nullptr, {0, 0, 0}};
+  const auto tracer = make_brute_force_tracer(scene.view);
+  for (const int axis : {3, 10}) {
+    shot.options.samples_per_axis = axis;
+    const Image image = shot.render();
+    const Shading shading(scene, shot.options);
+    const float weight = 1.0F / static_cast<float>(axis * axis);
+    for (int y = 0; y < 100; ++y) {
+      for (int x = 0; x < 100; ++x) {
+        Vec3f sum;
+        for (int k = 0; k < axis * axis; ++k) {
+          const Ray ray = shot.camera.ray((x * axis + k % axis + 0.5) / axis,
+                                          (y * axis + k / axis + 0.5) / axis, {});
+          Hit hit;
+          tracer->nearest({&ray, 1}, {&hit, 1}, Executor(1));
+          sum = sum + shade(shading.tables(), ray, hit);
+        }
+        const Rgb expected = {to_byte(weight * sum.x), to_byte(weight * sum.y),
+                              to_byte(weight * sum.z)};
+        ASSERT_EQ(pixel(image, x, y), expected) << x << ", " << y << " of " << axis;
+      }
+    }
+  }
 }
 
 TEST(RenderImage, NonsenseIsAUsageError) {

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "adasplats/core/ray.h"
@@ -14,6 +16,8 @@ namespace adasplats {
 
 /// Which echoes of a firing a sensor tells.
 enum class ReturnMode : std::uint8_t { first, last, strongest };
+inline constexpr std::pair<std::string_view, ReturnMode> kReturnModes[] = {
+    {"strongest", ReturnMode::strongest}, {"first", ReturnMode::first}, {"last", ReturnMode::last}};
 
 /// What a firing sends out and how its echoes become returns.
 struct BeamOptions {

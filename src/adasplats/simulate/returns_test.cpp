@@ -314,6 +314,24 @@ TEST(SubFirings, HaveTheEnergyOfAGaussianBeam) {
   EXPECT_NEAR(squares, (1 - 3 * e2) / (2 * (1 - e2)), 0.02);
 }
 
+// Oracle: the datasheet's 0.18 degrees, where a Gaussian beam has half the intensity of its axis;
+// so its 1/e^2 radius is 0.18 / sqrt(2 ln 2) degrees, and the mean of r^2 as above.
+TEST(SubFirings, OfAnOusterFillItsWidthAtHalfMaximum) {
+  const LidarModel sensor = load_lidar_model("ouster-os1-128");
+  BeamOptions options;
+  options.sub_rays = 61;
+  const auto rays = sub_firings(sensor, one_firing({1, 0, 0}), options);
+  const auto weights = sub_ray_weights(options);
+  double squares = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Vec3d d = vec_cast<double>(rays[i].direction) / static_cast<double>(rays[i].direction.x);
+    squares += static_cast<double>(weights[i]) * (d.y * d.y + d.z * d.z);
+  }
+  const double radius = 0.18 * std::numbers::pi / 180 / std::sqrt(2.0 * std::numbers::ln2);
+  const double e2 = std::exp(-2.0);
+  EXPECT_NEAR(squares / (radius * radius), (1 - 3 * e2) / (2 * (1 - e2)), 0.02);
+}
+
 TEST(SubFirings, HorizontalDivergenceIsHorizontal) {
   LidarModel sensor = wide_beam();
   sensor.divergence_rad[1] = 0;

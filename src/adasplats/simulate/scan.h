@@ -54,6 +54,8 @@ enum class PointFrame : std::uint8_t {
   raw,       ///< the sensor's when each was measured, as sensors tell them
   deskewed,  ///< the sensor's at the scan's reference pose, the motion taken out
 };
+inline constexpr std::pair<std::string_view, PointFrame> kPointFrames[] = {
+    {"raw", PointFrame::raw}, {"deskewed", PointFrame::deskewed}};
 
 struct SimulateOptions {
   std::uint64_t seed = 0;  ///< of noise and drop; drawn by (seed, scan index, ray index)

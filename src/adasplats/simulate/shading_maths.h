@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -93,6 +94,21 @@ ADASPLATS_HD inline Vec3f intensity_color(const ShadingTables& tables, std::uint
                  (tables.intensity_range.high - tables.intensity_range.low));
 }
 
+/// log10(x) of a normal number above 0, to a few units in the last place of a float. The library's
+/// has other last bits on a GPU. x = m * 2^k with m around 1, and with s = (m - 1) / (m + 1)
+/// ln(m) = 2 (s + s^3 / 3 + s^5 / 5 + ...).
+ADASPLATS_HD inline float log10_anywhere(float x) {
+  constexpr std::uint32_t kRootOfHalf = 0x3f3504f3U;  // as a float: m from here to the root of 2
+  constexpr double kLn2 = 0.6931471805599453, kLn10 = 2.302585092994046;
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  const std::int32_t k = static_cast<std::int32_t>(bits - kRootOfHalf) >> 23;
+  const auto m =
+      static_cast<double>(std::bit_cast<float>(bits - (static_cast<std::uint32_t>(k) << 23)));
+  const double s = (m - 1) / (m + 1), s2 = s * s;
+  const double ln_m = 2 * s * (1 + s2 * (1.0 / 3 + s2 * (1.0 / 5 + s2 * (1.0 / 7 + s2 / 9))));
+  return static_cast<float>((k * kLn2 + ln_m) / kLn10);
+}
+
 ADASPLATS_HD inline Vec3f background_color(const ShadingTables& tables, Vec3f direction) {
   if (!tables.sky || !(direction.z > 0.0F)) return tables.background;
   constexpr Vec3f kZenith = {0.52F, 0.71F, 0.91F};
@@ -116,7 +132,7 @@ ADASPLATS_HD inline Vec3f shade(const ShadingTables& tables, const Ray& ray, con
       // The colour itself is the message: only a hint of the shape.
       return (0.5F + 0.5F * shading::light(normal, ray.direction)) *
              shading::intensity_color(tables, hit.primitive);
-    case ImageColor::range: return viridis(1.0F - 0.5F * std::log10(hit.t));
+    case ImageColor::range: return viridis(1.0F - 0.5F * shading::log10_anywhere(hit.t));
   }
   return shading::kNeutral;
 }

@@ -180,8 +180,10 @@ WorldFileObject read_object(const WorldTable& table, std::size_t number) {
   if (object.name.empty()) object.name = object.geometry.filename().string();
   object.class_id = read_class(table);
   const std::optional<std::uint64_t> instance = table.whole_number("instance", 0xffff);
-  object.instance =
-      static_cast<std::uint16_t>(instance.value_or(std::min<std::size_t>(number, 0xffff)));
+  if (!instance && number > 0xffff)
+    throw table.error("instance", "is missing: it is the object's number, but this is object " +
+                                      std::to_string(number) + " and instances end at 65535");
+  object.instance = static_cast<std::uint16_t>(instance.value_or(number));
   object.placement = read_placement(table);
   object.trajectory = table.file("trajectory");
   object.only_during = read_only_during(table);

@@ -46,6 +46,13 @@ class WorldFileTest : public testing::Test {
   Executor executor_{1};
 };
 
+TEST_F(WorldFileTest, ObjectsThatHaveNoNumberLeftNeedAnInstance) {
+  std::string content;
+  for (int i = 0; i < 65536; ++i) content += "[[object]]\ngeometry = \"parts/car.obj\"\n";
+  expect_error(ErrorKind::config, {"instance", "65536"}, [&] { read(content); });
+  EXPECT_EQ(read(content + "instance = 65535\n").objects.back().instance, 65535);
+}
+
 // Oracle: the numbers in the file.
 TEST_F(WorldFileTest, EveryKey) {
   const WorldFile file = read(R"(model = "street.ply"
