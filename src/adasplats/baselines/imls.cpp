@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/core/progress_meter.h"
+
 namespace adasplats {
 namespace {
 
@@ -43,6 +45,7 @@ SparseField sparse_field(const ImlsField& field, const ImlsOptions& options,
   const auto outside = static_cast<float>(options.voxel_m * options.truncation_voxels);
   std::vector<std::unique_ptr<Leaf>> leaves(field.size());
   std::vector<std::unique_ptr<MaskLeaf>> inside(field.size());
+  const ProgressPass pass(executor, leaves.size());
   executor.for_chunks(leaves.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const ImlsField::Block block = field.block(i);

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/neighbors/point_index.h"
 
 namespace adasplats {
@@ -23,6 +24,7 @@ std::vector<std::uint16_t> nearest_classes(const TriangleMesh& mesh, std::span<c
     }
   });
   const PointIndex index = PointIndex::from_sorted(points, executor);
+  const ProgressPass pass(executor, 2 * centroids.size());  // put in order, then looked up
   found.reserve(centroids.size());
   for (const Neighbor& neighbor : index.nearest(centroids, executor))
     found.push_back(classes[neighbor.index]);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/neighbors/point_index.h"
 #include "adasplats/surface/local_shape.h"
 
@@ -24,6 +25,7 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 std::vector<Vec3f> normals_of(std::span<const Vec3f> points, const PointIndex& index,
                               std::uint32_t neighbors, const Executor& executor) {
   std::vector<Vec3f> normals(points.size());
+  const ProgressPass pass(executor, points.size());
   index.for_each_neighborhood(
       executor, [&](std::uint32_t) { return NeighborLimit{neighbors}; },
       [&](std::uint32_t rank, const NeighborList& list) {
@@ -108,7 +110,9 @@ SignedSets spread_signs(std::span<const Vec3f> normals, std::span<const std::uin
   std::vector<std::uint32_t> order;
   executor.sort_keys(keys, order);
   SignedSets sets(normals.size());
+  std::size_t joined = 0;
   for (const std::uint32_t e : order) {
+    if (++joined % kGrain == 0) executor.check_interruption();
     const std::uint32_t edge = edges[e];
     sets.join(edge / count, table[edge], dot_of(edge) < 0.0F);
   }

@@ -47,9 +47,10 @@ DeviceBuffer<std::uint32_t> without_classes(const DeviceBuffer<std::uint32_t>& o
 DeviceCloud copy_to_device(const PointCloud& cloud, cudaStream_t stream) {
   if (cloud.size() >= std::size_t{1} << 31)
     throw Error(ErrorKind::unavailable, "2^31 points or more do not fit a GPU; use --device cpu");
-  return {copied(cloud.positions, stream),   copied(cloud.sensor_positions, stream),
-          copied(cloud.intensities, stream), copied(cloud.classes, stream),
-          copied(cloud.instances, stream),   copied(cloud.scan_indices, stream)};
+  return {copied(cloud.positions, stream),    copied(cloud.sensor_positions, stream),
+          copied(cloud.origin_kinds, stream), copied(cloud.intensities, stream),
+          copied(cloud.classes, stream),      copied(cloud.instances, stream),
+          copied(cloud.scan_indices, stream)};
 }
 
 template <class T>
@@ -65,6 +66,8 @@ DeviceBuffer<T> gather(const DeviceBuffer<T>& values, const DeviceBuffer<std::ui
 
 template DeviceBuffer<SemanticGroup> gather(const DeviceBuffer<SemanticGroup>&,
                                             const DeviceBuffer<std::uint32_t>&, cudaStream_t);
+template DeviceBuffer<OriginKind> gather(const DeviceBuffer<OriginKind>&,
+                                         const DeviceBuffer<std::uint32_t>&, cudaStream_t);
 template DeviceBuffer<std::uint16_t> gather(const DeviceBuffer<std::uint16_t>&,
                                             const DeviceBuffer<std::uint32_t>&, cudaStream_t);
 template DeviceBuffer<std::uint32_t> gather(const DeviceBuffer<std::uint32_t>&,
@@ -79,9 +82,10 @@ template DeviceBuffer<Disk> gather(const DeviceBuffer<Disk>&, const DeviceBuffer
 DeviceCloud gather(const DeviceCloud& cloud, const DeviceBuffer<std::uint32_t>& indices,
                    cudaStream_t stream) {
   return {
-      gather(cloud.positions, indices, stream),   gather(cloud.sensor_positions, indices, stream),
-      gather(cloud.intensities, indices, stream), gather(cloud.classes, indices, stream),
-      gather(cloud.instances, indices, stream),   gather(cloud.scan_indices, indices, stream)};
+      gather(cloud.positions, indices, stream),    gather(cloud.sensor_positions, indices, stream),
+      gather(cloud.origin_kinds, indices, stream), gather(cloud.intensities, indices, stream),
+      gather(cloud.classes, indices, stream),      gather(cloud.instances, indices, stream),
+      gather(cloud.scan_indices, indices, stream)};
 }
 
 template <class T>
@@ -106,14 +110,31 @@ template DeviceBuffer<SemanticGroup> concatenate(
 DeviceCloud concatenate(std::span<const DeviceCloud* const> clouds, cudaStream_t stream) {
   return {concatenated(clouds, &DeviceCloud::positions, stream),
           concatenated(clouds, &DeviceCloud::sensor_positions, stream),
+          concatenated(clouds, &DeviceCloud::origin_kinds, stream),
           concatenated(clouds, &DeviceCloud::intensities, stream),
           concatenated(clouds, &DeviceCloud::classes, stream),
           concatenated(clouds, &DeviceCloud::instances, stream),
           concatenated(clouds, &DeviceCloud::scan_indices, stream)};
 }
 
+bool has_all_origins(const DeviceCloud& cloud, cudaStream_t stream) {
+  if (cloud.sensor_positions.empty()) return false;
+  if (cloud.origin_kinds.empty()) return true;
+  DeviceBuffer<std::uint32_t> unknown(1, stream);
+  unknown.fill_bytes(0);
+  for_each(cloud.size(), stream, "look at origins",
+           [kinds = cloud.origin_kinds.data(), to = unknown.data()] __device__(std::uint64_t i) {
+             if (!is_known(kinds[i])) *to = 1;
+           });
+  return read_value(unknown.data(), stream) == 0;
+}
+
 DeviceBuffer<std::uint32_t> canonical_order(const DeviceCloud& cloud, cudaStream_t stream) {
   std::vector<TieBreaker> more;  // the least important first
+  if (!cloud.origin_kinds.empty()) {
+    more.push_back(
+        TieBreaker::of(reinterpret_cast<const std::uint8_t*>(cloud.origin_kinds.data())));
+  }
   if (!cloud.sensor_positions.empty())
     for (int axis = 2; axis >= 0; --axis)
       more.push_back(TieBreaker::of(cloud.sensor_positions.data(), axis));

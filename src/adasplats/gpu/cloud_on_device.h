@@ -16,6 +16,7 @@ namespace adasplats::gpu {
 struct DeviceCloud {
   DeviceBuffer<Vec3f> positions;
   DeviceBuffer<Vec3f> sensor_positions;
+  DeviceBuffer<OriginKind> origin_kinds;
   DeviceBuffer<float> intensities;
   DeviceBuffer<std::uint16_t> classes;
   DeviceBuffer<std::uint16_t> instances;
@@ -38,6 +39,10 @@ DeviceBuffer<T> gather(const DeviceBuffer<T>& values, const DeviceBuffer<std::ui
 DeviceCloud concatenate(std::span<const DeviceCloud* const> clouds, cudaStream_t stream);
 template <class T>
 DeviceBuffer<T> concatenate(std::span<const DeviceBuffer<T>* const> parts, cudaStream_t stream);
+
+/// Whether all normals can be turned to the sensor (PointCloud::has_all_origins()). Waits for the
+/// stream.
+bool has_all_origins(const DeviceCloud& cloud, cudaStream_t stream);
 
 /// The order that canonical_order() gives (splats/canonical_order.h).
 DeviceBuffer<std::uint32_t> canonical_order(const DeviceCloud& cloud, cudaStream_t stream);

@@ -13,17 +13,10 @@ namespace {
 constexpr std::size_t kPlacesAtFirst = 64;  // in the lists, a seed; more where they do not do
 constexpr int kRoundsAtOnce = 4;            // before the host asks how many disks are open
 
-/// Largest of floats that are not negative: their bits sort as they do.
-__device__ float warp_largest(float value) {
-  return __uint_as_float(warp_max(__float_as_uint(value)));
-}
-__device__ float warp_smallest(float value) {
-  return __uint_as_float(warp_min(__float_as_uint(value)));
-}
-
 /// Grows one seed over its neighbours and lists what it covers.
 struct Grow {
   CoverView cover;
+  const std::uint8_t* unchecked;  ///< flags of seeds; null: none
   std::uint64_t* begins;
   CoverOptions options;
   unsigned long long* listed;  ///< places taken of the lists
@@ -37,7 +30,8 @@ struct Grow {
     return other.radius > 0;
   }
 
-  __device__ float radius_m(const Disk& disk, const std::uint64_t* keys, std::uint32_t size) const {
+  __device__ float radius_m(const Disk& disk, int sector_count, const std::uint64_t* keys,
+                            std::uint32_t size) const {
     Disk other;
     auto end_m = static_cast<float>(options.largest_radius_m);
     for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes) {
@@ -47,7 +41,7 @@ struct Grow {
     }
     end_m = warp_smallest(end_m);
     float reach_m = disk.radius;
-    SectorReach sectors(disk, options.sectors);
+    SectorReach sectors(disk, sector_count);
     for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes) {
       if (!is_there(keys, size, k, other)) continue;
       const PlaceAtDisk place = place_at_disk(disk, other.center);
@@ -78,7 +72,9 @@ struct Grow {
   __device__ void operator()(std::uint32_t seed, const std::uint64_t* keys,
                              std::uint32_t size) const {
     const Disk disk = cover.seeds[seed];
-    const float own_m = radius_m(disk, keys, size);
+    const bool is_unchecked = unchecked != nullptr && unchecked[seed] != 0;
+    const int sectors = is_unchecked ? options.unchecked_sectors : options.sectors;
+    const float own_m = radius_m(disk, sectors, keys, size);
     const float covered_m = covered_reach(cover.overlap, own_m);
     std::uint32_t length = 0;
     covered(disk, covered_m, keys, size, [&](std::uint32_t, bool is_covered) {
@@ -263,8 +259,9 @@ std::uint64_t grow(const DevicePointIndex& index, const Grow& grow_seed, cudaStr
 
 }  // namespace
 
-DeviceCover::DeviceCover(const Disk* seeds, const DevicePointIndex& index,
-                         const CoverOptions& options, cudaStream_t stream)
+DeviceCover::DeviceCover(const Disk* seeds, const std::uint8_t* unchecked,
+                         const DevicePointIndex& index, const CoverOptions& options,
+                         cudaStream_t stream)
     : stream_(stream),
       overlap_(options.overlap),
       seeds_(index.size(), stream),
@@ -281,7 +278,8 @@ DeviceCover::DeviceCover(const Disk* seeds, const DevicePointIndex& index,
   lengths_.fill_bytes(0);
   const DeviceBuffer<unsigned long long> listed(1, stream);
   const auto needed = [&] {
-    return grow(index, {view(), begins_.data(), options, listed.data(), lists_.size()}, stream);
+    return grow(index, {view(), unchecked, begins_.data(), options, listed.data(), lists_.size()},
+                stream);
   };
   const std::uint64_t places = needed();
   if (places <= lists_.size()) return;

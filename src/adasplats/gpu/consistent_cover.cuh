@@ -35,10 +35,11 @@ struct CoverView {
 class DeviceCover {
  public:
   /// `seeds`: device memory, one a point of `index` in its order, copied; without a radius: not
-  /// there. Waits for the stream.
+  /// there. `unchecked`: flags of seeds that have options.unchecked_sectors (null: none). Waits
+  /// for the stream.
   /// Errors: usage (more neighbours than DevicePointIndex::kMostNeighbors).
-  DeviceCover(const Disk* seeds, const DevicePointIndex& index, const CoverOptions& options,
-              cudaStream_t stream);
+  DeviceCover(const Disk* seeds, const std::uint8_t* unchecked, const DevicePointIndex& index,
+              const CoverOptions& options, cudaStream_t stream);
 
   /// The chosen disks, the others with no radius. Waits for the stream.
   DeviceBuffer<Disk> choose();

@@ -11,11 +11,9 @@ namespace adasplats::gpu {
 
 /// The steps of the ray-consistent method in the memory of one GPU: the cloud goes there in load(),
 /// the splats come back in take_splats(). The steps also show their state (consistent_state.h).
-/// Everything is the CPU's bit by bit, but the limits of disks in clouds without sensor positions,
-/// whose sectors depend on the last bit of an arc tangent. `executor` would do what is left on the
-/// CPU; nothing is. Errors: unavailable (no such GPU, not enough memory), usage (neighbourhoods of
-/// more than 512 cells, more hits of a ray than the GPU keeps), with what helps; after one, the
-/// steps can only be destroyed.
+/// Everything is the CPU's bit by bit. `executor` would do what is left on the CPU; nothing is.
+/// Errors: unavailable (no such GPU, not enough memory), usage (neighbourhoods of more than 512
+/// cells), with what helps; after one, the steps can only be destroyed.
 std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int device, const Executor& executor);
 
 }  // namespace adasplats::gpu

@@ -7,34 +7,39 @@
 #include "adasplats/gpu/cuda_scene.h"
 #include "adasplats/gpu/launch.cuh"
 #include "adasplats/gpu/sort_keys.h"
+#include "adasplats/gpu/wide_traversal.cuh"
 #include "adasplats/splats/measured_ray.h"
 #include "adasplats/splats/present_disks.h"
+#include "adasplats/trace/castable.h"
 
 namespace adasplats::gpu {
 namespace {
 
-constexpr std::size_t kHitBytes = std::size_t{1} << 28;  // of the hits at once
 constexpr std::size_t kMostRays = std::size_t{1} << 22;  // at once
+constexpr int kPostpone = 10;                            // as in cuda_scene.cu
 
 /// Adds to a number that is not negative, or to one that wraps: the same bits.
 __device__ void add_to(std::int64_t& sum, std::int64_t value) {
   atomicAdd(reinterpret_cast<unsigned long long*>(&sum), static_cast<unsigned long long>(value));
 }
 
-/// Calls body(point, ray, hits) on the device for the rays of `casting`; `hits` are casting.depth
-/// ones, behind the last of a ray's own stands one that is not valid.
+/// How many rays there are of which every `stride`-th is taken, the first at `first`.
+std::size_t taken_of(std::size_t rays, std::size_t first, std::size_t stride) {
+  return rays > first ? (rays - first + stride - 1) / stride : 0;
+}
+
+/// Calls body(point, ray, hit) on the device for the rays of `casting` with the nearest hit of
+/// each, which may be none.
 template <class Body>
-void cast(const Disk* disks, std::size_t count, const MeasuredPoints& points,
-          const DeviceBuffer<std::uint32_t>& numbers, const RayCasting& casting,
-          cudaStream_t stream, Body body) {
-  if (numbers.size() <= casting.first) return;
+void cast_nearest(const Disk* disks, std::size_t count, const MeasuredPoints& points,
+                  const DeviceBuffer<std::uint32_t>& numbers, const RayCasting& casting,
+                  cudaStream_t stream, Body body) {
+  const std::size_t wanted = taken_of(numbers.size(), casting.first, casting.stride);
+  if (wanted == 0) return;
   const std::unique_ptr<DeviceScene> scene = make_cuda_scene_of_device_disks(disks, count, stream);
-  const std::size_t depth = static_cast<std::size_t>(casting.depth);
-  const std::size_t wanted = (numbers.size() - casting.first + casting.stride - 1) / casting.stride;
-  const std::size_t at_once =
-      std::min({wanted, kMostRays, std::max<std::size_t>(1, kHitBytes / (depth * sizeof(Hit)))});
+  const std::size_t at_once = std::min(wanted, kMostRays);
   const DeviceBuffer<Ray> rays(at_once, stream);
-  const DeviceBuffer<Hit> hits(at_once * depth, stream);
+  const DeviceBuffer<Hit> hits(at_once, stream);
   RaySource source;
   source.rays = rays.data();
   for (std::size_t done = 0; done < wanted; done += at_once) {
@@ -46,14 +51,27 @@ void cast(const Disk* disks, std::size_t count, const MeasuredPoints& points,
                to[k] =
                    measured_ray(points.sensors[point], points.positions[point], casting.beyond_m);
              });
-    scene->cast(source, batch, casting.depth, hits.data(), stream);
+    scene->cast(source, batch, 1, hits.data(), stream);
     for_each(batch, stream, "count rays",
-             [first, stride = casting.stride, depth, from = rays.data(), found = hits.data(),
-              body] __device__(std::uint64_t k) {
-               body(first[k * stride], from[k], found + k * depth);
-             });
+             [first, stride = casting.stride, from = rays.data(), found = hits.data(),
+              body] __device__(std::uint64_t k) { body(first[k * stride], from[k], found[k]); });
   }
 }
+
+/// Counts every disk that one ray crosses, as a tree offers them.
+struct EvidenceOfRay {
+  const Disk* disks;
+  EvidenceView counts;
+  Ray ray;
+  float free_until;
+
+  /// No hit ends the search.
+  __device__ float reach(float t_max) const { return t_max; }
+  __device__ void offer(float t, std::uint32_t disk) const {
+    auto* const rings = t < free_until ? counts.contradicted : counts.confirmed;
+    atomicAdd(rings + disk * EvidenceView::kBins + evidence_ring(disks[disk], ray, t), 1U);
+  }
+};
 
 /// Whether any disk has a radius. Waits for the stream.
 bool any_present(const Disk* disks, std::size_t count, cudaStream_t stream) {
@@ -77,7 +95,8 @@ DeviceBuffer<std::uint32_t> points_of_rays(const MeasuredPoints& points, std::si
            [points, least_range_m, from = order.data(),
             to = has_ray.data()] __device__(std::uint64_t i) {
              const std::uint32_t k = from[i];
-             to[i] = has_measured_ray(points.sensors[k], points.positions[k], least_range_m);
+             to[i] = is_beam(points.kind(k)) &&
+                     has_measured_ray(points.sensors[k], points.positions[k], least_range_m);
            });
   DeviceBuffer<std::uint32_t> numbers = flagged(has_ray.data(), count, stream);
   for_each(numbers.size(), stream, "order rays",
@@ -103,18 +122,17 @@ DeviceEvidence DeviceRays::evidence(const Disk* disks, std::size_t count,
                           DeviceBuffer<std::uint32_t>(bins, stream_)};
   evidence.confirmed.fill_bytes(0);
   evidence.contradicted.fill_bytes(0);
-  const RayCasting casting = {options.phase, options.stride, options.margin_m, options.depth};
-  cast(disks, count, points_, numbers_, casting, stream_,
-       [disks, counts = evidence.view(), margin_m = options.margin_m,
-        depth = options.depth] __device__(std::uint32_t, const Ray& ray, const Hit* hits) {
-         const float free_until = ray.t_max - 2 * margin_m;
-         for (int h = 0; h < depth && hits[h].valid(); ++h) {
-           const std::size_t disk = hits[h].primitive;
-           const std::uint32_t ring = evidence_ring(disks[disk], ray, hits[h].t);
-           auto* const rings = hits[h].t < free_until ? counts.contradicted : counts.confirmed;
-           atomicAdd(rings + disk * EvidenceView::kBins + ring, 1U);
-         }
-       });
+  const WideTree<LeafDisk> tree = build_tree(disks, count, TreeOptions{}, stream_);
+  for_each(taken_of(numbers_.size(), options.phase, options.stride), stream_, "count rays",
+           [disks, counts = evidence.view(), points = points_, options, tree = tree.view(),
+            numbers = numbers_.data()] __device__(std::uint64_t k) {
+             const std::uint32_t point = numbers[options.phase + k * options.stride];
+             const Ray ray =
+                 measured_ray(points.sensors[point], points.positions[point], options.margin_m);
+             if (!castable(ray)) return;
+             EvidenceOfRay of_ray = {disks, counts, ray, ray.t_max - 2 * options.margin_m};
+             walk<kPostpone>(tree, ray, box_ray(ray), of_ray);
+           });
   return evidence;
 }
 
@@ -124,17 +142,17 @@ DeviceBuffer<ShiftSums> DeviceRays::shifts(const Disk* disks, std::size_t count,
   sums.fill_bytes(0);
   RayCasting casting;
   casting.beyond_m = static_cast<float>(options.reach_m);
-  cast(disks, count, points_, numbers_, casting, stream_,
-       [disks, options, points = points_, to = sums.data()] __device__(
-           std::uint32_t point, const Ray& ray, const Hit* hits) {
-         if (!hits[0].valid()) return;
-         const float range_m = length(points.positions[point] - points.sensors[point]);
-         const std::uint32_t disk = hits[0].primitive;
-         const ShiftSums part = shift_of_ray(disks[disk], ray, hits[0].t, range_m, options);
-         add_to(to[disk].weight, part.weight);
-         add_to(to[disk].shift, part.shift);
-         atomicAdd(&to[disk].rays, part.rays);
-       });
+  cast_nearest(disks, count, points_, numbers_, casting, stream_,
+               [disks, options, points = points_, to = sums.data()] __device__(
+                   std::uint32_t point, const Ray& ray, Hit hit) {
+                 if (!hit.valid()) return;
+                 const float range_m = length(points.positions[point] - points.sensors[point]);
+                 const std::uint32_t disk = hit.primitive;
+                 const ShiftSums part = shift_of_ray(disks[disk], ray, hit.t, range_m, options);
+                 add_to(to[disk].weight, part.weight);
+                 add_to(to[disk].shift, part.shift);
+                 atomicAdd(&to[disk].rays, part.rays);
+               });
   return sums;
 }
 
@@ -145,10 +163,10 @@ DeviceBuffer<std::uint8_t> DeviceRays::missed(const Disk* disks, std::size_t cou
   if (!any_present(disks, count, stream_)) return missed;
   RayCasting casting;
   casting.beyond_m = beyond_m;
-  cast(disks, count, points_, numbers_, casting, stream_,
-       [to = missed.data()] __device__(std::uint32_t point, const Ray&, const Hit* hits) {
-         if (!hits[0].valid()) to[point] = 1;
-       });
+  cast_nearest(disks, count, points_, numbers_, casting, stream_,
+               [to = missed.data()] __device__(std::uint32_t point, const Ray&, Hit hit) {
+                 if (!hit.valid()) to[point] = 1;
+               });
   return missed;
 }
 

@@ -82,6 +82,16 @@ DeviceBuffer<std::uint8_t> cells_to_split(const DeviceBuffer<LocalPlane>& planes
   return split;
 }
 
+std::size_t count_disks(const DeviceBuffer<Disk>& disks, cudaStream_t stream) {
+  DeviceBuffer<std::uint32_t> count(1, stream);
+  count.fill_bytes(0);
+  for_each(disks.size(), stream, "count disks",
+           [from = disks.data(), to = count.data()] __device__(std::uint64_t i) {
+             if (from[i].radius > 0) atomicAdd(to, 1U);
+           });
+  return count.download().front();
+}
+
 class CudaConsistentSteps final : public ConsistentSteps, public ShowsConsistentState {
  public:
   /// The device must be the current one.
@@ -102,10 +112,10 @@ class CudaConsistentSteps final : public ConsistentSteps, public ShowsConsistent
 
   void fit_seeds(const ConsistentOptions& options) override {
     const DeviceGuard guard(device_);
-    const double typical_spacing = split_where_not_flat(options);
+    const TypicalSpacing typical = split_where_not_flat(options);
     index_.emplace(cells_.positions.data(), cells_.size(), stream());
     planes_ = planes_on_device(cells_.view(), *index_, options.planes, stream());
-    seeds_ = seeds_of_planes(points(), cells_.view(), typical_spacing, options, planes_, stream());
+    seeds_ = seeds_of_planes(points(), cells_.view(), typical, options, planes_, stream());
     stream_.wait("fit planes");
   }
 
@@ -123,7 +133,12 @@ class CudaConsistentSteps final : public ConsistentSteps, public ShowsConsistent
 
   void cover(bool checked, const ConsistentOptions& options) override {
     const DeviceGuard guard(device_);
-    cover_.emplace(seeds_.data(), *index_, options.cover_options(checked), stream());
+    const DeviceBuffer<std::uint8_t> unchecked =
+        checked && !cloud_.origin_kinds.empty()
+            ? cells_without_beam(points(), cells_.view(), stream())
+            : DeviceBuffer<std::uint8_t>();
+    cover_.emplace(seeds_.data(), unchecked.data(), *index_, options.cover_options(checked),
+                   stream());
     stream_.wait("grow disks");
   }
 
@@ -161,6 +176,12 @@ class CudaConsistentSteps final : public ConsistentSteps, public ShowsConsistent
     stream_.wait("fill gaps");
   }
 
+  ConsistentCounts counts() const override {
+    const DeviceGuard guard(device_);
+    return {cells_.size(), count_disks(seeds_, stream()), rays_ ? rays_->size() : 0,
+            count_disks(chosen_, stream())};
+  }
+
   ConsistentSplats take_splats() override {
     const DeviceGuard guard(device_);
     return splats_of(chosen_, cells_, cloud_, stream());
@@ -188,20 +209,23 @@ class CudaConsistentSteps final : public ConsistentSteps, public ShowsConsistent
   cudaStream_t stream() const { return stream_.get(); }
 
   MeasuredPoints points() const {
-    return {cloud_.positions.data(), cloud_.sensor_positions.data()};
+    return {cloud_.positions.data(), cloud_.sensor_positions.data(), cloud_.origin_kinds.data()};
   }
 
   DeviceEvidence count(const DeviceBuffer<Disk>& disks, const EvidenceOptions& options) const {
     return rays_->evidence(disks.data(), disks.size(), options);
   }
 
-  /// Gives the median spacing of the cells before.
-  double split_where_not_flat(const ConsistentOptions& options) {
+  /// Gives the median spacings of the cells before.
+  TypicalSpacing split_where_not_flat(const ConsistentOptions& options) {
     const DevicePointIndex index(cells_.positions.data(), cells_.size(), stream());
     const auto planes =
         planes_on_device(cells_.view(), index, options.planes_for_splitting(), stream());
-    const double spacing =
-        median_spacing(planes, spacing_units(points(), cells_.view(), stream()), stream());
+    const auto spacing_of = [&](bool with_beam) {
+      return median_spacing(planes, spacing_units(points(), cells_.view(), with_beam, stream()),
+                            stream());
+    };
+    const TypicalSpacing spacing = {spacing_of(true), spacing_of(false)};
     if (options.small_cell_m == 0) return spacing;
     const auto split = cells_to_split(planes, options.split_scale, stream());
     cells_ = split_on_device(cloud_.positions.data(), cells_, split.data(), options.small_cell_m,

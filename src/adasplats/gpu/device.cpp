@@ -12,7 +12,21 @@ namespace adasplats {
 
 namespace {
 
-constexpr int kLeastMajor = 7, kLeastMinor = 5;  // what the oldest code of this build is made for
+constexpr int kOldest = 75;  // Turing, as 10 * major + minor
+static_assert(ADASPLATS_OLDEST_GPU >= kOldest);
+
+std::string capability_text(int capability) {
+  return std::to_string(capability / 10) + "." + std::to_string(capability % 10);
+}
+
+/// Why this build has no code for a card.
+std::string why_too_old(const std::string& name, int capability) {
+  if (capability < kOldest)
+    return name + " is too old: compute capability 7.5 (Turing) or newer is needed";
+  return name + " has compute capability " + capability_text(capability) +
+         " and this build is made for " + capability_text(ADASPLATS_OLDEST_GPU) +
+         " or newer; configure it with -DCMAKE_CUDA_ARCHITECTURES=" + std::to_string(capability);
+}
 
 std::string version_text(int version) {
   return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10);
@@ -57,11 +71,9 @@ GpuSearch find_gpus() {
     device.compute_major = properties.major;
     device.compute_minor = properties.minor;
     device.memory_bytes = properties.totalGlobalMem;
-    const bool new_enough = properties.major > kLeastMajor ||
-                            (properties.major == kLeastMajor && properties.minor >= kLeastMinor);
-    if (!new_enough) {
-      search.reason =
-          device.name + " is too old: compute capability 7.5 (Turing) or newer is needed";
+    const int capability = 10 * properties.major + properties.minor;
+    if (capability < ADASPLATS_OLDEST_GPU) {
+      search.reason = why_too_old(device.name, capability);
       continue;
     }
     search.devices.push_back(std::move(device));

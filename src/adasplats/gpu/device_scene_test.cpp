@@ -344,8 +344,8 @@ TEST_P(ComparedScene, AHundredThousandDisksAreHitAsByBruteForce) {
   expect_oracle(scene, awkward_rays(place, scene, 4'000));
 }
 
-// Oracle: Embree, which is brute force bit for bit up to 1024 m. The share that differs is
-// published; where boxes are tested by someone else's code it need not be zero.
+// Oracle: Embree, which is brute force bit for bit up to 1024 m. The margin of the boxes covers
+// rounding of any box test in single precision, OptiX's own, too.
 TEST_P(ComparedScene, AMillionRaysAreHitAsByEmbree) {
   const Place place = {6, {0, 0, 0}, 60, 0.05, 1};
   const auto disks = random_disks(place, 300'000);
@@ -354,12 +354,11 @@ TEST_P(ComparedScene, AMillionRaysAreHitAsByEmbree) {
   const auto expected = make_caster(scene, Backend::embree)->cast(rays, 1);
   const auto found = cast(scene, rays);
   const std::size_t different = count_different(found, expected);
-  const double share = static_cast<double>(different) / static_cast<double>(rays.size());
   RecordProperty("rays", static_cast<int>(rays.size()));
   RecordProperty("rays_that_differ", static_cast<int>(different));
   std::cout << name_of(GetParam()) << ": " << different << " of " << rays.size()
             << " rays differ from Embree\n";
-  EXPECT_LE(share, GetParam() == Backend::optix ? 1e-5 : 0.0);
+  EXPECT_EQ(different, 0U);
   EXPECT_GT(3 * count_valid(expected), rays.size());
 }
 

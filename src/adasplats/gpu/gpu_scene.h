@@ -85,7 +85,7 @@ class GpuRenderer {
   GpuRenderer(const GpuRenderer&) = delete;
   GpuRenderer& operator=(const GpuRenderer&) = delete;
 
-  /// The picture that render_image() makes, to one part in 255.
+  /// The picture that render_image() makes: the same bytes where the hits are.
   Image render(const Camera& camera);
 
   /// Calls `sink` with the pixels (8-bit RGB, rows from the top) of every camera, in their order;

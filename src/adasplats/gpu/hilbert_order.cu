@@ -85,6 +85,7 @@ struct ValueBits {
       case TieBreaker::Kind::real: return sortable_bits(static_cast<const float*>(by.values)[at]);
       case TieBreaker::Kind::whole_32: return static_cast<const std::uint32_t*>(by.values)[at];
       case TieBreaker::Kind::whole_16: return static_cast<const std::uint16_t*>(by.values)[at];
+      case TieBreaker::Kind::whole_8: return static_cast<const std::uint8_t*>(by.values)[at];
     }
     return 0;
   }

@@ -13,7 +13,7 @@ namespace adasplats::gpu {
 
 /// Private to gpu/: one value a point, in device memory, that decides where others are equal.
 struct TieBreaker {
-  enum class Kind : std::uint8_t { real, whole_32, whole_16 };
+  enum class Kind : std::uint8_t { real, whole_32, whole_16, whole_8 };
   Kind kind = Kind::real;
   const void* values = nullptr;
   std::uint32_t stride = 1;  ///< from point to point, in values
@@ -21,6 +21,7 @@ struct TieBreaker {
   static TieBreaker of(const float* values) { return {Kind::real, values}; }
   static TieBreaker of(const std::uint32_t* values) { return {Kind::whole_32, values}; }
   static TieBreaker of(const std::uint16_t* values) { return {Kind::whole_16, values}; }
+  static TieBreaker of(const std::uint8_t* values) { return {Kind::whole_8, values}; }
   static TieBreaker of(const Vec3f* values, int axis) {
     return {Kind::real, reinterpret_cast<const float*>(values) + axis, 3};
   }

@@ -67,8 +67,9 @@ optix::DeviceAddress address(const void* memory) {
 }
 
 /// Disks and triangles are primitives of ours, not OptiX's triangles: so THE intersection functions
-/// decide and hits have the CPU's bits; their boxes carry the margin that keeps any from being
-/// lost.
+/// decide and hits have the CPU's bits; their boxes carry the margin that keeps any from being lost
+/// by a box test in single precision. How OptiX tests boxes is not documented: the tests allow no
+/// difference, but cards with RT cores have not been measured (docs/performance.md).
 class OptixScene final : public DeviceScene {
  public:
   explicit OptixScene(const SceneView& scene)

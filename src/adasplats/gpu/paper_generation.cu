@@ -63,15 +63,16 @@ void refine(const DeviceCloud& cloud, const DeviceLists& lists, const AllRules& 
 DeviceBuffer<SurfacePoint> surface_points(const DeviceCloud& cloud, const Vec3f* normals,
                                           const SemanticGroup* groups, cudaStream_t stream) {
   DeviceBuffer<SurfacePoint> points(cloud.size(), stream);
-  for_each(
-      cloud.size(), stream, "orient normals",
-      [groups, normals, positions = cloud.positions.data(), sensors = cloud.sensor_positions.data(),
-       classes = cloud.classes.data(), to = points.data()] __device__(std::uint64_t i) {
-        const Vec3f normal = sensors == nullptr ? with_canonical_sign(normals[i])
-                                                : oriented(normals[i], sensors[i] - positions[i]);
-        to[i] = {positions[i], classes == nullptr ? 0U : classes[i], normal,
-                 groups == nullptr ? 0U : static_cast<std::uint32_t>(groups[i])};
-      });
+  for_each(cloud.size(), stream, "orient normals",
+           [groups, normals, positions = cloud.positions.data(),
+            sensors = cloud.sensor_positions.data(), kinds = cloud.origin_kinds.data(),
+            classes = cloud.classes.data(), to = points.data()] __device__(std::uint64_t i) {
+             const bool known = sensors != nullptr && (kinds == nullptr || is_known(kinds[i]));
+             const Vec3f normal = !known ? with_canonical_sign(normals[i])
+                                         : oriented(normals[i], sensors[i] - positions[i]);
+             to[i] = {positions[i], classes == nullptr ? 0U : classes[i], normal,
+                      groups == nullptr ? 0U : static_cast<std::uint32_t>(groups[i])};
+           });
   return points;
 }
 
@@ -89,13 +90,16 @@ __device__ GrownSplat grow_splat(const SurfacePoint& seed, const ListsView& list
   const std::uint32_t* ranks = lists.of(point);
   const std::uint32_t size = lists.sizes[point];
   std::uint64_t stop = ~std::uint64_t{0};
+  std::uint32_t squared_reach = 0;  // as bits, which sort as the float does
   for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes) {
     const SurfacePoint other = load(points, ranks[k]);
     const std::uint64_t key =
         neighbor_key(squared_distance(other.position, seed.position), ranks[k]);
+    squared_reach = std::max(squared_reach, static_cast<std::uint32_t>(key >> 32));
     if (key < stop && stops(seed, other, rules)) stop = key;
   }
   stop = warp_min(stop);
+  const ExactAddends exact = exact_shifts(size, __uint_as_float(warp_max(squared_reach)), rules);
   double sum = 0;
   std::uint32_t included = 0;
   std::uint64_t last = 0;
@@ -103,7 +107,7 @@ __device__ GrownSplat grow_splat(const SurfacePoint& seed, const ListsView& list
     const Vec3f other = points[ranks[k]].position;
     const std::uint64_t key = neighbor_key(squared_distance(other, seed.position), ranks[k]);
     if (key >= stop) continue;
-    sum += static_cast<double>(dot(seed.normal, other - seed.position));
+    sum += exact(static_cast<double>(dot(seed.normal, other - seed.position)));
     ++included;
     last = key > last ? key : last;
   }
@@ -161,7 +165,7 @@ DeviceBuffer<Disk> disks_of(const DeviceBuffer<std::uint32_t>& seeds,
 /// Waits for the step before: steps are timed, and its errors are its own.
 void begin(std::string_view name, cudaStream_t stream, StepSink step) {
   cuda_check(cudaStreamSynchronize(stream), "make splats");
-  step(name);
+  step(name, 0);
 }
 
 }  // namespace
@@ -181,7 +185,7 @@ DeviceGeneration generate_splats(const DeviceCloud& cloud,
   if (adaptive)
     result.groups = groups.empty() ? groups_of_kinds(base.kinds, stream) : copied(groups, stream);
   const auto rules_of_groups =
-      group_rules(options, result.radius_m, result.error_m, !cloud.sensor_positions.empty());
+      group_rules(options, result.radius_m, result.error_m, has_all_origins(cloud, stream));
   AllRules rules;
   std::copy(rules_of_groups.begin(), rules_of_groups.end(), rules.of);
 

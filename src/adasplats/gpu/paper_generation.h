@@ -19,7 +19,7 @@ struct DeviceGeneration {
   double error_m = 0;                  ///< E
 };
 
-/// What generate_splats() gives, up to rounding. `groups` are empty or one a point of the cloud.
+/// What generate_splats() gives, the same bits. `groups` are empty or one a point of the cloud.
 /// Errors: usage (neighbourhoods too large for a GPU).
 DeviceGeneration generate_splats(const DeviceCloud& cloud,
                                  const DeviceBuffer<SemanticGroup>& groups,

@@ -61,11 +61,11 @@ struct Alike {
   }
 };
 
-Alike alike_in(const Centers& centers, const BuildOptions& options) {
+Alike alike_in(const Centers& centers, const BuildOptions& options, cudaStream_t stream) {
   const bool by_class = options.method == SplatMethod::semantic;
   return {centers.disks.data(), by_class ? centers.cloud.classes.data() : nullptr,
           centers.groups.data(), static_cast<float>(options.smoothness),
-          !centers.cloud.sensor_positions.empty()};
+          has_all_origins(centers.cloud, stream)};
 }
 
 /// New points, each with the splat that it takes its attributes from.
@@ -138,7 +138,7 @@ NewPoints interpolate_points(const Centers& centers, double radius_m, const Buil
         const bool sparse = densities[splat] < wanted;
         return sparse ? NeighborLimit{densities[splat], radius * radius} : NeighborLimit{0, -1.0F};
       },
-      Fill{alike_in(centers, options), densities.data(), wanted, made.positions.data(),
+      Fill{alike_in(centers, options, stream), densities.data(), wanted, made.positions.data(),
            made.splats.data(), count.data()});
   const std::size_t size = read_value(count.data(), stream);
   const DeviceBuffer<std::uint32_t> all = ascending_numbers(size, stream);

@@ -17,7 +17,7 @@ struct DeviceResampled {
   std::size_t new_points = 0;
 };
 
-/// What resample() gives, up to rounding, but in canonical order.
+/// What resample() gives, the same bits, but in canonical order.
 /// Errors: usage (splats are too dense for a GPU).
 DeviceResampled resample(const DeviceCloud& cloud, const DeviceGeneration& first,
                          const BuildOptions& options, cudaStream_t stream);

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 
@@ -29,9 +30,13 @@ DeviceBuffer<Moments> moments_of(const Vec3f* points, const DeviceLists& lists,
                   const std::uint32_t* ranks = view.of(i);
                   const std::uint32_t size = view.sizes[i];
                   const Vec3f own = points[i];
+                  float extent_m = 0;
+                  for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes)
+                    extent_m = std::max(extent_m, extent(points[ranks[k]] - own));
+                  const ExactMoments exact(size, warp_largest(extent_m));
                   Moments part;
                   for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes)
-                    part.add(points[ranks[k]] - own);
+                    part.add(points[ranks[k]] - own, exact);
                   const Moments whole = sum_of_lanes(part);
                   if (lane_of_thread() == 0) to[i] = whole;
                 });
@@ -61,27 +66,33 @@ struct PlaneSums {
 /// Adds up the distances of each list to its plane, and votes.
 void measure_planes(const Vec3f* points, const DeviceLists& lists, const Vec3f* normals,
                     PlaneSums sums, cudaStream_t stream) {
-  for_each_warp(
-      lists.size(), stream, "measure distances to planes",
-      [points, normals, sums, view = lists.view()] __device__(std::uint32_t i) {
-        const std::uint32_t* ranks = view.of(i);
-        const std::uint32_t size = view.sizes[i];
-        const Vec3f own = points[i], normal = normals[i];
-        PlaneDistances part;
-        for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes)
-          part.add(static_cast<double>(distance_to_plane(points[ranks[k]] - own, normal)));
-        const PlaneDistances whole{warp_sum(part.sum), warp_sum(part.sum_of_squares),
-                                   warp_sum(part.count)};
-        if (lane_of_thread() == 0) sums.errors[i] = static_cast<float>(whole.sum);
-        if (sums.votes == nullptr) return;
-        const double limit = sums.sigmas * whole.sigma();
-        for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes) {
-          const std::uint32_t other = ranks[k];
-          atomicAdd(sums.memberships + other, 1U);
-          if (static_cast<double>(distance_to_plane(points[other] - own, normal)) > limit)
-            atomicAdd(sums.votes + other, 1U);
-        }
-      });
+  for_each_warp(lists.size(), stream, "measure distances to planes",
+                [points, normals, sums, view = lists.view()] __device__(std::uint32_t i) {
+                  const std::uint32_t* ranks = view.of(i);
+                  const std::uint32_t size = view.sizes[i];
+                  const Vec3f own = points[i], normal = normals[i];
+                  const auto distance_m = [&](std::uint32_t k) {
+                    return distance_to_plane(points[ranks[k]] - own, normal);
+                  };
+                  float largest_m = 0;
+                  for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes)
+                    largest_m = std::max(largest_m, distance_m(k));
+                  const ExactDistances exact(size, warp_largest(largest_m));
+                  PlaneDistances part;
+                  for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes)
+                    part.add(distance_m(k), exact);
+                  const PlaneDistances whole{warp_sum(part.sum), warp_sum(part.sum_of_squares),
+                                             warp_sum(part.count)};
+                  if (lane_of_thread() == 0) sums.errors[i] = static_cast<float>(whole.sum);
+                  if (sums.votes == nullptr) return;
+                  const double limit = sums.sigmas * whole.sigma();
+                  for (std::uint32_t k = lane_of_thread(); k < size; k += kWarpLanes) {
+                    const std::uint32_t other = ranks[k];
+                    atomicAdd(sums.memberships + other, 1U);
+                    if (static_cast<double>(distance_to_plane(points[other] - own, normal)) > limit)
+                      atomicAdd(sums.votes + other, 1U);
+                  }
+                });
 }
 
 double mean_error(const DeviceBuffer<float>& sums, const DeviceLists& lists, cudaStream_t stream) {

@@ -21,8 +21,8 @@ struct DeviceBase {
   DeviceBuffer<std::uint32_t> votes;
 };
 
-/// What base_neighborhoods() gives, up to rounding: R has the same bits, and so have the sets of
-/// neighbours. `points` (device memory) are those of the index, by rank.
+/// What base_neighborhoods() gives, the same bits. `points` (device memory) are those of the index,
+/// by rank.
 DeviceBase base_neighborhoods(const Vec3f* points, const DevicePointIndex& index,
                               const BaseNeighborhoodOptions& options, cudaStream_t stream);
 

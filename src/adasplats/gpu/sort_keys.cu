@@ -129,6 +129,13 @@ DeviceBuffer<std::uint64_t> running_sums(const std::uint32_t* counts, std::size_
   return sums;
 }
 
+void sum_in_place(std::uint64_t* values, std::size_t count, cudaStream_t stream) {
+  with_scratch(stream, "add on the GPU", [&](void* scratch, std::size_t& bytes) {
+    return cub::DeviceScan::ExclusiveSum(scratch, bytes, values, values, static_cast<int>(count),
+                                         stream);
+  });
+}
+
 double sum_in_chunks(const float* values, std::size_t count, cudaStream_t stream) {
   constexpr std::size_t kGrain = 4096;
   const std::size_t chunks = (count + kGrain - 1) / kGrain;

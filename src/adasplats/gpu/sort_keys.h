@@ -53,6 +53,9 @@ DeviceBuffer<std::uint32_t> run_begins(const std::uint64_t* sorted_keys, std::si
 DeviceBuffer<std::uint64_t> running_sums(const std::uint32_t* counts, std::size_t count,
                                          cudaStream_t stream);
 
+/// values[i] becomes the sum of those before it.
+void sum_in_place(std::uint64_t* values, std::size_t count, cudaStream_t stream);
+
 /// Sum of floats in double: the same bits as Executor::sum_chunks over chunks of 4096. Waits for
 /// the stream.
 double sum_in_chunks(const float* values, std::size_t count, cudaStream_t stream);

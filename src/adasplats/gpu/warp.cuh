@@ -48,6 +48,14 @@ __device__ inline std::uint32_t warp_min(std::uint32_t value) {
 
 __device__ inline std::uint32_t warp_max(std::uint32_t value) { return ~warp_min(~value); }
 
+/// Of floats that are not negative: their bits sort as they do.
+__device__ inline float warp_largest(float value) {
+  return __uint_as_float(warp_max(__float_as_uint(value)));
+}
+__device__ inline float warp_smallest(float value) {
+  return __uint_as_float(warp_min(__float_as_uint(value)));
+}
+
 __device__ inline std::uint64_t warp_min(std::uint64_t value) {
   const std::uint32_t high = warp_min(static_cast<std::uint32_t>(value >> 32));
   const bool is_low = value >> 32 == high;

@@ -1,16 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include <thrust/iterator/counting_iterator.h>
-
-#include <cub/device/device_radix_sort.cuh>
-#include <cub/device/device_reduce.cuh>
-#include <cub/device/device_scan.cuh>
-#include <cub/device/device_select.cuh>
 #include <string>
 #include <utility>
 
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/launch.cuh"
+#include "adasplats/gpu/sort_keys.h"
 #include "adasplats/gpu/wide_tree.h"
 
 // Three steps, all on the device.
@@ -35,10 +30,6 @@ __host__ __device__ inline float half_area(const Box& box) {
   const Vec3f size = box.high - box.low;
   return size.x * size.y + size.y * size.z + size.z * size.x;
 }
-
-struct UniteBoxes {
-  __host__ __device__ Box operator()(const Box& a, const Box& b) const { return united(a, b); }
-};
 
 __device__ inline float largest_coordinate(const Box& box) {
   float largest = 0;
@@ -181,24 +172,24 @@ __global__ void __launch_bounds__(kPairBlock)
   nearest[place] = best;
 }
 
-template <class T>
-T read_back(const T* value, cudaStream_t stream, const char* doing) {
-  T result;
-  cuda_check(cudaMemcpyAsync(&result, value, sizeof(T), cudaMemcpyDeviceToHost, stream), doing);
-  cuda_check(cudaStreamSynchronize(stream), doing);
-  return result;
-}
-
-/// Calls a CUB function twice: for the size of its memory, then with it.
-template <class F>
-void with_scratch(cudaStream_t stream, const char* doing, const F& call) {
-  std::size_t bytes = 0;
-  cuda_check(call(nullptr, bytes), doing);
-  DeviceBuffer<std::uint8_t> scratch(bytes, stream);
-  cuda_check(call(scratch.data(), bytes), doing);
-}
-
 constexpr const char* kDoing = "build the ray tree on the GPU";
+
+/// The box around `count` boxes, at least one. Which of them meet first changes nothing.
+DeviceBuffer<Box> box_of_all(const Box* boxes, std::size_t count, cudaStream_t stream) {
+  DeviceBuffer<Box> parts;
+  for (const std::size_t threads : {std::size_t{65536}, std::size_t{256}, std::size_t{1}}) {
+    DeviceBuffer<Box> fewer(threads, stream);
+    for_each(threads, stream, kDoing, [=, to = fewer.data()] __device__(std::uint64_t i) {
+      Box box = boxes[::min(std::size_t{i}, count - 1)];
+      for (std::size_t k = i + threads; k < count; k += threads) box = united(box, boxes[k]);
+      to[i] = box;
+    });
+    parts = std::move(fewer);
+    boxes = parts.data();
+    count = threads;
+  }
+  return parts;
+}
 
 /// Builds one tree. Everything is public because nvcc wants that where a function holds a lambda
 /// for the device.
@@ -229,16 +220,15 @@ struct Builder {
 
   /// Indices of the primitives that are there, along a Morton curve.
   void sort_along_curve() {
-    ids_ = DeviceBuffer<std::uint32_t>(given_, stream_);
-    DeviceBuffer<std::uint32_t> chosen(1, stream_);
     const Primitive* primitives = primitives_;
-    with_scratch(stream_, kDoing, [&](void* memory, std::size_t& bytes) {
-      return cub::DeviceSelect::If(
-          memory, bytes, thrust::counting_iterator<std::uint32_t>(0), ids_.data(), chosen.data(),
-          given_, [primitives] __device__(std::uint32_t i) { return is_there(primitives[i]); },
-          stream_);
-    });
-    count_ = given_ == 0 ? 0 : read_back(chosen.data(), stream_, kDoing);
+    {
+      DeviceBuffer<std::uint8_t> there(given_, stream_);
+      for_each(given_, stream_, kDoing, [=, to = there.data()] __device__(std::uint64_t i) {
+        to[i] = is_there(primitives[i]) ? 1 : 0;
+      });
+      ids_ = flagged(there.data(), given_, stream_);
+    }
+    count_ = static_cast<std::uint32_t>(ids_.size());
     if (count_ == 0) return;
 
     DeviceBuffer<Box> boxes(count_, stream_);
@@ -246,15 +236,8 @@ struct Builder {
     Box* boxes_data = boxes.data();
     for_each(count_, stream_, kDoing,
              [=] __device__(std::uint64_t i) { boxes_data[i] = box_of(primitives[ids[i]]); });
-    DeviceBuffer<Box> whole(1, stream_);
-    constexpr float kInfinity = HUGE_VALF;
-    const Box nothing = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-    with_scratch(stream_, kDoing, [&](void* memory, std::size_t& bytes) {
-      return cub::DeviceReduce::Reduce(memory, bytes, boxes_data, whole.data(), count_,
-                                       UniteBoxes{}, nothing, stream_);
-    });
-    DeviceBuffer<std::uint64_t> keys(count_, stream_), sorted_keys(count_, stream_);
-    DeviceBuffer<std::uint32_t> sorted_ids(count_, stream_);
+    const DeviceBuffer<Box> whole = box_of_all(boxes_data, count_, stream_);
+    DeviceBuffer<std::uint64_t> keys(count_, stream_);
     std::uint64_t* keys_data = keys.data();
     const Box* whole_data = whole.data();
     for_each(count_, stream_, kDoing, [=] __device__(std::uint64_t i) {
@@ -268,12 +251,7 @@ struct Builder {
       }
       keys_data[i] = key;
     });
-    with_scratch(stream_, kDoing, [&](void* memory, std::size_t& bytes) {
-      return cub::DeviceRadixSort::SortPairs(memory, bytes, keys.data(), sorted_keys.data(),
-                                             ids_.data(), sorted_ids.data(), count_, 0, 63,
-                                             stream_);
-    });
-    ids_ = std::move(sorted_ids);
+    sort_pairs(keys, ids_, stream_, 0, 63);
   }
 
   WideTree<Leaf> build_from(bool balanced) {
@@ -319,10 +297,7 @@ struct Builder {
         }
         offsets_data[i] = flags;
       });
-      with_scratch(stream_, kDoing, [&](void* memory, std::size_t& bytes) {
-        return cub::DeviceScan::ExclusiveSum(memory, bytes, offsets_data, offsets_data, left + 1,
-                                             stream_);
-      });
+      sum_in_place(offsets_data, left + 1, stream_);
       const std::uint32_t* from = clusters.data();
       std::uint32_t* to = next_clusters.data();
       for_each(left, stream_, kDoing, [=] __device__(std::uint64_t i) {
@@ -343,7 +318,7 @@ struct Builder {
         choose(tree, index, half_area(box));
         to[place] = node;
       });
-      const std::uint64_t sums = read_back(offsets.data() + left, stream_, kDoing);
+      const std::uint64_t sums = read_value(offsets.data() + left, stream_);
       left = static_cast<std::uint32_t>(sums >> 32);
       made += static_cast<std::uint32_t>(sums);
       std::swap(clusters, next_clusters);
@@ -537,7 +512,7 @@ WideTree<Leaf> Builder<Primitive, Leaf>::widen() {
       }
       out[task.place] = node;
     });
-    state = read_back(cursors.data(), stream_, kDoing);
+    state = read_value(cursors.data(), stream_);
     count = state.tasks;
     std::swap(tasks, next_tasks);
   }

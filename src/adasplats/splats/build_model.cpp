@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/splats/model_engine.h"
+#include "adasplats/surface/fusion_cell.h"
 
 namespace adasplats {
 namespace {
@@ -22,11 +25,11 @@ class StepClock {
   StepClock(const StepClock&) = delete;
   StepClock& operator=(const StepClock&) = delete;
 
-  void begin(std::string_view name) {
+  void begin(std::string_view name, int passes) {
     end();
     name_ = std::string(name);
     start_ = Clock::now();
-    progress_.begin_step(name, 0);
+    progress_.begin_step(name, static_cast<std::uint64_t>(passes) * kPassUnits);
     progress_.advance(0);
   }
   void end() {
@@ -72,18 +75,17 @@ void check(const BuildOptions& options) {
   require(consistent.cell_m > 0, "the cells of the consistent method must be greater than 0");
   require(consistent.small_cell_m >= 0 && consistent.small_cell_m < consistent.cell_m,
           "small cells must be smaller than the cells, or 0");
-  require(std::min(consistent.cover.sectors, consistent.unchecked_sectors) >= 0 &&
-              std::max(consistent.cover.sectors, consistent.unchecked_sectors) <= 16,
-          "sectors must be 0 to 16");
+  require(SectorReach::can_have(consistent.cover.sectors) &&
+              SectorReach::can_have(consistent.cover.unchecked_sectors),
+          "sectors must be 0, 1, 2, 4, 8 or 16");
   require(consistent.judge.core_rings >= 1 && consistent.judge.core_rings <= RayEvidence::kBins,
           "the rings of a disk's middle must be 1 to 16");
   require(consistent.cover.largest_radius_m >= 0, "the largest radius must not be negative");
   require(consistent.balance_rounds >= 0 && consistent.strict_rounds >= 0 &&
               consistent.settle_rounds >= 0,
           "rounds of the ray check must not be negative");
-  require(consistent.evidence_rays > 0 && consistent.evidence.stride > 0 &&
-              consistent.evidence.depth > 0,
-          "evidence rays, their stride and their depth must be greater than 0");
+  require(consistent.evidence_rays > 0 && consistent.evidence.stride > 0,
+          "evidence rays and their stride must be greater than 0");
 }
 
 /// The class of a point; an id that the scheme does not know is the input's fault.
@@ -93,15 +95,6 @@ const SemanticClass& class_of(const LabelScheme& labels, std::uint16_t id) {
     throw Error(ErrorKind::data, "label id " + std::to_string(id) +
                                      " is not in the label scheme '" + labels.name() + "'");
   return *found;
-}
-
-bool is_removed(const SemanticClass& semantic_class, DynamicRemoval removal) {
-  switch (removal) {
-    case DynamicRemoval::none: return false;
-    case DynamicRemoval::moving: return semantic_class.mobility == Mobility::moving;
-    case DynamicRemoval::movable: return semantic_class.mobility != Mobility::fixed;
-  }
-  return false;
 }
 
 /// One table entry for each of the 65,536 ids, so that 12 M points need no search.
@@ -114,16 +107,14 @@ std::vector<T> table_by_id(const std::vector<bool>& used, F&& value_of) {
 }
 
 ClassTables class_tables(const PointCloud& cloud, const LabelScheme* labels,
-                         const BuildOptions& options) {
+                         const BuildOptions& options, BuildReport& report) {
   ClassTables tables;
+  RemovedPoints removed = points_to_remove(cloud, labels, options.remove);
+  tables.removed = std::move(removed.ids);
+  report.removed_classes = std::move(removed.classes);
   if (labels == nullptr || cloud.classes.empty()) return tables;
   std::vector<bool> used(1 << 16);
   for (const std::uint16_t id : cloud.classes) used[id] = true;
-  if (options.remove != DynamicRemoval::none) {
-    tables.removed = table_by_id<std::uint8_t>(used, [&](std::uint16_t id) {
-      return static_cast<std::uint8_t>(is_removed(class_of(*labels, id), options.remove));
-    });
-  }
   if (options.method == SplatMethod::semantic) {
     tables.groups = table_by_id<SemanticGroup>(
         used, [&](std::uint16_t id) { return class_of(*labels, id).group; });
@@ -164,11 +155,11 @@ void put_splats(ConsistentSplats made, SplatModel& model) {
 /// The paper's methods.
 void run(PaperSteps& steps, PointCloud cloud, const ClassTables& tables,
          const BuildOptions& options, StepSink step, SplatModel& model, BuildReport& report) {
-  step("order");
+  step("order", 0);
   report.points_used = steps.load(std::move(cloud), tables);
   report.points_dynamic = report.points_in - report.points_used;
   if (options.denoise) {
-    step("denoising");
+    step("denoising", base_passes(options.radius_m));
     const std::size_t before = report.points_used;
     report.points_used = steps.denoise(options);
     report.points_noise = before - report.points_used;
@@ -176,7 +167,7 @@ void run(PaperSteps& steps, PointCloud cloud, const ClassTables& tables,
   require_points(report.points_used);
   const std::size_t splats = steps.generate(options, step);
   if (options.resample && options.method != SplatMethod::basic && splats > 0) {
-    step("resampling");
+    step("resampling", 1);
     const PaperSteps::Resampled resampled = steps.resample(options);
     report.points_used = resampled.points;
     report.points_resampled = resampled.new_points;
@@ -185,24 +176,63 @@ void run(PaperSteps& steps, PointCloud cloud, const ClassTables& tables,
   put_splats(steps.take_splats(), model, report);
 }
 
+/// Takes out points that no cell of the consistent method is for, and gives their number.
+std::size_t remove_beyond(double reach_m, PointCloud& cloud) {
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    const Vec3f p = cloud.positions[i];
+    const float farthest = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+    if (static_cast<double>(farthest) < reach_m) near.push_back(i);
+  }
+  const std::size_t removed = cloud.size() - near.size();
+  if (removed > 0) cloud = gather(cloud, near);
+  return removed;
+}
+
+std::string warning_of_far_points(std::size_t points, double reach_m) {
+  return std::to_string(points) + (points == 1 ? " point lies" : " points lie") + " more than " +
+         std::to_string(std::lround(reach_m / 1000)) +
+         " km from the middle of the cloud and are left out: so far do cells reach (larger "
+         "ones, --cell and --small-cell, reach farther)";
+}
+
 /// Ours.
 void run(ConsistentSteps& steps, PointCloud cloud, const ClassTables& tables,
          const BuildOptions& options, StepSink step, SplatModel& model, BuildReport& report) {
-  step("order");
+  step("order", 0);
+  const bool has_rays = cloud.has_beams();
   report.points_used = steps.load(std::move(cloud), tables);
-  report.points_dynamic = report.points_in - report.points_used;
+  report.points_dynamic = report.points_in - report.points_noise - report.points_used;
   require_points(report.points_used);
-  report.ray_checked = consistent_disks(steps, report.oriented, options.consistent, step);
+  report.consistent = consistent_disks(steps, has_rays, options.consistent, step);
+  report.ray_checked = report.consistent->checked;
   put_splats(steps.take_splats(), model);
 }
 
-std::string_view warning_without_sensors(SplatMethod method) {
-  return method == SplatMethod::consistent
-             ? "no sensor positions: splats are not checked against measured rays (give a "
-               "viewpoint "
-               "or a trajectory)"
-             : "no sensor positions: normals are not oriented (give a viewpoint or a "
-               "trajectory to orient them)";
+std::size_t count_of(const OriginCounts& counts, OriginKind kind) {
+  return counts[static_cast<std::size_t>(kind)];
+}
+
+/// What a model cannot have for want of origins; empty where nothing is missing.
+std::string origin_warning(SplatMethod method, const OriginCounts& counts) {
+  const std::size_t unknown = count_of(counts, OriginKind::none);
+  const std::size_t guessed = count_of(counts, OriginKind::guessed);
+  const std::size_t all = unknown + guessed + count_of(counts, OriginKind::stated) +
+                          count_of(counts, OriginKind::measured);
+  const bool checks = method == SplatMethod::consistent;
+  const std::size_t lacking = checks ? unknown + guessed : unknown;
+  if (lacking == 0) return {};
+  const std::string which =
+      lacking == all ? "no"
+                     : std::to_string(lacking) + " of " + std::to_string(all) + " points have no";
+  if (!checks)
+    return which +
+           " sensor positions: normals there are not oriented (a viewpoint or a trajectory "
+           "would orient them)";
+  const std::string guesses = " measured sensor positions (those of " + std::to_string(guessed) +
+                              " points are guessed, which orients normals alone)";
+  return which + (guessed == 0 ? " sensor positions" : guesses) +
+         ": splats there are not checked against rays";
 }
 
 }  // namespace
@@ -220,8 +250,16 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
   std::pair<SplatModel, BuildReport> result;
   auto& [model, report] = result;
   report.points_in = cloud.size();
-  report.oriented = !cloud.sensor_positions.empty();
-  if (!report.oriented) progress.warn(warning_without_sensors(options.method));
+  report.origins = count_origins(cloud);
+  report.oriented = cloud.has_all_origins();
+  const std::string warning = origin_warning(options.method, report.origins);
+  if (!warning.empty()) progress.warn(warning);
+  if (options.method == SplatMethod::consistent) {
+    const double reach_m = kMostFusionCells * options.consistent.smallest_cell_m();
+    report.points_noise = remove_beyond(reach_m, cloud);
+    if (report.points_noise > 0) progress.warn(warning_of_far_points(report.points_noise, reach_m));
+    require_points(cloud.size());
+  }
   model.origin = cloud.origin;
   model.method = std::string(method_name(options.method));
   if (!cloud.classes.empty() && labels != nullptr) model.label_scheme = labels->name();
@@ -231,10 +269,10 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
     cpu = make_cpu_model_engine(executor);
     engine = cpu.get();
   }
-  const ClassTables tables = class_tables(cloud, labels, options);
+  const ClassTables tables = class_tables(cloud, labels, options, report);
   {
     StepClock clock(report.steps, progress);
-    const auto step = [&](std::string_view name) { clock.begin(name); };
+    const auto step = [&](std::string_view name, int passes) { clock.begin(name, passes); };
     if (options.method == SplatMethod::consistent) {
       run(*engine->consistent_steps(), std::move(cloud), tables, options, step, model, report);
     } else {

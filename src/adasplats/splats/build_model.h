@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/cloud/dynamic_removal.h"
 #include "adasplats/cloud/label_scheme.h"
 #include "adasplats/cloud/point_cloud.h"
 #include "adasplats/core/executor.h"
@@ -26,9 +27,6 @@ enum class SplatMethod : std::uint8_t {
   semantic,     ///< section "Adaptive Splatting"
   consistent,   ///< consistent_model.h: agrees with the rays that were measured
 };
-
-/// Which points of moving things are removed before modelling, by their labels.
-enum class DynamicRemoval : std::uint8_t { none, moving, movable };
 
 /// Factors on K, R and E for one group of points.
 struct GroupScale {
@@ -58,11 +56,13 @@ struct BuildOptions {
   SelectionOrder selection = SelectionOrder::most_discards_first;
 
   DynamicRemoval remove = DynamicRemoval::movable;
-  bool denoise = true;          ///< section "Splat-Based Resampling and Denoising"
-  double denoise_sigmas = 3;    ///< a neighbourhood votes against points farther than this
-  double denoise_votes = 0.5;   ///< share of its neighbourhoods that removes a point
-  bool resample = true;         ///< second generation; adaptive methods only, as in the paper
-  double resample_density = 1;  ///< wanted density of splats, times its mean
+  bool denoise = true;         ///< section "Splat-Based Resampling and Denoising"
+  double denoise_sigmas = 3;   ///< a neighbourhood votes against points farther than this
+  double denoise_votes = 0.5;  ///< share of its neighbourhoods that removes a point
+  bool resample = true;        ///< second generation; adaptive methods only, as in the paper
+  /// Wanted density of splats, times its mean: a neighbourhood that has less makes new points, as
+  /// many as it lacks, rounded a splat. Where it has more than two thirds, that is none.
+  double resample_density = 1;
   /// What the second generation starts from, besides the new points. The paper's text says the
   /// points, its figures (fewer points and splats than before) say the splats' centers.
   enum class ResampleBase : std::uint8_t {
@@ -80,15 +80,18 @@ struct StepTime {
 
 struct BuildReport {
   std::size_t points_in = 0;
-  std::size_t points_dynamic = 0;    ///< removed by label
-  std::size_t points_noise = 0;      ///< removed by denoising
+  std::size_t points_dynamic = 0;                       ///< removed by label
+  std::vector<RemovedPoints::OfClass> removed_classes;  ///< these points by class
+  std::size_t points_noise = 0;      ///< removed by denoising; consistent: beyond all cells
   std::size_t points_used = 0;       ///< that the (last) generation started from
   std::size_t points_resampled = 0;  ///< new points from resampling
   std::size_t primitives = 0;
-  double radius_m = 0;       ///< R of the last generation
-  double error_m = 0;        ///< E of the last generation
+  double radius_m = 0;                         ///< the paper's methods: R of the last generation
+  double error_m = 0;                          ///< the paper's methods: E of the last generation
+  std::optional<ConsistentReport> consistent;  ///< of that method
   bool ray_checked = false;  ///< consistent: splats were checked against measured rays
-  bool oriented = true;      ///< false: no sensor positions, normals as PCA gives them
+  OriginCounts origins{};    ///< of the points, by OriginKind
+  bool oriented = true;      ///< normals face the sensors; false: not all origins are known
   std::vector<StepTime> steps;
 };
 
@@ -97,7 +100,7 @@ class ModelEngine;
 /// Point cloud in, splat model out. The result depends on the set of points alone: not on their
 /// order, the threads or the machine. Semantic needs `labels` and cloud.classes; dynamic removal
 /// is skipped without them. `engine` does the steps (model_engine.h; nullptr: `executor`'s
-/// threads); engines agree up to rounding. Errors: data ("no points"; no labels for `semantic`; an
+/// threads); engines give the same bytes. Errors: data ("no points"; no labels for `semantic`; an
 /// id that the scheme does not know), usage (options out of range).
 std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelScheme* labels,
                                                const BuildOptions& options,

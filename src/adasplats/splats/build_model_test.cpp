@@ -11,7 +11,9 @@
 #include <numeric>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/core/random.h"
+#include "adasplats/core/recorded_progress_test.h"
 #include "adasplats/splats/grow.h"
 
 namespace adasplats {
@@ -74,6 +76,24 @@ TEST_P(EveryMethod, SameBytesForEveryNumberOfThreads) {
   EXPECT_GT(one.size(), 100U);
   for (const int threads : {2, 3, 16})
     EXPECT_TRUE(same_bytes(one, build(small_place(20000, 0.01), options(), threads).first));
+}
+
+TEST_P(EveryMethod, EveryLongStepTellsHowFarItIs) {
+  RecordedProgress sink;
+  ProgressMeter meter(sink);
+  const Executor executor(1, {}, &meter);
+  build_model(small_place(100'000, 0.01), &semantickitti_labels(), options(), executor, meter);
+  int long_steps = 0;
+  for (const RecordedProgress::Step& step : sink.steps) {
+    EXPECT_TRUE(step.is_ended) << step.name;
+    EXPECT_TRUE(step.never_falls()) << step.name;
+    if (step.total == 0) continue;
+    ++long_steps;
+    const auto passes = static_cast<int>(step.total / kPassUnits);
+    EXPECT_GE(step.increases(), 5 * passes) << step.name;
+    EXPECT_LE(step.done.back(), step.total) << step.name;
+  }
+  EXPECT_GE(long_steps, 3);
 }
 
 TEST_P(EveryMethod, SameBytesForShuffledInput) {

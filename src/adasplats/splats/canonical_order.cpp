@@ -3,6 +3,7 @@
 #include "adasplats/splats/canonical_order.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "adasplats/neighbors/hilbert.h"
 
@@ -16,6 +17,14 @@ int compare(const std::vector<T>& values, std::uint32_t a, std::uint32_t b) {
   return values[a] < values[b] ? -1 : 1;
 }
 
+/// With NaN, an intensity that is not known, behind all numbers.
+int compare(const std::vector<float>& values, std::uint32_t a, std::uint32_t b) {
+  if (values.empty() || values[a] == values[b]) return 0;
+  const int unknown = (std::isnan(values[a]) ? 1 : 0) - (std::isnan(values[b]) ? 1 : 0);
+  if (unknown != 0 || std::isnan(values[a])) return unknown;
+  return values[a] < values[b] ? -1 : 1;
+}
+
 int compare(const std::vector<Vec3f>& values, std::uint32_t a, std::uint32_t b) {
   if (values.empty()) return 0;
   for (int axis = 0; axis < 3; ++axis)
@@ -24,9 +33,10 @@ int compare(const std::vector<Vec3f>& values, std::uint32_t a, std::uint32_t b) 
 }
 
 bool attributes_before(const PointCloud& cloud, std::uint32_t a, std::uint32_t b) {
-  for (const int result : {compare(cloud.classes, a, b), compare(cloud.instances, a, b),
-                           compare(cloud.scan_indices, a, b), compare(cloud.intensities, a, b),
-                           compare(cloud.sensor_positions, a, b)})
+  for (const int result :
+       {compare(cloud.classes, a, b), compare(cloud.instances, a, b),
+        compare(cloud.scan_indices, a, b), compare(cloud.intensities, a, b),
+        compare(cloud.sensor_positions, a, b), compare(cloud.origin_kinds, a, b)})
     if (result != 0) return result < 0;
   return false;
 }

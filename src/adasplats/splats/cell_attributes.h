@@ -23,12 +23,17 @@ ADASPLATS_HD inline std::uint16_t majority_class(std::span<const std::uint16_t> 
   return best;
 }
 
-/// Of a cell's points, added in their order.
+/// Of a cell's points that have one, added in their order; NaN where none has.
 ADASPLATS_HD inline float mean_intensity(const float* intensities,
                                          std::span<const std::uint32_t> members) {
   double sum = 0;
-  for (const std::uint32_t i : members) sum += static_cast<double>(intensities[i]);
-  return static_cast<float>(sum / static_cast<double>(members.size()));
+  std::size_t known = 0;
+  for (const std::uint32_t i : members) {
+    if (intensities[i] != intensities[i]) continue;  // NaN: not known
+    sum += static_cast<double>(intensities[i]);
+    ++known;
+  }
+  return static_cast<float>(sum / static_cast<double>(known));
 }
 
 }  // namespace adasplats

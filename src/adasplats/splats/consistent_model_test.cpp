@@ -263,6 +263,64 @@ TEST(ConsistentModel, WorksWithoutSensorPositionsAndSaysSoOnce) {
   EXPECT_TRUE(same_bytes(built.model, build(gather(cloud, backward), 3, quick_options()).model));
 }
 
+/// With the sensor 5 m off and to the side, as the nearest pose of a trajectory may be.
+PointCloud with_false_origins(PointCloud cloud, OriginKind kind) {
+  for (Vec3f& sensor : cloud.sensor_positions) sensor = sensor + Vec3f{4, 3, 0};
+  cloud.origin_kinds.assign(cloud.size(), kind);
+  return cloud;
+}
+
+TEST(ConsistentModel, GuessedOriginsCarveNothing) {
+  const PointCloud cloud = thin_room();
+  const Built guessed = build(with_false_origins(cloud, OriginKind::guessed), 2, quick_options());
+  const Built believed = build(with_false_origins(cloud, OriginKind::measured), 2, quick_options());
+  EXPECT_FALSE(guessed.report.ray_checked);
+  EXPECT_TRUE(guessed.report.oriented);
+  EXPECT_TRUE(believed.report.ray_checked);
+  ASSERT_EQ(guessed.warnings.texts.size(), 1U);
+  EXPECT_NE(guessed.warnings.texts[0].find("guessed"), std::string::npos);
+  // The same disks as without any origin, but for the side that they face.
+  PointCloud bare = cloud;
+  bare.sensor_positions.clear();
+  const SplatModel plain = build(bare, 2, quick_options()).model;
+  ASSERT_EQ(guessed.model.size(), plain.size());
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    EXPECT_TRUE(guessed.model.disks[i].center == plain.disks[i].center);
+    EXPECT_EQ(guessed.model.disks[i].radius, plain.disks[i].radius);
+  }
+}
+
+TEST(ConsistentModel, PointsWithoutOriginDoNotTakeThemFromTheOthers) {
+  PointCloud cloud = thin_room();
+  const std::size_t all = build(cloud, 2, quick_options()).model.size();
+  cloud.origin_kinds.assign(cloud.size(), OriginKind::measured);
+  EXPECT_TRUE(same_bytes(build(cloud, 1, quick_options()).model,
+                         build(thin_room(), 2, quick_options()).model));
+  double middle_m = 0;
+  for (const Vec3f p : cloud.positions)
+    middle_m += static_cast<double>(p.x) / static_cast<double>(cloud.size());
+  std::size_t unknown = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!(static_cast<double>(cloud.positions[i].x) > middle_m)) continue;
+    cloud.origin_kinds[i] = OriginKind::none;
+    cloud.sensor_positions[i] = cloud.positions[i];
+    ++unknown;
+  }
+  ASSERT_GT(unknown, cloud.size() / 10);
+  ASSERT_LT(unknown, cloud.size() - cloud.size() / 10);
+  const Built mixed = build(cloud, 2, quick_options());
+  expect_sound(mixed);
+  EXPECT_TRUE(mixed.report.ray_checked);
+  EXPECT_FALSE(mixed.report.oriented);
+  EXPECT_EQ(mixed.report.origins[static_cast<std::size_t>(OriginKind::none)], unknown);
+  ASSERT_EQ(mixed.warnings.texts.size(), 1U);
+  EXPECT_NE(mixed.warnings.texts[0].find(std::to_string(unknown)), std::string::npos);
+  EXPECT_GT(mixed.model.size(), all / 2);
+  std::vector<std::uint32_t> backward(cloud.size());
+  std::iota(backward.rbegin(), backward.rend(), 0U);
+  EXPECT_TRUE(same_bytes(mixed.model, build(gather(cloud, backward), 3, quick_options()).model));
+}
+
 std::optional<ErrorKind> kind_of_error(PointCloud cloud, const BuildOptions& options) {
   try {
     build(std::move(cloud), 1, options);
@@ -295,7 +353,6 @@ TEST(ConsistentModel, OptionsOutOfRangeAreAnError) {
     EXPECT_EQ(kind_with([&](ConsistentOptions& o) { o.cell_m = cell_m; }), ErrorKind::usage);
   EXPECT_EQ(kind_with([](ConsistentOptions& o) { o.evidence_rays = 0; }), ErrorKind::usage);
   EXPECT_EQ(kind_with([](ConsistentOptions& o) { o.evidence.stride = 0; }), ErrorKind::usage);
-  EXPECT_EQ(kind_with([](ConsistentOptions& o) { o.evidence.depth = 0; }), ErrorKind::usage);
 }
 
 TEST(ConsistentModel, DegenerateCloudsFinish) {
@@ -326,11 +383,36 @@ TEST(ConsistentModel, DegenerateCloudsFinish) {
   }
 }
 
+// Oracle: the model without them. Cells of 2 cm reach 21 km; beyond, points shared the last ones.
+TEST(ConsistentModel, PointsBeyondAllCellsAreLeftOutAndSaid) {
+  PointCloud cloud = scanned_room();
+  const std::size_t points = cloud.size();
+  const Built expected = build(cloud);
+  for (int i = 0; i < 300; ++i)
+    append(cloud, [&] {
+      PointCloud far;
+      const float along = 0.03F * static_cast<float>(i % 20);
+      far.positions = {{21000.0F + along, 0.03F * static_cast<float>(i / 20), 1}};
+      far.sensor_positions = {{20990, 0, 1}};
+      far.classes.assign(cloud.classes.empty() ? 0 : 1, 40);
+      far.intensities.assign(cloud.intensities.empty() ? 0 : 1, 0.5F);
+      return far;
+    }());
+  const Built built = build(cloud);
+  EXPECT_EQ(built.report.points_noise, 300U);
+  EXPECT_EQ(built.report.points_used, points);
+  ASSERT_EQ(built.warnings.texts.size(), 1U);
+  EXPECT_NE(built.warnings.texts[0].find("300 points lie more than 21 km"), std::string::npos)
+      << built.warnings.texts[0];
+  EXPECT_EQ(built.model.size(), expected.model.size());
+}
+
 /// What the recipe makes of a cloud in canonical order.
 struct Made {
   std::vector<Disk> disks;
   std::vector<std::uint32_t> cells;  ///< of each disk, in `fused`
   FusedPoints fused;
+  ConsistentReport report;
   bool checked = false;
   std::vector<std::string> steps;
 };
@@ -340,8 +422,9 @@ Made disks_of(const PointCloud& cloud, const ConsistentOptions& options) {
   const auto steps = make_cpu_consistent_steps(executor);
   EXPECT_EQ(steps->load(cloud, {}), cloud.size());
   Made made;
-  made.checked = consistent_disks(*steps, !cloud.sensor_positions.empty(), options,
-                                  [&](std::string_view name) { made.steps.emplace_back(name); });
+  const auto note_step = [&](std::string_view name, int) { made.steps.emplace_back(name); };
+  made.report = consistent_disks(*steps, cloud.has_beams(), options, note_step);
+  made.checked = made.report.checked;
   ConsistentState state = dynamic_cast<const ShowsConsistentState&>(*steps).state();
   for (std::uint32_t i = 0; i < state.chosen.size(); ++i) {
     if (!(state.chosen[i].radius > 0)) continue;
@@ -373,6 +456,12 @@ TEST(ConsistentDisks, CellsBelongToTheirDisks) {
       "fusion",   "planes", "ray check of seeds", "cover", "ray check of splats",
       "settling", "filling"};
   EXPECT_EQ(made.steps, expected);
+  EXPECT_EQ(made.report.cells, made.fused.size());
+  EXPECT_LE(made.report.seeds, made.report.cells);
+  EXPECT_GT(made.report.seeds_removed, 0U);
+  EXPECT_GE(made.report.seeds, made.report.seeds_removed + made.disks.size());
+  EXPECT_GT(made.report.rays, cloud.size() / 2);
+  EXPECT_LE(made.report.rays, cloud.size());
 }
 
 TEST(ConsistentDisks, StepsWithRaysAreLeftOutWithoutThem) {
@@ -426,6 +515,8 @@ TEST(ConsistentDisks, FillingAddsSplatsWhereRaysFallBetweenAndChangesNoOther) {
     EXPECT_TRUE(std::any_of(points.begin(), points.end(), [&](auto p) { return missed[p]; }));
   }
   EXPECT_EQ(i, bare.disks.size());  // all are still there
+  EXPECT_EQ(filled.report.splats_filled, added);
+  EXPECT_EQ(bare.report.splats_filled, 0U);
   EXPECT_GT(added, 20U);
   const auto still = points_missed(cloud, filled, options.least_range_m, options.missed_m);
   EXPECT_LT(std::count(still.begin(), still.end(), true),
@@ -480,7 +571,7 @@ TEST(ConsistentDisks, WithoutSensorPositionsDisksEndWhereAFlatPatchEnds) {
     return farthest_m;
   };
   for (const int sectors : {8, 16}) {
-    options.unchecked_sectors = sectors;
+    options.cover.unchecked_sectors = sectors;
     const Made made = disks_of(cloud, options);
     EXPECT_FALSE(made.checked);
     ASSERT_GT(made.disks.size(), 50U);
@@ -500,7 +591,7 @@ TEST(ConsistentDisks, WithoutSensorPositionsDisksEndWhereAFlatPatchEnds) {
   }
   // With 16 that is no farther over the border than a seed, give or take.
   EXPECT_LT(farthest_over_border(disks_of(cloud, options)), 0.06F);
-  options.unchecked_sectors = 0;
+  options.cover.unchecked_sectors = 0;
   EXPECT_GT(farthest_over_border(disks_of(cloud, options)), 0.2F);
 }
 

@@ -25,7 +25,8 @@ constexpr std::size_t kGrain = 16384;
 
 MeasuredPoints measured_points(const PointCloud& cloud) {
   return {cloud.positions.data(),
-          cloud.sensor_positions.empty() ? nullptr : cloud.sensor_positions.data()};
+          cloud.sensor_positions.empty() ? nullptr : cloud.sensor_positions.data(),
+          cloud.origin_kinds.empty() ? nullptr : cloud.origin_kinds.data()};
 }
 
 double median_spacing(const std::vector<LocalPlane>& planes, const std::vector<float>& units_m) {
@@ -56,6 +57,7 @@ class CpuConsistentSteps final : public ConsistentSteps, public ShowsConsistentS
   void choose() override;
   void settle(const ConsistentOptions& options) override;
   void fill_gaps(const ConsistentOptions& options) override;
+  ConsistentCounts counts() const override;
   ConsistentSplats take_splats() override;
 
   ConsistentState state() const override;
@@ -65,9 +67,10 @@ class CpuConsistentSteps final : public ConsistentSteps, public ShowsConsistentS
   }
 
  private:
-  double split_where_not_flat(const ConsistentOptions& options);
-  std::vector<float> spacing_units_m() const;
-  void make_seeds(double typical_spacing, const ConsistentOptions& options);
+  TypicalSpacing split_where_not_flat(const ConsistentOptions& options);
+  std::vector<float> spacing_units_m(bool with_beam) const;
+  std::vector<std::uint8_t> cells_without_beam() const;
+  void make_seeds(const TypicalSpacing& typical, const ConsistentOptions& options);
 
   const Executor& executor_;
   PointCloud cloud_;
@@ -93,22 +96,35 @@ void CpuConsistentSteps::fuse(const ConsistentOptions& options) {
   fused_ = fuse_points(cloud_.positions, options.cell_m, executor_);
 }
 
-std::vector<float> CpuConsistentSteps::spacing_units_m() const {
+std::vector<float> CpuConsistentSteps::spacing_units_m(bool with_beam) const {
   std::vector<float> units_m(fused_.size());
   executor_.for_chunks(fused_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      units_m[i] = spacing_unit_m(measured_points(cloud_), fused_.points_of(i));
+      units_m[i] = spacing_unit_m(measured_points(cloud_), fused_.points_of(i), with_beam);
     }
   });
   return units_m;
 }
 
+/// One flag a cell; none where every point has its beam.
+std::vector<std::uint8_t> CpuConsistentSteps::cells_without_beam() const {
+  if (cloud_.origin_kinds.empty()) return {};
+  std::vector<std::uint8_t> without(fused_.size());
+  executor_.for_chunks(fused_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      without[i] = has_beam(measured_points(cloud_), fused_.points_of(i)) ? 0 : 1;
+    }
+  });
+  return without;
+}
+
 /// Splits cells around which no plane is larger than the smallest scales: leaves, poles, wires are
-/// smaller than a cell. Gives the median spacing of the cells before.
-double CpuConsistentSteps::split_where_not_flat(const ConsistentOptions& options) {
+/// smaller than a cell. Gives the median spacings of the cells before.
+TypicalSpacing CpuConsistentSteps::split_where_not_flat(const ConsistentOptions& options) {
   const PointIndex index = PointIndex::from_sorted(fused_.positions, executor_);
   const auto planes = adaptive_planes(fused_, index, options.planes_for_splitting(), executor_);
-  const double spacing = median_spacing(planes, spacing_units_m());
+  const TypicalSpacing spacing = {median_spacing(planes, spacing_units_m(true)),
+                                  median_spacing(planes, spacing_units_m(false))};
   if (options.small_cell_m == 0) return spacing;
   std::vector<bool> split(planes.size());
   for (std::size_t i = 0; i < planes.size(); ++i) split[i] = planes[i].scale <= options.split_scale;
@@ -116,15 +132,16 @@ double CpuConsistentSteps::split_where_not_flat(const ConsistentOptions& options
   return spacing;
 }
 
-void CpuConsistentSteps::make_seeds(double typical_spacing, const ConsistentOptions& options) {
-  const std::vector<float> units_m = spacing_units_m();
-  const double largest = options.largest_seed(!cloud_.sensor_positions.empty()) * typical_spacing;
+void CpuConsistentSteps::make_seeds(const TypicalSpacing& typical,
+                                    const ConsistentOptions& options) {
+  const MeasuredPoints points = measured_points(cloud_);
   seeds_.resize(planes_.size());
   executor_.for_chunks(planes_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       LocalPlane& plane = planes_[i];
-      plane.normal = seed_normal(plane.normal, measured_points(cloud_), fused_.points_of(i));
-      const double largest_m = largest * static_cast<double>(units_m[i]);
+      const auto members = fused_.points_of(i);
+      plane.normal = seed_normal(plane.normal, points, members);
+      const double largest_m = largest_seed_m(points, members, typical, options);
       const auto spacing_m = static_cast<double>(plane.spacing_m);
       seeds_[i] = {plane.center, seed_radius(spacing_m, largest_m, options), plane.normal};
     }
@@ -132,10 +149,10 @@ void CpuConsistentSteps::make_seeds(double typical_spacing, const ConsistentOpti
 }
 
 void CpuConsistentSteps::fit_seeds(const ConsistentOptions& options) {
-  const double typical_spacing = split_where_not_flat(options);
+  const TypicalSpacing typical = split_where_not_flat(options);
   index_.emplace(PointIndex::from_sorted(fused_.positions, executor_));
   planes_ = adaptive_planes(fused_, *index_, options.planes, executor_);
-  make_seeds(typical_spacing, options);
+  make_seeds(typical, options);
 }
 
 void CpuConsistentSteps::order_rays(const ConsistentOptions& options) {
@@ -157,7 +174,8 @@ void CpuConsistentSteps::balance_seeds(int round, const ConsistentOptions& optio
 }
 
 void CpuConsistentSteps::cover(bool checked, const ConsistentOptions& options) {
-  cover_.emplace(seeds_, *index_, options.cover_options(checked), executor_);
+  cover_.emplace(seeds_, *index_, options.cover_options(checked), executor_,
+                 checked ? cells_without_beam() : std::vector<std::uint8_t>());
 }
 
 void CpuConsistentSteps::limit_overhangs(int round, const ConsistentOptions& options) {
@@ -202,6 +220,14 @@ void CpuConsistentSteps::fill_gaps(const ConsistentOptions& options) {
       if (missed[i] != 0) chosen_[cell] = seeds_[cell];
     }
   }
+}
+
+ConsistentCounts CpuConsistentSteps::counts() const {
+  const auto with_radius = [](const std::vector<Disk>& disks) {
+    return static_cast<std::size_t>(
+        std::count_if(disks.begin(), disks.end(), [](const Disk& d) { return d.radius > 0; }));
+  };
+  return {fused_.size(), with_radius(seeds_), rays_ ? rays_->size() : 0, with_radius(chosen_)};
 }
 
 ConsistentSplats CpuConsistentSteps::take_splats() {

@@ -22,8 +22,16 @@ struct ConsistentSplats {
   std::vector<float> intensities;      ///< mean over the cell's points; empty without
 };
 
+/// How many of each there are so far.
+struct ConsistentCounts {
+  std::size_t cells = 0;
+  std::size_t seeds = 0;  ///< with a radius
+  std::size_t rays = 0;   ///< measured ones; 0 before order_rays()
+  std::size_t disks = 0;  ///< chosen ones
+};
+
 /// The steps of the consistent method on one device; consistent_disks() calls them in their order.
-/// Every implementation gives the same splats up to rounding, which a test publishes.
+/// Every implementation gives the same splats to the last bit.
 class ConsistentSteps {
  public:
   virtual ~ConsistentSteps() = default;
@@ -36,7 +44,7 @@ class ConsistentSteps {
   virtual void fuse(const ConsistentOptions& options) = 0;
   /// Splits cells where nothing is flat, fits planes, turns normals to the sensors, makes seeds.
   virtual void fit_seeds(const ConsistentOptions& options) = 0;
-  /// Orders the measured rays; needs sensor positions. Those below come after it.
+  /// Orders the measured rays; needs known beams. Those below come after it.
   virtual void order_rays(const ConsistentOptions& options) = 0;
   /// Shrinks and removes seeds that more rays contradict than confirm: one round.
   virtual void balance_seeds(int round, const ConsistentOptions& options) = 0;
@@ -52,6 +60,8 @@ class ConsistentSteps {
   virtual void settle(const ConsistentOptions& options) = 0;
   /// Puts seeds back where rays fall between disks.
   virtual void fill_gaps(const ConsistentOptions& options) = 0;
+
+  virtual ConsistentCounts counts() const = 0;
 
   /// The chosen disks with a radius, on the host.
   virtual ConsistentSplats take_splats() = 0;

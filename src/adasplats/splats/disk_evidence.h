@@ -33,9 +33,11 @@ struct DiskEvidence {
 /// parts of the squared radius.
 ADASPLATS_HD inline std::uint32_t evidence_ring(const Disk& disk, const Ray& ray, float hit_t) {
   const Vec3f offset = ray.origin + hit_t * ray.direction - disk.center;
-  const float area_share = dot(offset, offset) / (disk.radius * disk.radius);
-  return static_cast<std::uint32_t>(
-      std::clamp(static_cast<int>(area_share * DiskEvidence::kBins), 0, DiskEvidence::kBins - 1));
+  const float place =
+      dot(offset, offset) / (disk.radius * disk.radius) * static_cast<float>(DiskEvidence::kBins);
+  // Asked before it is converted: of what no integer holds CPUs and GPUs make different ones.
+  constexpr std::uint32_t kOutermost = DiskEvidence::kBins - 1;
+  return place < static_cast<float>(kOutermost) ? static_cast<std::uint32_t>(place) : kOutermost;
 }
 
 /// Radius that encloses that many of the rings.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/neighbors/point_index.h"
 
 namespace adasplats {
@@ -20,7 +21,7 @@ std::uint32_t scaled_count(int neighbors, double scale) {
 void orient_normals(const PointCloud& cloud, std::span<Vec3f> normals, const Executor& executor) {
   executor.for_chunks(normals.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      normals[i] = cloud.sensor_positions.empty()
+      normals[i] = !is_known(cloud.origin_kind(i))
                        ? with_canonical_sign(normals[i])
                        : oriented(normals[i], cloud.sensor_positions[i] - cloud.positions[i]);
   });
@@ -44,6 +45,7 @@ Candidates grow_all(std::span<const SurfacePoint> points, const PointIndex& inde
   candidates.discards.chunks.resize((points.size() + kGrain - 1) / kGrain);
   // A chunk of for_each_neighborhood never spans two of these, and its ranks come in order.
   static_assert(PointIndex::kQueriesPerTask == kGrain);
+  const ProgressPass pass(executor, points.size());
   index.for_each_neighborhood(
       executor, [&](std::uint32_t rank) { return rules[points[rank].group].limit; },
       [&](std::uint32_t rank, const NeighborList& neighbors) {
@@ -101,7 +103,7 @@ std::array<GroupRules, kSemanticGroups> group_rules(const BuildOptions& options,
 
 Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGroup> groups,
                            const BuildOptions& options, const Executor& executor, StepSink step) {
-  step("neighbourhoods");
+  step("neighbourhoods", base_passes(options.radius_m));
   const PointIndex index = PointIndex::from_sorted(cloud.positions, executor);
   BaseNeighborhoods base = base_neighborhoods(
       cloud.positions, index, {static_cast<std::uint32_t>(options.neighbors), options.radius_m, 0},
@@ -115,11 +117,11 @@ Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGrou
     if (groups.empty())
       for (const ShapeKind kind : base.kinds) result.groups.push_back(group_of(kind));
   }
-  const auto rules =
-      group_rules(options, result.radius_m, result.error_m, !cloud.sensor_positions.empty());
+  const auto rules = group_rules(options, result.radius_m, result.error_m, cloud.has_all_origins());
 
-  step("normals");
-  if (options.method != SplatMethod::basic && options.group_normals)
+  const bool refines = options.method != SplatMethod::basic && options.group_normals;
+  step("normals", refines ? 1 : 0);
+  if (refines)
     refine_normals(
         cloud.positions, index,
         [&](std::uint32_t rank) {
@@ -129,12 +131,12 @@ Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGrou
         base.normals, executor);
   orient_normals(cloud, base.normals, executor);
 
-  step("growing");
+  step("growing", 1);
   const std::vector<SurfacePoint> points =
       surface_points(cloud, base.normals, result.groups, executor);
   const Candidates candidates = grow_all(points, index, rules, options.alpha, executor);
 
-  step("selection");
+  step("selection", 0);
   result.seeds =
       select_greedily(candidates.radii, candidates.discards, options.selection, executor);
   result.disks.resize(result.seeds.size());

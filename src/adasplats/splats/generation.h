@@ -49,8 +49,9 @@ struct Generation {
   double error_m = 0;                 ///< E
 };
 
-/// Calls `step(name)` before each part of the work.
-using StepSink = FunctionRef<void(std::string_view name)>;
+/// Called before each part of the work with its name and of how many passes (ProgressPass) it
+/// consists; 0: it cannot be said.
+using StepSink = FunctionRef<void(std::string_view name, int passes)>;
 
 /// One generation of splats from a cloud in canonical order. `groups` has one entry a point, or is
 /// empty: then descriptors give them (SplatMethod::descriptors) or none are used (basic).

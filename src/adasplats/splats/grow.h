@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
 
+#include "adasplats/core/exact_sum.h"
 #include "adasplats/core/vec3.h"
 #include "adasplats/neighbors/point_index.h"
 #include "adasplats/scene/intersect.h"
@@ -64,23 +66,36 @@ ADASPLATS_HD inline float splat_radius(const SurfacePoint& seed, Vec3f last) {
   return length(to_last - along * seed.normal);
 }
 
+/// How the signed point-to-plane distances of `count` neighbours are rounded so that their order
+/// does not matter. Those that are included are within the error bound, and no farther from the
+/// plane than from the seed.
+ADASPLATS_HD inline ExactAddends exact_shifts(std::uint32_t count, float farthest_squared,
+                                              const GrowRules& rules) {
+  constexpr double kRounding = 1.001;  // far more than that of a distance
+  const double reach_m = kRounding * std::sqrt(static_cast<double>(farthest_squared));
+  return {count, std::min(static_cast<double>(rules.error_m), reach_m)};
+}
+
 /// THE growing of one splat, for every backend. Neighbours need no order: growing in ascending
 /// order up to the first that stops includes exactly those before the smallest stopping key.
 ADASPLATS_HD inline GrownSplat grow_splat(const SurfacePoint& seed, const NeighborList& neighbors,
                                           const SurfacePoint* points, const GrowRules& rules) {
   std::uint64_t stop = std::numeric_limits<std::uint64_t>::max();
+  float farthest_squared = 0;
   for (std::uint32_t k = 0; k < neighbors.size; ++k) {
     const std::uint64_t key = neighbors.key(k);
+    farthest_squared = std::max(farthest_squared, neighbors.squared_distances[k]);
     if (key < stop && stops(seed, points[neighbors.ranks[k]], rules)) stop = key;
   }
+  const ExactAddends exact = exact_shifts(neighbors.size, farthest_squared, rules);
   double sum = 0;
   std::uint32_t included = 0;
   std::uint64_t last = 0;
   for (std::uint32_t k = 0; k < neighbors.size; ++k) {
     const std::uint64_t key = neighbors.key(k);
     if (key >= stop) continue;
-    sum +=
-        static_cast<double>(dot(seed.normal, points[neighbors.ranks[k]].position - seed.position));
+    const Vec3f to_other = points[neighbors.ranks[k]].position - seed.position;
+    sum += exact(static_cast<double>(dot(seed.normal, to_other)));
     ++included;
     last = key > last ? key : last;
   }

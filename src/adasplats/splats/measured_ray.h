@@ -33,7 +33,8 @@ ADASPLATS_HD inline std::uint32_t direction_key(Vec3f d) {
     u = folded_u;
   }
   const auto cell = [](float w) {
-    return static_cast<std::uint32_t>(std::clamp((w + 1) * 0.5F * 65535.0F, 0.0F, 65535.0F));
+    const float place = (w + 1) * 0.5F * 65535.0F;
+    return place > 0 ? static_cast<std::uint32_t>(std::min(place, 65535.0F)) : 0U;  // NaN: 0
   };
   return morton_key(cell(u), cell(v));
 }
@@ -43,8 +44,10 @@ ADASPLATS_HD inline std::uint32_t place_key(Vec3f sensor) {
   constexpr float kCell_m = 0.5F;
   std::uint32_t hash = 2166136261U;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto cell = static_cast<std::int32_t>(std::floor(sensor[axis] / kCell_m));
-    hash = (hash ^ static_cast<std::uint32_t>(cell)) * 16777619U;
+    // Within what every device converts alike; a place beyond 2^29 m shares its key with others.
+    const float cell = std::clamp(std::floor(sensor[axis] / kCell_m), -0x1p30F, 0x1p30F);
+    const auto number = static_cast<std::int32_t>(cell == cell ? cell : 0.0F);
+    hash = (hash ^ static_cast<std::uint32_t>(number)) * 16777619U;
   }
   return hash;
 }

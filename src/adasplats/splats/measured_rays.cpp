@@ -28,7 +28,8 @@ MeasuredRays::MeasuredRays(const PointCloud& cloud, double least_range_m, const 
   });
   executor.sort_keys(keys, points_);
   std::erase_if(points_, [&](std::uint32_t i) {
-    return !has_measured_ray(cloud.sensor_positions[i], cloud.positions[i], least_range_m);
+    return !is_beam(cloud.origin_kind(i)) ||
+           !has_measured_ray(cloud.sensor_positions[i], cloud.positions[i], least_range_m);
   });
 }
 
@@ -63,8 +64,8 @@ RayEvidence collect_evidence(std::span<const Disk> disks, const MeasuredRays& ra
       count_one(counts[static_cast<std::size_t>(hit.primitive) * RayEvidence::kBins + bin]);
     }
   };
-  present.cast(rays, {options.phase, options.stride, options.margin_m, options.depth}, executor,
-               count);
+  present.cast(rays, {options.phase, options.stride, options.margin_m, RayCasting::Hits::all},
+               executor, count);
   return evidence;
 }
 

@@ -18,8 +18,8 @@ namespace adasplats {
 /// before it. In an order in which neighbours start and point alike, which tracers are fast with.
 class MeasuredRays {
  public:
-  /// Needs sensor positions. Points nearer to their sensor than `least_range_m` (the vehicle) have
-  /// no ray.
+  /// Needs sensor positions. Points whose origin nobody measured or stated, and those nearer to
+  /// their sensor than `least_range_m` (the vehicle), have no ray.
   MeasuredRays(const PointCloud& cloud, double least_range_m, const Executor& executor);
 
   std::size_t size() const { return points_.size(); }
@@ -47,13 +47,12 @@ struct EvidenceOptions {
   float margin_m = 0.1F;     ///< a ray that ends this near to where it crosses a disk ends at it
   std::uint32_t stride = 4;  ///< every n-th ray
   std::uint32_t phase = 0;   ///< begins with this one
-  int depth = 48;            ///< disks that a ray crosses, at most; those behind are not seen
 };
 
 DiskEvidence evidence_of(const RayEvidence& evidence, std::size_t disk);
 
-/// Counts, for every disk that `rays` cross; disks with no radius are not there. Whole numbers: the
-/// same on any number of threads.
+/// Counts, for every disk that `rays` cross, however many they are; disks with no radius are not
+/// there. Whole numbers: the same on any number of threads.
 RayEvidence collect_evidence(std::span<const Disk> disks, const MeasuredRays& rays,
                              const EvidenceOptions& options, const Executor& executor);
 

@@ -48,7 +48,6 @@ EvidenceOptions tested_options() {
   options.margin_m = 0.2F;
   options.stride = 1;
   options.phase = 0;
-  options.depth = 48;
   return options;
 }
 
@@ -242,22 +241,29 @@ TEST(CollectEvidence, RingsAndMarginByHand) {
   EXPECT_EQ(evidence.contradicted, (Counts{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 1}));
 }
 
-TEST(CollectEvidence, SeesAsManyDisksOfARayAsItsDepth) {
-  std::vector<Disk> disks;
-  for (int i = 0; i < 60; ++i)
-    disks.push_back({{5 + 0.01F * static_cast<float>(i), 0, 0}, 1, {1, 0, 0}});
+// However many disks a ray crosses, and however many of them at one distance.
+TEST(CollectEvidence, SeesEveryDiskOfARay) {
   PointCloud cloud;
-  cloud.positions = {{20, 0, 0}};
-  cloud.sensor_positions = {{0, 0, 0}};
-  EvidenceOptions options = tested_options();
-  const Executor executor(1);
+  cloud.positions = {{20, 0, 0}, {20, 0, 1}, {5.105F, 0, 0}};
+  cloud.sensor_positions.resize(3);
+  const Executor executor(2);
   const MeasuredRays rays(cloud, 2, executor);
-  for (const int depth : {1, 7, 48, 60, 100}) {
-    options.depth = depth;
-    const RayEvidence evidence = collect_evidence(disks, rays, options, executor);
-    for (int i = 0; i < 60; ++i)  // the nearest ones
-      EXPECT_EQ(evidence.contradicted[static_cast<std::size_t>(i) * RayEvidence::kBins],
-                i < depth ? 1U : 0U);
+  const EvidenceOptions options = tested_options();
+  for (const int count : {1, 47, 48, 49, 192, 193, 1000}) {
+    for (const float step_m : {0.01F, 0.0F}) {
+      std::vector<Disk> disks;
+      for (int i = 0; i < count; ++i)
+        disks.push_back({{5 + step_m * static_cast<float>(i), 0, 0}, 1, {1, 0, 0}});
+      const RayEvidence evidence = collect_evidence(disks, rays, options, executor);
+      // The first ray goes through the middle, the second farther out; the third ends at the disks
+      // up to the margin of 0.2 m behind its point.
+      for (std::size_t i = 0; i < disks.size(); ++i) {
+        const DiskEvidence own = evidence_of(evidence, i);
+        ASSERT_EQ(own.contradicted[0], 1U) << i << " of " << count;
+        ASSERT_EQ(total({own.contradicted.begin(), own.contradicted.end()}), 2U);
+        ASSERT_EQ(own.confirmed[0], disks[i].center.x < 5.305F ? 1U : 0U) << i << " of " << count;
+      }
+    }
   }
 }
 

@@ -35,7 +35,7 @@ struct PaperSplats {
 
 /// The steps of the paper's methods on one device. build_model calls them in their order; between
 /// two steps the cloud is where the steps are made (host or GPU memory). Every implementation gives
-/// the same cloud and splats up to rounding, which a test publishes.
+/// the same cloud and splats to the last bit.
 class PaperSteps {
  public:
   virtual ~PaperSteps() = default;

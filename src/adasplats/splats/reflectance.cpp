@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/splats/measured_rays.h"
 
 namespace adasplats {
@@ -80,6 +81,7 @@ class RayCollector {
     constexpr std::size_t kBatch = 1 << 20;
     constexpr double kLeastRange_m = 1e-3;  // a ray has a direction
     const MeasuredRays measured(cloud_, kLeastRange_m, executor_);
+    const ProgressPass pass(executor_, 2 * measured.size());  // made, cast
     for (std::size_t begin = 0; begin < measured.size(); begin += kBatch) {
       add_batch(measured, begin, std::min(begin + kBatch, measured.size()));
     }
@@ -319,7 +321,7 @@ Reflectances measure_reflectances(std::span<const Disk> disks, const Tracer& tra
                                   const PointCloud& cloud, Vec3d model_origin,
                                   std::span<const float> fallback, const Executor& executor) {
   Reflectances result{{fallback.begin(), fallback.end()}, {}};
-  if (cloud.sensor_positions.empty() || cloud.intensities.empty()) return result;
+  if (!cloud.has_beams() || cloud.intensities.empty()) return result;
   const Observations observations =
       RayCollector(disks, tracer, cloud, model_origin, executor).collect();
   if (observations.rays.size() < kLeastRays) return result;
@@ -329,6 +331,7 @@ Reflectances measure_reflectances(std::span<const Disk> disks, const Tracer& tra
   response.cos_incidences.assign(kCosines.begin(), kCosines.end());
   response.incidence_gains.assign(kCosines.size(), 1.0F);
   const DiskCells cells = cells_of(disks, executor);
+  const ProgressPass pass(executor, (1 + 3 * kTurns) * disks.size());  // a fit, then three a turn
   result.values = fit_reflectances(observations, cells, response, fallback, executor);
   for (int turn = 0; turn < kTurns; ++turn) {
     fit_response(response, observations, result.values, executor);

@@ -38,7 +38,7 @@ struct Reflectances {
 /// to the disks that face alike in the same 0.4 m cell (as if three rays had said so), that one to
 /// the mean of all. The same bytes for any number of threads. `fallback`: values for disks in cells
 /// that no ray met, one a disk; NaN: the mean of all. Memory: up to 50 bytes a ray. Without sensor
-/// positions, or with fewer than 1000 rays that meet their point: `fallback` and an empty response.
+/// beams, or with fewer than 1000 rays that meet their point: `fallback` and an empty response.
 Reflectances measure_reflectances(std::span<const Disk> disks, const Tracer& tracer,
                                   const PointCloud& cloud, Vec3d model_origin,
                                   std::span<const float> fallback, const Executor& executor);

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/splats/canonical_order.h"
 
 namespace adasplats {
@@ -59,9 +60,10 @@ std::vector<NewPoint> interpolate_points(const PointCloud& centers, const std::v
                                          const BuildOptions& options, const Executor& executor) {
   const PointIndex index = PointIndex::from_sorted(centers.positions, executor);
   const float radius = static_cast<float>(radius_m);
+  const ProgressPass pass(executor, 2 * centers.size());  // counting, filling
   const std::vector<std::uint32_t> densities = index.count_within(radius, executor);
   const double wanted = options.resample_density * mean_density(densities, groups);
-  const bool is_oriented = !centers.sensor_positions.empty();
+  const bool is_oriented = centers.has_all_origins();
   const auto smoothness = static_cast<float>(options.smoothness);
   const auto alike = [&](std::uint32_t a, std::uint32_t b) {
     if (!is_smooth(disks[a].normal, disks[b].normal, smoothness, is_oriented)) return false;

@@ -16,7 +16,9 @@ ADASPLATS_HD inline bool is_thin(SemanticGroup group) {
 
 /// How many of the points that a neighbourhood lacks one splat of it makes. The paper works through
 /// the splats one after another, and each new point raises the density of all splats around it.
-/// Here every splat works alone, so the `density` splats of a neighbourhood share what is missing.
+/// Here every splat works alone, so the `density` splats of a neighbourhood share what is missing,
+/// each its share rounded to a whole number: none where more than two thirds are there already. The
+/// paper's splats would make the last third one by one.
 ADASPLATS_HD inline int share_of_missing(double wanted, std::uint32_t density) {
   return static_cast<int>(std::lround((wanted - density) / density));
 }

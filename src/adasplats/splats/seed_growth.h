@@ -20,8 +20,9 @@ struct CoverOptions {
   double largest_radius_m = 0.5;
   /// A disk reaches no farther than the seeds it grows over do in every one of so many directions
   /// (and half a seed beyond): nothing hangs over edges. 0: no such limit, for clouds in which
-  /// measured rays tell where surfaces end and what merely nobody looked at.
+  /// measured rays tell where surfaces end and what merely nobody looked at. 0, 1, 2, 4, 8 or 16.
   int sectors = 0;
+  int unchecked_sectors = 16;      ///< the same for seeds that no rays check
   double overlap = 0.6;            ///< a disk covers the seeds within this share of its radius
   double covered_within_m = 0.04;  ///< and this near to its plane
 };
@@ -61,10 +62,33 @@ ADASPLATS_HD inline bool may_cover(const PlaceAtDisk& place, float covered_m,
          static_cast<double>(place.height_m) < options.covered_within_m;
 }
 
+/// Which sixteenth of a turn a vector points into, counter-clockwise from (1, 0); a border belongs
+/// to the sector that it begins. By comparisons alone: an arc tangent has other last bits on a GPU.
+ADASPLATS_HD inline int sixteenth_of_turn(float x, float y) {
+  constexpr float kTan = 0.41421356F;  // of an eighth of pi: sqrt(2) - 1
+  // Turned back by quarters, which is exact, until the vector points between the positive axes.
+  int quarter = 0;
+  float a = x, b = y;
+  if (x <= 0 && y > 0) {
+    quarter = 1, a = y, b = -x;
+  } else if (x < 0 && y <= 0) {
+    quarter = 2, a = -x, b = -y;
+  } else if (x >= 0 && y < 0) {
+    quarter = 3, a = -y, b = x;
+  }
+  const int sixteenth = b < a ? (b < kTan * a ? 0 : 1) : (a > kTan * b ? 2 : 3);
+  return 4 * quarter + sixteenth;
+}
+
 /// How far seeds reach from a disk's middle in each of some equal sectors of its plane.
 class SectorReach {
  public:
   static constexpr int kMostSectors = 16;
+
+  /// Sectors are made of whole sixteenths of a turn.
+  static bool can_have(int sectors) {
+    return sectors == 0 || (sectors > 0 && sectors <= kMostSectors && kMostSectors % sectors == 0);
+  }
 
   ADASPLATS_HD SectorReach(const Disk& disk, int sectors)
       : center_(disk.center), sectors_(sectors) {
@@ -77,12 +101,10 @@ class SectorReach {
 
   ADASPLATS_HD void add(Vec3f point, float along_m) {
     if (sectors_ == 0) return;
-    constexpr float kTurn = 2 * 3.14159265358979323846F;
     const Vec3f offset = point - center_;
-    const float turn = std::atan2(dot(offset, up_), dot(offset, right_)) / kTurn + 0.5F;
-    const int sector =
-        std::clamp(static_cast<int>(turn * static_cast<float>(sectors_)), 0, sectors_ - 1);
-    reach_m_[sector] = std::max(reach_m_[sector], along_m);
+    const int sixteenth = sixteenth_of_turn(dot(offset, right_), dot(offset, up_));
+    float& reach_m = reach_m_[sixteenth * sectors_ / kMostSectors];
+    reach_m = std::max(reach_m, along_m);
   }
 
   ADASPLATS_HD int sectors() const { return sectors_; }

@@ -39,7 +39,9 @@ std::vector<std::uint32_t> select_greedily(std::span<const float> radii,
                                            const Executor& executor) {
   enum State : std::uint8_t { open, discarded, taken };
   std::vector<std::uint8_t> states(radii.size(), open);
+  std::size_t visited = 0;
   for (const std::uint32_t rank : visiting_order(radii, discards, order, executor)) {
+    if (++visited % kGrain == 0) executor.check_interruption();
     if (states[rank] != open || !(radii[rank] > 0.0F)) continue;
     states[rank] = taken;
     for (const std::uint32_t other : discards.of(rank))

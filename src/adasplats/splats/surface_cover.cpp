@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "adasplats/core/progress_meter.h"
+
 namespace adasplats {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr std::size_t kGrain = 16384;
 
 /// How far a disk reaches before the surface ends or turns away.
 float radius_grown(std::span<const Disk> seeds, std::uint32_t seed, const NeighborList& neighbors,
-                   const CoverOptions& options) {
+                   int sector_count, const CoverOptions& options) {
   const Disk& disk = seeds[seed];
   // Two passes instead of a sort: first where it must end, then how far it reaches before that.
   auto end_m = static_cast<float>(options.largest_radius_m);
@@ -22,7 +24,7 @@ float radius_grown(std::span<const Disk> seeds, std::uint32_t seed, const Neighb
     if (ends_at(disk, other, place, options)) end_m = std::min(end_m, place.along_m);
   }
   float reach_m = disk.radius;
-  SectorReach sectors(disk, options.sectors);
+  SectorReach sectors(disk, sector_count);
   for (std::uint32_t k = 0; k < neighbors.size; ++k) {
     const Disk& other = seeds[neighbors.ranks[k]];
     if (!(other.radius > 0)) continue;
@@ -38,20 +40,24 @@ float radius_grown(std::span<const Disk> seeds, std::uint32_t seed, const Neighb
 }  // namespace
 
 SurfaceCover::SurfaceCover(std::span<const Disk> seeds, const PointIndex& index,
-                           const CoverOptions& options, const Executor& executor)
+                           const CoverOptions& options, const Executor& executor,
+                           std::span<const std::uint8_t> unchecked)
     : seeds_(seeds.begin(), seeds.end()),
       radii_m_(seeds.size()),
       overlap_(options.overlap),
       lists_((seeds.size() + PointIndex::kQueriesPerTask - 1) / PointIndex::kQueriesPerTask),
       begins_(seeds.size()),
       lengths_(seeds.size()) {
+  const ProgressPass pass(executor, seeds.size());
   index.for_each_neighborhood(
       executor, [&](std::uint32_t) { return NeighborLimit{options.neighbors}; },
       [&](std::uint32_t seed, const NeighborList& neighbors) {
         auto& list = lists_[seed / PointIndex::kQueriesPerTask];
         begins_[seed] = static_cast<std::uint32_t>(list.size());
         if (!(seeds_[seed].radius > 0)) return;
-        radii_m_[seed] = radius_grown(seeds_, seed, neighbors, options);
+        const bool is_unchecked = !unchecked.empty() && unchecked[seed] != 0;
+        const int sectors = is_unchecked ? options.unchecked_sectors : options.sectors;
+        radii_m_[seed] = radius_grown(seeds_, seed, neighbors, sectors, options);
         const float covered_m = covered_reach(overlap_, radii_m_[seed]);
         for (std::uint32_t k = 0; k < neighbors.size; ++k) {
           const std::uint32_t other = neighbors.ranks[k];
@@ -86,7 +92,9 @@ std::vector<Disk> SurfaceCover::choose(const Executor& executor) const {
 
   std::vector<Disk> chosen(seeds_.size());
   std::vector<bool> covered(seeds_.size());
+  std::size_t visited = 0;
   for (const std::uint32_t i : order) {
+    if (++visited % kGrain == 0) executor.check_interruption();
     if (!(seeds_[i].radius > 0) || covered[i]) continue;
     chosen[i] = seeds_[i];
     chosen[i].radius = radii_m_[i];

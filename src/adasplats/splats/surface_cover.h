@@ -18,9 +18,10 @@ namespace adasplats {
 class SurfaceCover {
  public:
   /// `seeds` are disks small enough to be right, one a point of `index` in its order (no radius:
-  /// not there). Grows every one over its neighbours.
+  /// not there). Grows every one over its neighbours. `unchecked`: flags of seeds that no rays
+  /// check, which have options.unchecked_sectors; empty: none.
   SurfaceCover(std::span<const Disk> seeds, const PointIndex& index, const CoverOptions& options,
-               const Executor& executor);
+               const Executor& executor, std::span<const std::uint8_t> unchecked = {});
 
   /// Greedy: those that cover most first, ties by index. The chosen disks, the others with no
   /// radius.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "adasplats/core/progress_meter.h"
+
 namespace adasplats {
 namespace {
 
@@ -40,6 +42,7 @@ std::vector<LocalPlane> adaptive_planes(const FusedPoints& cells, const PointInd
                                         const Executor& executor) {
   std::vector<LocalPlane> planes(cells.size());
   const std::uint32_t most = options.scales.back();
+  const ProgressPass pass(executor, cells.size());
   index.for_each_neighborhood(
       executor, [&](std::uint32_t) { return NeighborLimit{most}; },
       [&](std::uint32_t cell, const NeighborList& neighbors) {

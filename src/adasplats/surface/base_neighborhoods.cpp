@@ -6,6 +6,8 @@
 #include <atomic>
 #include <cmath>
 
+#include "adasplats/core/progress_meter.h"
+
 namespace adasplats {
 namespace {
 
@@ -13,19 +15,26 @@ constexpr std::size_t kGrain = 4096;
 
 LocalShape shape_of(std::span<const Vec3f> points, std::uint32_t rank,
                     const NeighborList& neighbors) {
+  float extent_m = 0;
+  for (std::uint32_t k = 0; k < neighbors.size; ++k)
+    extent_m = std::max(extent_m, extent(points[neighbors.ranks[k]] - points[rank]));
+  const ExactMoments exact(neighbors.size, extent_m);
   Moments moments;
   for (std::uint32_t k = 0; k < neighbors.size; ++k)
-    moments.add(points[neighbors.ranks[k]] - points[rank]);
+    moments.add(points[neighbors.ranks[k]] - points[rank], exact);
   return local_shape(moments);
 }
 
 PlaneDistances plane_distances(std::span<const Vec3f> points, std::uint32_t rank,
                                const NeighborList& neighbors, Vec3f normal) {
+  const auto distance_m = [&](std::uint32_t k) {
+    return distance_to_plane(points[neighbors.ranks[k]] - points[rank], normal);
+  };
+  float largest_m = 0;
+  for (std::uint32_t k = 0; k < neighbors.size; ++k) largest_m = std::max(largest_m, distance_m(k));
+  const ExactDistances exact(neighbors.size, largest_m);
   PlaneDistances distances;
-  for (std::uint32_t k = 0; k < neighbors.size; ++k) {
-    const Vec3f offset = points[neighbors.ranks[k]] - points[rank];
-    distances.add(static_cast<double>(distance_to_plane(offset, normal)));
-  }
+  for (std::uint32_t k = 0; k < neighbors.size; ++k) distances.add(distance_m(k), exact);
   return distances;
 }
 
@@ -126,17 +135,21 @@ double mean_of(const std::vector<float>& values, const Executor& executor) {
 void speculate_then_mend(const PointIndex& index, std::uint32_t neighbors, Pass& pass,
                          BaseNeighborhoods& result, const Executor& executor) {
   std::vector<float> kth_distances(index.size());
-  index.for_each_neighborhood(
-      executor, [&](std::uint32_t) { return NeighborLimit{neighbors}; },
-      [&](std::uint32_t rank, const NeighborList& found) {
-        float farthest = 0.0F;
-        for (std::uint32_t k = 0; k < found.size; ++k)
-          farthest = std::max(farthest, found.squared_distances[k]);
-        kth_distances[rank] = std::sqrt(farthest);
-        pass.set(rank, found);
-      });
+  {
+    const ProgressPass speculating(executor, index.size());
+    index.for_each_neighborhood(
+        executor, [&](std::uint32_t) { return NeighborLimit{neighbors}; },
+        [&](std::uint32_t rank, const NeighborList& found) {
+          float farthest = 0.0F;
+          for (std::uint32_t k = 0; k < found.size; ++k)
+            farthest = std::max(farthest, found.squared_distances[k]);
+          kth_distances[rank] = std::sqrt(farthest);
+          pass.set(rank, found);
+        });
+  }
   result.radius_m = mean_of(kth_distances, executor);
   const float squared_radius = squared_radius_of(result.radius_m);
+  const ProgressPass mending(executor, index.size());
   index.for_each_neighborhood(
       executor,
       [&](std::uint32_t rank) {
@@ -173,6 +186,7 @@ BaseNeighborhoods base_neighborhoods(std::span<const Vec3f> points, const PointI
   if (options.radius_m) {
     result.radius_m = *options.radius_m;
     const NeighborLimit limit{options.neighbors, squared_radius_of(result.radius_m)};
+    const ProgressPass only(executor, points.size());
     index.for_each_neighborhood(
         executor, [&](std::uint32_t) { return limit; },
         [&](std::uint32_t rank, const NeighborList& found) { pass.set(rank, found); });
@@ -186,6 +200,7 @@ BaseNeighborhoods base_neighborhoods(std::span<const Vec3f> points, const PointI
 void refine_normals(std::span<const Vec3f> points, const PointIndex& index,
                     FunctionRef<NeighborLimit(std::uint32_t)> limit, std::span<Vec3f> normals,
                     const Executor& executor) {
+  const ProgressPass only(executor, points.size());
   index.for_each_neighborhood(executor, limit, [&](std::uint32_t rank, const NeighborList& found) {
     if (!found.empty()) normals[rank] = shape_of(points, rank, found).normal;
   });

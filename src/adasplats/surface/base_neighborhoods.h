@@ -38,6 +38,9 @@ ADASPLATS_HD inline bool is_noise(std::uint32_t votes, std::uint32_t memberships
   return votes > 0 && !(votes < removing_share * memberships);
 }
 
+/// Of how many passes (ProgressPass) base_neighborhoods() consists.
+inline int base_passes(const std::optional<double>& radius_m) { return radius_m ? 1 : 2; }
+
 /// `points` are those of the index, by rank.
 BaseNeighborhoods base_neighborhoods(std::span<const Vec3f> points, const PointIndex& index,
                                      const BaseNeighborhoodOptions& options,

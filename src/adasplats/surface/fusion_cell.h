@@ -12,12 +12,14 @@
 
 namespace adasplats {
 
-/// Which cell of a grid of side `cell_m` a coordinate lies in: 21 bits an axis, 2^20 - 1 cells on
-/// either side of zero.
+/// Cells of a grid on either side of zero: 21 bits an axis. Points beyond share the last ones.
+inline constexpr double kMostFusionCells = 1048575;
+
+/// Which cell of a grid of side `cell_m` a coordinate lies in.
 ADASPLATS_HD inline std::uint64_t fusion_axis_key(float value, double cell_m) {
-  constexpr double kMostCells = 1048575;
+  constexpr double kMost = kMostFusionCells;
   const double cell = std::floor(static_cast<double>(value) / cell_m);
-  return static_cast<std::uint64_t>(std::clamp(cell, -kMostCells, kMostCells) + kMostCells);
+  return static_cast<std::uint64_t>(std::clamp(cell, -kMost, kMost) + kMost);
 }
 
 ADASPLATS_HD inline std::uint64_t fusion_key(Vec3f point, double cell_m) {

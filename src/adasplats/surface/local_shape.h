@@ -5,14 +5,33 @@
 #include <cmath>
 #include <cstdint>
 
+#include "adasplats/core/exact_sum.h"
 #include "adasplats/core/symmetric_eigen.h"
 #include "adasplats/core/vec3.h"
 
 namespace adasplats {
 
+/// The largest component of an offset, in size.
+ADASPLATS_HD inline float extent(Vec3f offset) {
+  const float x = std::fabs(offset.x), y = std::fabs(offset.y), z = std::fabs(offset.z);
+  const float larger = x > y ? x : y;
+  return larger > z ? larger : z;
+}
+
+/// How Moments are rounded so that the order of the points does not matter.
+struct ExactMoments {
+  ExactAddends offsets;
+  ExactAddends squares;
+
+  /// Of `count` offsets, none of which has a larger extent().
+  ADASPLATS_HD ExactMoments(std::uint32_t count, float extent_m)
+      : offsets(count, static_cast<double>(extent_m)),
+        squares(count, static_cast<double>(extent_m) * static_cast<double>(extent_m)) {}
+};
+
 /// Sums over the offsets of a neighbourhood's points from one of them. Offsets are exact enough in
 /// float; their products and sums are kept in double, so the order of the points changes the
-/// result by some 1e-15 of its size at most.
+/// result by some 1e-15 of its size at most; not at all where they are added as ExactMoments.
 struct Moments {
   double count = 0;
   Vec3d sum;
@@ -28,6 +47,17 @@ struct Moments {
     squares.yy += d.y * d.y;
     squares.yz += d.y * d.z;
     squares.zz += d.z * d.z;
+  }
+  ADASPLATS_HD void add(Vec3f offset, const ExactMoments& exact) {
+    const Vec3d d = vec_cast<double>(offset);
+    count += 1.0;
+    sum = sum + Vec3d{exact.offsets(d.x), exact.offsets(d.y), exact.offsets(d.z)};
+    squares.xx += exact.squares(d.x * d.x);
+    squares.xy += exact.squares(d.x * d.y);
+    squares.xz += exact.squares(d.x * d.z);
+    squares.yy += exact.squares(d.y * d.y);
+    squares.yz += exact.squares(d.y * d.z);
+    squares.zz += exact.squares(d.z * d.z);
   }
 };
 
@@ -78,15 +108,27 @@ ADASPLATS_HD inline float distance_to_plane(Vec3f offset, Vec3f normal) {
   return std::fabs(dot(normal, offset));
 }
 
+/// How PlaneDistances are rounded so that the order of the points does not matter.
+struct ExactDistances {
+  ExactAddends distances;
+  ExactAddends squares;
+
+  /// Of `count` distances, none of which is larger.
+  ADASPLATS_HD ExactDistances(std::uint32_t count, float largest_m)
+      : distances(count, static_cast<double>(largest_m)),
+        squares(count, static_cast<double>(largest_m) * static_cast<double>(largest_m)) {}
+};
+
 /// Mean and spread of the distances of a neighbourhood to its plane.
 struct PlaneDistances {
   double sum = 0;
   double sum_of_squares = 0;
   double count = 0;
 
-  ADASPLATS_HD void add(double distance_m) {
-    sum += distance_m;
-    sum_of_squares += distance_m * distance_m;
+  ADASPLATS_HD void add(float distance_m, const ExactDistances& exact) {
+    const auto distance = static_cast<double>(distance_m);
+    sum += exact.distances(distance);
+    sum_of_squares += exact.squares(distance * distance);
     count += 1;
   }
   /// Paper section "Splat-Based Resampling and Denoising": the standard deviation of the unsigned

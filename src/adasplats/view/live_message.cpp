@@ -225,7 +225,7 @@ std::string LiveSensor::key() const { return name + dump(settings_json(*this)); 
 LiveSensor live_sensor(const std::string& name) {
   const std::vector<std::string> names = lidar_model_names();
   if (std::find(names.begin(), names.end(), name) == names.end())
-    refuse("unknown sensor '" + name.substr(0, 60) + "'");
+    refuse(unknown_lidar_model(name.substr(0, 60)));
   LiveSensor sensor;
   sensor.name = name;
   sensor.settings.sensor = load_lidar_model(name);

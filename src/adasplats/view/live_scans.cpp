@@ -209,6 +209,7 @@ class LiveScans::Implementation {
         perform(*work);
       } catch (const std::exception& error) {
         work->peer->send_text(error_message(error.what()));
+      } catch (...) {  // an interruption: whoever waits for it ends the server as well
       }
     }
   }
