@@ -10,6 +10,7 @@
 #include <span>
 
 #include "adasplats/cloud/load_cloud.h"
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/metrics_json.h"
 
@@ -40,10 +41,10 @@ CloudPair load_clouds(const CloudFiles& files, Session& session) {
 CloudComparison evaluate_clouds(const PointCloud& simulated, const PointCloud& original,
                                 bool by_class, const LabelScheme* labels, Session& session) {
   CloudComparison comparison;
-  session.progress.begin_step("compare", 0);
+  session.progress.begin_step("compare", kPassUnits);
   comparison.distance = cloud_distance(simulated, original, session.executor);
   if (by_class) {
-    session.progress.begin_step("compare classes", 0);
+    session.progress.begin_step("compare classes", kPassUnits);
     for (const ClassDistance& c : cloud_distance_by_class(simulated, original, session.executor))
       comparison.by_class.emplace_back(class_name(labels, c.class_id), c);
   }

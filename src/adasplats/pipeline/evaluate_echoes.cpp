@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "adasplats/cloud/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/model_scene.h"
@@ -20,6 +21,7 @@ class EchoSequence {
       : sequence_(open_kitti_sequence(resolve_cloud_input(inputs.sequence))),
         scans_(chosen_scans(inputs.scans, sequence_.scans.size(), sequence_.folder)),
         motion_(inputs.motion.empty() ? sequence_.trajectory : load_trajectory(inputs.motion)) {
+    require_poses_that_fit(sequence_);
     sequence_.beams = recognize_beams(sequence_);
     if (tells_empty_beams()) {
       set_raw_motions(sequence_.beams, sequence_.trajectory, motion_);
@@ -82,6 +84,7 @@ EchoResult evaluate_echoes(const EchoInputs& inputs, const std::filesystem::path
   if (!drop.empty()) drop_model = load_ray_drop(drop);
   const EchoSequence measured(inputs);
   if (drop_model) measured.require_raw("--drop");
+  if (inputs.sensor_is_asked) measured.require_raw("--sensor");
   ModelScene scene(inputs.model, "", session);
   EchoResult result;
   result.intensity = intensity_accuracy(EchoSequence::echo_scene(scene), measured.sequence(),

@@ -21,6 +21,7 @@ struct EchoInputs {
   std::filesystem::path motion;  ///< poses that tell how the sensor of raw scans moved; empty: the
                                  ///< sequence's own
   std::string sensor = "velodyne-hdl-64e-kitti";  ///< whose beams are looked for in raw scans
+  bool sensor_is_asked = false;                   ///< then the scans have to be raw
 };
 
 struct EchoResult {

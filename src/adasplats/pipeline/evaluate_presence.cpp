@@ -4,6 +4,8 @@
 
 #include <span>
 
+#include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/model_scene.h"
 
@@ -14,8 +16,11 @@ PresenceResult evaluate_presence(const PresenceJob& job, Session& session) {
   const auto inputs = std::span(&job.points, 1);
   const auto scheme = label_scheme_for(job.labels, inputs);
   const PointCloud cloud = load_cloud(inputs, job.load, session.executor, session.progress).first;
+  if (cloud.classes.empty() && !job.labels.empty()) {
+    throw Error(ErrorKind::usage, "--labels has no effect: the points have no labels");
+  }
   const ModelScene scene(job.model, "", session);
-  session.progress.begin_step("cast", 0);
+  session.progress.begin_step("cast", kPassUnits);
   PresenceResult result = presence(scene.tracer(), scene.origin(), cloud,
                                    scheme ? &*scheme : nullptr, job.options, session.executor);
   session.progress.end_step();

@@ -3,6 +3,7 @@
 #include "adasplats/pipeline/evaluate_resimulation.h"
 
 #include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/pipeline/inputs.h"
 
@@ -28,6 +29,7 @@ KittiSequence with_scans(KittiSequence all, const ScanRange& range) {
 
 KittiSequence open_held_out(const HeldOutScans& scans) {
   KittiSequence all = open_kitti_sequence(resolve_cloud_input(scans.sequence));
+  require_poses_that_fit(all);
   if (!scans.beams_from_poses) all.beams = recognize_beams(all);
   if (!scans.motion.empty()) {
     if (!all.beams.sweeps_m.empty())

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/inputs.h"
 
-#include <fstream>
-
+#include "adasplats/cloud/cloud_inputs.h"
+#include "adasplats/cloud/file_kind.h"
 #include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/core/error.h"
 
@@ -22,8 +22,8 @@ std::optional<LabelScheme> label_scheme_for(const std::string& labels,
                                             std::span<const fs::path> inputs) {
   if (!labels.empty()) return load_label_scheme(labels);
   for (const fs::path& input : inputs) {
-    if (is_kitti_sequence(input) && fs::is_directory(input / "labels")) {
-      return semantickitti_labels();
+    for (const CloudInput& one : cloud_inputs(input)) {
+      if (one.is_sequence && fs::is_directory(one.path / "labels")) return semantickitti_labels();
     }
   }
   return std::nullopt;
@@ -34,36 +34,26 @@ std::string scheme_reference(const std::string& labels, const LabelScheme& schem
   return fs::is_regular_file(labels, failure) ? fs::absolute(labels).string() : scheme.name();
 }
 
-fs::path resolve_cloud_input(const fs::path& input) {
+std::vector<fs::path> resolve_cloud_inputs(const fs::path& input) {
   require_input(input);
-  fs::path sequence = input / "sequences" / "00";
-  if (is_kitti_sequence(sequence)) return sequence;
-  if (fs::exists(input / "poses.csv") && !is_kitti_sequence(input)) {
-    throw Error(ErrorKind::data,
-                input.string() +
-                    ": holds scans in the sensor frame; simulate with --format semantickitti to "
-                    "compare them");
-  }
-  return input;
+  const std::vector<CloudInput> inputs = cloud_inputs(input);
+  if (inputs.size() > 1 && !inputs.front().is_sequence) return {input};
+  std::vector<fs::path> paths;
+  for (const CloudInput& one : inputs) paths.push_back(one.path);
+  return paths;
+}
+
+fs::path resolve_cloud_input(const fs::path& input) {
+  const std::vector<fs::path> inputs = resolve_cloud_inputs(input);
+  if (inputs.size() == 1) return inputs.front();
+  throw Error(ErrorKind::usage, input.string() + ": holds " + std::to_string(inputs.size()) +
+                                    " sequences; name one of them, " + inputs.front().string() +
+                                    " say");
 }
 
 bool is_splat_model(const fs::path& file) {
   std::error_code failure;
-  if (!fs::is_regular_file(file, failure)) return false;
-  std::ifstream stream(file, std::ios::binary);
-  bool has_radius = false;
-  bool has_normal = false;
-  std::string line;
-  // The header alone: what follows may be large. A header of more lines is not one of ours.
-  for (int i = 0; i < 1000 && std::getline(stream, line); ++i) {
-    while (!line.empty() && line.back() == '\r') line.pop_back();
-    if (i == 0 && line != "ply") return false;
-    if (line == "end_header") break;
-    const bool is_property = line.starts_with("property ");
-    has_radius = has_radius || (is_property && line.ends_with(" radius"));
-    has_normal = has_normal || (is_property && line.ends_with(" nx"));
-  }
-  return has_radius && has_normal;
+  return fs::is_regular_file(file, failure) && kind_of_file(file) == FileKind::splat_model;
 }
 
 Trajectory load_trajectory(const fs::path& path) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "adasplats/cloud/label_scheme.h"
 #include "adasplats/cloud/trajectory.h"
@@ -20,8 +21,10 @@ std::optional<LabelScheme> label_scheme_for(const std::string& labels,
 /// How a model or a mesh names its scheme, so that it can be loaded again from another folder.
 std::string scheme_reference(const std::string& labels, const LabelScheme& scheme);
 
-/// A point cloud input as given, or the one sequence in a folder that `simulate` wrote.
-/// Errors: data for a folder of scans in the sensor frame.
+/// A point cloud input as given, or the sequences of a tree (cloud_inputs, and its errors).
+std::vector<std::filesystem::path> resolve_cloud_inputs(const std::filesystem::path& input);
+
+/// Likewise, where one is wanted. Errors: usage (several sequences).
 std::filesystem::path resolve_cloud_input(const std::filesystem::path& input);
 
 /// Whether a file is a PLY that has what a splat model has (a radius and a normal).

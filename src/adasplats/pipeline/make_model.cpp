@@ -6,9 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/gpu/gpu_model.h"
 #include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/label_use.h"
 #include "adasplats/splats/reflectance.h"
 #include "adasplats/trace/tracer.h"
 
@@ -16,6 +18,17 @@ namespace adasplats {
 namespace {
 
 using Built = std::pair<SplatModel, BuildReport>;
+
+/// Throws data, with what became of the points, where nothing was made of them.
+void require_splats(const SplatModel& model, const BuildReport& built) {
+  if (model.size() != 0) return;
+  throw Error(ErrorKind::data,
+              "no splats: of " + std::to_string(built.points_in) + " points " +
+                  std::to_string(built.points_dynamic) + " were removed as dynamic and " +
+                  std::to_string(built.points_noise) +
+                  " as noise, and no surface was found in the rest; it takes several points of "
+                  "each surface (see --cell, --neighbors, --denoise and --remove)");
+}
 
 /// Makes one model; the points come from `load_points`, as often as they are asked for: building
 /// takes the memory that they stand in, so that they are loaded again rather than kept.
@@ -37,12 +50,11 @@ class Making {
 
   SplatModel run(ModelResult& result) {
     PointCloud cloud = load(result);
-    if (!scheme_ && !cloud.classes.empty() && options_.build.remove != DynamicRemoval::none) {
-      session_.progress.warn(
-          "the points have labels but --labels does not say what they mean; nothing is removed");
-    }
-    const bool tells_reflectance = !cloud.sensor_positions.empty() && !cloud.intensities.empty();
+    check_label_use({options_.labels, options_.build.remove, options_.removal_is_asked}, cloud,
+                    scheme_ ? &*scheme_ : nullptr, session_.progress);
+    const bool tells_reflectance = cloud.has_beams() && !cloud.intensities.empty();
     auto [model, built] = build_on_device(std::move(cloud), result);
+    require_splats(model, built);
     if (scheme_) model.label_scheme = scheme_reference(options_.labels, *scheme_);
     result.steps.insert(result.steps.end(), built.steps.begin(), built.steps.end());
     result.built = std::move(built);
@@ -82,7 +94,7 @@ class Making {
   bool add_reflectances(SplatModel& model, ModelResult& result) {
     const PointCloud cloud = load(result);
     const Stopwatch watch;
-    session_.progress.begin_step("measure reflectances", 0);
+    session_.progress.begin_step("measure reflectances", 2 * kPassUnits);
     const auto tracer = make_cpu_tracer(model.view(), session_.executor);
     Reflectances measured = measure_reflectances(model.disks, *tracer, cloud, model.origin,
                                                  model.intensities, session_.executor);
@@ -133,16 +145,34 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
   const BuildReport& built = result.built;
   json["points_read"] = result.loaded.points_read;
   json["points_not_finite"] = result.loaded.dropped_not_finite;
+  json["points_no_return"] = result.loaded.no_returns;
   json["points_far"] = result.loaded.dropped_far;
+  json["points_intensity_unknown"] = result.loaded.unknown_intensities;
   json["beams"] = result.loaded.beams;
   json["points_in"] = built.points_in;
   json["points_dynamic"] = built.points_dynamic;
-  json["points_noise"] = built.points_noise;
-  json["points_resampled"] = built.points_resampled;
+  json["points_removed"] = nlohmann::ordered_json::object();
+  for (const auto& part : built.removed_classes) json["points_removed"][part.name] = part.points;
+  if (!built.consistent) {
+    json["points_noise"] = built.points_noise;
+    json["points_resampled"] = built.points_resampled;
+  }
   json["points_used"] = built.points_used;
   json["primitives"] = built.primitives;
-  json["radius_m"] = built.radius_m;
-  json["error_m"] = built.error_m;
+  if (built.consistent) {
+    json["cells"] = built.consistent->cells;
+    json["seeds"] = built.consistent->seeds;
+    json["rays"] = built.consistent->rays;
+    json["seeds_removed"] = built.consistent->seeds_removed;
+    json["splats_filled"] = built.consistent->splats_filled;
+  } else {
+    json["radius_m"] = built.radius_m;
+    json["error_m"] = built.error_m;
+  }
+  json["origins"] = {{"none", built.origins[0]},
+                     {"guessed", built.origins[1]},
+                     {"stated", built.origins[2]},
+                     {"measured", built.origins[3]}};
   json["oriented"] = built.oriented;
   json["ray_checked"] = built.ray_checked;
   json["reflectance_measured"] = result.reflectance_measured;

@@ -19,7 +19,10 @@ namespace adasplats {
 struct ModelOptions {
   std::string labels;  ///< as label_scheme_for takes it
   BuildOptions build;
-  /// Intensities become reflectances with the sensor's response, where points have sensor positions
+  /// The user has asked for `build.remove`: where it can remove nothing, that is an error and not
+  /// only said.
+  bool removal_is_asked = false;
+  /// Intensities become reflectances with the sensor's response, where points have known beams
   /// and intensities (measure_reflectances); else they stay as measured.
   bool reflectance = true;
 };
