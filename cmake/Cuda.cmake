@@ -2,28 +2,76 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # CUDA is used where nvcc is found (on PATH, CUDACXX or in its usual folder), and needed nowhere.
-set(ADASPLATS_CUDA OFF)
-if(ADASPLATS_USE_CUDA AND NOT ADASPLATS_SANITIZE)
-  include(CheckLanguage)
-  if(NOT CMAKE_CUDA_COMPILER AND NOT DEFINED ENV{CUDACXX})
-    find_program(ADASPLATS_NVCC nvcc HINTS ENV CUDA_PATH PATHS /usr/local/cuda PATH_SUFFIXES bin)
-    if(ADASPLATS_NVCC)
-      set(CMAKE_CUDA_COMPILER ${ADASPLATS_NVCC})
+
+# What device code is made for where CMAKE_CUDA_ARCHITECTURES does not say it: the GPUs of this
+# machine, and any newer one (whose driver compiles what is there when it is first used); without
+# one, intermediate code for any from Turing on. Every architecture more is compiled on its own.
+function(adasplats_cuda_architectures result)
+  set(found "")
+  find_program(smi nvidia-smi NO_CACHE)
+  if(smi)
+    execute_process(COMMAND ${smi} --query-gpu=compute_cap --format=csv,noheader
+                    OUTPUT_VARIABLE found RESULT_VARIABLE status ERROR_QUIET)
+    if(NOT status EQUAL 0)
+      set(found "")
     endif()
   endif()
-  # Code of the H100 and its like, and intermediate code that the driver compiles for any other
-  # card from Turing on when it is first used; name your own for a start without that wait.
-  if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
-    set(CMAKE_CUDA_ARCHITECTURES 75-virtual 90-real)
+  string(REGEX MATCHALL "[0-9]+\\.[0-9]+" found "${found}")
+  list(TRANSFORM found REPLACE "\\." "")
+  list(REMOVE_DUPLICATES found)
+  # Those that this nvcc knows, and that are not too old for us.
+  execute_process(COMMAND ${ADASPLATS_NVCC} --list-gpu-arch OUTPUT_VARIABLE known ERROR_QUIET)
+  foreach(architecture IN LISTS found)
+    if(architecture LESS 75 OR NOT known MATCHES "compute_${architecture}\n")
+      list(REMOVE_ITEM found ${architecture})
+    endif()
+  endforeach()
+  if(NOT found)
+    set(found 75-virtual)
+  endif()
+  set(${result} ${found} PARENT_SCOPE)
+endfunction()
+
+set(missing "")
+if(ADASPLATS_SANITIZE)
+  set(missing "no CUDA with sanitizers")
+elseif(ADASPLATS_USE_CUDA)
+  find_program(ADASPLATS_NVCC nvcc HINTS ENV CUDA_PATH PATHS /usr/local/cuda PATH_SUFFIXES bin)
+  mark_as_advanced(ADASPLATS_NVCC)
+  if(NOT CMAKE_CUDA_COMPILER AND NOT DEFINED ENV{CUDACXX} AND ADASPLATS_NVCC)
+    set(CMAKE_CUDA_COMPILER ${ADASPLATS_NVCC})
   endif()
   if(CMAKE_CUDA_COMPILER OR DEFINED ENV{CUDACXX})
+    if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
+      adasplats_cuda_architectures(CMAKE_CUDA_ARCHITECTURES)
+    endif()
     enable_language(CUDA)
   endif()
-  if(CMAKE_CUDA_COMPILER AND CMAKE_CUDA_COMPILER_VERSION VERSION_GREATER_EQUAL 12)
+  if(NOT CMAKE_CUDA_COMPILER)
+    set(missing "no CUDA compiler (nvcc 12 or newer)")
+  elseif(CMAKE_CUDA_COMPILER_VERSION VERSION_LESS 12)
+    set(missing "no CUDA compiler of version 12 or newer (found ${CMAKE_CUDA_COMPILER_VERSION})")
+  else()
     find_package(CUDAToolkit REQUIRED)
-    set(ADASPLATS_CUDA ON)
   endif()
 endif()
+string(REPLACE ";" ", " architectures "${CMAKE_CUDA_ARCHITECTURES}")
+adasplats_part(ADASPLATS_USE_CUDA "CUDA" "${missing}"
+               "${CMAKE_CUDA_COMPILER_VERSION}, code for ${architectures}" ADASPLATS_CUDA)
+# The oldest GPU that the code runs on, as 75 for 7.5; the library tells it to older ones.
+if(ADASPLATS_CUDA)
+  set(oldest_gpu ${CMAKE_CUDA_ARCHITECTURES})
+  list(TRANSFORM oldest_gpu REPLACE "[^0-9].*" "")
+  list(SORT oldest_gpu COMPARE NATURAL)
+  list(GET oldest_gpu 0 oldest_gpu)
+  if(NOT oldest_gpu)  # "native" and "all" are no numbers
+    set(oldest_gpu 75)
+  endif()
+  set_source_files_properties(
+    ${PROJECT_SOURCE_DIR}/src/adasplats/gpu/device.cpp
+    PROPERTIES COMPILE_DEFINITIONS ADASPLATS_OLDEST_GPU=${oldest_gpu})
+endif()
+
 # CMake up to 3.25 does not know how newer compilers spell it.
 foreach(kind STANDARD EXTENSION)
   if(ADASPLATS_CUDA AND NOT CMAKE_CUDA20_${kind}_COMPILE_OPTION)

@@ -15,10 +15,8 @@ fi
 cd "$root"
 
 scripts/setup.sh --for demo
-# A build folder that is configured already stays as it is; a fresh one is for the program alone.
-if [[ ! -f build/release/build.ninja ]]; then
-  cmake --preset release -DADASPLATS_BUILD_TESTS=OFF -DADASPLATS_BUILD_BENCH=OFF
-fi
+# Every time, and without options: what was installed since is found, and what was said is kept.
+cmake --preset release
 cmake --build build/release --target adasplats_program
 mkdir -p "$(dirname "${output[1]}")"
 build/release/bin/adasplats demo "${output[@]}"

@@ -12,8 +12,9 @@ set -euo pipefail
 readonly kCmakeLeast=3.24
 
 # One line a package: when, package, command that may serve instead (- for none), what it is for.
-# "maybe" packages are taken where the distribution has them: liblaszip-dev is not in Debian 12;
-# those of "maybe-test" for tests alone.
+# "maybe" packages are taken where the distribution has them (liblaszip-dev is not in Debian 12,
+# clang-tidy-14 not in Debian 13), those of "maybe-test" for tests alone. What skips itself without
+# one of them is listed in tests/allowed_skips.tsv.
 packages() {
   cat <<'LIST'
 demo  cmake                cmake         configures the build
@@ -26,6 +27,7 @@ demo  nlohmann-json3-dev   -             reports of the program
 demo  libtomlplusplus-dev  -             sensor, label and configuration files
 demo  libpng-dev           -             images
 demo  libboost-dev         -             the viewer's server (headers)
+maybe ccache               ccache        compiles nothing twice
 maybe liblaszip-dev        -             LAZ files
 maybe nodejs               node          the viewer's page
 maybe npm                  npm           likewise
@@ -34,8 +36,7 @@ test  python3              python3       the layer check and clang-tidy's driver
 test  libgtest-dev         -             tests
 test  libeigen3-dev        -             oracle of the tests
 test  libnanoflann-dev     -             baseline of the benchmarks
-test  clang-format         clang-format  checks
-test  clang-tidy           clang-tidy    checks
+test  shellcheck           shellcheck    checks the scripts
 test  pybind11-dev         -             the Python package
 test  python3-dev          -             likewise
 test  python3-numpy        -             likewise
@@ -44,6 +45,9 @@ test  python3-wheel        -             likewise
 test  python3-pip          -             likewise
 test  python3-venv         -             likewise
 test  python3-pytest       -             tests of the Python package
+maybe-test clang-format-14 clang-format-14  checks, as this version does
+maybe-test clang-tidy-14   clang-tidy-14 checks, as this version does
+maybe-test python3-torch   -             the data set of examples/torch_dataset.py
 maybe-test libopenvdb-dev  -             IMLS meshes
 maybe-test libopen3d-dev   -             Poisson meshes
 maybe-test cloudcompare    CloudCompare  distances to compare ours with
@@ -107,6 +111,7 @@ fi
 
 # Whether the package lists that are here know a package: those of a new container are empty.
 offered() { [[ -n $(apt-cache madison "$1" 2>/dev/null) ]]; }
+offered coreutils && lists_are_here=true || lists_are_here=false
 
 missing=()
 not_offered_yet=()
@@ -122,9 +127,10 @@ while read -r when package command reason; do
   fi
 done < <(packages)
 
-if ((${#missing[@]})); then
+$lists_are_here || say "this system has no package lists yet"
+if ((${#missing[@]})) || { ((${#not_offered_yet[@]})) && ! $lists_are_here; }; then
   $dry_run && exit 1
-  say "installing ${missing[*]}"
+  say "updating the package lists"
   apt_get update || say "apt-get update failed; trying with the package lists that are there"
   for package in "${not_offered_yet[@]}"; do
     if offered "$package"; then
@@ -133,8 +139,11 @@ if ((${#missing[@]})); then
       say "this system has no $package; going on without"
     fi
   done
-  apt_get install --no-install-recommends "${missing[@]}" ||
-    fail "apt-get could not install ${missing[*]}"
+  if ((${#missing[@]})); then
+    say "installing ${missing[*]}"
+    apt_get install --no-install-recommends "${missing[@]}" ||
+      fail "apt-get could not install ${missing[*]}"
+  fi
 fi
 
 cmake_version=$(cmake --version | awk 'NR == 1 {print $3}')

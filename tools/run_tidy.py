@@ -4,13 +4,16 @@
 """Runs clang-tidy over the sources of src/, apps/ and python/ (tests and benchmarks are not checked).
 
 A file that passed is not run again until it, a header of ours that it includes, its compile
-command or .clang-tidy changes: what passed is kept as stamps in BUILD/tidy. Versions of clang-tidy
-find different things, so only the pinned one judges: others skip (exit code 77).
+command or .clang-tidy changes: what passed is kept as stamps in BUILD/tidy. Nearly all the time goes
+into the headers of others, so sources that can are judged together (tools/source_batches.py); where
+that finds anything each is judged alone, and that counts. Versions of clang-tidy find different
+things, so only the pinned one judges: others skip (exit code 77).
 
 usage: tools/run_tidy.py BUILD [-j JOBS]      (BUILD holds compile_commands.json)
 """
 
 import argparse
+import collections
 import concurrent.futures
 import hashlib
 import json
@@ -20,6 +23,8 @@ import re
 import shutil
 import subprocess
 import sys
+
+import source_batches
 
 PINNED = 14  # Debian 12's
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -62,23 +67,22 @@ def stamp_of(source, command, version):
     state = hashlib.sha256()
     for part in (version, command):
         state.update(part.encode() + b"\0")
-    settings = [folder / ".clang-tidy" for folder in source.parents if folder.is_relative_to(ROOT)]
-    for path in [path for path in settings if path.is_file()] + with_headers(source):
+    for path in settings_of(source) + with_headers(source):
         state.update(os.fsencode(path) + b"\0" + hashlib.sha256(path.read_bytes()).digest())
     return state.hexdigest()
 
 
-def without_precompiled_header(entry):
-    """A compile command that clang can follow: it cannot read what GCC has precompiled, every
-    source includes what it needs itself, and not all of GCC's warnings are its own."""
-    command = entry["command"].replace("-Winvalid-pch ", "").replace("-Wno-restrict ", "")
-    return {**entry, "command": re.sub(r"-include \S*cmake_pch\.hxx ", "", command)}
+def for_clang(entry):
+    """A compile command that clang can follow: without ccache and what stands before it, and without
+    the warnings that only GCC has."""
+    command = re.sub(r"^\S.*/ccache ", "", entry["command"]).replace("-Wno-restrict ", "")
+    return {**entry, "command": command}
 
 
 def clang_commands(build):
     """The compile commands for clang-tidy, written to a folder of their own."""
     with open(build / "compile_commands.json", encoding="utf-8") as file:
-        entries = [without_precompiled_header(entry) for entry in json.load(file)]
+        entries = [for_clang(entry) for entry in json.load(file)]
     folder = build / "tidy-commands"
     folder.mkdir(exist_ok=True)
     (folder / "compile_commands.json").write_text(json.dumps(entries), encoding="utf-8")
@@ -86,14 +90,99 @@ def clang_commands(build):
 
 
 def sources_of(entries):
-    """(source, compile command) of what is checked."""
+    """(source, compile command) of what is checked, once where two targets compile it."""
+    seen = set()
     for entry in entries:
         source = pathlib.Path(entry["file"])
+        if source in seen:
+            continue
+        seen.add(source)
         # clang 14 knows CUDA up to 11.5: what kernels share with the CPU is checked in its .cpp.
         checked = (source.suffix != ".cu" and
                    any(source.is_relative_to(folder) for folder in CHECKED))
         if checked and not source.stem.endswith("_test") and source.exists():
             yield source, entry["command"]
+
+
+def settings_of(source):
+    """The .clang-tidy files that hold for a source, nearest first."""
+    folders = [folder for folder in source.parents if folder.is_relative_to(ROOT)]
+    return [folder / ".clang-tidy" for folder in folders if (folder / ".clang-tidy").is_file()]
+
+
+def headers_text(source):
+    headers = [path for path in with_headers(source) if path != source]
+    return "".join(path.read_text(encoding="utf-8") for path in headers)
+
+
+def batches_of(pairs):
+    """The (source, command) pairs in lists that may be judged together: the same options, the same
+    settings, and no name with two meanings."""
+    commands = dict(pairs)
+    alike = collections.defaultdict(list)
+    for source, command in pairs:
+        options = re.sub(r" -o \S+| -c \S+", "", command)
+        alike[options, settings_of(source)[0]].append(source)
+    for sources in alike.values():
+        texts = {source: source.read_text(encoding="utf-8") for source in sources}
+        for batch in source_batches.batches(texts, headers_text):
+            yield [(source, commands[source]) for source in batch]
+
+
+class Tidy:
+    """clang-tidy over a build, which remembers what passed."""
+
+    def __init__(self, program, version, build):
+        self.program, self.version = program, version
+        self.folder, self.entries = clang_commands(build)
+        self.stamps = build / "tidy"
+        self.stamps.mkdir(exist_ok=True)
+
+    def stamp(self, pair):
+        return self.stamps / stamp_of(*pair, self.version)
+
+    def run(self, *words):
+        result = subprocess.run([self.program, "--quiet", *words], text=True, check=False,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        # stderr counts the warnings of system headers; it matters where nothing else was said.
+        return result.returncode, result.stdout or result.stderr
+
+    def passes_together(self, batch):
+        """Whether a batch has no fault, nor a clash of names that are each right alone."""
+        texts = {source: source.read_text(encoding="utf-8") for source, _ in batch}
+        first, command = batch[0]
+        name = hashlib.sha256("".join(map(str, texts)).encode()).hexdigest()[:16]
+        folder = self.folder / "batches" / name
+        folder.mkdir(parents=True, exist_ok=True)
+        # clang-tidy looks for its settings beside the source and in the folders above.
+        nearest, furthest = settings_of(first)[0], settings_of(first)[-1]
+        shutil.copy(furthest, folder.parent)
+        if nearest != furthest:
+            shutil.copy(nearest, folder)
+        joined = folder / "batch.cpp"
+        joined.write_text(source_batches.batch_text(texts, texts, headers_text), encoding="utf-8")
+        # Sources include what lies beside them, in quotes.
+        beside = "".join(f" -iquote {path}" for path in sorted({source.parent for source in texts}))
+        entry = {"directory": str(self.folder.parent), "file": str(joined),
+                 "command": command.replace(f" -c {first}", f"{beside} -c {joined}")}
+        (folder / "compile_commands.json").write_text(json.dumps([entry]), encoding="utf-8")
+        # The sources include the same headers, each once (source_batches.py).
+        code, _ = self.run("-p", folder, "--checks=-readability-duplicate-include", joined)
+        return code == 0
+
+    def judge(self, batch):
+        """[(source, its faults as text, or None)] of a batch."""
+        if len(batch) > 1 and self.passes_together(batch):
+            for pair in batch:
+                self.stamp(pair).touch()
+            return [(source, None) for source, _ in batch]
+        verdicts = []
+        for pair in batch:
+            code, text = self.run("-p", self.folder, pair[0])
+            if code == 0:
+                self.stamp(pair).touch()
+            verdicts.append((pair[0], None if code == 0 else text))
+        return verdicts
 
 
 def main():
@@ -105,41 +194,28 @@ def main():
     if not found:
         print(f"run_tidy: skipped: clang-tidy {PINNED} judges, and it is not here")
         return 77
-    program, version = found
-    stamps = options.build / "tidy"
-    stamps.mkdir(exist_ok=True)
+    tidy = Tidy(*found, options.build.resolve())
 
-    commands, entries = clang_commands(options.build)
-    current = set()
-
-    def check(source, command):
-        stamp = stamps / stamp_of(source, command, version)
-        current.add(stamp)
-        if stamp.exists():
-            return source, None
-        result = subprocess.run([program, "--quiet", "-p", commands, source], text=True,
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
-        if result.returncode == 0:
-            stamp.touch()
-        # stderr counts the warnings of system headers; it matters where nothing else was said.
-        return source, (result.returncode, result.stdout or result.stderr)
-
-    known, faulty, said = 0, 0, set()
-    sources = list(sources_of(entries))
+    pairs = list(sources_of(tidy.entries))
+    stamps = [tidy.stamp(pair) for pair in pairs]
+    for old in set(tidy.stamps.iterdir()) - set(stamps):
+        old.unlink()
+    stale = [pair for pair, stamp in zip(pairs, stamps) if not stamp.exists()]
+    faulty, said = 0, set()
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for source, verdict in pool.map(lambda pair: check(*pair), sources):
-            if verdict is None:
-                known += 1
-            elif verdict[0] != 0:
+        # The largest first, so that none is left for one core at the end.
+        for verdicts in pool.map(tidy.judge, sorted(batches_of(stale), key=len, reverse=True)):
+            for source, text in verdicts:
+                if text is None:
+                    continue
                 faulty += 1
                 # What is wrong in a header is found once for every source that includes it.
-                new = [text for text in DIAGNOSTIC.split(verdict[1]) if text not in said]
+                new = [part for part in DIAGNOSTIC.split(text) if part not in said]
                 said.update(new)
                 print(f"{source.relative_to(ROOT)}:\n{''.join(new)}", flush=True)
-    for old in set(stamps.iterdir()) - current:
-        old.unlink()
-    print(f"run_tidy: {len(sources)} sources, {known} unchanged since they passed, {faulty} faulty")
-    return 1 if faulty or not sources else 0
+    print(f"run_tidy: {len(pairs)} sources, {len(pairs) - len(stale)} unchanged since they passed, "
+          f"{faulty} faulty")
+    return 1 if faulty or not pairs else 0
 
 
 if __name__ == "__main__":

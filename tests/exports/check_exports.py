@@ -113,7 +113,8 @@ class Exports(ProgramTest):
         model = self.model()
         self.write_turning_poses()
         words = ["--sub-rays", "7", "--returns", "2", "--range-noise", "0.02"]
-        divergent = self.sensor.read_text() + "divergence_deg = [0.5, 0.5]\n"
+        divergent = (self.sensor.read_text() +
+                     'divergence_deg = [0.5, 0.5]\ndivergence_kind = "1/e2"\n')
         self.sensor.write_text(divergent)
         scans = {kind: self.simulate(model, kind, "--format", kind, *words)
                  for kind in ("ply", "npy", "mcap")}
