@@ -3,11 +3,12 @@
 #include "build_options.h"
 
 #include "option_types.h"
+#include "text_table.h"
 
 namespace adasplats::app {
 namespace {
 
-void add_scales(CLI::App& app, BuildOptions& options) {
+void add_scales(OptionSet& app, BuildOptions& options) {
   constexpr const char* kGroup = "Scales of neighbours K, radius R and error bound E by group";
   for (int i = 0; i < kSemanticGroups; ++i) {
     const std::string name(name_of(static_cast<SemanticGroup>(i)));
@@ -25,7 +26,7 @@ void add_scales(CLI::App& app, BuildOptions& options) {
       ->group(kGroup);
 }
 
-void add_cleaning(CLI::App& app, BuildOptions& options) {
+void add_cleaning(OptionSet& app, BuildOptions& options) {
   constexpr const char* kGroup = "Denoising and resampling";
   add_switch(app, "--denoise,!--no-denoise", options.denoise, "Remove noise")->group(kGroup);
   app.add_option("--denoise-sigmas", options.denoise_sigmas,
@@ -40,7 +41,8 @@ void add_cleaning(CLI::App& app, BuildOptions& options) {
              "Fill in points on splats and generate again")
       ->group(kGroup);
   app.add_option("--resample-density", options.resample_density,
-                 "Wanted density of splats, times its mean")
+                 "Wanted density of splats, times its mean; none are added where two thirds of "
+                 "it are there")
       ->capture_default_str()
       ->group(kGroup);
   add_choice<BuildOptions::ResampleBase>(
@@ -52,7 +54,7 @@ void add_cleaning(CLI::App& app, BuildOptions& options) {
       ->group(kGroup);
 }
 
-void add_consistent(CLI::App& app, ConsistentOptions& options) {
+void add_consistent(OptionSet& app, ConsistentOptions& options) {
   constexpr const char* kGroup = "Method consistent";
   const auto number = [&app](const char* flag, auto& value, const char* help) {
     app.add_option(flag, value, help)->capture_default_str()->group(kGroup);
@@ -82,7 +84,15 @@ const std::vector<std::pair<std::string, SplatMethod>>& method_names() {
   return names;
 }
 
-void add_removal_option(CLI::App& app, DynamicRemoval& removal) {
+std::string text_of(const std::vector<RemovedPoints::OfClass>& removed) {
+  std::string text;
+  for (const auto& part : removed) {
+    text += (text.empty() ? " (" : ", ") + part.name + " " + grouped(part.points);
+  }
+  return text.empty() ? text : text + ")";
+}
+
+void add_removal_option(OptionSet& app, DynamicRemoval& removal) {
   add_choice<DynamicRemoval>(app, "--remove", removal,
                              {{"none", DynamicRemoval::none},
                               {"moving", DynamicRemoval::moving},
@@ -90,7 +100,7 @@ void add_removal_option(CLI::App& app, DynamicRemoval& removal) {
                              "Objects to leave out by their labels; movable: parked cars too");
 }
 
-void add_build_options(CLI::App& app, BuildOptions& options) {
+void add_build_options(OptionSet& app, BuildOptions& options) {
   add_choice<SplatMethod>(
       app, "--method", options.method, method_names(),
       "consistent agrees with the measured rays; the others are the paper's variants, of "

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "adasplats/splats/build_model.h"
+#include "option_set.h"
 
 namespace adasplats::app {
 
@@ -12,9 +11,12 @@ namespace adasplats::app {
 const std::vector<std::pair<std::string, SplatMethod>>& method_names();
 
 /// Adds the flags of BuildOptions.
-void add_build_options(CLI::App& app, BuildOptions& options);
+void add_build_options(OptionSet& app, BuildOptions& options);
+
+/// " (car 1,200, person 30)"; empty where there are none.
+std::string text_of(const std::vector<RemovedPoints::OfClass>& removed);
 
 /// Adds --remove.
-void add_removal_option(CLI::App& app, DynamicRemoval& removal);
+void add_removal_option(OptionSet& app, DynamicRemoval& removal);
 
 }  // namespace adasplats::app

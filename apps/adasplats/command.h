@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +10,7 @@
 
 #include "common_options.h"
 #include "device_option.h"
+#include "option_set.h"
 #include "session.h"
 
 namespace adasplats::app {
@@ -27,9 +28,9 @@ class Command {
   virtual void run(Session& session) = 0;
 
   /// Adds --threads, --seed and so on; to be called once, behind the subcommand's own options.
-  void add_common_options() { app::add_common_options(*app_, common_); }
+  void add_common_options();
 
-  CLI::App& options() { return *app_; }
+  OptionSet& options() { return options_; }
   const CommonOptions& common() const { return common_; }
   /// Nothing where the subcommand has no --device.
   const std::optional<DeviceOptions>& device() const { return device_; }
@@ -37,22 +38,43 @@ class Command {
   std::string full_name() const;
   /// Throws a usage Error naming the first required option that has no value.
   void check_required() const;
+  /// Throws usage where an output is an input, too, and where the name of a file says another
+  /// format than is written.
+  void check_outputs() const;
   /// For the help text: CLI11 marks what it knows to be required.
   void mark_required() const;
 
  protected:
+  /// Whether the user has given an option, on the command line or in a configuration.
+  bool is_given(const std::string& name) const { return options_.is_given(name); }
+  /// Throws a usage Error that names the first of these options that is given: "--x has no effect "
+  /// and `why`. For options that only fit some cases.
+  void refuse(std::initializer_list<const char*> names, const std::string& why) const;
   /// Makes an option required; a configuration file may give it, too.
-  void require(CLI::Option* option) { required_.push_back(option); }
+  void require(Option* option) { required_.push_back(option); }
+  /// Says that an option names a file that is written, whose name ends with one of `endings`.
+  Option* writes(Option* option, std::vector<std::string> endings);
+  /// Says that an option names a folder that is made.
+  Option* writes_folder(Option* option);
   /// Adds --device; to be called once, behind the subcommand's own options.
   void add_device_options(GpuCount count = GpuCount::one) {
-    app::add_device_options(*app_, device_.emplace(), count);
+    app::add_device_options(options_, device_.emplace(), count);
   }
 
  private:
-  CLI::App* app_;
+  /// An option that names what is written; a folder has no endings.
+  struct Output {
+    const CLI::Option* option;
+    std::vector<std::string> endings;
+  };
+
+  std::vector<std::filesystem::path> inputs() const;
+
+  OptionSet options_;
   CommonOptions common_;
   std::optional<DeviceOptions> device_;
-  std::vector<CLI::Option*> required_;
+  std::vector<Option*> required_;
+  std::vector<Output> outputs_;
 };
 
 /// Options of the program that are neither help nor one-off: what a configuration may set and a

@@ -6,14 +6,14 @@
 
 namespace adasplats::app {
 
-void add_common_options(CLI::App& app, CommonOptions& options) {
+void add_common_options(OptionSet& app, CommonOptions& options) {
   constexpr const char* kGroup = "Common options";
   constexpr int kMostThreads = 4096;
-  app.set_version_flag("--version", std::string("adasplats ") + ADASPLATS_VERSION,
+  app.add_version_flag("--version", std::string("adasplats ") + ADASPLATS_VERSION,
                        "Print the version and exit")
       ->group(kGroup);
   app.add_option("--threads", options.threads, "Threads; 0: all that the process may use")
-      ->check(CLI::Range(0, kMostThreads).description(""))
+      ->range(0, kMostThreads)
       ->capture_default_str()
       ->type_name("N")
       ->group(kGroup);

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+
+#include "option_set.h"
 
 namespace adasplats::app {
 
@@ -16,6 +17,6 @@ struct CommonOptions {
   std::filesystem::path config;
 };
 
-void add_common_options(CLI::App& app, CommonOptions& options);
+void add_common_options(OptionSet& app, CommonOptions& options);
 
 }  // namespace adasplats::app

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
 #include "adasplats/core/stopwatch.h"
 #include "commands.h"
 #include "demo_job.h"
@@ -33,8 +35,8 @@ class DemoCommand final : public Command {
       : Command(program, "demo",
                 "Make a street, model it with every method, simulate, measure and draw it",
                 kExamples) {
-    CLI::App& app = options();
-    add_path(app, "-o,--output", job_.output, "Folder to create");
+    OptionSet& app = options();
+    writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create"));
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     app.add_option("--points", job_.points, "About as many points in the mapping cloud")
         ->capture_default_str();

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "demo_job.h"
 
+#include <nlohmann/json.hpp>
+
 #include "adasplats/pipeline/metrics_json.h"
 #include "build_options.h"
 #include "output_path.h"

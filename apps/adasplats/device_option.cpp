@@ -17,7 +17,7 @@ Choices<DeviceKind> choices_of_devices() {
 }
 
 [[noreturn]] void refuse(const std::string& why, const std::string& text) {
-  throw CLI::ValidationError("--gpus", why + ", found '" + text + "'");
+  refuse_value("--gpus", why + ", found '" + text + "'");
 }
 
 /// "0,2": different numbers, not negative.
@@ -42,7 +42,7 @@ std::vector<int> parse_gpus(const std::string& text) {
 
 }  // namespace
 
-void add_device_options(CLI::App& app, DeviceOptions& options, GpuCount count) {
+void add_device_options(OptionSet& app, DeviceOptions& options, GpuCount count) {
   constexpr const char* kGroup = "Device options";
   add_choice<DeviceKind>(app, "--device", options.kind, choices_of_devices(),
                          "What computes: cuda and optix need an NVIDIA GPU; auto takes cuda where "

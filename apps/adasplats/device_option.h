@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 
 #include "adasplats/pipeline/device_choice.h"
+#include "option_set.h"
 
 namespace adasplats::app {
 
@@ -13,6 +13,6 @@ namespace adasplats::app {
 enum class GpuCount : std::uint8_t { one, several };
 
 /// Adds --device, and --gpus where several can be used.
-void add_device_options(CLI::App& app, DeviceOptions& options, GpuCount count);
+void add_device_options(OptionSet& app, DeviceOptions& options, GpuCount count);
 
 }  // namespace adasplats::app

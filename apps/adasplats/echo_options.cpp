@@ -6,9 +6,9 @@
 
 namespace adasplats::app {
 
-std::pair<CLI::Option*, CLI::Option*> add_echo_inputs(CLI::App& app, EchoInputs& inputs) {
-  CLI::Option* model = add_path(app, "MODEL", inputs.model, "Splat model");
-  CLI::Option* sequence =
+std::pair<Option*, Option*> add_echo_inputs(OptionSet& app, EchoInputs& inputs) {
+  Option* model = add_path(app, "MODEL", inputs.model, "Splat model");
+  Option* sequence =
       add_path(app, "SEQUENCE", inputs.sequence,
                "SemanticKITTI sequence folder; beams without return are told by scans of an "
                "HDL-64E that are not motion-compensated");

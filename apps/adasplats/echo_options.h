@@ -2,17 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <utility>
 
 #include "adasplats/pipeline/evaluate_echoes.h"
+#include "option_set.h"
 #include "text_table.h"
 
 namespace adasplats::app {
 
 /// MODEL and SEQUENCE, which are returned, --motion and --sensor.
-std::pair<CLI::Option*, CLI::Option*> add_echo_inputs(CLI::App& app, EchoInputs& inputs);
+std::pair<Option*, Option*> add_echo_inputs(OptionSet& app, EchoInputs& inputs);
 
 /// Table of beams without return.
 TextTable drop_table();

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
 #include "adasplats/core/stopwatch.h"
 #include "commands.h"
 #include "evaluate_job.h"
@@ -42,7 +44,7 @@ class EvaluateC2cCommand final : public Command {
  public:
   explicit EvaluateC2cCommand(CLI::App& evaluate)
       : Command(evaluate, "c2c", "Distances between simulated and measured points", kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     require(add_path(app, "SIMULATED", job_.simulated,
                      "Point file, sequence folder or output of simulate"));
     require(add_path(app, "ORIGINAL", job_.original, "Likewise"));
@@ -50,17 +52,25 @@ class EvaluateC2cCommand final : public Command {
     app.add_option("--labels", job_.labels,
                    "Names the classes: semantickitti, paris-carla-3d or a TOML file")
         ->type_name("SCHEME");
-    add_path(app, "--picture", job_.picture,
-             "Also draw the simulated points, coloured by their distance to the original (PNG)");
-    add_path(app, "--errors", job_.errors,
-             "Also write the simulated points with their distances (PLY; 'adasplats view' shows "
-             "them)");
+    writes(add_path(
+               app, "--picture", job_.picture,
+               "Also draw the simulated points, coloured by their distance to the original (PNG)"),
+           {".png"});
+    writes(add_path(
+               app, "--errors", job_.errors,
+               "Also write the simulated points with their distances (PLY; 'adasplats view' shows "
+               "them)"),
+           {".ply"});
     add_vector(app, "--eye", job_.view.eye, "Where the picture's camera is, world coordinates");
     add_vector(app, "--target", job_.view.target, "What it looks at; the middle of the original");
     add_picture_width(app, job_.view.width);
   }
 
   void run(Session& session) override {
+    if (!job_.by_class) refuse({"--labels"}, "without --by-class");
+    if (job_.picture.empty()) {
+      refuse({"--eye", "--target", "--picture-width"}, "without --picture");
+    }
     job_.view.height = job_.view.width * 9 / 16;
     const Stopwatch watch;
     const CloudComparison comparison = run_cloud_comparison(job_, session);

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/pipeline/evaluate_echoes.h"
 #include "commands.h"
@@ -35,7 +37,7 @@ class EvaluateEchoesCommand final : public Command {
       : Command(evaluate, "echoes",
                 "Compare intensities, and which beams find nothing, with held-out scans",
                 kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     const auto [model, sequence] = add_echo_inputs(app, inputs_);
     require(model);
     require(sequence);
@@ -50,6 +52,7 @@ class EvaluateEchoesCommand final : public Command {
 
   void run(Session& session) override {
     const Stopwatch watch;
+    inputs_.sensor_is_asked = is_given("--sensor");
     const EchoResult result = evaluate_echoes(inputs_, drop_, session);
     session.report.update(to_json(result));
     session.report["seconds"]["total"] = watch.seconds();

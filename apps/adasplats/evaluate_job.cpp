@@ -36,6 +36,10 @@ ResimulateResult run_resimulate(const ResimulateJob& job, Session& session) {
   if (!job.errors.empty()) check_output_file(job.errors);
   const LabelScheme labels = load_label_scheme(job.labels);
   const KittiSequence sequence = open_held_out(job);
+  if (sequence.labels.empty() && job.options.drop_movable) {
+    throw Error(ErrorKind::usage,
+                "--drop-movable has no effect: " + sequence.folder.string() + " has no labels");
+  }
   const ModelScene scene(job.model, "", session);
   ResimulateResult result =
       evaluate_resimulation(scene, sequence, job.labels, job.options, session);

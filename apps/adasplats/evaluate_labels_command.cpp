@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/pipeline/evaluate_labels.h"
@@ -24,7 +25,7 @@ class EvaluateLabelsCommand final : public Command {
   explicit EvaluateLabelsCommand(CLI::App& evaluate)
       : Command(evaluate, "labels",
                 "How many simulated points have the class of the nearest measured one", kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     require(add_path(app, "SIMULATED", job_.simulated, "Sequence folder with labels"));
     require(add_path(app, "ORIGINAL", job_.original, "The sequence that it was made from"));
     app.add_option("--window", job_.options.window,

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/pipeline/evaluate_presence.h"
 #include "adasplats/pipeline/metrics_json.h"
@@ -20,7 +22,7 @@ class EvaluatePresenceCommand final : public Command {
  public:
   explicit EvaluatePresenceCommand(CLI::App& evaluate)
       : Command(evaluate, "presence", "Which measured points a model has a surface at", kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model, "Splat model or triangle mesh"));
     require(
         add_path(app, "POINTS", job_.points, "Point file with sensor positions, or a sequence"));

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/pipeline/metrics_json.h"
 #include "commands.h"
@@ -41,7 +43,7 @@ class EvaluateResimulateCommand final : public Command {
  public:
   explicit EvaluateResimulateCommand(CLI::App& evaluate)
       : Command(evaluate, "resimulate", "Cast the beams of held-out scans again", kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model, "Splat model or mesh"));
     require(add_path(app, "SEQUENCE", job_.sequence, "SemanticKITTI sequence folder"));
     app.add_option("--labels", job_.labels, "What labels mean: a name or a TOML file")
@@ -59,12 +61,16 @@ class EvaluateResimulateCommand final : public Command {
     app.add_flag("--keep-moving", keep_moving_, "Count beams on moving objects");
     app.add_flag("--drop-movable", job_.options.drop_movable,
                  "Leave out beams on movable objects (parked cars)");
-    add_path(app, "--picture", job_.picture,
-             "Also draw the middle scan, its points coloured by the range error (PNG)");
+    writes(add_path(app, "--picture", job_.picture,
+                    "Also draw the middle scan, its points coloured by the range error (PNG)"),
+           {".png"});
     add_picture_width(app, job_.picture_width);
-    add_path(app, "--errors", job_.errors,
-             "Also write the measured points with their range errors (PLY; 'adasplats view' shows "
-             "them)");
+    writes(
+        add_path(
+            app, "--errors", job_.errors,
+            "Also write the measured points with their range errors (PLY; 'adasplats view' shows "
+            "them)"),
+        {".ply"});
     app.add_option_function<std::string>(
            "--scans",
            [this](const std::string& text) { job_.scans = parse_scan_range("--scans", text); },
@@ -75,6 +81,10 @@ class EvaluateResimulateCommand final : public Command {
 
   void run(Session& session) override {
     const Stopwatch watch;
+    if (job_.picture.empty()) refuse({"--picture-width"}, "without --picture");
+    if (keep_moving_ && job_.options.drop_movable) {
+      throw Error(ErrorKind::usage, "--keep-moving and --drop-movable exclude each other");
+    }
     job_.options.drop_moving = !keep_moving_;
     const ResimulateResult result = run_resimulate(job_, session);
     session.report.update(to_json(result));

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/pipeline/evaluate_truth.h"
 #include "adasplats/pipeline/metrics_json.h"
@@ -53,7 +55,7 @@ class EvaluateTruthCommand final : public Command {
   explicit EvaluateTruthCommand(CLI::App& evaluate)
       : Command(evaluate, "truth", "Cast a sensor's rays into a model and into the true surface",
                 kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model, "Splat model or triangle mesh"));
     require(add_path(app, "TRUTH", job_.truth, "True surface: a triangle mesh, with classes"));
     require(add_path(app, "--trajectory", job_.trajectory,
@@ -79,6 +81,9 @@ class EvaluateTruthCommand final : public Command {
   void run(Session& session) override {
     const Stopwatch watch;
     job_.offset_m = offset_.value_or(Vec3d{});
+    if (keep_moving_ && job_.options.drop_movable) {
+      throw Error(ErrorKind::usage, "--keep-moving and --drop-movable exclude each other");
+    }
     job_.options.drop_moving = !keep_moving_;
     const TruthResult result = evaluate_truth(job_, session);
     session.report.update(to_json(result));

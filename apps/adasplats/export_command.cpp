@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
 #include "commands.h"
 #include "export_job.h"
 #include "load_options.h"
@@ -25,10 +27,11 @@ class ExportCommand final : public Command {
       : Command(program, "export",
                 "Write splats as Gaussians or glTF, points as glTF or PLY, scans as MCAP",
                 kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     require(add_path(app, "INPUT", job_.input,
                      "Splat model, point file, sequence folder or output of 'simulate'"));
-    require(add_path(app, "-o,--output", job_.output, "File to write"));
+    require(writes(add_path(app, "-o,--output", job_.output, "File to write"),
+                   {".ply", ".glb", ".mcap"}));
     add_choice<std::optional<ExportFormat>>(app, "--format", job_.format,
                                             {{"gaussian-3d", ExportFormat::gaussian_3d},
                                              {"gaussian-2d", ExportFormat::gaussian_2d},
@@ -50,6 +53,7 @@ class ExportCommand final : public Command {
   }
 
   void run(Session& session) override {
+    job_.cloud_option = given_load_option(options());
     const ExportResult result = run_export(job_, session);
     session.report[result.unit] = result.count;
     session.report["points_dropped"] = result.dropped;

@@ -16,6 +16,7 @@
 #include "adasplats/dataset/mcap_writer.h"
 #include "adasplats/io/number_text.h"
 #include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/output_check.h"
 #include "adasplats/pipeline/scan_range.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/simulate/point_colors.h"
@@ -85,7 +86,10 @@ ExportFormat format_of(const ExportJob& job, InputKind kind) {
   const std::string can_be =
       job.input.string() + ": " + kind_name + " can be exported as " + joined_names(possible);
   if (job.format) {
-    if (std::ranges::find(possible, *job.format) != possible.end()) return *job.format;
+    if (std::ranges::find(possible, *job.format) != possible.end()) {
+      require_ending(job.output, "." + std::string(ending_of(*job.format)));
+      return *job.format;
+    }
     throw Error(ErrorKind::usage, can_be + ", not as " + std::string(name_of(*job.format)));
   }
   std::string ending = lower_case(job.output.extension().string());
@@ -230,11 +234,20 @@ ExportResult write_export(const ExportJob& job, Session& session) {
                     ", which tells classes and intensities themselves; it is for gaussian-3d, "
                     "gaussian-2d and glb");
   }
-  check_output_file(job.output);
-  std::error_code none;
-  if (fs::equivalent(job.input, job.output, none)) {
-    throw Error(ErrorKind::usage, job.output.string() + ": is the input, too; write elsewhere");
+  if (!job.labels.empty() && !has_colors(format)) {
+    throw Error(ErrorKind::usage, "--labels has no effect on " + std::string(name_of(format)) +
+                                      ", which holds the numbers of classes as they are");
   }
+  const bool scans = format == ExportFormat::mcap &&
+                     (job.cloud_option == "--scans" || job.cloud_option == "--strict");
+  if (!job.cloud_option.empty() && !scans &&
+      (kind == InputKind::model || format == ExportFormat::mcap)) {
+    throw Error(
+        ErrorKind::usage,
+        job.cloud_option + " has no effect on " +
+            (kind == InputKind::model ? "a splat model" : "scans, which are written as they are"));
+  }
+  check_output_file(job.output);
   if (kind == InputKind::model) return export_model(job, format, session);
   if (format == ExportFormat::mcap) return export_scans(job, session);
   return export_cloud(job, format, session);

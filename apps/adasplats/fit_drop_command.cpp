@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/pipeline/evaluate_echoes.h"
@@ -22,11 +24,11 @@ class FitDropCommand final : public Command {
  public:
   explicit FitDropCommand(CLI::App& program)
       : Command(program, "fit-drop", "Learn from raw scans which beams tell nothing", kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     const auto [model, sequence] = add_echo_inputs(app, inputs_);
     require(model);
     require(sequence);
-    require(add_path(app, "-o,--output", output_, "Drop model to write, TOML"));
+    require(writes(add_path(app, "-o,--output", output_, "Drop model to write, TOML"), {".toml"}));
     app.add_option("--every", every_, "Takes every n-th scan, to keep others for a test")
         ->capture_default_str();
     add_device_options();

@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+#include <set>
+
 #include "adasplats/gpu/device.h"
+#include "adasplats/pipeline/inputs.h"
 #include "commands.h"
 #include "info_job.h"
 #include "load_options.h"
@@ -72,7 +76,7 @@ class InfoCommand final : public Command {
       : Command(program, "info",
                 "Say what point clouds, models, meshes and sequences hold, or which GPUs there are",
                 kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     app.add_option_function<std::vector<std::string>>(
            "FILE",
            [this](const std::vector<std::string>& names) {
@@ -88,6 +92,11 @@ class InfoCommand final : public Command {
   }
 
   void run(Session& session) override {
+    if (inputs_.empty()) {
+      refuse({"--labels"}, "without a file");
+      const std::string option = given_load_option(options());
+      if (!option.empty()) refuse({option.c_str()}, "without a file");
+    }
     session.report["files"] = nlohmann::ordered_json::array();
     std::string text;
     if (devices_ || inputs_.empty()) {
@@ -95,17 +104,38 @@ class InfoCommand final : public Command {
       session.report["gpus"] = to_json(search);
       text = table_of(search);
     }
-    for (const std::filesystem::path& input : inputs_) {
+    std::set<std::string> kinds;
+    for (const std::filesystem::path& input : all_inputs()) {
       const FileFacts facts = run_info(input, labels_, load_, session);
+      kinds.insert(facts.kind);
       nlohmann::ordered_json json = {{"path", input.string()}, {"kind", facts.kind}};
       json.update(facts.json);
       session.report["files"].push_back(std::move(json));
       text += (text.empty() ? "" : "\n") + table_of(input, facts);
     }
+    refuse_what_does_not_fit(kinds);
     print(text);
   }
 
  private:
+  /// Models and meshes are described as they are; of a sequence, scans can be chosen.
+  void refuse_what_does_not_fit(const std::set<std::string>& kinds) {
+    if (kinds.empty() || kinds.contains("point cloud")) return;
+    const std::string why = "on a " + *kinds.begin();
+    refuse({"--label-field", "--sensor-fields", "--viewpoint", "--trajectory", "--max-distance",
+            "--beams-from-poses", "--salvage"},
+           why);
+    if (!kinds.contains("sequence")) refuse({"--scans", "--strict"}, why);
+  }
+
+  /// With the sequences of a tree one by one.
+  std::vector<std::filesystem::path> all_inputs() const {
+    std::vector<std::filesystem::path> all;
+    for (const std::filesystem::path& input : inputs_)
+      for (const std::filesystem::path& one : resolve_cloud_inputs(input)) all.push_back(one);
+    return all;
+  }
+
   std::vector<std::filesystem::path> inputs_;
   bool devices_ = false;
   std::string labels_;

@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <unordered_set>
 
 #include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/point_files.h"
 #include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/scan_range.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/splats/splat_model.h"
 #include "text_table.h"
@@ -40,6 +43,7 @@ class Survey {
     cells_.insert(std::uint64_t{cell(world.x)} << 32 | cell(world.y));
   }
   void add_class(std::uint16_t id) { ++classes_[id]; }
+  std::uint64_t not_finite() const { return not_finite_; }
 
   void describe(FileFacts& facts, const char* unit) const {
     facts.rows.emplace_back(unit, grouped(count_));
@@ -105,13 +109,15 @@ FileFacts cloud_facts(const fs::path& input, const std::optional<LabelScheme>& s
   survey.describe(facts, "points");
   facts.rows.emplace_back("dropped: not finite", grouped(report.dropped_not_finite));
   facts.rows.emplace_back("dropped: too far", grouped(report.dropped_far));
-  facts.rows.emplace_back("sensor positions", cloud.sensor_positions.empty() ? "no" : "yes");
+  if (report.unknown_intensities > 0)
+    facts.rows.emplace_back("intensity not known", grouped(report.unknown_intensities));
+  facts.rows.emplace_back("sensor positions", describe_origins(report.origins));
   facts.rows.emplace_back("intensities", cloud.intensities.empty() ? "no" : "yes");
   survey.describe_classes(facts, scheme);
   return facts;
 }
 
-FileFacts model_facts(const fs::path& input) {
+FileFacts model_facts(const fs::path& input, std::optional<LabelScheme> scheme) {
   const SplatModel model = load_model(input);
   FileFacts facts;
   facts.kind = "splat model";
@@ -131,8 +137,7 @@ FileFacts model_facts(const fs::path& input) {
     facts.rows.emplace_back("radius: least, median, greatest",
                             at(0) + ", " + at(radii.size() / 2) + ", " + at(radii.size() - 1));
   }
-  std::optional<LabelScheme> scheme;
-  if (!model.label_scheme.empty()) scheme = load_label_scheme(model.label_scheme);
+  if (!scheme && !model.label_scheme.empty()) scheme = load_label_scheme(model.label_scheme);
   survey.describe_classes(facts, scheme);
   return facts;
 }
@@ -163,29 +168,39 @@ FileFacts mesh_facts(const fs::path& input, std::optional<LabelScheme> scheme) {
 }
 
 FileFacts sequence_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
-                         Session& session) {
+                         const LoadOptions& options, Session& session) {
   const KittiSequence sequence = open_kitti_sequence(input);
+  require_poses_that_fit(sequence);
+  const std::vector<std::size_t> chosen = chosen_scans(
+      {options.first_scan, options.scan_count, options.scan_stride}, sequence.scans.size(), input);
   FileFacts facts;
   facts.kind = "sequence";
   double driven_m = 0;
-  for (std::size_t i = 1; i < sequence.trajectory.size(); ++i) {
+  for (std::size_t i = chosen.front() + 1; i <= chosen.back(); ++i) {
     driven_m += length(sequence.trajectory[i].world_from_sensor.translation -
                        sequence.trajectory[i - 1].world_from_sensor.translation);
   }
-  facts.rows.emplace_back("scans", grouped(sequence.scans.size()));
+  const bool all = chosen.size() == sequence.scans.size();
+  facts.rows.emplace_back(
+      "scans", grouped(chosen.size()) + (all ? "" : " of " + grouped(sequence.scans.size())));
   facts.rows.emplace_back("labels", sequence.labels.empty() ? "no" : "yes");
   facts.rows.emplace_back("trajectory", fixed(driven_m, 1) + " m");
-  facts.json["scans"] = sequence.scans.size();
+  facts.json["scans"] = chosen.size();
+  if (!all) facts.json["scans_in_all"] = sequence.scans.size();
   facts.json["driven_m"] = driven_m;
   Survey survey;
-  session.progress.begin_step("read " + input.filename().string(), sequence.scans.size());
+  session.progress.begin_step("read " + input.filename().string(), chosen.size());
+  std::size_t done = 0;
   // One scan at a time: sequences can be larger than memory.
-  for (std::size_t i = 0; i < sequence.scans.size(); ++i) {
+  for (const std::size_t i : chosen) {
     const KittiScan scan = read_kitti_scan(sequence, i);
     const RigidTransform& pose = sequence.trajectory[i].world_from_sensor;
     for (const Vec3f p : scan.positions) survey.add(pose * vec_cast<double>(p));
     for (const std::uint16_t id : scan.classes) survey.add_class(id);
-    session.progress.advance(i + 1);
+    if (options.strict && survey.not_finite() > 0) {
+      throw Error(ErrorKind::data, sequence.scans[i].string() + ": has points that are not finite");
+    }
+    session.progress.advance(++done);
   }
   session.progress.end_step();
   survey.describe(facts, "points");
@@ -199,10 +214,10 @@ FileFacts run_info(const fs::path& input, const std::string& labels, const LoadO
                    Session& session) {
   const fs::path resolved = resolve_cloud_input(input);
   const auto scheme = label_scheme_for(labels, std::span(&resolved, 1));
-  if (is_kitti_sequence(resolved)) return sequence_facts(resolved, scheme, session);
+  if (is_kitti_sequence(resolved)) return sequence_facts(resolved, scheme, options, session);
   if (fs::is_regular_file(resolved)) {
     if (is_mesh_file(resolved)) return mesh_facts(resolved, scheme);
-    if (is_splat_model(resolved)) return model_facts(resolved);
+    if (is_splat_model(resolved)) return model_facts(resolved, scheme);
   }
   return cloud_facts(resolved, scheme, options, session);
 }

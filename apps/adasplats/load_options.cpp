@@ -5,9 +5,13 @@
 #include "option_types.h"
 
 namespace adasplats::app {
+namespace {
 
-void add_load_options(CLI::App& app, LoadOptions& options) {
-  constexpr const char* kGroup = "Input";
+constexpr const char* kGroup = "Input";
+
+}  // namespace
+
+void add_load_options(OptionSet& app, LoadOptions& options) {
   app.add_option("--label-field", options.label_field, "Column of the semantic class")
       ->type_name("NAME")
       ->group(kGroup);
@@ -16,8 +20,7 @@ void add_load_options(CLI::App& app, LoadOptions& options) {
     const std::size_t second = text.find(',', first + 1);
     if (first == std::string::npos || second == std::string::npos ||
         text.find(',', second + 1) != std::string::npos) {
-      throw CLI::ValidationError("--sensor-fields",
-                                 "expected three names of columns, found '" + text + "'");
+      refuse_value("--sensor-fields", "expected three names of columns, found '" + text + "'");
     }
     options.sensor_x_field = text.substr(0, first);
     options.sensor_y_field = text.substr(first + 1, second - first - 1);
@@ -28,10 +31,11 @@ void add_load_options(CLI::App& app, LoadOptions& options) {
       ->type_name("X,Y,Z")
       ->group(kGroup);
   add_vector(app, "--viewpoint", options.viewpoint,
-             "Sensor position of points that have none, world coordinates")
+             "The station that measured all points that have no sensor position, world coordinates")
       ->group(kGroup);
   add_path(app, "--trajectory", options.trajectory,
-           "Poses whose nearest one is the sensor position of points that have none")
+           "Poses: the nearest one turns the normals of points that have no sensor position; a "
+           "guess, nothing is checked with it")
       ->group(kGroup);
   const auto set_scans = [&options](const std::string& text) {
     const ScanRange range = parse_scan_range("--scans", text);
@@ -49,10 +53,18 @@ void add_load_options(CLI::App& app, LoadOptions& options) {
                  "Points farther than this from the median of all are dropped, m")
       ->capture_default_str()
       ->group(kGroup);
+  app.add_option("--max-dropped", options.max_dropped,
+                 "Share of the points that may be dropped as far or not finite before it is an "
+                 "error")
+      ->capture_default_str()
+      ->type_name("SHARE")
+      ->group(kGroup);
   app.add_flag("--strict", options.strict, "Points that are not finite are an error")
       ->group(kGroup);
   app.add_flag("--salvage", options.salvage, "Read the whole records of truncated LAS files")
       ->group(kGroup);
 }
+
+std::string given_load_option(const OptionSet& app) { return app.first_given(kGroup); }
 
 }  // namespace adasplats::app

@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <string>
 
 #include "adasplats/cloud/load_cloud.h"
+#include "option_set.h"
 
 namespace adasplats::app {
 
 /// Adds the flags of LoadOptions.
-void add_load_options(CLI::App& app, LoadOptions& options);
+void add_load_options(OptionSet& app, LoadOptions& options);
+
+/// The first of these flags that was given; empty: none.
+std::string given_load_option(const OptionSet& app);
 
 }  // namespace adasplats::app

@@ -1,14 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <memory>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
 #include "commands.h"
 #include "config_file.h"
 #include "help_text.h"
@@ -123,7 +126,7 @@ void check_extras(CLI::App& program, CLI::App& chosen) {
 
 Command& find_command(Program& program, CLI::App& chosen) {
   for (const auto& command : program.commands) {
-    if (&command->options() == &chosen) return *command;
+    if (&command->options().parser() == &chosen) return *command;
   }
   const std::string name = chosen.get_parent() == nullptr ? "" : chosen.get_name() + " ";
   throw Error(ErrorKind::usage, "a subcommand is missing; see adasplats " + name + "--help");
@@ -131,15 +134,17 @@ Command& find_command(Program& program, CLI::App& chosen) {
 
 void run_command(Program& program, Command& command) {
   const CommonOptions& common = command.common();
-  if (!common.config.empty()) apply_config(common.config, program.app, command.options());
+  if (!common.config.empty()) apply_config(common.config, program.app, command.options().parser());
   command.check_required();
+  command.check_outputs();
   if (!common.report.empty()) check_output_file(common.report);
-  const Executor executor(common.threads);
-  ProgressBar progress;
+  ProgressBar bar;
+  ProgressMeter progress(bar);
+  const Executor executor(common.threads, throw_if_interrupted, &progress);
   nlohmann::ordered_json report;
   DeviceChoice device;
   if (command.device()) device = choose_device(*command.device());
-  Session session{{executor, progress, common.seed, device}, progress, report};
+  Session session{{executor, progress, common.seed, device}, bar, report};
   command.run(session);
   if (!common.report.empty()) write_report(command, session);
 }

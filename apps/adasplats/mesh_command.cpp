@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
 #include "build_options.h"
 #include "commands.h"
 #include "load_options.h"
@@ -16,7 +18,7 @@ constexpr const char* kExamples =
     "  adasplats mesh sequences/00 -o poisson.ply --method poisson --depth 11\n"
     "  adasplats render imls.ply street.ply -o both.png\n";
 
-void add_imls_options(CLI::App& app, ImlsOptions& options) {
+void add_imls_options(OptionSet& app, ImlsOptions& options) {
   constexpr const char* kGroup = "IMLS";
   app.add_option("--voxel", options.voxel_m, "Side of a voxel, m")
       ->capture_default_str()
@@ -30,7 +32,7 @@ void add_imls_options(CLI::App& app, ImlsOptions& options) {
       ->group(kGroup);
 }
 
-void add_poisson_options(CLI::App& app, PoissonOptions& options) {
+void add_poisson_options(OptionSet& app, PoissonOptions& options) {
   constexpr const char* kGroup = "Screened Poisson";
   app.add_option("--depth", options.depth, "Depth of the octree, at most")
       ->capture_default_str()
@@ -56,7 +58,7 @@ class MeshCommand final : public Command {
   explicit MeshCommand(CLI::App& program)
       : Command(program, "mesh", "Turn point clouds into a triangle mesh, to compare with",
                 kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     require(app.add_option_function<std::vector<std::string>>(
                    "INPUT",
                    [this](const std::vector<std::string>& names) {
@@ -65,7 +67,7 @@ class MeshCommand final : public Command {
                    "Point files (PLY, PCD, LAS, LAZ, text, KITTI bin) and SemanticKITTI sequence "
                    "folders")
                 ->type_name("PATH"));
-    require(add_path(app, "-o,--output", job_.output, "Mesh to write, PLY"));
+    require(writes(add_path(app, "-o,--output", job_.output, "Mesh to write, PLY"), {".ply"}));
     add_choice<MeshMethod>(app, "--method", job_.method,
                            {{"imls", MeshMethod::imls}, {"poisson", MeshMethod::poisson}},
                            "Implicit moving least squares or screened Poisson");
@@ -82,6 +84,15 @@ class MeshCommand final : public Command {
   }
 
   void run(Session& session) override {
+    if (job_.method == MeshMethod::imls) {
+      refuse({"--depth", "--samples-per-node", "--trim", "--poisson-program"},
+             "with --method imls; it is for --method poisson");
+    } else {
+      refuse({"--voxel", "--sigma", "--truncation"},
+             "with --method poisson; it is for --method imls");
+    }
+    job_.removal_is_asked = is_given("--remove");
+    job_.samples_per_node_is_asked = is_given("--samples-per-node");
     const MeshResult result = run_mesh(job_, session);
     session.report.update(to_json(result));
     TextTable table({"step", "seconds"});
@@ -90,7 +101,8 @@ class MeshCommand final : public Command {
     const std::string by = result.program.empty() ? "" : ", by " + result.program;
     print(table.text() + "\n" + job_.output.string() + ": " + grouped(result.primitives) +
           " triangles from " + grouped(result.points_in) + " points (" +
-          grouped(result.points_dynamic) + " dynamic removed)" + by + "\n");
+          grouped(result.points_dynamic) + " dynamic removed" + text_of(result.removed_classes) +
+          ")" + by + "\n");
   }
 
  private:

@@ -3,14 +3,17 @@
 #include "mesh_job.h"
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "adasplats/baselines/imls.h"
 #include "adasplats/baselines/nearest_classes.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/label_use.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/splats/canonical_order.h"
 #include "output_path.h"
@@ -18,34 +21,14 @@
 namespace adasplats::app {
 namespace {
 
-/// Which classes are left out, by id. Errors: data for an id of the cloud that has no class.
-std::vector<bool> removed_ids(const PointCloud& cloud, const LabelScheme& labels,
-                              DynamicRemoval removal) {
-  std::vector<bool> used(1 << 16), removed(1 << 16);
-  for (const std::uint16_t id : cloud.classes) used[id] = true;
-  for (std::size_t id = 0; id < used.size(); ++id) {
-    if (!used[id]) continue;
-    const SemanticClass* const known = labels.find(static_cast<std::uint16_t>(id));
-    if (known == nullptr) {
-      throw Error(ErrorKind::data, "label id " + std::to_string(id) +
-                                       " is not in the label scheme '" + labels.name() + "'");
-    }
-    removed[id] = removal == DynamicRemoval::moving ? known->mobility == Mobility::moving
-                                                    : known->mobility != Mobility::fixed;
-  }
-  return removed;
-}
-
 /// The points that stay, in canonical order, with what a mesh needs of them.
-PointCloud static_points(PointCloud cloud, const LabelScheme* labels, DynamicRemoval removal,
-                         const Executor& executor) {
+PointCloud static_points(PointCloud cloud, const RemovedPoints& removed, const Executor& executor) {
   cloud.intensities = {};
   cloud.instances = {};
   cloud.scan_indices = {};
   std::vector<std::uint32_t> order = canonical_order(cloud, executor);
-  if (labels != nullptr && !cloud.classes.empty() && removal != DynamicRemoval::none) {
-    const std::vector<bool> removed = removed_ids(cloud, *labels, removal);
-    std::erase_if(order, [&](std::uint32_t i) { return removed[cloud.classes[i]]; });
+  if (removed.points > 0) {
+    std::erase_if(order, [&](std::uint32_t i) { return removed.ids[cloud.classes[i]] != 0; });
   }
   return gather(cloud, order);
 }
@@ -56,9 +39,10 @@ class Steps {
   Steps(std::vector<StepTime>& times, ProgressSink& progress)
       : times_(times), progress_(progress) {}
 
+  /// `passes`: how many ProgressPasses the work consists of; 0: that cannot be said.
   template <class Work>
-  auto run(const std::string& name, Work&& work) {
-    progress_.begin_step(name, 0);
+  auto run(const std::string& name, int passes, Work&& work) {
+    progress_.begin_step(name, static_cast<std::uint64_t>(passes) * kPassUnits);
     const Stopwatch watch;
     auto result = work();
     times_.push_back({name, watch.seconds()});
@@ -77,9 +61,14 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 
 std::vector<Vec3f> normals_of(PointCloud& cloud, const MeshJob& job, Session& session,
                               MeshResult& result) {
+  // Some origins alone would turn neighbours against each other.
+  const std::span<const Vec3f> sensors = cloud.has_all_origins()
+                                             ? std::span<const Vec3f>(cloud.sensor_positions)
+                                             : std::span<const Vec3f>();
   OrientedNormals oriented =
-      oriented_normals(cloud.positions, cloud.sensor_positions, job.normals, session.executor);
+      oriented_normals(cloud.positions, sensors, job.normals, session.executor);
   cloud.sensor_positions = {};
+  cloud.origin_kinds = {};
   result.from_sensors = oriented.from_sensors;
   result.normal_components = oriented.components;
   if (!oriented.from_sensors) {
@@ -114,44 +103,52 @@ MeshResult run_mesh(const MeshJob& job, Session& session) {
   for (const auto& input : job.inputs) require_input(input);
   std::optional<PoissonPrograms> programs;  // said before long work where there are none
   if (job.method == MeshMethod::poisson) programs = find_poisson_programs(job.poisson.provider);
+  if (programs && programs->provider == PoissonProvider::open3d && job.samples_per_node_is_asked &&
+      job.poisson.samples_per_node != kOpen3dSamplesPerNode) {
+    throw Error(ErrorKind::usage,
+                "--samples-per-node: Open3D has 1.5; PoissonRecon on PATH takes other numbers");
+  }
   const Stopwatch total;
   const std::optional<LabelScheme> scheme = label_scheme_for(job.labels, job.inputs);
 
   MeshResult result;
   Steps steps(result.steps, session.progress);
-  PointCloud cloud = steps.run("load", [&] {
+  PointCloud cloud = steps.run("load", 0, [&] {
     auto [loaded, report] = load_cloud(job.inputs, job.load, session.executor, session.progress);
     result.loaded = report;
     return std::move(loaded);
   });
   result.points_in = cloud.size();
-  cloud = steps.run("order", [&] {
-    return static_points(std::move(cloud), scheme ? &*scheme : nullptr, job.remove,
-                         session.executor);
+  const LabelScheme* const labels = scheme ? &*scheme : nullptr;
+  check_label_use({job.labels, job.remove, job.removal_is_asked}, cloud, labels, session.progress);
+  cloud = steps.run("order", 0, [&] {
+    const RemovedPoints removed = points_to_remove(cloud, labels, job.remove);
+    result.removed_classes = removed.classes;
+    return static_points(std::move(cloud), removed, session.executor);
   });
   result.points_used = cloud.size();
   result.points_dynamic = result.points_in - result.points_used;
   if (cloud.empty()) throw Error(ErrorKind::data, "no points: there is nothing to mesh");
   std::vector<Vec3f> normals =
-      steps.run("normals", [&] { return normals_of(cloud, job, session, result); });
+      steps.run("normals", 1, [&] { return normals_of(cloud, job, session, result); });
 
   MeshModel model;
   model.origin = cloud.origin;
   model.method = programs ? "poisson" : "imls";
   if (scheme) model.label_scheme = scheme_reference(job.labels, *scheme);
-  model.mesh = steps.run(model.method, [&] {
+  model.mesh = steps.run(model.method, programs ? 0 : 1, [&] {
     return programs ? poisson_mesh(cloud, normals, job, *programs, session, result)
                     : imls_surface(cloud.positions, normals, job.imls, session.executor);
   });
   normals = {};
   if (model.mesh.triangles.empty()) throw Error(ErrorKind::data, "the points give no surface");
   if (!cloud.classes.empty()) {
-    model.mesh.classes = steps.run("classes", [&] {
+    model.mesh.classes = steps.run("classes", 1, [&] {
       return nearest_classes(model.mesh, cloud.positions, cloud.classes, session.executor);
     });
   }
   result.vertices = model.mesh.vertices.size();
-  result.primitives = steps.run("save", [&] {
+  result.primitives = steps.run("save", 0, [&] {
     save_mesh(job.output, model);
     return model.size();
   });
@@ -166,6 +163,8 @@ nlohmann::ordered_json to_json(const MeshResult& result) {
   json["points_far"] = result.loaded.dropped_far;
   json["points_in"] = result.points_in;
   json["points_dynamic"] = result.points_dynamic;
+  json["points_removed"] = nlohmann::ordered_json::object();
+  for (const auto& part : result.removed_classes) json["points_removed"][part.name] = part.points;
   json["points_used"] = result.points_used;
   json["primitives"] = result.primitives;
   json["vertices"] = result.vertices;

@@ -27,15 +27,18 @@ struct MeshJob {
   LoadOptions load;
   MeshMethod method = MeshMethod::imls;
   DynamicRemoval remove = DynamicRemoval::movable;
+  bool removal_is_asked = false;  ///< as of ModelOptions
   NormalOptions normals;
   ImlsOptions imls;
   PoissonOptions poisson;
+  bool samples_per_node_is_asked = false;  ///< else Open3D's other number is only said
 };
 
 struct MeshResult {
   LoadReport loaded;
   std::size_t points_in = 0;
   std::size_t points_dynamic = 0;  ///< removed by label
+  std::vector<RemovedPoints::OfClass> removed_classes;
   std::size_t points_used = 0;
   std::size_t primitives = 0;  ///< triangles
   std::size_t vertices = 0;

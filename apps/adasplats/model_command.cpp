@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "adasplats/pipeline/unused_options.h"
 #include "build_options.h"
 #include "commands.h"
 #include "load_options.h"
@@ -16,11 +19,26 @@ constexpr const char* kExamples =
     "  adasplats model sequences/00 -o place.ply --scans 0:100:2 --remove moving\n"
     "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n";
 
+/// What the method itself counts and measures.
+std::string figures_of(const BuildReport& built) {
+  if (!built.consistent) {
+    return grouped(built.points_noise) + " noisy points removed, " +
+           grouped(built.points_resampled) + " resampled, R " + centimetres(built.radius_m) +
+           ", E " + centimetres(built.error_m);
+  }
+  const ConsistentReport& report = *built.consistent;
+  const std::string seeds = grouped(report.cells) + " cells, " + grouped(report.seeds) + " seeds";
+  if (!report.checked) return seeds + ", not checked against measured rays";
+  return seeds + ", " + grouped(report.seeds_removed) + " of them contradicted by " +
+         grouped(report.rays) + " measured rays and removed, " + grouped(report.splats_filled) +
+         " splats put back where rays fell through";
+}
+
 class ModelCommand final : public Command {
  public:
   explicit ModelCommand(CLI::App& program)
       : Command(program, "model", "Turn point clouds into a splat model", kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     require(app.add_option_function<std::vector<std::string>>(
                    "INPUT",
                    [this](const std::vector<std::string>& names) {
@@ -29,7 +47,7 @@ class ModelCommand final : public Command {
                    "Point files (PLY, PCD, LAS, LAZ, text, KITTI bin) and SemanticKITTI sequence "
                    "folders")
                 ->type_name("PATH"));
-    require(add_path(app, "-o,--output", job_.output, "Model to write, PLY"));
+    require(writes(add_path(app, "-o,--output", job_.output, "Model to write, PLY"), {".ply"}));
     app.add_option("--labels", job_.labels,
                    "What labels mean: semantickitti, paris-carla-3d or a TOML file; the default is "
                    "semantickitti for sequence folders, else none")
@@ -43,6 +61,10 @@ class ModelCommand final : public Command {
   }
 
   void run(Session& session) override {
+    for (const UnusedOption& option : unused_options(job_.build)) {
+      refuse({("--" + option.name).c_str()}, option.why);
+    }
+    job_.removal_is_asked = is_given("--remove");
     // OptiX casts rays; models are made with CUDA alone.
     if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
     const ModelResult result = run_model(job_, session);
@@ -52,10 +74,9 @@ class ModelCommand final : public Command {
     table.add_row({"total", fixed(result.seconds, 2)});
     const BuildReport& built = result.built;
     print(table.text() + "\n" + job_.output.string() + ": " + grouped(built.primitives) +
-          " splats from " + grouped(built.points_in) + " points (" + grouped(built.points_dynamic) +
-          " dynamic and " + grouped(built.points_noise) + " noisy removed, " +
-          grouped(built.points_resampled) + " resampled), R " + centimetres(built.radius_m) +
-          ", E " + centimetres(built.error_m) + "\n");
+          " splats from " + grouped(built.points_in) + " points, " + grouped(built.points_dynamic) +
+          " of them dynamic and removed" + text_of(built.removed_classes) + "\n" +
+          figures_of(built) + "\n");
   }
 
  private:

@@ -42,8 +42,7 @@ std::array<double, 3> parse_three(const std::string& option, const std::string& 
     good = parse_whole(parts[i], numbers[i]) && std::isfinite(numbers[i]);
   }
   if (!good) {
-    throw CLI::ValidationError(
-        option, "expected three numbers with commas between them, found '" + text + "'");
+    refuse_value(option, "expected three numbers with commas between them, found '" + text + "'");
   }
   return numbers;
 }
@@ -57,13 +56,13 @@ ScanRange parse_scan_range(const std::string& option, const std::string& text) {
   good = good && parse_whole(parts[0], range.first) && parse_whole(parts[1], range.count);
   if (good && parts.size() == 3) good = parse_whole(parts[2], range.stride);
   if (!good || range.count == 0 || range.stride == 0) {
-    throw CLI::ValidationError(option, "expected FIRST:COUNT[:STRIDE], found '" + text + "'");
+    refuse_value(option, "expected FIRST:COUNT[:STRIDE], found '" + text + "'");
   }
   return range;
 }
 
-CLI::Option* add_path(CLI::App& app, const std::string& name, std::filesystem::path& target,
-                      const std::string& help) {
+Option* add_path(OptionSet& app, const std::string& name, std::filesystem::path& target,
+                 const std::string& help) {
   return app
       .add_option_function<std::string>(
           name, [&target](const std::string& text) { target = text; }, help)
@@ -71,8 +70,8 @@ CLI::Option* add_path(CLI::App& app, const std::string& name, std::filesystem::p
       ->default_str(target.string());
 }
 
-CLI::Option* add_vector(CLI::App& app, const std::string& name, std::optional<Vec3d>& target,
-                        const std::string& help) {
+Option* add_vector(OptionSet& app, const std::string& name, std::optional<Vec3d>& target,
+                   const std::string& help) {
   return app
       .add_option_function<std::string>(
           name,
@@ -84,8 +83,8 @@ CLI::Option* add_vector(CLI::App& app, const std::string& name, std::optional<Ve
       ->type_name("X,Y,Z");
 }
 
-CLI::Option* add_scale(CLI::App& app, const std::string& name, GroupScale& target,
-                       const std::string& help) {
+Option* add_scale(OptionSet& app, const std::string& name, GroupScale& target,
+                  const std::string& help) {
   return app
       .add_option_function<std::string>(
           name,
@@ -99,24 +98,22 @@ CLI::Option* add_scale(CLI::App& app, const std::string& name, GroupScale& targe
                     short_number(target.error));
 }
 
-CLI::Option* add_picture_width(CLI::App& app, int& width) {
+Option* add_picture_width(OptionSet& app, int& width) {
   return app.add_option("--picture-width", width, "Pixels; the height is 9/16 of it")
       ->capture_default_str()
-      ->check(CLI::Range(64, 8192))
+      ->range(64, 8192)
       ->type_name("N");
 }
 
-CLI::Option* add_switch(CLI::App& app, const std::string& names, bool& target,
-                        const std::string& help) {
+Option* add_switch(OptionSet& app, const std::string& names, bool& target,
+                   const std::string& help) {
   return app.add_flag(names, target, help)->default_str(target ? "true" : "false");
 }
 
 std::string unknown_word(const std::string& what, const std::string& word,
                          const std::vector<std::string>& known) {
   const std::string found = what + " '" + word + "' is not known";
-  if (const auto nearest = nearest_word(word, known)) {
-    return found + ", did you mean '" + *nearest + "'?";
-  }
+  if (const std::string meant = did_you_mean(word, known); !meant.empty()) return found + meant;
   std::string all;
   for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
   return found + (known.empty() ? "" : "; known are " + all);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -12,25 +11,26 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/vec3.h"
+#include "adasplats/core/words.h"
 #include "adasplats/pipeline/scan_range.h"
 #include "adasplats/splats/build_model.h"
+#include "option_set.h"
 
 namespace adasplats::app {
 
-/// "FIRST:COUNT[:STRIDE]", the value of `option`. Errors: CLI::ValidationError.
+/// "FIRST:COUNT[:STRIDE]", the value of `option`. Errors: refuse_value().
 ScanRange parse_scan_range(const std::string& option, const std::string& text);
 
-CLI::Option* add_path(CLI::App& app, const std::string& name, std::filesystem::path& target,
-                      const std::string& help);
-CLI::Option* add_vector(CLI::App& app, const std::string& name, std::optional<Vec3d>& target,
-                        const std::string& help);
-CLI::Option* add_scale(CLI::App& app, const std::string& name, GroupScale& target,
-                       const std::string& help);
+Option* add_path(OptionSet& app, const std::string& name, std::filesystem::path& target,
+                 const std::string& help);
+Option* add_vector(OptionSet& app, const std::string& name, std::optional<Vec3d>& target,
+                   const std::string& help);
+Option* add_scale(OptionSet& app, const std::string& name, GroupScale& target,
+                  const std::string& help);
 /// --picture-width, pixels of a picture of 16:9.
-CLI::Option* add_picture_width(CLI::App& app, int& width);
+Option* add_picture_width(OptionSet& app, int& width);
 /// A flag with its opposite: names as "--denoise,!--no-denoise".
-CLI::Option* add_switch(CLI::App& app, const std::string& names, bool& target,
-                        const std::string& help);
+Option* add_switch(OptionSet& app, const std::string& names, bool& target, const std::string& help);
 
 /// "what 'x' is not known, did you mean 'y'?" or a list of all that are known.
 std::string unknown_word(const std::string& what, const std::string& word,
@@ -39,10 +39,15 @@ std::string unknown_word(const std::string& what, const std::string& word,
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
+template <class T>
+Choices<T> choices_of(std::type_identity_t<Words<T>> words) {
+  return {words.begin(), words.end()};
+}
+
 /// One of a few words.
 template <class T>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, T& target, Choices<T> choices,
-                        const std::string& help) {
+Option* add_choice(OptionSet& app, const std::string& name, T& target, Choices<T> choices,
+                   const std::string& help) {
   std::vector<std::string> words;
   std::string joined;
   std::string chosen;
@@ -59,7 +64,7 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, T& target, Choic
         return;
       }
     }
-    throw CLI::ValidationError(name, unknown_word("value", given, words));
+    refuse_value(name, unknown_word("value", given, words));
   };
   return app.add_option_function<std::string>(name, choose, help)
       ->type_name(joined)

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "interrupt.h"
@@ -26,6 +27,7 @@ void ProgressBar::begin_step(std::string_view name, std::uint64_t total) {
   throw_if_interrupted();
   name_ = name;
   total_ = total;
+  begun_ = std::chrono::steady_clock::now();
   draw(0);
 }
 
@@ -51,7 +53,8 @@ void ProgressBar::draw(std::uint64_t done) {
   if (!visible_) return;
   last_drawn_ = std::chrono::steady_clock::now();
   if (total_ == 0) {
-    std::fprintf(stderr, "\r\033[K%s ...", name_.c_str());
+    const std::chrono::duration<double> seconds = last_drawn_ - begun_;
+    std::fprintf(stderr, "\r\033[K%s ... %.0f s", name_.c_str(), std::floor(seconds.count()));
   } else {
     const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
     const int filled = static_cast<int>(share * kBarWidth);

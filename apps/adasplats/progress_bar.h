@@ -28,13 +28,14 @@ class ProgressBar final : public ProgressSink {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
+  /// Seconds in place of a bar where the size of a step is not known.
   void draw(std::uint64_t done);
   void clear();
 
   bool visible_;
   std::string name_;
   std::uint64_t total_ = 0;
-  std::chrono::steady_clock::time_point last_drawn_;
+  std::chrono::steady_clock::time_point begun_, last_drawn_;
   std::vector<std::string> warnings_;
 };
 

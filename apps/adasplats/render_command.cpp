@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
 #include "commands.h"
 #include "option_types.h"
 #include "render_job.h"
@@ -23,7 +25,7 @@ class RenderCommand final : public Command {
                 "Draw splat models, meshes and point clouds, side by side, from above a corner or "
                 "as told",
                 kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     require(app.add_option_function<std::vector<std::string>>(
                    "MODEL",
                    [this](const std::vector<std::string>& names) {
@@ -31,7 +33,7 @@ class RenderCommand final : public Command {
                    },
                    "Splat models, triangle meshes (PLY, OBJ), point files, sequence folders")
                 ->type_name("PATH"));
-    require(add_path(app, "-o,--output", job_.output, "Picture to write, PNG"));
+    require(writes(add_path(app, "-o,--output", job_.output, "Picture to write, PNG"), {".png"}));
     app.add_option(
            "--labels", job_.labels,
            "What classes mean: semantickitti, paris-carla-3d or a TOML file; the default is "
@@ -66,6 +68,9 @@ class RenderCommand final : public Command {
   }
 
   void run(Session& session) override {
+    if (job_.view.trajectory.empty()) refuse({"--pose"}, "without --trajectory");
+    if (job_.view.birds_eye) refuse({"--fov"}, "with --birds-eye");
+    if (!draws_a_model(job_)) refuse({"--samples"}, "on points; it is for models and meshes");
     const RenderResult result = run_render(job_, session);
     const double rate = static_cast<double>(result.images) / result.seconds_rendered;
     session.report["images_per_second"] = rate;

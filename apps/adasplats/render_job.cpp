@@ -10,6 +10,7 @@
 
 #include "adasplats/cloud/load_cloud.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/png.h"
 #include "adasplats/pipeline/inputs.h"
@@ -29,10 +30,13 @@ struct Subject {
   std::optional<LabelScheme> labels;  ///< of the cloud
 };
 
+bool is_model(const std::filesystem::path& input) {
+  return std::filesystem::is_regular_file(input) && (is_mesh_file(input) || is_splat_model(input));
+}
+
 Subject load_subject(const RenderJob& job, const std::filesystem::path& input, Session& session) {
   Subject subject;
-  const bool is_file = std::filesystem::is_regular_file(input);
-  if (is_file && (is_mesh_file(input) || is_splat_model(input))) {
+  if (is_model(input)) {
     subject.model = std::make_unique<ModelScene>(input, job.labels, session);
     return subject;
   }
@@ -97,12 +101,12 @@ std::pair<Image, double> timed_image(const Subject& subject, const Camera& camer
                                      const RenderJob& job, Session& session) {
   std::vector<double> seconds;
   Image image;
-  session.progress.begin_step("render", static_cast<std::uint64_t>(job.repeat));
+  session.progress.begin_step("render", static_cast<std::uint64_t>(job.repeat) * kPassUnits);
   for (int i = 0; i < job.repeat; ++i) {
     const Stopwatch watch;
     image = image_of(subject, camera, job, session);
     seconds.push_back(watch.seconds());
-    session.progress.advance(static_cast<std::uint64_t>(i) + 1);
+    session.progress.advance((static_cast<std::uint64_t>(i) + 1) * kPassUnits);
   }
   session.progress.end_step();
   std::sort(seconds.begin(), seconds.end());
@@ -113,6 +117,11 @@ std::pair<Image, double> timed_image(const Subject& subject, const Camera& camer
 }
 
 }  // namespace
+
+bool draws_a_model(const RenderJob& job) {
+  for (const auto& model : job.models) require_input(model);
+  return std::any_of(job.models.begin(), job.models.end(), is_model);
+}
 
 RenderResult run_render(const RenderJob& job, Session& session) {
   check(job);

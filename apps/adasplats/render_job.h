@@ -32,6 +32,9 @@ struct RenderResult {
 };
 
 /// Renders and writes a PNG.
+/// Whether one of the inputs is a model or a mesh; the others are points. Errors: no_input.
+bool draws_a_model(const RenderJob& job);
+
 RenderResult run_render(const RenderJob& job, Session& session);
 
 }  // namespace adasplats::app

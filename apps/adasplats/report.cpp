@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report.h"
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "adasplats/core/memory.h"
 #include "adasplats/io/atomic_file.h"
-#include "device_report.h"
+#include "adasplats/pipeline/machine.h"
+#include "adasplats/pipeline/provenance.h"
 
 namespace adasplats::app {
 namespace {
@@ -42,7 +46,8 @@ void write_report(Command& command, const Session& session) {
   report["program"] = "adasplats";
   report["version"] = ADASPLATS_VERSION;
   report["command"] = command.full_name();
-  report["parameters"] = parameters_of(command.options());
+  report["provenance"] = to_json(provenance_of(session.executor.threads(), session.device));
+  report["parameters"] = parameters_of(command.options().parser());
   report["threads"] = session.executor.threads();
   if (command.device()) report["device"] = device_json(session.device);
   report.update(session.report);

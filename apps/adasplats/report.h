@@ -6,8 +6,9 @@
 
 namespace adasplats::app {
 
-/// Writes the --report of a command that has run: program, version, command, parameters, what
-/// the command itself reported, warnings, threads and peak memory. Atomic.
+/// Writes the --report of a command that has run: program, version, command, provenance (see
+/// pipeline/provenance.h), parameters, what the command itself reported, warnings, threads and peak
+/// memory. Atomic.
 void write_report(Command& command, const Session& session);
 
 }  // namespace adasplats::app

@@ -25,14 +25,15 @@ class SensorsCommand final : public Command {
       : Command(program, "sensors",
                 "List the LiDAR sensors that are known, describe one, or draw its pattern",
                 kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     app.add_option("SENSOR", sensor_,
                    "A name of the list, or a file: TOML, Ouster metadata (JSON), Velodyne "
                    "calibration (YAML), Hesai angles or rays (CSV); without it: the list")
         ->type_name("NAME|FILE");
     app.add_flag("--show", show_,
                  "Print the TOML of a sensor of the list, to be copied and edited");
-    add_path(app, "-o,--output", picture_, "Picture of the pattern to write, PNG");
+    writes(add_path(app, "-o,--output", picture_, "Picture of the pattern to write, PNG"),
+           {".png"});
   }
 
   void run(Session& session) override {

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "adasplats/core/words.h"
 #include "adasplats/simulate/color_bar.h"
 #include "adasplats/simulate/color_map.h"
 #include "text_table.h"
@@ -216,6 +218,19 @@ Image draw_front(const LidarModel& sensor, std::span<const Firing> firings,
   return image;
 }
 
+/// The angles that are simulated, and what they were made of.
+std::string divergence_text(const LidarModel& sensor) {
+  if (sensor.divergence_rad[0] + sensor.divergence_rad[1] == 0) return "not known: one ray a beam";
+  const std::string angles = fixed(kDegrees * sensor.divergence_rad[0], 3) + " x " +
+                             fixed(kDegrees * sensor.divergence_rad[1], 3) +
+                             " degrees between 1/e2 of the intensity";
+  if (sensor.divergence_kind == DivergenceKind::unknown)
+    return angles + " (assumed: the source does not say what its angles measure)";
+  return angles +
+         " (the source states: " + std::string(word_of(sensor.divergence_kind, kDivergenceKinds)) +
+         ")";
+}
+
 }  // namespace
 
 SensorFacts facts_of(const LidarModel& sensor) {
@@ -278,8 +293,7 @@ std::string describe(const LidarModel& sensor, Session& session) {
       {"range", fixed(sensor.min_range_m, 2) + " .. " + fixed(sensor.max_range_m, 1) + " m"},
       {"range noise", fixed(1e3 * sensor.range_noise_m, 1) + " mm"},
       {"range resolution", fixed(1e3 * sensor.range_resolution_m, 1) + " mm"},
-      {"divergence", fixed(kDegrees * sensor.divergence_rad[0], 3) + " x " +
-                         fixed(kDegrees * sensor.divergence_rad[1], 3) + " degrees"},
+      {"divergence", divergence_text(sensor)},
       {"returns", std::to_string(sensor.most_returns)},
       {"repeats", repeats(sensor) ? "yes" : "no"},
       {"source", sensor.source}};

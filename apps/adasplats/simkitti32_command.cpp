@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
 #include "adasplats/pipeline/inputs.h"
 #include "build_options.h"
 #include "commands.h"
@@ -13,7 +15,7 @@ namespace {
 
 constexpr const char* kExamples =
     "  adasplats simkitti32 dataset/sequences/08 -o simkitti32\n"
-    "  adasplats simkitti32 sequences/00 -o vlp16 --sensor vlp-16 --offset 0,0,0\n"
+    "  adasplats simkitti32 sequences/00 -o vlp16 --sensor velodyne-vlp-16 --offset 0,0,0\n"
     "  adasplats simkitti32 sequences/08 -o part --scans 0:500 --model-every 2\n"
     "Interrupted (Ctrl-C, kill -9), the same command goes on where it stopped and gives the same\n"
     "bytes. What the data set is and how it was made is in adasplats.json.\n";
@@ -24,9 +26,9 @@ class SimKitti32Command final : public Command {
       : Command(program, "simkitti32",
                 "Make a labelled data set of another LiDAR from a SemanticKITTI sequence",
                 kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     require(add_path(app, "SEQUENCE", job_.sequence, "SemanticKITTI sequence folder with labels"));
-    require(add_path(app, "-o,--output", job_.output, "Folder to create"));
+    require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));
     app.add_option("--sensor", job_.sensor, "Name of a sensor, or a file; see adasplats sensors")
         ->capture_default_str()
         ->type_name("NAME|FILE");
@@ -53,6 +55,7 @@ class SimKitti32Command final : public Command {
   }
 
   void run(Session& session) override {
+    if (!job_.moving) refuse({"--moving-radius"}, "with --no-moving");
     if (offset_) job_.offset_m = *offset_;
     const LabelScheme labels = load_label_scheme(job_.labels);
     const SimKitti32Result result = run_simkitti32(job_, session);
@@ -64,7 +67,7 @@ class SimKitti32Command final : public Command {
   }
 
  private:
-  void add_model_options(CLI::App& app) {
+  void add_model_options(OptionSet& app) {
     constexpr const char* kGroup = "Static model";
     add_choice<SplatMethod>(
         app, "--method", job_.build.method, method_names(),

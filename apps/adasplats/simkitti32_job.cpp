@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/dataset/scan_values.h"
@@ -19,6 +21,7 @@
 #include "adasplats/simulate/world.h"
 #include "build_options.h"
 #include "resumable_folder.h"
+#include "simulate_manifest.h"
 
 namespace adasplats::app {
 namespace {
@@ -47,6 +50,7 @@ Source open_source(const SimKitti32Job& job) {
   require_input(job.sequence);
   const fs::path folder = resolve_cloud_input(job.sequence);
   Source source{open_kitti_sequence(folder), {}, sequence_name(folder)};
+  require_poses_that_fit(source.sequence);
   if (source.sequence.labels.empty())
     throw Error(ErrorKind::data, folder.string() +
                                      ": has no labels/, which say what moves and what simulated "
@@ -106,26 +110,6 @@ Json build_content(const BuildOptions& build) {
   json["alpha"] = build.alpha;
   json["smoothness"] = build.smoothness;
   json["semantic_scales"] = scales_of(build.semantic_scales);
-  return json;
-}
-
-Json sensor_content(const LidarModel& sensor) {
-  Json json = {{"name", sensor.name},
-               {"rings", sensor.rings()},
-               {"rays", sensor.rays_per_scan()},
-               {"min_range_m", sensor.min_range_m},
-               {"max_range_m", sensor.max_range_m}};
-  // A sensor file of the same name may say something else tomorrow.
-  Sha256 hash;
-  for (const Firing& firing : firings_of(sensor)) {
-    const float numbers[] = {firing.direction.x, firing.direction.y, firing.direction.z,
-                             firing.time_s,      firing.origin.x,    firing.origin.y,
-                             firing.origin.z};
-    hash.add(numbers, sizeof(numbers));
-    hash.add(&firing.ring, sizeof(firing.ring));
-    hash.add(&firing.column, sizeof(firing.column));
-  }
-  json["pattern"] = hash.digest();
   return json;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "commands.h"
@@ -28,10 +29,10 @@ class SimulateCommand final : public Command {
  public:
   explicit SimulateCommand(CLI::App& program)
       : Command(program, "simulate", "Drive a LiDAR through a splat model or a mesh", kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model,
                      "Splat model, triangle mesh (PLY, OBJ, glTF) or world file (TOML)"));
-    require(add_path(app, "-o,--output", job_.output, "Folder to create"));
+    require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));
     app.add_option("--sensor", job_.sensor,
                    "A sensor of 'adasplats sensors', or a file: TOML, Ouster JSON, Velodyne YAML, "
                    "CSV of rays")
@@ -46,21 +47,14 @@ class SimulateCommand final : public Command {
     add_beam_options(app);
     add_weather_options(app);
     add_choice<ScanFormat>(
-        app, "--format", job_.format,
-        {{"semantickitti", ScanFormat::semantickitti},
-         {"ply", ScanFormat::ply},
-         {"npy", ScanFormat::npy},
-         {"npz", ScanFormat::npz},
-         {"pcd", ScanFormat::pcd},
-         {"las", ScanFormat::las},
-         {"range-image", ScanFormat::range_image},
-         {"mcap", ScanFormat::mcap}},
+        app, "--format", job_.format, choices_of<ScanFormat>(kScanFormats),
         "Of the scans; semantickitti writes OUTPUT/sequences/00, mcap OUTPUT/scans.mcap");
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     add_device_options(GpuCount::several);
   }
 
   void run(Session& session) override {
+    check_options();
     job_.drive.offset_m = offset_.value_or(Vec3d{});
     job_.drive.mount.translation = mount_.value_or(Vec3d{});
     const Vec3d turn = rotation_deg_.value_or(Vec3d{});
@@ -78,7 +72,20 @@ class SimulateCommand final : public Command {
   }
 
  private:
-  void add_drive_options(CLI::App& app) {
+  void check_options() const {
+    if (!job_.noise) refuse({"--range-noise"}, "with --no-noise");
+    if (!job_.drive.rolling_shutter) refuse({"--points"}, "without --rolling-shutter");
+    const auto require_positive = [this](const char* name, double value) {
+      if (is_given(name) && !(value > 0)) {
+        throw Error(ErrorKind::usage, std::string(name) + " must be greater than 0");
+      }
+    };
+    require_positive("--rate", job_.drive.rate_hz);
+    require_positive("--spacing", job_.drive.spacing_m);
+    require_positive("--fog", job_.weather.fog_visibility_m);
+  }
+
+  void add_drive_options(OptionSet& app) {
     DriveOptions& drive = job_.drive;
     require(add_path(app, "--trajectory", drive.trajectory,
                      "Poses of the sensor: KITTI poses.txt, CSV, or a sequence folder"));
@@ -100,12 +107,11 @@ class SimulateCommand final : public Command {
                  "The sensor moves while it turns; a pose is that of the middle of its scan");
     add_path(app, "--motion", drive.motion,
              "How it moves where --trajectory has too few poses to tell (with --rolling-shutter)");
-    add_choice<PointFrame>(app, "--points", job_.frame,
-                           {{"raw", PointFrame::raw}, {"deskewed", PointFrame::deskewed}},
+    add_choice<PointFrame>(app, "--points", job_.frame, choices_of<PointFrame>(kPointFrames),
                            "With a rolling shutter: as measured, or with the motion taken out");
   }
 
-  void add_beam_options(CLI::App& app) {
+  void add_beam_options(OptionSet& app) {
     BeamOptions& beam = job_.beam;
     add_switch(app, "--noise,!--no-noise,!--no-range-noise", job_.noise,
                "Noise of the sensor on ranges and angles");
@@ -121,26 +127,35 @@ class SimulateCommand final : public Command {
                    "Splats along a ray whose weighted mean is the echo (the paper's D = 5)")
         ->capture_default_str()
         ->type_name("D");
+    app.add_option("--depth-gap", beam.depth_gap_m,
+                   "Splats of a ray farther behind the one before are not averaged, m")
+        ->capture_default_str()
+        ->type_name("M");
     app.add_option("--sub-rays", beam.sub_rays, "Rays over the cross-section of a beam")
         ->capture_default_str()
         ->type_name("N");
     app.add_option("--returns", beam.returns, "Most returns of a firing")
         ->capture_default_str()
         ->type_name("N");
-    add_choice<ReturnMode>(app, "--return-mode", beam.mode,
-                           {{"strongest", ReturnMode::strongest},
-                            {"first", ReturnMode::first},
-                            {"last", ReturnMode::last}},
+    app.add_option("--separation", beam.separation_m,
+                   "Echoes nearer to one another are one return, m")
+        ->capture_default_str()
+        ->type_name("M");
+    add_choice<ReturnMode>(app, "--return-mode", beam.mode, choices_of<ReturnMode>(kReturnModes),
                            "Which echo comes first or alone");
     add_path(app, "--ray-drop", job_.ray_drop,
              "Beams that get lost as a real sensor's: a file of 'adasplats fit-drop'");
   }
 
-  void add_weather_options(CLI::App& app) {
+  void add_weather_options(OptionSet& app) {
     app.add_option("--rain", job_.weather.rain_mm_h, "Rate of rain, mm/h")->type_name("MM/H");
     app.add_option("--fog", job_.weather.fog_visibility_m, "Visibility in fog, m")->type_name("M");
     app.add_option("--snow", job_.weather.snow_mm_h, "Rate of snow, mm/h of water")
         ->type_name("MM/H");
+    app.add_option("--white-intensity", job_.weather.white_intensity,
+                   "Intensity of a white wall in the model's unit, for weather: 1, or 100 of bytes")
+        ->capture_default_str()
+        ->type_name("I");
   }
 
   SimulateJob job_;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate_job.h"
 
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "adasplats/core/error.h"
@@ -11,37 +14,13 @@
 #include "adasplats/pipeline/model_scene.h"
 #include "adasplats/pipeline/scan_simulator.h"
 #include "output_path.h"
+#include "simulate_manifest.h"
+#include "text_table.h"
 
 namespace adasplats::app {
 namespace {
 
-/// What the folder's adasplats.json says; nothing that differs between two runs.
-nlohmann::ordered_json content_of(const SimulateJob& job, std::uint64_t seed) {
-  const Vec3d& offset = job.drive.offset_m;
-  nlohmann::ordered_json content = {{"model", job.model.filename().string()},
-                                    {"sensor", job.sensor},
-                                    {"offset_m", {offset.x, offset.y, offset.z}},
-                                    {"every", job.drive.every},
-                                    {"rolling_shutter", job.drive.rolling_shutter},
-                                    {"depth", job.beam.depth},
-                                    {"sub_rays", job.beam.sub_rays},
-                                    {"returns", job.beam.returns},
-                                    {"noise", job.noise},
-                                    {"ray_drop", job.ray_drop.filename().string()},
-                                    {"rain_mm_h", job.weather.rain_mm_h},
-                                    {"fog_visibility_m", job.weather.fog_visibility_m},
-                                    {"snow_mm_h", job.weather.snow_mm_h},
-                                    {"seed", seed}};
-  if (!job.labels.empty()) content["labels"] = load_label_scheme(job.labels).name();
-  const auto add = [&content](const char* name, const std::optional<double>& value) {
-    if (value) content[name] = *value;
-  };
-  add("range_noise_m", job.range_noise_m);
-  add("min_range_m", job.min_range_m);
-  add("max_range_m", job.max_range_m);
-  add("rotation_hz", job.rotation_hz);
-  return content;
-}
+constexpr const char* kCommand = "simulate";
 
 /// Boxes around the objects that a scan sees.
 void write_boxes(const ModelScene& scene, const std::filesystem::path& folder, std::size_t index,
@@ -71,6 +50,24 @@ ScanSettings settings_of(const SimulateJob& job, std::uint64_t seed) {
   return settings;
 }
 
+/// Throws data where no ray met anything, with how far from the model the sensor was.
+void require_returns(const SimulateResult& result, const ModelScene& scene,
+                     const std::vector<ScanMotion>& scans, const LidarModel& sensor) {
+  if (result.hits != 0) return;
+  const auto [low, high] = scene.middle_box();
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const ScanMotion& scan : scans) {
+    const Vec3d at = scan.reference.world_from_sensor.translation;
+    nearest_m = std::min(nearest_m, length(max(max(low - at, at - high), Vec3d{})));
+  }
+  throw Error(ErrorKind::data,
+              "no returns: none of " + grouped(result.rays) + " rays in " + grouped(result.scans) +
+                  " scans met anything; the sensor was " + fixed(nearest_m, 1) +
+                  " m from the model's box at its nearest and sees " +
+                  fixed(sensor.min_range_m, 1) + " to " + fixed(sensor.max_range_m, 1) +
+                  " m (are trajectory and model in one frame? see --offset, --mount)");
+}
+
 }  // namespace
 
 SimulateResult run_simulate(const SimulateJob& job, Session& session) {
@@ -78,8 +75,9 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   require_input(job.model);
   const ScanSettings settings = settings_of(job, session.seed);
   const std::vector<ScanMotion> scans = scans_along(job.drive, settings.sensor);
-  OutputFolder folder(job.output, job.overwrite, "simulate", content_of(job, session.seed));
+  checked_output_folder(job.output, job.overwrite, kCommand);  // before long work
   const ModelScene scene(job.model, job.labels, session, WorldFiles::taken);
+  OutputFolder folder(job.output, job.overwrite, kCommand, simulate_content(job, settings, scene));
   ScanSimulator simulator(scene, settings, session.executor);
 
   ScanWriterOptions writing;
@@ -98,6 +96,7 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
     session.progress.advance(i + 1);
   };
   const SimulationTimes times = simulator.run(scans, 0, take_scan);
+  require_returns(result, scene, scans, settings.sensor);
   writer->finish();
   session.progress.end_step();
   folder.commit();

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
 #include "adasplats/core/stopwatch.h"
 #include "commands.h"
 #include "option_types.h"
@@ -19,8 +21,8 @@ class SynthStreetCommand final : public Command {
   explicit SynthStreetCommand(CLI::App& synth)
       : Command(synth, "street", "Make a street with exact geometry, labels and two recordings",
                 kExamples) {
-    CLI::App& app = options();
-    require(add_path(app, "-o,--output", job_.output, "Folder to create"));
+    OptionSet& app = options();
+    require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     app.add_option("--points", job_.scan.points, "About as many points in the mapping cloud")
         ->capture_default_str();
@@ -48,6 +50,9 @@ class SynthStreetCommand final : public Command {
 
   void run(Session& session) override {
     const Stopwatch watch;
+    if (job_.scan.driving_spacing_m == 0) {
+      refuse({"--most-driving-scans"}, "with --driving-spacing 0, where nothing is driven");
+    }
     const StreetReport report = run_synth_street(job_, session);
     session.report.update(to_json(report));
     session.report["seconds"]["total"] = watch.seconds();

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "synth_job.h"
 
+#include <nlohmann/json.hpp>
+
 #include "output_path.h"
 
 namespace adasplats::app {

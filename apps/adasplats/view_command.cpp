@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
-
 #include "commands.h"
 #include "load_options.h"
 #include "option_types.h"
@@ -24,7 +22,7 @@ class ViewCommand final : public Command {
   explicit ViewCommand(CLI::App& program)
       : Command(program, "view", "Look at a model in a browser and drive a LiDAR through it",
                 kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     require(
         add_path(app, "INPUT", job_.input,
                  "Splat model, point cloud, sequence, or a folder with a model and a sequence"));
@@ -56,12 +54,16 @@ class ViewCommand final : public Command {
     add_device_options();
   }
 
-  void run(Session& session) override { run_view(job_, session); }
+  void run(Session& session) override {
+    job_.cloud_option = given_load_option(options());
+    job_.sensor_is_asked = is_given("--sensor");
+    run_view(job_, session);
+  }
 
  private:
-  static void add_paths(CLI::App& app, const std::string& name,
+  static void add_paths(OptionSet& app, const std::string& name,
                         std::vector<std::filesystem::path>& target, const std::string& help) {
-    app.add_option(name, target, help)->type_name("PATH")->expected(1)->take_all();
+    app.add_option(name, target, help)->type_name("PATH")->repeatable();
   }
 
   ViewJob job_;

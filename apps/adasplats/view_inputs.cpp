@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adasplats/cloud/cloud_inputs.h"
+#include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/error_points.h"
 #include "adasplats/pipeline/inputs.h"
@@ -37,22 +39,27 @@ fs::path model_in(const fs::path& folder) {
               folder.string() + ": holds several models (" + names + "); name one of them");
 }
 
-/// A sequence folder, or one that `simulate` or `synth` wrote; empty: neither.
-fs::path sequence_in(const fs::path& folder) {
-  for (const fs::path& place :
-       {folder, folder / "sequences" / "00", folder / "street" / "sequences" / "00"})
-    if (is_kitti_sequence(place)) return place;
-  return {};
+/// The one sequence beside a model, also of the street of `demo`; empty: there is none.
+fs::path sequence_beside(const fs::path& folder) {
+  std::vector<fs::path> sequences = sequences_of_tree(folder);
+  if (sequences.empty()) sequences = sequences_of_tree(folder / "street");
+  if (sequences.size() > 1)
+    throw Error(ErrorKind::usage, folder.string() + ": holds " + std::to_string(sequences.size()) +
+                                      " sequences; name the model, and one of them as --sequence");
+  return sequences.empty() ? fs::path() : sequences.front();
 }
 
 void sort_folder(const fs::path& folder, Sorted& sorted) {
   sorted.model = model_in(folder);
-  const fs::path sequence = sequence_in(folder);
-  if (!sequence.empty()) sorted.sequences.push_back(sequence);
-  if (sorted.model.empty() && sequence.empty())
-    throw Error(ErrorKind::usage, folder.string() + ": holds neither a splat model nor a sequence");
-  // A sequence alone is shown as points, too; beside a model those are asked for with --cloud.
-  if (sorted.model.empty()) sorted.clouds.push_back(sequence);
+  if (!sorted.model.empty()) {
+    const fs::path sequence = sequence_beside(folder);
+    if (!sequence.empty()) sorted.sequences.push_back(sequence);
+    return;
+  }
+  // Without a model a sequence is shown as points, too; beside one those are asked for by --cloud.
+  const fs::path points = resolve_cloud_input(folder);
+  if (is_kitti_sequence(points)) sorted.sequences.push_back(points);
+  sorted.clouds.push_back(points);
 }
 
 Sorted sorted_inputs(const ViewJob& job) {
@@ -167,6 +174,13 @@ class Loading {
 
 LoadedView load_view(const ViewJob& job, Session& session) {
   const Sorted sorted = sorted_inputs(job);
+  if (sorted.clouds.empty() && !job.cloud_option.empty()) {
+    throw Error(ErrorKind::usage,
+                job.cloud_option + " has no effect: no points are shown (--cloud)");
+  }
+  if (sorted.model.empty() && job.sensor_is_asked) {
+    throw Error(ErrorKind::usage, "--sensor has no effect: there is no model to drive through");
+  }
   return Loading(job, sorted, session).run();
 }
 

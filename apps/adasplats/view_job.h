@@ -24,6 +24,8 @@ struct ViewJob {
   std::string sensor = "hdl-64-paper";              ///< of the library
   double mount_height_m = 1.8;  ///< of the sensor above the ground, where no pose tells
   LoadOptions load;             ///< of clouds and sequences
+  std::string cloud_option;     ///< that was given and is for these alone; empty: none
+  bool sensor_is_asked = false;
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;  ///< 0: any free one
   std::string token;       ///< empty: one nobody can guess

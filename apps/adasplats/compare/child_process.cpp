@@ -167,7 +167,7 @@ class ChildGroup {
 }  // namespace
 
 ChildResult run_child(const std::vector<std::string>& arguments, const ChildLimits& limits,
-                      const fs::path& log) {
+                      const fs::path& log, ProgressSink& progress) {
   write_file(log, "");  // says so where the folder cannot be written
   // Where our parent has it ignored, children vanish without an exit code.
   std::signal(SIGCHLD, SIG_DFL);
@@ -195,6 +195,7 @@ ChildResult run_child(const std::vector<std::string>& arguments, const ChildLimi
       break;
     }
     throw_if_interrupted();
+    progress.advance(0);
     std::this_thread::sleep_for(std::chrono::duration<double>(
         std::clamp(kPollShare * watch.seconds(), kShortestPoll_s, kLongestPoll_s)));
   }

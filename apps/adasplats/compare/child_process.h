@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/core/progress.h"
+
 namespace adasplats::app {
 
 /// What a child may use, with all the processes it starts itself.
@@ -28,9 +30,10 @@ struct ChildResult {
 
 /// Runs a program in a process group of its own, with stdout and stderr in `log`, and ends the
 /// whole group where a limit is passed, this process is interrupted (throws Interrupted then) or
-/// killed. The first argument is the program's file; one that cannot be started ends with exit code
-/// 127. Errors: software (no new process), cannot_create (the log).
+/// killed. `progress` hears again and again that it goes on. The first argument is the program's
+/// file; one that cannot be started ends with exit code 127. Errors: software (no new process),
+/// cannot_create (the log).
 ChildResult run_child(const std::vector<std::string>& arguments, const ChildLimits& limits,
-                      const std::filesystem::path& log);
+                      const std::filesystem::path& log, ProgressSink& progress);
 
 }  // namespace adasplats::app

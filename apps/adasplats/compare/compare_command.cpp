@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "adasplats/core/error.h"
+#include "adasplats/pipeline/machine.h"
 #include "commands.h"
 #include "compare/compare_job.h"
-#include "compare/machine.h"
 #include "compare/steps.h"
 #include "option_types.h"
 #include "terminal.h"
@@ -72,24 +72,16 @@ std::string table_of(const nlohmann::ordered_json& results) {
   return table.text();
 }
 
-/// How this process was started.
-std::string own_command() {
-  std::ifstream file("/proc/self/cmdline", std::ios::binary);
-  std::vector<std::string> words;
-  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
-  if (!words.empty()) words.erase(words.begin());
-  return command_text(words);
-}
-
 class CompareCommand final : public Command {
  public:
   explicit CompareCommand(CLI::App& program)
       : Command(program, "compare", "Compare all methods on the same data with the same rays",
                 kExamples) {
-    CLI::App& app = options();
+    OptionSet& app = options();
     require(add_path(app, "DATA", job_.data,
                      "Output of 'synth street', SemanticKITTI folder, or point files"));
-    require(add_path(app, "-o,--output", job_.output, "Folder for the reports and the work"));
+    require(writes_folder(
+        add_path(app, "-o,--output", job_.output, "Folder for the reports and the work")));
     add_choice<Preset>(app, "--preset", job_.preset,
                        {{"none", Preset::none},
                         {"paper-pc3d", Preset::paper_pc3d},
@@ -109,12 +101,15 @@ class CompareCommand final : public Command {
   }
 
   void run(Session& session) override {
+    const auto& methods = job_.methods;
+    if (!methods.empty() && std::find(methods.begin(), methods.end(), "poisson") == methods.end()) {
+      refuse({"--poisson-depth"}, "without the method poisson");
+    }
     job_.steps.limits.memory_bytes = memory_limit_bytes();
     job_.steps.common_arguments = common_arguments();
     if (device()->kind != DeviceKind::automatic) {
       job_.device_arguments = {"--device", device_word(device()->kind)};
     }
-    job_.command = own_command();
     const nlohmann::ordered_json results = run_compare(job_, session);
     session.report["results"] = results;
     print(table_of(results) + "\n" + failures_of(results) + (job_.output / "report.html").string() +
@@ -143,8 +138,8 @@ class CompareCommand final : public Command {
     return arguments;
   }
 
-  void add_data_options(CLI::App& app) {
-    CLI::App& group = *app.add_option_group("Data", "instead of what is found in DATA");
+  void add_data_options(OptionSet& app) {
+    OptionSet& group = app.add_group("Data", "instead of what is found in DATA");
     group.add_option("--labels", job_.labels, "semantickitti, paris-carla-3d or a TOML file")
         ->type_name("SCHEME");
     group.add_option("--scans", job_.scans, "Which scans of a sequence")
@@ -161,18 +156,22 @@ class CompareCommand final : public Command {
     group.add_option("--sensor", job_.sensor, "As simulate has it")
         ->capture_default_str()
         ->type_name("NAME|FILE");
-    add_choice<std::string>(group, "--remove", job_.remove,
-                            {{"none", "none"}, {"moving", "moving"}, {"movable", "movable"}},
-                            "Dynamic objects, as model has it");
+    add_choice<std::optional<DynamicRemoval>>(
+        group, "--remove", job_.remove,
+        {{"none", DynamicRemoval::none},
+         {"moving", DynamicRemoval::moving},
+         {"movable", DynamicRemoval::movable}},
+        "Objects to leave out of the points, the beams and the rays, by their labels; the default "
+        "is what the paper removes: movable, with --preset paper-mcity none");
     add_picture_width(group, job_.picture_width);
     group.add_option("--poisson-depth", job_.poisson_depth, "Depth of the octree")
-        ->check(CLI::Range(1, kDeepestOctree).description(""))
+        ->range(1, kDeepestOctree)
         ->capture_default_str()
         ->type_name("N");
   }
 
-  void add_limit_options(CLI::App& app) {
-    CLI::App& group = *app.add_option_group("Limits", "of every step");
+  void add_limit_options(OptionSet& app) {
+    OptionSet& group = app.add_group("Limits", "of every step");
     group.add_option("--time-limit", job_.steps.limits.seconds, "Seconds")
         ->capture_default_str()
         ->type_name("S");
@@ -191,9 +190,9 @@ class CompareCommand final : public Command {
                              "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") ==
                              std::string::npos;
       if (at == std::string::npos || at + 1 == text.size() || !plain) {
-        throw CLI::ValidationError("--mesh", "'" + text +
-                                                 "' is not NAME=FILE (NAME of letters, "
-                                                 "digits, - and _)");
+        refuse_value("--mesh", "'" + text +
+                                   "' is not NAME=FILE (NAME of letters, "
+                                   "digits, - and _)");
       }
       job_.meshes.emplace_back(name, text.substr(at + 1));
     }

@@ -5,18 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "adasplats/cloud/label_scheme.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/atomic_file.h"
 #include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/machine.h"
+#include "adasplats/pipeline/provenance.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "compare/competitors.h"
-#include "compare/machine.h"
 #include "compare/paper_figures.h"
 #include "compare/steps.h"
 #include "compare/work_folder.h"
-#include "device_report.h"
 #include "report_page/report_page.h"
 
 namespace adasplats::app {
@@ -43,6 +44,10 @@ ComparisonData data_of(const CompareJob& job) {
   }
   for (const auto& [name, file] : job.meshes) require_input(file);
   return data;
+}
+
+RemovalRule removal_rule_of(const CompareJob& job) {
+  return {job.remove.value_or(paper_removal(job.preset)), job.remove.has_value()};
 }
 
 /// Throws what every competitor would fail with.
@@ -80,9 +85,11 @@ CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
   CompetitionRules rules;
   rules.data = data;
   rules.original = facts.original;
+  rules.has_classes = facts.has_classes;
   rules.labelled = facts.labelled && !data.labels.empty();
   rules.sensor = job.sensor;
-  rules.remove = job.remove;
+  // What can remove nothing is not asked of the steps: they would refuse it.
+  if (!facts.removed.ids.empty()) rules.removal = removal_rule_of(job).removal;
   rules.poisson_depth = job.poisson_depth;
   rules.picture_width = job.picture_width;
   if (!facts.trajectory.empty()) {
@@ -103,7 +110,16 @@ CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
   return rules;
 }
 
-Json data_json(const CompetitionRules& rules, const PointFacts& facts, Preset preset) {
+Json removed_json(const CompareJob& job, const CompetitionRules& rules, const PointFacts& facts) {
+  Json json = {{"rule", name_of(rules.removal)},
+               {"points", facts.removed.points},
+               {"by_class", Json::object()}};
+  for (const auto& part : facts.removed.classes) json["by_class"][part.name] = part.points;
+  json["paper"] = name_of(paper_removal(job.preset));
+  return json;
+}
+
+Json data_json(const CompareJob& job, const CompetitionRules& rules, const PointFacts& facts) {
   Json json;
   for (const fs::path& input : rules.data.inputs) json["inputs"].push_back(input.string());
   json["points"] = facts.points;
@@ -116,7 +132,8 @@ Json data_json(const CompetitionRules& rules, const PointFacts& facts, Preset pr
   json["trajectory"] = rules.data.trajectory.string();
   json["offset_m"] = {rules.offset_m.x, rules.offset_m.y, rules.offset_m.z};
   json["every"] = rules.every;
-  json["preset"] = preset_name(preset);
+  json["preset"] = preset_name(job.preset);
+  json["removed"] = removed_json(job, rules, facts);
   return json;
 }
 
@@ -129,6 +146,10 @@ void write_reports(const fs::path& folder, const Json& results) {
 
 }  // namespace
 
+DynamicRemoval paper_removal(Preset preset) {
+  return preset == Preset::paper_mcity ? DynamicRemoval::none : DynamicRemoval::movable;
+}
+
 std::vector<std::string> compare_method_names() {
   std::vector<std::string> names;
   for (const Competitor& competitor : known_competitors()) names.push_back(competitor.name);
@@ -140,7 +161,14 @@ Json run_compare(const CompareJob& job, Session& session) {
   check_rules(job, data);
   const std::vector<Competitor> chosen = chosen_competitors(job.methods, job.meshes);
   const WorkFolder folder(job.output, data.title);
-  const PointFacts facts = look_at_points(data, folder.work() / "original.ply", session);
+  if (data.held_out.empty() && !data.held_out_scans.empty()) {
+    throw Error(ErrorKind::usage, "--held-out-scans has no effect: there is no held-out sequence");
+  }
+  const PointFacts facts =
+      look_at_points(data, removal_rule_of(job), folder.work() / "original.ply", session);
+  if (!job.labels.empty() && !facts.has_classes) {
+    throw Error(ErrorKind::usage, "--labels has no effect: the points have no labels");
+  }
   const CompetitionRules rules = rules_of(job, data, facts, folder, session.device);
 
   Json results = {
@@ -148,26 +176,25 @@ Json run_compare(const CompareJob& job, Session& session) {
       {"version", ADASPLATS_VERSION},
       {"schema", 1},
       {"title", data.title},
-      {"data", data_json(rules, facts, job.preset)},
+      {"provenance", to_json(provenance_of(session.executor.threads(), session.device))},
+      {"data", data_json(job, rules, facts)},
       {"machine", machine_json(session.executor.threads())},
       {"device", device_json(session.device)},
       {"limits",
        {{"seconds", job.steps.limits.seconds}, {"memory_bytes", job.steps.limits.memory_bytes}}},
-      {"command", job.command},
+      {"command", own_command_line()},
       {"original", Json::object()},
       {"competitors", Json::array()},
       {"paper", paper_figures(job.preset)}};
-  session.progress.begin_step("compare", chosen.size() + 1);
-  results["original"] = original_picture(rules, StepRunner(folder.work() / "original", job.steps));
+  results["original"] =
+      original_picture(rules, StepRunner(folder.work() / "original", job.steps, session.progress));
   for (const Competitor& competitor : chosen) {
     if (competitor.needs_labels && !rules.labelled && job.methods.empty()) continue;
-    const StepRunner runner(folder.work() / competitor.name, job.steps);
+    const StepRunner runner(folder.work() / competitor.name, job.steps, session.progress);
     results["competitors"].push_back(compete(competitor, rules, runner));
     // After every competitor, so that an interrupted run has shown what it knows.
     write_reports(job.output, results);
-    session.progress.advance(results["competitors"].size() + 1);
   }
-  session.progress.end_step();
   write_reports(job.output, results);
   return results;
 }

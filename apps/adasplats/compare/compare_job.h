@@ -3,12 +3,13 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "adasplats/cloud/dynamic_removal.h"
 #include "adasplats/core/vec3.h"
 #include "compare/comparison_data.h"
 #include "compare/steps.h"
@@ -23,7 +24,8 @@ struct CompareJob {
   Preset preset = Preset::none;
   std::vector<std::string> methods;  ///< empty: all that the data allow
   std::vector<std::pair<std::string, std::filesystem::path>> meshes;  ///< name and file, ready-made
-  std::string labels, scans, held_out_scans, sensor = "hdl-64-paper", remove = "moving";
+  std::string labels, scans, held_out_scans, sensor = "hdl-64-paper";
+  std::optional<DynamicRemoval> remove;  ///< else what the paper removes: removal_of()
   std::filesystem::path trajectory, held_out, truth;
   std::optional<Vec3d> offset_m;
   std::size_t every = 0;  ///< 0: at most 20 poses
@@ -31,8 +33,12 @@ struct CompareJob {
   int picture_width = 960;  ///< pixels; the height is 9/16 of it
   StepRules steps;
   std::vector<std::string> device_arguments;  ///< --device, where it is given
-  std::string command;                        ///< as the user typed it
 };
+
+/// What the paper removes from the data of a preset, with whatever scheme they are labelled: all
+/// that is movable (section "Adaptive Splatting" and both "Results"), from every input. M-City has
+/// no dynamic objects. Without a preset as with PC3D-Paris: the methods are the paper's.
+DynamicRemoval paper_removal(Preset preset);
 
 /// The words of --methods.
 std::vector<std::string> compare_method_names();

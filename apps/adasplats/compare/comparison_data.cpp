@@ -12,6 +12,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/symmetric_eigen.h"
 #include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/label_use.h"
 #include "compare/work_folder.h"
 #include "option_types.h"
 
@@ -152,8 +153,9 @@ std::vector<Vec3d> along_sensor_positions(const PointCloud& cloud) {
     double count = 0;
   };
   std::map<std::array<std::int64_t, 3>, Cell> cells;
-  for (const Vec3f& p : cloud.sensor_positions) {
-    const Vec3d d = vec_cast<double>(p);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!is_beam(cloud.origin_kind(i))) continue;
+    const Vec3d d = vec_cast<double>(cloud.sensor_positions[i]);
     std::array<std::int64_t, 3> key{};
     for (int axis = 0; axis < 3; ++axis) {
       key[static_cast<std::size_t>(axis)] =
@@ -209,6 +211,15 @@ Trajectory poses_of_scans(const fs::path& sequence, const ScanRange& range) {
   return chosen;
 }
 
+PointCloud without(const PointCloud& cloud, const RemovedPoints& removed) {
+  std::vector<std::uint32_t> kept;
+  kept.reserve(cloud.size() - removed.points);
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    if (removed.ids[cloud.classes[i]] == 0) kept.push_back(i);
+  }
+  return gather(cloud, kept);
+}
+
 }  // namespace
 
 ComparisonData find_comparison_data(const fs::path& data, Preset preset) {
@@ -232,8 +243,8 @@ ComparisonData find_comparison_data(const fs::path& data, Preset preset) {
   return found;
 }
 
-PointFacts look_at_points(const ComparisonData& data, const fs::path& original_file,
-                          Session& session) {
+PointFacts look_at_points(const ComparisonData& data, const RemovalRule& rule,
+                          const fs::path& original_file, Session& session) {
   LoadOptions options;
   ScanRange range;
   if (!data.scans.empty()) {
@@ -242,11 +253,11 @@ PointFacts look_at_points(const ComparisonData& data, const fs::path& original_f
     options.scan_count = range.count;
     options.scan_stride = range.stride;
   }
-  const PointCloud cloud =
-      load_cloud(data.inputs, options, session.executor, session.progress).first;
+  PointCloud cloud = load_cloud(data.inputs, options, session.executor, session.progress).first;
   if (cloud.empty()) throw Error(ErrorKind::data, data.title + ": no points");
   PointFacts facts;
   facts.points = cloud.size();
+  facts.has_classes = !cloud.classes.empty();
   const auto known = std::count_if(cloud.classes.begin(), cloud.classes.end(),
                                    [](std::uint16_t id) { return id != 0; });
   facts.labelled = 2 * static_cast<std::size_t>(known) > cloud.size();
@@ -255,8 +266,14 @@ PointFacts look_at_points(const ComparisonData& data, const fs::path& original_f
   } else if (!data.scans.empty() && data.trajectory == data.inputs.front()) {
     facts.trajectory = poses_of_scans(data.trajectory, range);
   }
-  const bool whole = data.inputs.size() == 1 && data.scans.empty();
+  const std::optional<LabelScheme> scheme = label_scheme_for(data.labels, data.inputs);
+  const LabelScheme* const labels = scheme ? &*scheme : nullptr;
+  check_label_use({"", rule.removal, rule.is_asked}, cloud, labels, session.progress);
+  facts.removed = points_to_remove(cloud, labels, rule.removal);
+  const bool whole = data.inputs.size() == 1 && data.scans.empty() && facts.removed.points == 0;
   facts.original = whole ? data.inputs.front() : original_file;
+  if (facts.removed.points > 0) cloud = without(cloud, facts.removed);
+  if (cloud.empty()) throw Error(ErrorKind::data, data.title + ": all points are removed");
   if (!whole) {
     write_if_changed(original_file, [&](const fs::path& file) { save_cloud_ply(file, cloud); });
   }
@@ -264,8 +281,7 @@ PointFacts look_at_points(const ComparisonData& data, const fs::path& original_f
 }
 
 Trajectory trajectory_of(const PointCloud& cloud) {
-  return poses_at(cloud.sensor_positions.empty() ? along_the_points(cloud)
-                                                 : along_sensor_positions(cloud));
+  return poses_at(cloud.has_beams() ? along_sensor_positions(cloud) : along_the_points(cloud));
 }
 
 }  // namespace adasplats::app

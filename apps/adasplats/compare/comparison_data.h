@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/cloud/dynamic_removal.h"
 #include "adasplats/cloud/point_cloud.h"
 #include "adasplats/cloud/trajectory.h"
 #include "adasplats/core/vec3.h"
@@ -41,7 +42,9 @@ ComparisonData find_comparison_data(const std::filesystem::path& data, Preset pr
 /// What the points themselves say.
 struct PointFacts {
   std::size_t points = 0;
-  bool labelled = false;  ///< most points have a class other than 0
+  bool has_classes = false;  ///< the points have labels
+  bool labelled = false;     ///< most points have a class other than 0
+  RemovedPoints removed;     ///< of what models are made from and compared with
   /// The points as one input of other commands: the one input that there is, or `original_file`.
   std::filesystem::path original;
   /// Where the data give none: a way through the points, see trajectory_of. Where scans of a
@@ -49,11 +52,17 @@ struct PointFacts {
   Trajectory trajectory;
 };
 
-/// Loads the points once and looks. Writes them to `original_file` where they are of several files
-/// or some of the scans; a file with the same points is left as it is. Errors: those of load_cloud;
-/// data where there are no points.
-PointFacts look_at_points(const ComparisonData& data, const std::filesystem::path& original_file,
-                          Session& session);
+/// What is left out of the points before anything is made of them.
+struct RemovalRule {
+  DynamicRemoval removal = DynamicRemoval::movable;
+  bool is_asked = false;  ///< by the user: it must be able to remove something
+};
+
+/// Loads the points once and looks. Writes them to `original_file` where they are of several files,
+/// some of the scans or without those that `rule` removes; a file with the same points is left as
+/// it is. Errors: those of load_cloud and check_label_use; data where there are no points.
+PointFacts look_at_points(const ComparisonData& data, const RemovalRule& rule,
+                          const std::filesystem::path& original_file, Session& session);
 
 /// A trajectory for points whose recording has no poses. With sensor positions: their means in
 /// cells of 1 m, in the order along their main direction. Without: 20 poses on a straight line

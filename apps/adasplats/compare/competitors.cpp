@@ -3,6 +3,7 @@
 #include "compare/competitors.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "adasplats/core/error.h"
@@ -84,6 +85,8 @@ class Run {
     }
     StepResult result = runner_.run(step);
     if (!result.done() && entry_["state"] == "done") note_failure(entry_, step, result);
+    entry_["made_by"][step.name] = result.made_by;
+    note_provenance(result);
     return result;
   }
 
@@ -92,6 +95,18 @@ class Run {
     add(step.arguments, rules_.device_arguments);
     step.device = rules_.device;
     return run(std::move(step));
+  }
+
+  /// The version and the first and last date of the steps. A step that another build of the program
+  /// has done is done again (see steps.cpp), so there is one version.
+  void note_provenance(const StepResult& result) {
+    if (!result.report.contains("provenance")) return;
+    const Json& from = result.report["provenance"];
+    Json& own = entry_["provenance"];
+    if (own.is_null()) own = {{"commit", from["commit"]}, {"dirty", from["dirty"]}};
+    const std::string date = from["date"];
+    own["first_date"] = std::min(own.value("first_date", date), date);
+    own["last_date"] = std::max(own.value("last_date", date), date);
   }
 
   /// What a step computed on in the end, where it had a choice.
@@ -127,14 +142,17 @@ class Run {
     if (competitor_.name == "poisson") {
       add(words, {"--depth", std::to_string(rules_.poisson_depth)});
     }
-    if (!rules_.data.labels.empty()) add(words, {"--labels", rules_.data.labels});
+    if (rules_.has_classes && !rules_.data.labels.empty()) {
+      add(words, {"--labels", rules_.data.labels});
+    }
     if (!rules_.data.scans.empty()) add(words, {"--scans", rules_.data.scans});
-    add(words, {"--remove", rules_.remove});
+    add(words, {"--remove", std::string(name_of(rules_.removal))});
     const Step step = {"generate", words, rules_.data.inputs, {model_}};
     const StepResult made = competitor_.is_mesh ? run(step) : run_on_device(step);
     entry_["generate"] = {{"command", made.command},
-                          {"seconds", made.child.seconds},
+                          {"seconds", made.done() ? Json(made.child.seconds) : Json()},
                           {"peak_memory_bytes", made.child.peak_memory_bytes}};
+    if (!made.done()) entry_["generate"]["ended_after_seconds"] = made.child.seconds;
     for (const char* key : {"primitives", "points_in", "points_used"}) {
       if (made.done()) entry_["generate"][key] = made.report.value(key, Json());
     }
@@ -209,7 +227,7 @@ class Run {
     add(words, {"--picture-width", std::to_string(rules_.picture_width)});
     if (!rules_.data.held_out_scans.empty()) add(words, {"--scans", rules_.data.held_out_scans});
     if (!rules_.data.labels.empty()) add(words, {"--labels", rules_.data.labels});
-    if (rules_.remove == "movable") words.push_back("--drop-movable");
+    if (fs::is_directory(rules_.data.held_out / "labels")) add_left_out(words);
     store("resimulate",
           run_on_device({"resimulate", words, {model_, rules_.data.held_out}, {picture}}), picture);
   }
@@ -218,10 +236,16 @@ class Run {
     Words words = {"evaluate", "truth", model_.string(), rules_.data.truth.string()};
     add(words, drive());
     if (!rules_.data.labels.empty()) add(words, {"--labels", rules_.data.labels});
-    if (rules_.remove == "movable") words.push_back("--drop-movable");
+    add_left_out(words);
     store("truth",
           run_on_device({"truth", words, {model_, rules_.data.truth, rules_.data.trajectory}, {}}),
           {});
+  }
+
+  /// Beams and rays on what was removed from the points are left out as well.
+  void add_left_out(Words& words) const {
+    if (rules_.removal == DynamicRemoval::movable) words.push_back("--drop-movable");
+    if (rules_.removal == DynamicRemoval::none) words.push_back("--keep-moving");
   }
 
   void store(const char* key, const StepResult& result, const fs::path& picture) {
@@ -229,7 +253,8 @@ class Run {
     Json& part = entry_[key];
     part = result.report;
     // What every report has and no table shows.
-    for (const char* common : {"program", "version", "parameters", "threads", "warnings"}) {
+    for (const char* common :
+         {"program", "version", "provenance", "parameters", "threads", "warnings"}) {
       part.erase(common);
     }
     part["command"] = result.command;
@@ -307,7 +332,9 @@ Json original_picture(const CompetitionRules& rules, const StepRunner& runner) {
   Words words = {"render", rules.original.string()};
   add(words, {"-o", picture.string()});
   add(words, camera(rules, rules.picture_width));
-  if (!rules.data.labels.empty()) add(words, {"--labels", rules.data.labels});
+  if (rules.has_classes && !rules.data.labels.empty()) {
+    add(words, {"--labels", rules.data.labels});
+  }
   Step step = {"picture", words, {rules.original}, {picture}};
   if (is_file(rules.data.labels)) step.inputs.emplace_back(rules.data.labels);
   const StepResult drawn = runner.run(step);

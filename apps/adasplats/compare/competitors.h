@@ -3,7 +3,7 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,9 +33,10 @@ struct PictureView {
 struct CompetitionRules {
   ComparisonData data;
   std::filesystem::path original;  ///< the measured points
+  bool has_classes = false;        ///< the points have labels
   bool labelled = false;
   std::string sensor;
-  std::string remove;
+  DynamicRemoval removal = DynamicRemoval::none;  ///< that removes something, or none
   int poisson_depth = 13;
   int picture_width = 960;
   Vec3d offset_m;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compare/paper_figures.h"
 
+#include <nlohmann/json.hpp>
+
 namespace adasplats::app {
 namespace {
 

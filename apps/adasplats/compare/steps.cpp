@@ -9,6 +9,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/atomic_file.h"
+#include "adasplats/pipeline/provenance.h"
 
 namespace adasplats::app {
 namespace {
@@ -55,10 +56,18 @@ Json stamp_of(const fs::path& path) {
   return stamp;
 }
 
+/// "version", "commit" and "dirty" of this program, which runs all steps.
+Json own_program() {
+  const Json own = adasplats::to_json(provenance_of(0));
+  return {{"version", own["version"]}, {"commit", own["commit"]}, {"dirty", own["dirty"]}};
+}
+
+/// A program of another version or commit has another key: its results are not taken over. So has
+/// one of the same commit that was built again, whose sources may have been changed.
 Json key_of(const Step& step, const std::vector<std::string>& arguments) {
   std::error_code failure;
-  Json key = {{"program", stamp_of(fs::read_symlink(kOwnProgram, failure))},
-              {"arguments", arguments}};
+  Json key = {{"program", own_program()}, {"arguments", arguments}};
+  key["program"]["file"] = stamp_of(fs::read_symlink(kOwnProgram, failure));
   if (!step.device.empty()) key["device"] = step.device;
   for (const fs::path& input : step.inputs) key["inputs"].push_back(stamp_of(input));
   return key;
@@ -69,15 +78,6 @@ bool all_there(const std::vector<fs::path>& outputs) {
     std::error_code failure;
     return fs::exists(output, failure);
   });
-}
-
-/// A word as a shell takes it.
-std::string quoted(const std::string& word) {
-  const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
 }
 
 Json to_json(const ChildResult& child, const ChildLimits& limits) {
@@ -126,7 +126,11 @@ std::optional<StepResult> remembered(const fs::path& file, const Step& step, con
     if (state.at("key") != key) return std::nullopt;
     const std::optional<ChildResult> child = child_from(state.at("child"));
     if (!child) return std::nullopt;
-    StepResult result{*child, state.at("report"), state.at("command")};
+    StepResult result{*child, state.at("report"), state.at("command"), state.at("made_by")};
+    const Json own = own_program();
+    for (const auto& [part, value] : own.items()) {
+      if (result.made_by.at(part) != value) return std::nullopt;
+    }
     if (result.done() && !all_there(step.outputs)) return std::nullopt;
     if (!result.done() && (rules.retry || !would_fail_again(state.at("child"), rules.limits))) {
       return std::nullopt;
@@ -155,10 +159,10 @@ void remove_unfinished(const Step& step) {
 
 /// Runs a child, which leaves nothing unfinished behind however it ends.
 ChildResult run_cleanly(const Step& step, const std::vector<std::string>& arguments,
-                        const ChildLimits& limits, const fs::path& log) {
+                        const ChildLimits& limits, const fs::path& log, ProgressSink& progress) {
   remove_unfinished(step);  // this program may have been killed before
   try {
-    ChildResult result = run_child(arguments, limits, log);
+    ChildResult result = run_child(arguments, limits, log, progress);
     if (result.end != ChildEnd::done) remove_unfinished(step);
     return result;
   } catch (...) {
@@ -173,15 +177,15 @@ std::string command_text(const std::vector<std::string>& arguments) {
   std::string text = "adasplats";
   for (const std::string& argument : arguments) {
     text += ' ';
-    text += quoted(argument);
+    text += shell_word(argument);
   }
   return text;
 }
 
 std::string end_name(ChildEnd end) { return kEndNames.at(static_cast<std::size_t>(end)); }
 
-StepRunner::StepRunner(fs::path folder, StepRules rules)
-    : folder_(std::move(folder)), rules_(std::move(rules)) {
+StepRunner::StepRunner(fs::path folder, StepRules rules, ProgressSink& progress)
+    : folder_(std::move(folder)), rules_(std::move(rules)), progress_(progress) {
   std::error_code failure;
   fs::create_directories(folder_, failure);
   if (failure) {
@@ -204,12 +208,18 @@ StepResult StepRunner::run(const Step& step) const {
   fs::remove(report_file, ignored);
   StepResult result;
   result.command = command_text(arguments);
+  result.made_by = own_program();
+  result.made_by["date"] = provenance_of(0).date;
   arguments.insert(arguments.begin(), kOwnProgram);
   arguments.insert(arguments.end(), {"--report", report_file.string()});
-  result.child = run_cleanly(step, arguments, rules_.limits, folder_ / (step.name + ".log"));
+  progress_.begin_step(folder_.filename().string() + ": " + step.name, 0);
+  result.child =
+      run_cleanly(step, arguments, rules_.limits, folder_ / (step.name + ".log"), progress_);
+  progress_.end_step();
   if (result.done()) result.report = Json::parse(read_file(report_file));
   const Json state = {{"key", key},
                       {"command", result.command},
+                      {"made_by", result.made_by},
                       {"child", to_json(result.child, rules_.limits)},
                       {"report", result.report}};
   write_file(state_file, state.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");

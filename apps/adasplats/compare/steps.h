@@ -22,8 +22,9 @@ struct Step {
 
 struct StepResult {
   ChildResult child;
-  nlohmann::ordered_json report;  ///< what --report wrote; null where it failed
-  std::string command;            ///< as a user would type it
+  nlohmann::ordered_json report;   ///< what --report wrote; null where it failed
+  std::string command;             ///< as a user would type it
+  nlohmann::ordered_json made_by;  ///< "version", "commit" and "dirty" of the program, "date"
   bool done() const { return child.end == ChildEnd::done; }
 };
 
@@ -40,7 +41,8 @@ struct StepRules {
 /// `retry` is set.
 class StepRunner {
  public:
-  StepRunner(std::filesystem::path folder, StepRules rules);
+  /// `progress` hears of every step that is run: "basic: generate".
+  StepRunner(std::filesystem::path folder, StepRules rules, ProgressSink& progress);
 
   StepResult run(const Step& step) const;
   const std::filesystem::path& folder() const { return folder_; }
@@ -48,6 +50,7 @@ class StepRunner {
  private:
   std::filesystem::path folder_;
   StepRules rules_;
+  ProgressSink& progress_;
 };
 
 /// The program with these arguments as a user types it in a shell.

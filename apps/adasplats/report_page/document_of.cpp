@@ -8,6 +8,8 @@
 namespace adasplats::app::page {
 namespace {
 
+constexpr std::size_t kCommitDigits = 12;  // enough to be unique
+
 void add_fact(Section& section, std::string term, std::string text) {
   if (!text.empty()) section.facts.push_back({std::move(term), std::move(text)});
 }
@@ -54,6 +56,84 @@ std::string limits_text(const Json& results) {
   return text.empty() ? text : text + " for each step of each competitor";
 }
 
+/// "0.1.0, commit 0123456789ab with changes".
+std::string program_text(const Json& made_by) {
+  const std::string version = text_at(made_by, {"version"});
+  const std::string commit = text_at(made_by, {"commit"});
+  std::string text = version.empty() ? "an unknown version" : version;
+  if (!commit.empty()) text += ", commit " + commit.substr(0, kCommitDigits);
+  const Json* dirty = find(made_by, {"dirty"});
+  if (dirty != nullptr && *dirty == true) text += " with changes";
+  return text;
+}
+
+/// The steps that each program has made, in the order in which they stand: one program, where
+/// nobody has put results of several together.
+std::vector<Fact> programs_of(const std::vector<Competitor>& competitors) {
+  std::vector<Fact> programs;
+  for (const Competitor& competitor : competitors) {
+    static const Json none = {{"all", Json::object()}};
+    const Json* steps = find(*competitor.json, {"made_by"});
+    if (steps == nullptr || !steps->is_object()) {
+      if (!competitor.badge.empty()) continue;
+      steps = &none;  // nobody knows what made it
+    }
+    for (const auto& [step, made_by] : steps->items()) {
+      const std::string program = program_text(made_by);
+      const std::string what = competitor.title + ": " + step;
+      const auto found = std::find_if(programs.begin(), programs.end(),
+                                      [&](const Fact& fact) { return fact.term == program; });
+      if (found == programs.end()) {
+        programs.push_back({program, what});
+      } else {
+        found->text += "; " + what;
+      }
+    }
+  }
+  return programs;
+}
+
+void add_programs(Section& section, const std::vector<Competitor>& competitors) {
+  const std::vector<Fact> programs = programs_of(competitors);
+  if (programs.empty()) return;
+  if (programs.size() == 1) {
+    add_fact(section, "Made by", "adasplats " + programs.front().term);
+    return;
+  }
+  std::string text =
+      "These figures were not made by one program, so that they cannot be compared: ";
+  for (const Fact& program : programs) {
+    text += "adasplats " + program.term + " (" + program.text + ")";
+    text += &program == &programs.back() ? "." : "; ";
+  }
+  section.paragraphs.push_back(std::move(text));
+}
+
+/// "movable: 120 of 1,000 points (car 100, person 20)".
+std::string removed_text(const Json& results) {
+  const std::string rule = text_at(results, {"data", "removed", "rule"});
+  if (rule.empty()) return "";
+  std::string text = rule == "none" ? "nothing" : rule;
+  const auto points = number_at(results, {"data", "removed", "points"});
+  const auto all = number_at(results, {"data", "points"});
+  if (rule != "none" && points && all) {
+    text += ": " + whole_text(*points) + " of " + whole_text(*all) + " points";
+  }
+  std::string classes;
+  const Json* by_class = find(results, {"data", "removed", "by_class"});
+  if (by_class != nullptr && by_class->is_object()) {
+    for (const auto& [name, count] : by_class->items()) {
+      if (!count.is_number()) continue;
+      classes += (classes.empty() ? "" : ", ") + name + " " + whole_text(count.get<double>());
+    }
+  }
+  if (!classes.empty()) text += " (" + classes + ")";
+  const std::string paper = text_at(results, {"data", "removed", "paper"});
+  if (!paper.empty() && paper != rule)
+    text += "; the paper removes " + (paper == "none" ? "nothing" : "what is " + paper);
+  return text;
+}
+
 Section compared_section(const Json& results, const std::vector<Competitor>& competitors) {
   Section section;
   section.id = "compared";
@@ -75,6 +155,7 @@ Section compared_section(const Json& results, const std::vector<Competitor>& com
   const Json* labelled = find(results, {"data", "labelled"});
   const bool no_labels = labelled != nullptr && *labelled == false;
   add_fact(section, "Labels", no_labels ? "none" : or_none(data("labels")));
+  add_fact(section, "Removed", removed_text(results));
   add_fact(section, "Held-out scans", or_none(data("held_out")));
   add_fact(section, "True surface", or_none(data("truth")));
   std::string path = data("trajectory");
@@ -87,6 +168,7 @@ Section compared_section(const Json& results, const std::vector<Competitor>& com
   }
   add_fact(section, "Simulated path", path);
   add_fact(section, "Preset", data("preset"));
+  add_programs(section, competitors);
   add_fact(section, "Machine", machine_text(results));
   add_fact(section, "Limits", limits_text(results));
   const std::string command = text_at(results, {"command"});

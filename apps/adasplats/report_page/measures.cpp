@@ -21,16 +21,25 @@ bool has_value(const Row& row) {
                      [](const Cell& cell) { return cell.value.has_value(); });
 }
 
+/// A figure of a competitor. One that failed has no value, so that it is best at nothing and no
+/// chart is drawn or scaled by it; the text stays where it is of a model that was made.
+Cell cell_of(const Competitor& competitor, const Reader& reader, NumberText text) {
+  Cell cell = cell_of(competitor.has_model ? reader(*competitor.json) : std::nullopt, text);
+  if (!competitor.badge.empty()) cell.value.reset();
+  return cell;
+}
+
 /// Cells of one row; either may be null.
 std::vector<Cell> cells_of(const std::vector<Measure>& measures,
-                           const std::vector<bool>& with_paper, const Json* competitor,
+                           const std::vector<bool>& with_paper, const Competitor* competitor,
                            const Json* paper) {
   std::vector<Cell> cells;
   for (std::size_t m = 0; m < measures.size(); ++m) {
     const Measure& measure = measures[m];
-    cells.push_back(cell_of(competitor ? measure.here(*competitor) : std::nullopt, measure.text));
-    if (competitor != nullptr && cells.back().value && measure.note)
-      cells.back().note = measure.note(*competitor);
+    cells.push_back(competitor != nullptr ? cell_of(*competitor, measure.here, measure.text)
+                                          : cell_of(std::nullopt, measure.text));
+    if (competitor != nullptr && cells.back().text != kMissing && measure.note)
+      cells.back().note = measure.note(*competitor->json);
     if (!with_paper[m]) continue;
     cells.push_back(cell_of(paper ? measure.paper(*paper) : std::nullopt,
                             measure.paper_text != nullptr ? measure.paper_text : measure.text));
@@ -44,6 +53,7 @@ std::vector<std::string> group_names(const Breakdown& breakdown,
   std::vector<std::string> names;
   std::map<std::string, double> weights;
   for (const Competitor& competitor : competitors) {
+    if (!competitor.badge.empty()) continue;
     const Json* groups = find(*competitor.json, breakdown.groups);
     if (groups == nullptr || !groups->is_object()) continue;
     for (const auto& [name, group] : groups->items()) {
@@ -89,7 +99,7 @@ Table table_of(std::string title, const std::vector<Competitor>& competitors,
       return !c.name.empty() && text_at(*row, {"name"}) == c.name;
     });
     const Json* paper = match == unmatched.end() ? nullptr : *match;
-    table.rows.push_back({c.title, c.badge, c.key, cells_of(measures, with_paper, c.json, paper)});
+    table.rows.push_back({c.title, c.badge, c.key, cells_of(measures, with_paper, &c, paper)});
     if (paper != nullptr) unmatched.erase(match);
   }
   for (const Json* paper : unmatched) {
@@ -117,10 +127,10 @@ Table table_of(const Breakdown& breakdown, const std::vector<Competitor>& compet
       KeyPath path = breakdown.groups;
       path.push_back(name);
       path.insert(path.end(), breakdown.figure.begin(), breakdown.figure.end());
-      row.cells.push_back(cell_of(read(path, breakdown.factor)(*competitor.json), breakdown.text));
+      row.cells.push_back(cell_of(competitor, read(path, breakdown.factor), breakdown.text));
     }
     if (breakdown.whole) {
-      row.cells.push_back(cell_of(breakdown.whole(*competitor.json), breakdown.text));
+      row.cells.push_back(cell_of(competitor, breakdown.whole, breakdown.text));
     }
     if (has_value(row)) table.rows.push_back(std::move(row));
   }

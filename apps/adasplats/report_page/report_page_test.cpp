@@ -238,6 +238,80 @@ TEST(ReportPage, ClassesWithoutValuesAndFailedCompetitorsDrawNothing) {
   EXPECT_NE(html.find("<title>Basic splats, 10-20: "), std::string::npos);
 }
 
+/// Everything that a page says of a competitor with better figures than all others.
+Json results_with(const Json& competitor) {
+  Json results = sample_results();
+  results["competitors"].push_back(competitor);
+  return results;
+}
+
+TEST(ReportPage, WhatFailedIsBestAtNothingAndScalesNoChart) {
+  // It ended after 11 ms: nobody is faster.
+  Json broken = {{"name", "broken"},
+                 {"title", "Broken"},
+                 {"kind", "mesh"},
+                 {"state", "failed"},
+                 {"failed_step", "generate"},
+                 {"message", "no such file"},
+                 {"generate", {{"seconds", 0.0113}, {"peak_memory_bytes", 1000}}}};
+  const std::string html = report_html(results_with(broken), {});
+  EXPECT_EQ(html.find("0.0113"), std::string::npos);
+  EXPECT_EQ(html.find("<title>Broken"), std::string::npos);
+  for (const std::string& row : rows_named(html, "Broken"))
+    EXPECT_EQ(row.find("<b>"), std::string::npos) << row;
+  for (const Section& section : document_of(results_with(broken)).sections) {
+    for (const Fact& fact : section.facts) {
+      if (fact.term != "Fastest to generate") continue;
+      EXPECT_EQ(fact.text, "23.0 s\nAdaSplats, semantic");
+    }
+  }
+  EXPECT_NE(html.find("no such file"), std::string::npos);
+
+  // It made a model, and a later step failed: figures stay in the tables, without a prize.
+  Json late = sample_competitor("late", "Late", 0.001);
+  late["state"] = "failed";
+  late["failed_step"] = "truth";
+  const Document document = document_of(results_with(late));
+  const Document without = document_of(sample_results());
+  for (std::size_t s = 0; s < document.sections.size(); ++s) {
+    const Section& section = document.sections[s];
+    if (section.id == "best") {
+      ASSERT_EQ(section.facts.size(), without.sections[s].facts.size());
+      for (std::size_t k = 0; k < section.facts.size(); ++k)
+        EXPECT_EQ(section.facts[k].text, without.sections[s].facts[k].text);
+    }
+    for (const Table& table : section.tables) {
+      for (const Row& row : table.rows) {
+        if (row.title != "Late") continue;
+        for (const Cell& cell : row.cells) EXPECT_FALSE(cell.best || cell.value) << table.title;
+      }
+    }
+  }
+  const std::string late_html = report_html(results_with(late), {});
+  EXPECT_EQ(late_html.find("<title>Late"), std::string::npos);
+  EXPECT_NE(rows_named(late_html, "Late").at(0).find("0.023"), std::string::npos);
+}
+
+TEST(ReportPage, SaysWhereFiguresAreOfDifferentPrograms) {
+  Json results = sample_results();
+  std::string text = report_markdown(results);
+  EXPECT_NE(text.find("adasplats 0.1.0, commit 0123456789ab"), std::string::npos);
+  EXPECT_EQ(text.find("not made by one program"), std::string::npos);
+  // Put together by hand: one step of one competitor is of another build.
+  results["competitors"][3]["made_by"]["c2c"]["commit"] = "fedcba9876543210";
+  text = report_markdown(results);
+  EXPECT_NE(text.find("not made by one program"), std::string::npos);
+  EXPECT_NE(text.find("commit fedcba987654 (AdaSplats, semantic: c2c)"), std::string::npos);
+  results = sample_results();
+  results["competitors"][0].erase("made_by");
+  EXPECT_NE(report_markdown(results).find("adasplats an unknown version (Basic splats: all)"),
+            std::string::npos);
+  results = sample_results();
+  results["competitors"][0]["made_by"]["render"]["dirty"] = true;
+  EXPECT_NE(report_markdown(results).find("0123456789ab with changes (Basic splats: render)"),
+            std::string::npos);
+}
+
 TEST(ReportPage, PicturesAreEmbeddedOrNamedAsMissing) {
   const TemporaryFolder folder;
   folder.write("pictures/basic.png", "\x89PNG\r\n\x1a\nrest");

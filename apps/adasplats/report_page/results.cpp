@@ -53,6 +53,8 @@ std::vector<Competitor> competitors_of(const Json& results) {
     if (competitor.title.empty()) competitor.title = competitor.name;
     const std::string state = text_at(*json, {"state"});
     if (state != "done") competitor.badge = state.empty() ? "no state" : state;
+    const std::string failed = text_at(*json, {"failed_step"});
+    competitor.has_model = state == "done" || (failed != "generate" && failed != "info");
     std::string base = competitor.name;
     competitor.key.variant = base.ends_with(kVariantSuffix);
     if (competitor.key.variant) base.resize(base.size() - kVariantSuffix.size());

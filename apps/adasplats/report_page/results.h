@@ -24,8 +24,9 @@ std::string text_at(const Json& json, const KeyPath& path);
 
 struct Competitor {
   std::string name;
-  std::string title;  ///< the name where it has none
-  std::string badge;  ///< its state unless it is done
+  std::string title;      ///< the name where it has none
+  std::string badge;      ///< its state unless it is done: then it is best at nothing
+  bool has_model = true;  ///< false: what its figures would be of was never made
   Key key;
   const Json* json = nullptr;
 };

@@ -39,6 +39,12 @@ inline nlohmann::ordered_json sample_competitor(const std::string& name, const s
                                                 double badness) {
   nlohmann::ordered_json c = {{"name", name}, {"title", title}, {"kind", "splats"}};
   c["state"] = "done";
+  for (const char* step : {"generate", "render", "simulate", "c2c"}) {
+    c["made_by"][step] = {{"version", "0.1.0"},
+                          {"commit", "0123456789abcdef0123456789abcdef01234567"},
+                          {"dirty", false},
+                          {"date", "2026-01-31T12:00:00Z"}};
+  }
   c["generate"] = {{"seconds", 23.04 * badness},
                    {"peak_memory_bytes", 1230000000},
                    {"primitives", 5124000 / badness},
