@@ -17,6 +17,7 @@ Poses = Union["Trajectory", ArrayLike]
 Progress = Callable[[str, int, int], object]
 """Hears (step, done, total); 0 where the total is not known."""
 Device = Literal["auto", "cpu", "cuda", "optix"]
+DivergenceKind = Literal["fwhm", "1/e2", "1/e2-half", "unknown"]
 Selection = Literal["most-discards-first", "largest-first", "curve", "scattered"]
 
 __version__: str
@@ -50,6 +51,7 @@ def read(
     beams_from_poses: bool = False,
     salvage: bool = False,
     max_distance_m: float = 100000.0,
+    max_dropped: float = 0.01,
     threads: int = 0,
     progress: Progress | None = None,
 ) -> PointCloud: ...
@@ -99,6 +101,7 @@ def model(
     beams_from_poses: bool = False,
     salvage: bool = False,
     max_distance_m: float = 100000.0,
+    max_dropped: float = 0.01,
     device: Device = "auto",
     gpus: Sequence[int] | None = None,
     threads: int = 0,
@@ -111,6 +114,7 @@ def label_scheme(name_or_path: Path) -> LabelScheme: ...
 def sensors() -> list[str]: ...
 
 def devices() -> list[dict[str, Any]]: ...
+def provenance(threads: int = 0) -> dict[str, Any]: ...
 
 def why_no_gpu() -> str: ...
 
@@ -138,6 +142,7 @@ class PointCloud:
         instances: ArrayLike | None = None,
         intensities: ArrayLike | None = None,
         sensor_positions: ArrayLike | None = None,
+        origin_kinds: ArrayLike | None = None,
         scan_indices: ArrayLike | None = None,
         origin: ArrayLike | None = None,
     ) -> None: ...
@@ -145,6 +150,9 @@ class PointCloud:
     @property
     def positions(self) -> NDArray[np.float32]:
         """(N, 3) float32, m, relative to origin."""
+    @property
+    def origin_kinds(self) -> NDArray[np.uint8] | None:
+        """(N,) uint8, how sensor_positions are known: 0 not, 1 guessed, 2 stated, 3 measured; None: all measured."""
     @property
     def sensor_positions(self) -> NDArray[np.float32] | None:
         """(N, 3) float32, m, relative to origin, or None."""
@@ -285,7 +293,10 @@ class Sensor:
         """(B,) float64, topmost first; empty where it is a list of rays or a rosette."""
     @property
     def divergence_rad(self) -> tuple[float, float]:
-        """Full angles of a beam, horizontal and vertical."""
+        """Full angles of a beam between 1/e2 of its intensity, horizontal and vertical."""
+    @property
+    def divergence_kind(self) -> DivergenceKind:
+        """What the source of the divergence stated: 'fwhm', '1/e2', '1/e2-half' or 'unknown'."""
     @staticmethod
     def from_beams(
         elevations_rad: ArrayLike,
@@ -303,8 +314,9 @@ class Sensor:
         range_noise_m: float = 0.0,
         angular_noise_rad: float = 0.0,
         range_resolution_m: float = 0.0,
-        divergence_horizontal_rad: float = 0.0,
-        divergence_vertical_rad: float = 0.0,
+        divergence_horizontal_rad: float | None = None,
+        divergence_vertical_rad: float | None = None,
+        divergence_kind: DivergenceKind | None = None,
         most_returns: int = 1,
     ) -> Sensor: ...
     @staticmethod
@@ -322,8 +334,9 @@ class Sensor:
         range_noise_m: float = 0.0,
         angular_noise_rad: float = 0.0,
         range_resolution_m: float = 0.0,
-        divergence_horizontal_rad: float = 0.0,
-        divergence_vertical_rad: float = 0.0,
+        divergence_horizontal_rad: float | None = None,
+        divergence_vertical_rad: float | None = None,
+        divergence_kind: DivergenceKind | None = None,
         most_returns: int = 1,
     ) -> Sensor: ...
     def replaced(self, **changes: object) -> Sensor: ...
@@ -472,7 +485,9 @@ class Scans:
         self,
         folder: Path,
         *,
-        format: Literal["semantickitti", "ply", "npy", "npz", "pcd", "las"] = "semantickitti",
+        format: Literal[
+            "semantickitti", "ply", "npy", "npz", "pcd", "las", "range-image", "mcap"
+        ] = "semantickitti",
     ) -> None: ...
 
 class Hits:

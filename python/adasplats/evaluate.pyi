@@ -65,6 +65,7 @@ def presence(
     beams_from_poses: bool = False,
     salvage: bool = False,
     max_distance_m: float = 100000.0,
+    max_dropped: float = 0.01,
     device: Device = "auto",
     gpus: Sequence[int] | None = None,
     threads: int = 0,

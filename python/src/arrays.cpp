@@ -52,7 +52,7 @@ py::array array_view(const py::dtype& type, const void* data, std::vector<py::ss
   // pybind11 copies where there is no base.
   py::array array(type, std::move(shape), std::move(strides), data, owner);
   array.attr("flags").attr("writeable") = false;
-  return array;
+  return array.attr("view")(py::module_::import("adasplats._views").attr("ArrayView"));
 }
 
 py::array array_view(const std::vector<Vec3f>& values, py::handle owner) {
@@ -128,7 +128,8 @@ std::vector<std::uint64_t> whole_numbers_of(py::handle value, std::size_t count,
   return numbers;
 }
 
-std::vector<double> numbers_of(py::handle value, std::size_t count, const char* name) {
+std::vector<double> numbers_of(py::handle value, std::size_t count, const char* name,
+                               NotANumber nan) {
   if (value.is_none()) return {};
   const py::array given = number_array(value, name);
   if (given.ndim() != 1 || static_cast<std::size_t>(given.size()) != count)
@@ -137,6 +138,7 @@ std::vector<double> numbers_of(py::handle value, std::size_t count, const char* 
   std::vector<double> numbers(count);
   for (std::size_t i = 0; i < count; ++i) {
     numbers[i] = *static_cast<const double*>(wide.data(static_cast<py::ssize_t>(i)));
+    if (nan == NotANumber::is_unknown && std::isnan(numbers[i])) continue;
     if (!std::isfinite(numbers[i]))
       throw py::value_error(std::string(name) + "[" + std::to_string(i) + "] is not finite");
   }

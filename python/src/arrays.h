@@ -109,8 +109,13 @@ std::vector<T> whole_numbers_of(py::handle value, std::size_t count, const char*
   return std::vector<T>(wide.begin(), wide.end());
 }
 
-/// Finite numbers of an array argument of shape (`count`,); nothing for None.
-std::vector<double> numbers_of(py::handle value, std::size_t count, const char* name);
+/// Whether NaN is a value of an array argument.
+enum class NotANumber : bool { is_wrong, is_unknown };
+
+/// Finite numbers of an array argument of shape (`count`,), or NaN where that is a value; nothing
+/// for None.
+std::vector<double> numbers_of(py::handle value, std::size_t count, const char* name,
+                               NotANumber nan = NotANumber::is_wrong);
 
 /// Rigid transforms of an array argument of shape (N, 4, 4), or (4, 4) for one. Rotations are made
 /// orthonormal. Errors: TypeError, ValueError (shape; not finite; a last row that is not 0 0 0 1; a

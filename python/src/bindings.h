@@ -12,6 +12,7 @@ namespace py = pybind11;
 
 void bind_errors(py::module_& module);
 void bind_devices(py::module_& module);
+void bind_provenance(py::module_& module);
 void bind_labels(py::module_& module);
 void bind_trajectories(py::module_& module);
 void bind_clouds(py::module_& module);
@@ -23,5 +24,7 @@ void bind_scenes(py::module_& module);
 void bind_hits(py::module_& module);
 void bind_evaluate(py::module_& module);
 void bind_synth(py::module_& module);
+/// Makes every function of the finished module say in words what is wrong with its arguments.
+void explain_wrong_arguments(py::module_ module);
 
 }  // namespace adasplats::python

@@ -4,8 +4,26 @@
 
 #include <algorithm>
 
+#include "adasplats/pipeline/output_check.h"
 #include "bindings.h"
+#include "pickles.h"
 #include "work.h"
+
+namespace adasplats {
+
+template <class Archive>
+void fields(Archive& archive, PointCloud& cloud) {
+  archive("origin", cloud.origin);
+  archive("positions", cloud.positions);
+  archive("sensor_positions", cloud.sensor_positions);
+  archive("origin_kinds", cloud.origin_kinds);
+  archive("intensities", cloud.intensities);
+  archive("classes", cloud.classes);
+  archive("instances", cloud.instances);
+  archive("scan_indices", cloud.scan_indices);
+}
+
+}  // namespace adasplats
 
 namespace adasplats::python {
 namespace {
@@ -18,16 +36,19 @@ constexpr const char* kReadDoc =
     "scan_count (None: all) and scan_stride choose scans of a sequence; viewpoint (3,) or "
     "trajectory\n"
     "(a path) tell where the sensor was; label_field names the column of classes. Points that are\n"
-    "not finite are dropped, with strict an error.\n"
+    "not finite or far are dropped with a warning, with strict or above the share max_dropped an\n"
+    "error; an intensity that is not known is NaN.\n"
     "Raises FileNotFoundError, ValueError (what is in a file), OSError.";
 
 constexpr const char* kCloudDoc =
     "Points of one or many scans.\n\n"
     "positions: (N, 3), world coordinates in metres, any numbers. classes, instances: (N,) of 0 "
     "to\n"
-    "65535. intensities: (N,). sensor_positions: (N, 3), where the LiDAR was when it measured "
-    "each\n"
-    "point, world coordinates; without them normals have no side and no ray checks the model.\n"
+    "65535. intensities: (N,), NaN where not known. sensor_positions: (N, 3), where the LiDAR was\n"
+    "when it measured each point, world coordinates; without them normals have no side and no ray\n"
+    "checks the model.\n"
+    "origin_kinds: (N,), how each is known: 0 not, 1 guessed (turns normals alone), 2 stated, 3\n"
+    "measured, which all are where it is None.\n"
     "scan_indices: (N,). origin: (3,), what positions are kept relative to as float32; chosen by\n"
     "their extents where it is None. Raises ValueError with the first row that is not finite.\n"
     "The arrays are read-only views without a copy; an attribute that the cloud lacks is None.";
@@ -61,8 +82,8 @@ std::vector<Vec3f> relative(const Rows& world, Vec3d origin) {
 
 std::shared_ptr<PointCloud> make_cloud(py::handle positions, py::handle classes,
                                        py::handle instances, py::handle intensities,
-                                       py::handle sensor_positions, py::handle scan_indices,
-                                       py::handle origin) {
+                                       py::handle sensor_positions, py::handle origin_kinds,
+                                       py::handle scan_indices, py::handle origin) {
   auto cloud = std::make_shared<PointCloud>();
   LocalVectors local = local_vectors(Rows(positions, 3, "positions"), origin);
   cloud->origin = local.origin;
@@ -71,15 +92,26 @@ std::shared_ptr<PointCloud> make_cloud(py::handle positions, py::handle classes,
   cloud->classes = whole_numbers_of<std::uint16_t>(classes, count, "classes");
   cloud->instances = whole_numbers_of<std::uint16_t>(instances, count, "instances");
   cloud->scan_indices = whole_numbers_of<std::uint32_t>(scan_indices, count, "scan_indices");
-  const std::vector<double> measured = numbers_of(intensities, count, "intensities");
+  const std::vector<double> measured =
+      numbers_of(intensities, count, "intensities", NotANumber::is_unknown);
   cloud->intensities.assign(measured.begin(), measured.end());
-  if (sensor_positions.is_none()) return cloud;
+  if (sensor_positions.is_none()) {
+    if (!origin_kinds.is_none())
+      throw py::value_error("origin_kinds: expected sensor_positions as well");
+    return cloud;
+  }
   const Rows sensors(sensor_positions, 3, "sensor_positions");
   if (sensors.size() != count || (sensors.is_single() && count == 1))
     throw py::value_error("sensor_positions: expected shape (" + std::to_string(count) +
                           ", 3), one row a point");
   sensors.require_finite();
   cloud->sensor_positions = relative(sensors, cloud->origin);
+  for (const auto kind : whole_numbers_of<std::uint16_t>(origin_kinds, count, "origin_kinds")) {
+    if (kind > static_cast<std::uint16_t>(OriginKind::measured))
+      throw py::value_error("origin_kinds: expected numbers of 0 to 3, found " +
+                            std::to_string(kind));
+    cloud->origin_kinds.push_back(static_cast<OriginKind>(kind));
+  }
   return cloud;
 }
 
@@ -140,6 +172,7 @@ void take_load_options(Keywords& keywords, LoadOptions& options) {
   keywords.take("beams_from_poses", options.beams_from_poses);
   keywords.take("salvage", options.salvage);
   keywords.take("max_distance_m", options.max_distance_m);
+  keywords.take("max_dropped", options.max_dropped);
 }
 
 bool is_path(py::handle value) {
@@ -176,13 +209,14 @@ void bind_clouds(py::module_& module) {
   const std::string init_doc = documented(
       "__init__",
       "self, positions, *, classes=None, instances=None, intensities=None, sensor_positions=None, "
-      "scan_indices=None, origin=None",
+      "origin_kinds=None, scan_indices=None, origin=None",
       "See the class.");
-  py::class_<PointCloud, std::shared_ptr<PointCloud>>(module, "PointCloud", kCloudDoc)
-      .def(py::init(&make_cloud), py::arg("positions"), py::kw_only(),
+  py::class_<PointCloud, std::shared_ptr<PointCloud>> type(module, "PointCloud", kCloudDoc);
+  type.def(py::init(&make_cloud), py::arg("positions"), py::kw_only(),
            py::arg("classes") = py::none(), py::arg("instances") = py::none(),
            py::arg("intensities") = py::none(), py::arg("sensor_positions") = py::none(),
-           py::arg("scan_indices") = py::none(), py::arg("origin") = py::none(), init_doc.c_str())
+           py::arg("origin_kinds") = py::none(), py::arg("scan_indices") = py::none(),
+           py::arg("origin") = py::none(), init_doc.c_str())
       .def("__len__", &PointCloud::size)
       .def("__repr__",
            [](const PointCloud& cloud) {
@@ -196,8 +230,22 @@ void bind_clouds(py::module_& module) {
           "(N, 3) float32, m, relative to origin.")
       .def_property_readonly("sensor_positions", attribute(&PointCloud::sensor_positions),
                              "(N, 3) float32, m, relative to origin, or None.")
-      .def_property_readonly("intensities", attribute(&PointCloud::intensities),
-                             "(N,) float32 in the unit of the file, or None.")
+      .def_property_readonly(
+          "origin_kinds",
+          [](const PointCloud& cloud) -> py::object {
+            if (cloud.origin_kinds.empty()) return py::none();
+            std::vector<std::uint8_t> kinds;
+            for (const OriginKind kind : cloud.origin_kinds)
+              kinds.push_back(static_cast<std::uint8_t>(kind));
+            const auto count = static_cast<py::ssize_t>(kinds.size());
+            return owned_array(std::move(kinds), {count});
+          },
+          "(N,) uint8, how sensor_positions are known: 0 not, 1 guessed, 2 stated, 3 measured; "
+          "None: "
+          "all measured.")
+      .def_property_readonly(
+          "intensities", attribute(&PointCloud::intensities),
+          "(N,) float32 in the unit of the file, NaN where it is not known, or None.")
       .def_property_readonly("classes", attribute(&PointCloud::classes),
                              "(N,) uint16, ids of a label scheme, or None.")
       .def_property_readonly("instances", attribute(&PointCloud::instances),
@@ -213,13 +261,17 @@ void bind_clouds(py::module_& module) {
           "save",
           [](const PointCloud& cloud, py::handle path) {
             const std::filesystem::path file = path_of(path, "path");
+            require_ending(file, ".ply");
             const py::gil_scoped_release released;
             save_cloud_ply(file, cloud);
           },
           py::arg("path"),
           documented("save", "self, path",
-                     "Write a PLY, whole or not at all, with every attribute. Raises OSError.")
+                     "Write a .ply, whole or not at all, with every attribute. Raises "
+                     "OSError,\nValueError (another ending).")
               .c_str());
+
+  add_pickling<PointCloud>(type, "PointCloud");
 
   const std::string read_doc = documented(
       "read", "paths",

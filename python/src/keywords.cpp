@@ -167,16 +167,15 @@ std::size_t Keywords::take_word(const char* name, std::size_t chosen,
   std::string text = function_ + "(): " + name + " must be ";
   for (std::size_t i = 0; i < known.size(); ++i)
     text += (i == 0 ? "'" : (i + 1 == known.size() ? " or '" : ", '")) + known[i] + "'";
-  throw py::value_error(text + ", not '" + word + "'");
+  throw py::value_error(text + ", not '" + word + "'" + did_you_mean(word, known));
 }
 
 void Keywords::finish() const {
   for (const auto& [key, value] : *given_) {
     const std::string name = py::str(key);
     if (std::find(names_.begin(), names_.end(), name) != names_.end()) continue;
-    const auto near = nearest_word(name, names_);
     throw py::type_error(function_ + "() got an unexpected keyword argument '" + name + "'" +
-                         (near ? "; did you mean '" + *near + "'?" : ""));
+                         did_you_mean(name, names_));
   }
 }
 

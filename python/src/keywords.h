@@ -16,14 +16,11 @@
 #include <vector>
 
 #include "adasplats/core/vec3.h"
+#include "adasplats/core/words.h"
 
 namespace adasplats::python {
 
 namespace py = pybind11;
-
-/// Words that stand for the values of an enumeration.
-template <class T>
-using Words = std::span<const std::pair<std::string_view, T>>;
 
 /// The keyword arguments of one call. A function takes them one by one by name; what nobody took
 /// is a TypeError that names the nearest. The same taking, without a call, tells the signature: so

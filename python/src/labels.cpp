@@ -1,11 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
 #include <algorithm>
+#include <array>
+#include <tuple>
 
 #include "adasplats/cloud/label_scheme.h"
 #include "arrays.h"
 #include "bindings.h"
 #include "clouds.h"
+#include "pickles.h"
 
 namespace adasplats::python {
 namespace {
@@ -48,12 +53,39 @@ const SemanticClass& class_of_name(const LabelScheme& scheme, const std::string&
   return *found;
 }
 
+using ClassFields = std::tuple<std::uint16_t, std::string, int, int, std::array<std::uint8_t, 3>>;
+constexpr const char* kPickled = "adasplats.LabelScheme";
+
+/// A scheme has no state without classes, so it is made whole.
+py::object pickle_of(const LabelScheme& scheme) {
+  std::vector<ClassFields> classes;
+  for (const SemanticClass& c : scheme.classes())
+    classes.emplace_back(c.id, c.name, static_cast<int>(c.group), static_cast<int>(c.mobility),
+                         c.rgb);
+  py::dict fields;
+  fields["name"] = scheme.name();
+  fields["classes"] = py::cast(classes);
+  return py::make_tuple(kPickled, kPickleVersion, fields);
+}
+
+std::shared_ptr<LabelScheme> scheme_of_pickle(const py::object& pickle) {
+  const py::dict fields = fields_of_pickle(kPickled, pickle);
+  if (!fields.contains("name") || !fields.contains("classes"))
+    wrong_pickle(kPickled, "lacks a field");
+  std::vector<SemanticClass> classes;
+  for (const auto& [id, name, group, mobility, rgb] :
+       fields["classes"].cast<std::vector<ClassFields>>())
+    classes.push_back(
+        {id, name, static_cast<SemanticGroup>(group), static_cast<Mobility>(mobility), rgb});
+  return std::make_shared<LabelScheme>(fields["name"].cast<std::string>(), std::move(classes));
+}
+
 }  // namespace
 
 void bind_labels(py::module_& module) {
-  py::class_<LabelScheme, std::shared_ptr<LabelScheme>>(
-      module, "LabelScheme", "What the numbers of classes mean; made by label_scheme().")
-      .def_property_readonly("name", &LabelScheme::name, "Of the scheme.")
+  py::class_<LabelScheme, std::shared_ptr<LabelScheme>> type(
+      module, "LabelScheme", "What the numbers of classes mean; made by label_scheme().");
+  type.def_property_readonly("name", &LabelScheme::name, "Of the scheme.")
       .def_property_readonly("ids", &ids, "(C,) uint16, ascending: the numbers of the classes.")
       .def_property_readonly(
           "names",
@@ -88,6 +120,7 @@ void bind_labels(py::module_& module) {
           [](const LabelScheme& s, const std::string& name) { return class_of_name(s, name).id; },
           py::arg("name"),
           documented("id_of", "self, name", "The number of a class. Raises KeyError.").c_str());
+  type.def(py::pickle(&pickle_of, &scheme_of_pickle));
   module.def(
       "label_scheme",
       [](py::handle name_or_path) {

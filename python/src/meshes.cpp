@@ -4,9 +4,25 @@
 
 #include <memory>
 
+#include "adasplats/pipeline/output_check.h"
 #include "adasplats/scene/mesh_model.h"
 #include "bindings.h"
 #include "clouds.h"
+#include "pickles.h"
+
+namespace adasplats {
+
+template <class Archive>
+void fields(Archive& archive, MeshModel& model) {
+  archive("origin", model.origin);
+  archive("vertices", model.mesh.vertices);
+  archive("triangles", model.mesh.triangles);
+  archive("classes", model.mesh.classes);
+  archive("label_scheme", model.label_scheme);
+  archive("method", model.method);
+}
+
+}  // namespace adasplats
 
 namespace adasplats::python {
 namespace {
@@ -57,6 +73,7 @@ std::shared_ptr<MeshModel> load(py::handle path) {
 
 void save(const MeshModel& model, py::handle path) {
   const std::filesystem::path file = path_of(path, "path");
+  require_ending(file, ".ply");
   const py::gil_scoped_release released;
   save_mesh(file, model);
 }
@@ -73,8 +90,8 @@ void bind_meshes(py::module_& module) {
   const std::string init_doc =
       documented("__init__", "self, vertices, triangles, *, classes=None, labels=None, origin=None",
                  "See the class.");
-  py::class_<MeshModel, std::shared_ptr<MeshModel>>(module, "Mesh", kDoc)
-      .def(py::init(&make_mesh), py::arg("vertices"), py::arg("triangles"), py::kw_only(),
+  py::class_<MeshModel, std::shared_ptr<MeshModel>> type(module, "Mesh", kDoc);
+  type.def(py::init(&make_mesh), py::arg("vertices"), py::arg("triangles"), py::kw_only(),
            py::arg("classes") = py::none(), py::arg("labels") = py::none(),
            py::arg("origin") = py::none(), init_doc.c_str())
       .def_static("load", &load, py::arg("path"),
@@ -82,7 +99,9 @@ void bind_meshes(py::module_& module) {
                              "Read a PLY, OBJ or glTF 2.0. Raises FileNotFoundError, ValueError.")
                       .c_str())
       .def("save", &save, py::arg("path"),
-           documented("save", "self, path", "Write a PLY, whole or not at all. Raises OSError.")
+           documented(
+               "save", "self, path",
+               "Write a .ply, whole or not at all. Raises OSError, ValueError (another\nending).")
                .c_str())
       .def("__len__", &MeshModel::size)
       .def("__repr__",
@@ -108,6 +127,7 @@ void bind_meshes(py::module_& module) {
           "(3,) float64, world coordinates of the local origin, m.")
       .def_readonly("labels", &MeshModel::label_scheme,
                     "Name or path of the label scheme; empty where there is none.");
+  add_pickling<MeshModel>(type, "Mesh");
 }
 
 }  // namespace adasplats::python

@@ -9,11 +9,45 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/pipeline/make_model.h"
+#include "adasplats/pipeline/output_check.h"
+#include "adasplats/pipeline/unused_options.h"
 #include "clouds.h"
 #include "json.h"
+#include "pickles.h"
 #include "work.h"
 
+namespace adasplats {
+
+template <class Archive>
+void fields(Archive& archive, IntensityResponse& response) {
+  archive("ranges_m", response.ranges_m);
+  archive("range_gains", response.range_gains);
+  archive("cos_incidences", response.cos_incidences);
+  archive("incidence_gains", response.incidence_gains);
+}
+
+template <class Archive>
+void fields(Archive& archive, SplatModel& model) {
+  archive("origin", model.origin);
+  archive("disks", model.disks);
+  archive("classes", model.classes);
+  archive("groups", model.groups);
+  archive("intensities", model.intensities);
+  archive("response", model.response);
+  archive("label_scheme", model.label_scheme);
+  archive("method", model.method);
+}
+
+}  // namespace adasplats
+
 namespace adasplats::python {
+
+template <class Archive>
+void fields(Archive& archive, ModelObject& object) {
+  archive("model", object.model);
+  archive("report", object.report);
+}
+
 namespace {
 
 constexpr const char* kModelDoc =
@@ -122,12 +156,23 @@ std::shared_ptr<ModelObject> finished(std::pair<SplatModel, ModelResult>&& made)
   return object;
 }
 
+/// Keywords that change nothing beside the others.
+void refuse_unused(const BuildOptions& options, const py::kwargs& given) {
+  for (const UnusedOption& option : unused_options(options)) {
+    std::string name = option.name;
+    std::replace(name.begin(), name.end(), '-', '_');
+    if (given.contains(name)) throw py::value_error(name + " has no effect " + option.why);
+  }
+}
+
 std::shared_ptr<ModelObject> model(py::handle points, const py::kwargs& kwargs) {
   Keywords keywords("model", kwargs);
   ModelJob job;
   WorkOptions options;
   take_model(keywords, job, options);
   keywords.finish();
+  refuse_unused(job.build, kwargs);
+  job.removal_is_asked = kwargs.contains("remove");
   const bool in_memory = py::isinstance<PointCloud>(points);
   if (!in_memory) job.inputs = paths_of(points, "points", "a PointCloud, ");
   const auto cloud =
@@ -168,7 +213,8 @@ std::shared_ptr<ModelObject> make_object(py::handle centers, py::handle normals,
   SplatModel& model = object->model;
   add_disks(model, std::move(local), normal_rows, numbers_of(radii, count, "radii"));
   model.classes = whole_numbers_of<std::uint16_t>(classes, count, "classes");
-  const std::vector<double> measured = numbers_of(intensities, count, "intensities");
+  const std::vector<double> measured =
+      numbers_of(intensities, count, "intensities", NotANumber::is_unknown);
   model.intensities.assign(measured.begin(), measured.end());
   model.label_scheme = labels.value_or("");
   model.method = "arrays";
@@ -185,6 +231,7 @@ std::shared_ptr<ModelObject> load(py::handle path) {
 
 void save(const ModelObject& object, py::handle path) {
   const std::filesystem::path file = path_of(path, "path");
+  require_ending(file, ".ply");
   const py::gil_scoped_release released;
   save_model(file, object.model);
 }
@@ -309,11 +356,14 @@ void bind_models(py::module_& module) {
                              "Read a PLY of splats: x y z nx ny nz radius and what else it has.\n"
                              "Raises FileNotFoundError, ValueError.")
                       .c_str());
-  type.def("save", &save, py::arg("path"),
-           documented("save", "self, path", "Write a PLY, whole or not at all. Raises OSError.")
-               .c_str());
+  type.def(
+      "save", &save, py::arg("path"),
+      documented("save", "self, path",
+                 "Write a .ply, whole or not at all. Raises OSError, ValueError (another\nending).")
+          .c_str());
   add_arrays(type);
   add_properties(type);
+  add_pickling<ModelObject>(type, "Model");
   const std::string doc = documented(
       "model", "points",
       [](Keywords& keywords) {

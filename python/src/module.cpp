@@ -15,6 +15,7 @@ PYBIND11_MODULE(_adasplats, module) {
   module.attr("__version__") = ADASPLATS_VERSION;
   bindings::bind_errors(module);
   bindings::bind_devices(module);
+  bindings::bind_provenance(module);
   bindings::bind_labels(module);
   bindings::bind_trajectories(module);
   bindings::bind_clouds(module);
@@ -26,4 +27,5 @@ PYBIND11_MODULE(_adasplats, module) {
   bindings::bind_scenes(module);
   bindings::bind_evaluate(module);
   bindings::bind_synth(module);
+  bindings::explain_wrong_arguments(module);
 }

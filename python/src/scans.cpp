@@ -2,10 +2,54 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scans.h"
 
+#include <pybind11/stl.h>
+
 #include "adasplats/dataset/scan_writer.h"
 #include "clouds.h"
+#include "pickles.h"
+
+namespace adasplats {
+
+template <class Archive>
+void fields(Archive& archive, Scan& scan) {
+  archive("world_from_sensor", scan.world_from_sensor);
+  archive("time_s", scan.time_s);
+  archive("rays", scan.rays);
+  archive("positions", scan.positions);
+  archive("ranges_m", scan.ranges_m);
+  archive("intensities", scan.intensities);
+  archive("classes", scan.classes);
+  archive("instances", scan.instances);
+  archive("rings", scan.rings);
+  archive("columns", scan.columns);
+  archive("times_s", scan.times_s);
+  archive("return_indices", scan.return_indices);
+}
+
+}  // namespace adasplats
 
 namespace adasplats::python {
+
+/// The scans and the labels are objects of Python's, which pickle themselves.
+static void fields(FieldWriter& archive, ScanList& list) {
+  py::object scans = py::cast(list.scans);
+  py::object labels = py::none();
+  if (list.labels) labels = py::cast(std::make_shared<LabelScheme>(*list.labels));
+  archive("scans", scans);
+  archive("image_size", list.image_size);
+  archive("labels", labels);
+}
+
+static void fields(FieldReader& archive, ScanList& list) {
+  py::object scans;
+  py::object labels;
+  archive("scans", scans);
+  archive("image_size", list.image_size);
+  archive("labels", labels);
+  list.scans = scans.cast<std::vector<std::shared_ptr<Scan>>>();
+  if (!labels.is_none()) list.labels = labels.cast<std::shared_ptr<LabelScheme>>();
+}
+
 namespace {
 
 constexpr const char* kScanDoc =
@@ -14,7 +58,8 @@ constexpr const char* kScanDoc =
 
 constexpr const char* kSaveDoc =
     "Write the scans into a folder, which is made where it is not there.\n\n"
-    "format: 'semantickitti' (FOLDER/sequences/00), 'ply', 'npy', 'npz', 'pcd' or 'las'.\n"
+    "format: 'semantickitti' (FOLDER/sequences/00), 'ply', 'npy', 'npz', 'pcd', 'las',\n"
+    "'range-image' or 'mcap' (FOLDER/scans.mcap): docs/formats.md.\n"
     "Raises OSError, ValueError.";
 
 template <class T>
@@ -33,8 +78,8 @@ auto optional(std::vector<T> Scan::*member) {
 }
 
 void bind_scan(py::module_& module) {
-  py::class_<Scan, std::shared_ptr<Scan>>(module, "Scan", kScanDoc)
-      .def("__len__", &Scan::size)
+  py::class_<Scan, std::shared_ptr<Scan>> type(module, "Scan", kScanDoc);
+  type.def("__len__", &Scan::size)
       .def("__repr__",
            [](const Scan& scan) {
              return "<adasplats.Scan of " + std::to_string(scan.size()) + " points>";
@@ -57,6 +102,7 @@ void bind_scan(py::module_& module) {
           "(4, 4) float64, world_from_sensor.")
       .def_readonly("time", &Scan::time_s, "Of the pose, s.")
       .def_readonly("rays", &Scan::rays, "How many firings the revolution had.");
+  add_pickling<Scan>(type, "Scan");
 }
 
 std::shared_ptr<Scan> scan_at(const ScanList& list, py::ssize_t index) {
@@ -70,21 +116,13 @@ ScanList scans_of(const ScanList& list, const py::slice& slice) {
   std::size_t start = 0, stop = 0, step = 0, count = 0;
   if (!slice.compute(list.scans.size(), &start, &stop, &step, &count))
     throw py::error_already_set();
-  ScanList part;
+  ScanList part{{}, list.image_size, list.labels};
   for (std::size_t k = 0; k < count; ++k) part.scans.push_back(list.scans[start + k * step]);
   return part;
 }
 
-constexpr std::pair<std::string_view, ScanFormat> kFormats[] = {
-    {"semantickitti", ScanFormat::semantickitti},
-    {"ply", ScanFormat::ply},
-    {"npy", ScanFormat::npy},
-    {"npz", ScanFormat::npz},
-    {"pcd", ScanFormat::pcd},
-    {"las", ScanFormat::las}};
-
 void take_format(Keywords& keywords, ScanFormat& format) {
-  keywords.take<ScanFormat>("format", format, kFormats);
+  keywords.take<ScanFormat>("format", format, kScanFormats);
 }
 
 void save(const ScanList& list, py::handle folder, const py::kwargs& kwargs) {
@@ -95,7 +133,10 @@ void save(const ScanList& list, py::handle folder, const py::kwargs& kwargs) {
   const std::filesystem::path path = path_of(folder, "folder");
   const py::gil_scoped_release released;
   std::filesystem::create_directories(path);
-  const auto writer = make_scan_writer(path, format);
+  ScanWriterOptions writing;
+  writing.image_size = list.image_size;
+  writing.labels = list.labels.get();
+  const auto writer = make_scan_writer(path, format, writing);
   for (std::size_t i = 0; i < list.scans.size(); ++i) writer->write(i, *list.scans[i]);
   writer->finish();
 }
@@ -111,9 +152,9 @@ void bind_scans(py::module_& module) {
         take_format(keywords, format);
       },
       kSaveDoc);
-  py::class_<ScanList, std::shared_ptr<ScanList>>(
-      module, "Scans", "The scans of one drive: a sequence of Scan, made by Scene.simulate().")
-      .def("__len__", [](const ScanList& list) { return list.scans.size(); })
+  py::class_<ScanList, std::shared_ptr<ScanList>> type(
+      module, "Scans", "The scans of one drive: a sequence of Scan, made by Scene.simulate().");
+  type.def("__len__", [](const ScanList& list) { return list.scans.size(); })
       .def("__getitem__", &scan_at, py::arg("index"), "One scan; a slice gives Scans.")
       .def("__getitem__", &scans_of, py::arg("slice"))
       .def(
@@ -127,6 +168,7 @@ void bind_scans(py::module_& module) {
              return "<adasplats.Scans: " + std::to_string(list.scans.size()) + ">";
            })
       .def("save", &save, py::arg("folder"), doc.c_str());
+  add_pickling<ScanList>(type, "Scans");
 }
 
 }  // namespace adasplats::python

@@ -5,14 +5,18 @@
 #include <memory>
 #include <vector>
 
+#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/dataset/range_image.h"
 #include "adasplats/simulate/scan.h"
 #include "bindings.h"
 
 namespace adasplats::python {
 
-/// Scans of one drive, as a sequence.
+/// Scans of one drive, as a sequence, with what range images need besides.
 struct ScanList {
   std::vector<std::shared_ptr<Scan>> scans;
+  ImageSize image_size;                       ///< of the sensor
+  std::shared_ptr<const LabelScheme> labels;  ///< null where they are not known
 };
 
 }  // namespace adasplats::python

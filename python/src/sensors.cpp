@@ -4,10 +4,51 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
+#include <optional>
 
+#include "adasplats/core/error.h"
 #include "clouds.h"
+#include "pickles.h"
+
+namespace adasplats {
+
+template <class Archive>
+void fields(Archive& archive, RosettePattern& rosette) {
+  archive("prism_hz", rosette.prism_hz);
+  archive("deflection_rad", rosette.deflection_rad);
+  archive("points_per_s", rosette.points_per_s);
+  archive("laser_tilts_rad", rosette.laser_tilts_rad);
+}
+
+template <class Archive>
+void fields(Archive& archive, LidarModel& model) {
+  archive("name", model.name);
+  archive("elevations_rad", model.elevations_rad);
+  archive("azimuth_offsets_rad", model.azimuth_offsets_rad);
+  archive("beam_origins_m", model.beam_origins_m);
+  archive("firing_times_s", model.firing_times_s);
+  archive("columns", model.columns);
+  archive("first_azimuth_rad", model.first_azimuth_rad);
+  archive("rotation_hz", model.rotation_hz);
+  archive("min_range_m", model.min_range_m);
+  archive("max_range_m", model.max_range_m);
+  archive("range_noise_m", model.range_noise_m);
+  archive("angular_noise_rad", model.angular_noise_rad);
+  archive("range_resolution_m", model.range_resolution_m);
+  archive("divergence_rad", model.divergence_rad);
+  archive("divergence_kind", model.divergence_kind);
+  archive("most_returns", model.most_returns);
+  archive("clockwise", model.clockwise);
+  archive("free_pattern", model.free_pattern);
+  archive("rosette", model.rosette);
+  archive("source", model.source);
+}
+
+}  // namespace adasplats
 
 namespace adasplats::python {
 namespace {
@@ -24,7 +65,8 @@ constexpr const char* kBeamsDoc =
     "elevations_rad: (B,), topmost first. azimuth_offsets_rad, firing_times_s: (B,) or None.\n"
     "beam_origins_m: (B, 3) or None, in the frame of the head. columns: azimuth steps a "
     "revolution.\n"
-    "The divergences are full angles of a beam. Raises TypeError, ValueError.";
+    "A divergence needs divergence_kind, what its angle measures: 'fwhm', '1/e2' (full angle),\n"
+    "'1/e2-half' or 'unknown' (docs/sensors.md). Raises TypeError, ValueError.";
 
 constexpr const char* kRaysDoc =
     "A LiDAR that fires a list of rays in every scan.\n\n"
@@ -32,6 +74,33 @@ constexpr const char* kRaysDoc =
     "where\n"
     "they leave. times_s: (N,) since the scan began, or None for all at once. rings: (N,) of 0 to\n"
     "65535, 0 the topmost; columns: (N,). Raises TypeError, ValueError.";
+
+/// Angles and what they measure come together; the model holds full angles at 1/e^2.
+void take_divergence(Keywords& keywords, LidarModel& model) {
+  std::optional<double> angles_rad[2];
+  std::string word;
+  keywords.take("divergence_horizontal_rad", angles_rad[0]);
+  keywords.take("divergence_vertical_rad", angles_rad[1]);
+  keywords.take("divergence_kind", word);
+  if (!angles_rad[0] && !angles_rad[1] && word.empty()) return;
+  const std::vector<std::string> words = list_of<DivergenceKind>(kDivergenceKinds);
+  std::string known;
+  for (const std::string& each : words) known += (known.empty() ? "'" : ", '") + each + "'";
+  if (word.empty())
+    throw py::type_error("a divergence needs divergence_kind, what the angle measures: " + known);
+  if (!angles_rad[0] && !angles_rad[1])
+    throw py::type_error(
+        "divergence_kind needs divergence_horizontal_rad, divergence_vertical_rad "
+        "or both");
+  const auto found = std::ranges::find(words, word);
+  if (found == words.end())
+    throw py::value_error("divergence_kind must be one of " + known + ", not '" + word + "'" +
+                          did_you_mean(word, words));
+  model.divergence_kind = kDivergenceKinds[found - words.begin()].second;
+  for (const int axis : {0, 1})
+    if (angles_rad[axis])
+      model.divergence_rad[axis] = full_e2_angle_rad(*angles_rad[axis], model.divergence_kind);
+}
 
 /// What every kind of pattern has.
 void take_common(Keywords& keywords, LidarModel& model) {
@@ -42,8 +111,7 @@ void take_common(Keywords& keywords, LidarModel& model) {
   keywords.take("range_noise_m", model.range_noise_m);
   keywords.take("angular_noise_rad", model.angular_noise_rad);
   keywords.take("range_resolution_m", model.range_resolution_m);
-  keywords.take("divergence_horizontal_rad", model.divergence_rad[0]);
-  keywords.take("divergence_vertical_rad", model.divergence_rad[1]);
+  take_divergence(keywords, model);
   keywords.take("most_returns", model.most_returns);
 }
 
@@ -56,10 +124,11 @@ void check_common(const LidarModel& model) {
           "rotation_hz must be greater than 0");
   require(model.min_range_m >= 0 && model.max_range_m > model.min_range_m,
           "ranges must hold 0 <= min_range_m < max_range_m");
-  require(model.range_noise_m >= 0 && model.angular_noise_rad >= 0 &&
-              model.range_resolution_m >= 0 && model.divergence_rad[0] >= 0 &&
-              model.divergence_rad[1] >= 0,
-          "noise, resolution and divergence must not be negative");
+  require(model.range_noise_m >= 0 && model.angular_noise_rad >= 0 && model.range_resolution_m >= 0,
+          "noise and resolution must not be negative");
+  for (const double angle_rad : model.divergence_rad)
+    require(angle_rad >= 0 && angle_rad <= std::numbers::pi / 2,
+            "a divergence must be 0 to 90 degrees at 1/e2");
 }
 
 LidarModel default_beams() {
@@ -246,7 +315,13 @@ void add_attributes(SensorClass& type) {
           [](const LidarModel& m) {
             return py::make_tuple(m.divergence_rad[0], m.divergence_rad[1]);
           },
-          "Full angles of a beam, horizontal and vertical.");
+          "Full angles of a beam between 1/e2 of its intensity, horizontal and vertical.")
+      .def_property_readonly(
+          "divergence_kind",
+          [](const LidarModel& m) {
+            return std::string(word_of(m.divergence_kind, kDivergenceKinds));
+          },
+          "What the source of the divergence stated: 'fwhm', '1/e2', '1/e2-half' or 'unknown'.");
 }
 
 void add_makers(SensorClass& type) {
@@ -307,6 +382,7 @@ void bind_sensors(py::module_& module) {
   });
   add_attributes(type);
   add_makers(type);
+  add_pickling<LidarModel>(type, "Sensor");
   module.def("sensors", &lidar_model_names,
              documented("sensors", "", "Names of the sensors that come with adasplats.").c_str());
 }

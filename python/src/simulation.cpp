@@ -34,11 +34,6 @@ constexpr const char* kIterDoc =
 /// Scans at once where launches and copies overlap.
 constexpr std::size_t kGpuBatch = 16;
 
-constexpr std::pair<std::string_view, ReturnMode> kReturnModes[] = {
-    {"strongest", ReturnMode::strongest}, {"first", ReturnMode::first}, {"last", ReturnMode::last}};
-constexpr std::pair<std::string_view, PointFrame> kFrames[] = {{"raw", PointFrame::raw},
-                                                               {"deskewed", PointFrame::deskewed}};
-
 struct SimulateArguments {
   ScanSettings settings;
   DriveArguments drive;
@@ -49,7 +44,7 @@ struct SimulateArguments {
 
   void take(Keywords& keywords) {
     drive.take(keywords);
-    keywords.take<PointFrame>("points", settings.frame, kFrames);
+    keywords.take<PointFrame>("points", settings.frame, kPointFrames);
     keywords.take("noise", settings.noise);
     keywords.take("range_noise", range_noise_m);
     keywords.take("depth", settings.beam.depth);
@@ -95,6 +90,9 @@ std::shared_ptr<ScanList> simulate(const std::shared_ptr<SceneObject>& object, p
   const py::gil_scoped_release released;
   const auto lock = object->lock();
   ScanSimulator simulator(*object->scene, std::move(drive.arguments.settings), object->executor);
+  list->image_size = image_size_of(simulator.firings());
+  if (const LabelScheme* labels = object->scene->labels())
+    list->labels = std::make_shared<LabelScheme>(*labels);
   progress.begin_step("simulate", drive.scans.size());
   simulator.run(drive.scans, drive.arguments.first_number, [&](std::size_t i, Scan scan) {
     list->scans.push_back(std::make_shared<Scan>(std::move(scan)));

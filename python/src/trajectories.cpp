@@ -5,8 +5,10 @@
 #include <pybind11/stl.h>
 
 #include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/output_check.h"
 #include "bindings.h"
 #include "clouds.h"
+#include "pickles.h"
 
 namespace adasplats::python {
 namespace {
@@ -15,6 +17,11 @@ namespace {
 struct TrajectoryObject {
   Trajectory poses;
 };
+
+template <class Archive>
+void fields(Archive& archive, TrajectoryObject& trajectory) {
+  archive("poses", trajectory.poses);
+}
 
 constexpr double kPeriod_s = 0.1;  // as read_trajectory has it for poses without times
 
@@ -139,10 +146,15 @@ void bind_trajectories(py::module_& module) {
       .def(
           "save",
           [](const TrajectoryObject& trajectory, py::handle path) {
-            write_trajectory_csv(path_of(path, "path"), trajectory.poses);
+            const std::filesystem::path file = path_of(path, "path");
+            require_ending(file, ".csv");
+            write_trajectory_csv(file, trajectory.poses);
           },
           py::arg("path"),
-          documented("save", "self, path", "Write a CSV, 9 digits behind the point.").c_str())
+          documented("save", "self, path",
+                     "Write a .csv, 9 digits behind the point. Raises OSError, "
+                     "ValueError\n(another ending).")
+              .c_str())
       .def("__len__", [](const TrajectoryObject& t) { return t.poses.size(); })
       .def("__repr__",
            [](const TrajectoryObject& t) {
@@ -153,6 +165,7 @@ void bind_trajectories(py::module_& module) {
                              "(N, 4, 4) float64, world_from_sensor: a new array.")
       .def_property_readonly("times", &times_of, "(N,) float64, s: a new array.");
   add_ways(type);
+  add_pickling<TrajectoryObject>(type, "Trajectory");
 }
 
 }  // namespace adasplats::python

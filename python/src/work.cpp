@@ -72,8 +72,9 @@ void WorkOptions::take(Keywords& keywords) {
 }
 
 Work::Work(const WorkOptions& options)
-    : executor_(checked_threads(options.threads), SignalCheck()),
-      progress_(options.progress),
+    : told_(options.progress),
+      progress_(told_),
+      executor_(checked_threads(options.threads), SignalCheck(), &progress_),
       seed_(options.seed),
       device_(options.has_device ? choose_device(options.device) : DeviceChoice{}) {}
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
-#include "adasplats/core/progress.h"
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/pipeline/session.h"
 #include "keywords.h"
 
@@ -77,7 +77,7 @@ class Work {
 
   Session session() { return {executor_, progress_, seed_, device_}; }
   const Executor& executor() const { return executor_; }
-  PythonProgress& progress() { return progress_; }
+  ProgressSink& progress() { return progress_; }
   const DeviceChoice& device() const { return device_; }
 
   /// f(session) while other Python threads go on. Then the warnings are issued.
@@ -88,13 +88,14 @@ class Work {
       Session session_now = session();
       return f(session_now);
     }();
-    progress_.issue_warnings();
+    told_.issue_warnings();
     return result;
   }
 
  private:
+  PythonProgress told_;
+  ProgressMeter progress_;
   Executor executor_;
-  PythonProgress progress_;
   std::uint64_t seed_;
   DeviceChoice device_;
 };

@@ -1,13 +1,28 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs pytest on the given files; exit code 77 (skipped) where pytest or NumPy is missing."""
+"""Runs pytest on the given files; exit code 77 (skipped) where pytest or NumPy is missing.
+
+Where ADASPLATS_TEST_RESULTS names a folder, python_NAME.xml there tells which cases were skipped.
+"""
+import os
 import sys
+from pathlib import Path
 
-try:
-    import numpy  # noqa: F401
-    import pytest
-except ImportError as missing:
-    print(f"skipped: {missing} (apt-get install python3-pytest python3-numpy)")
-    sys.exit(77)
 
-sys.exit(pytest.main(["-q", "-p", "no:cacheprovider", *sys.argv[1:]]))
+
+def main():
+    try:
+        import numpy  # noqa: F401
+        import pytest
+    except ImportError as missing:
+        print(f"skipped: {missing} (apt-get install python3-pytest python3-numpy)")
+        return 77
+    options = ["-q", "-p", "no:cacheprovider"]
+    if os.environ.get("ADASPLATS_TEST_RESULTS"):
+        name = "_".join(Path(file).stem for file in sys.argv[1:]).replace("test_", "python_")
+        options.append(f"--junitxml={os.environ['ADASPLATS_TEST_RESULTS']}/{name}.xml")
+    return pytest.main([*options, *sys.argv[1:]])
+
+
+if __name__ == "__main__":  # processes that a test spawns import this file
+    sys.exit(main())

@@ -181,6 +181,9 @@ def test_not_finite_names_the_first_row(value):
         adasplats.PointCloud(points)
     with pytest.raises(ValueError, match="sensor_positions: row 1"):
         adasplats.PointCloud(POINTS, sensor_positions=points)
+    if np.isnan(value):  # not known
+        assert np.isnan(adasplats.PointCloud(POINTS, intensities=[1, 2, value]).intensities[2])
+        return
     with pytest.raises(ValueError, match=r"intensities\[2\] is not finite"):
         adasplats.PointCloud(POINTS, intensities=[1, 2, value])
 
@@ -245,8 +248,27 @@ def test_arrays_outlive_what_they_are_of(scene, poses):
 def test_arrays_pickle_and_dlpack(scene, poses):
     scan = scene.simulate("hdl-32-paper", poses)[0]
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(scan.positions)), scan.positions)
-    # NumPy refuses to export arrays that are read-only; a copy goes through.
-    np.testing.assert_array_equal(np.from_dlpack(scan.ranges.copy()), scan.ranges)
+    for array in (scan.ranges, scan.positions, scan.positions[::2, 1:], scan.ranges[:0]):
+        exported = np.from_dlpack(array)
+        np.testing.assert_array_equal(exported, array)
+        assert exported.shape == array.shape and exported.dtype == array.dtype
+    # Oracle: who does not know of read-only arrays gets memory of their own, or an error.
+    numpy_tells = tuple(map(int, np.__version__.split(".")[:2])) >= (2, 1)
+    assert np.shares_memory(np.from_dlpack(scan.ranges), scan.ranges) == numpy_tells
+    with pytest.raises(BufferError, match=r"hand over array\.copy\(\)"):
+        scan.ranges.__dlpack__(copy=False)
+    assert np.shares_memory(np.from_dlpack(scan.ranges.copy()), scan.ranges) is False
+
+
+def test_views_are_arrays_like_others(scene, poses):
+    ranges = scene.simulate("hdl-32-paper", poses)[0].ranges
+    assert isinstance(ranges, np.ndarray) and not ranges.flags.writeable
+    for plain in (ranges + 1, np.exp(ranges), np.array(ranges), ranges > 5):
+        assert type(plain) is np.ndarray
+    assert type(ranges.max()) is np.float32 and type(ranges[0]) is np.float32
+    assert type(pickle.loads(pickle.dumps(ranges))) is np.ndarray
+    with pytest.raises(ValueError, match="read-only"):
+        ranges[0] = 1
 
 
 def test_poses_are_checked(scene):

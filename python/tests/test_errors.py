@@ -59,8 +59,17 @@ def test_where_nothing_can_be_written(tmp_path, scene):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["file"]
 
 
+def test_names_say_what_is_written(tmp_path):
+    model = adasplats.Model([[0.0, 0, 0]], [[0, 0, 1.0]], [1.0])
+    cloud = adasplats.PointCloud(np.zeros((5, 3)))
+    for save in (model.save, cloud.save):
+        with pytest.raises(ValueError, match=r"a.txt: its name must end with .ply"):
+            save(tmp_path / "a.txt")
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("keywords, error, says", [
-    ({"neighbours": 3}, TypeError, "keyword argument 'neighbours'; did you mean 'neighbors'"),
+    ({"neighbours": 3}, TypeError, "keyword argument 'neighbours', did you mean 'neighbors'"),
     ({"completely_wrong": 3}, TypeError, "unexpected keyword argument 'completely_wrong'$"),
     ({"neighbors": 3.5}, TypeError, "neighbors must be a whole number, not float"),
     ({"neighbors": True}, TypeError, "neighbors must be a whole number, not bool"),
@@ -111,3 +120,29 @@ def test_a_gpu_that_is_not_there():
 def test_warnings_are_pythons(street):
     with pytest.warns(UserWarning, match="labels"):
         adasplats.model(street.cloud)
+
+
+@pytest.mark.parametrize("call, says", [
+    (lambda: adasplats.Sensor(name_of_file="x"),
+     r"Sensor\(\) got an unexpected keyword argument 'name_of_file', did you mean 'name_or_file'"),
+    (lambda: adasplats.Sensor(), r"Sensor\(\) misses the argument 'name_or_file'"),
+    (lambda: adasplats.Sensor("hdl-64-paper", 1),
+     r"Sensor\(\) takes at most 1 positional arguments, but 2 were given"),
+    (lambda: adasplats.Sensor("hdl-64-paper").firings(scan_idx=1),
+     r"firings\(\) got an unexpected keyword argument 'scan_idx', did you mean 'scan_index'"),
+    (lambda: adasplats.Sensor("hdl-64-paper").firings("one"), r"firings\(scan_index=0\).*\(str\)"),
+    (lambda: adasplats.Sensor.from_beams(elevation_rad=[0.0]), "did you mean 'elevations_rad'"),
+    (lambda: adasplats.Trajectory(np.eye(4)).resampled(rate=1),
+     r"resampled\(\) got an unexpected keyword argument 'rate', did you mean 'rate_hz'"),
+    (lambda: adasplats.PointCloud([[0.0, 0, 0]], class_ids=[1]), r"PointCloud\(\).*'classes'"),
+    (lambda: adasplats.PointCloud(), r"PointCloud\(\) misses the argument 'positions'"),
+    (lambda: adasplats.PointCloud([[0.0, 0, 0]], positions=1), "several values"),
+    (lambda: adasplats.label_scheme(name="semantickitti"), "did you mean 'name_or_path'"),
+    (lambda: adasplats.evaluate.c2c("a"), r"c2c\(\) misses the argument"),
+])
+def test_wrong_arguments_are_told_in_words(call, says):
+    """Oracle: no word of the text is of C++."""
+    with pytest.raises(TypeError, match=says) as told:
+        call()
+    for word in ("incompatible", "pybind11", "handle", "std::", "arg0"):
+        assert word not in str(told.value)

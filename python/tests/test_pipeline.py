@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 """Every function against the command line on the same data: the same bytes, the same keys."""
+import re
 import struct
 import warnings
 import zlib
@@ -12,7 +13,7 @@ from conftest import report_of, run_program
 import adasplats
 
 # What a report says of the run, not of the result.
-OF_THE_RUN = {"program", "version", "command", "parameters", "threads", "device", "warnings",
+OF_THE_RUN = {"program", "version", "command", "provenance", "parameters", "threads", "device", "warnings",
               "peak_memory_bytes", "seconds"}
 
 
@@ -143,6 +144,9 @@ SIMULATIONS = [
     {"rolling_shutter": True, "points": "deskewed"},
     {"depth": 5, "sub_rays": 7, "returns": 2, "return_mode": "last", "sensor": "velodyne-vlp-16"},
     {"rain": 20.0, "fog": 100.0, "snow": 1.0, "range_noise": 0.05, "threads": 1},
+    {"depth": 5, "depth_gap": 0.02, "sub_rays": 7, "separation": 0.2, "returns": 2,
+     "sensor": "velodyne-vlp-16"},
+    {"rain": 20.0, "white_intensity": 100.0},
     {"sensor": "livox"},
 ]
 
@@ -190,6 +194,23 @@ def test_scans_as_a_sequence(street, scene, poses, tmp_path):
                 street.sequence, "-o", tmp_path / "cli")
     scans.save(tmp_path / "python")
     assert files_of(tmp_path / "python") == files_of(tmp_path / "cli")
+
+
+def test_every_format_of_the_program_can_be_saved(street, scene, poses, tmp_path):
+    """Oracle: the command line's files, and the words of its help text."""
+    text = run_program("simulate", "--help").stdout
+    formats = re.search(r"--format (\S+) ", text).group(1).split("|")
+    assert {"semantickitti", "range-image", "mcap"} < set(formats)
+    poses[:2].save(tmp_path / "poses.csv")
+    scans = scene.simulate(street.sensor, adasplats.Trajectory.read(tmp_path / "poses.csv"))
+    for format in formats:
+        run_program("simulate", street.model, "--sensor", street.sensor, "--trajectory",
+                    tmp_path / "poses.csv", "-o", tmp_path / ("cli-" + format), "--format", format)
+        scans.save(tmp_path / format, format=format)
+        assert files_of(tmp_path / format) == files_of(tmp_path / ("cli-" + format)), format
+    with pytest.raises(ValueError, match="did you mean 'range-image'"):
+        scans.save(tmp_path / "no", format="range_image")
+    assert not (tmp_path / "no").exists()
 
 
 def test_scene_of_a_model_in_memory(street, scene, poses):
@@ -324,6 +345,28 @@ def test_sensors_from_arrays(scene, poses, street):
         sensor.replaced(rotation_hz=0)
     with pytest.raises(TypeError, match="did you mean 'max_range_m'"):
         sensor.replaced(max_range=3)
+
+
+def test_a_divergence_says_what_it_measures():
+    """Oracle: a Gaussian beam has half its intensity at sqrt(ln 2 / 2) of its 1/e^2 radius."""
+    ouster = adasplats.Sensor("ouster-os1-128")
+    full = 2 / np.sqrt(2 * np.log(2))
+    assert ouster.divergence_kind == "fwhm"
+    np.testing.assert_allclose(np.degrees(ouster.divergence_rad), 2 * [0.18 * full])
+    for kind, factor in (("fwhm", full), ("1/e2", 1), ("1/e2-half", 2), ("unknown", 1)):
+        sensor = adasplats.Sensor.from_beams([0.0], divergence_horizontal_rad=3e-3,
+                                             divergence_vertical_rad=1e-3, divergence_kind=kind)
+        np.testing.assert_allclose(sensor.divergence_rad, [3e-3 * factor, 1e-3 * factor])
+        assert sensor.divergence_kind == kind
+    assert ouster.replaced(name="mine").divergence_rad == ouster.divergence_rad
+    with pytest.raises(TypeError, match="needs divergence_kind.*'fwhm', '1/e2'"):
+        ouster.replaced(divergence_vertical_rad=1e-3)
+    with pytest.raises(TypeError, match="divergence_kind needs"):
+        ouster.replaced(divergence_kind="fwhm")
+    with pytest.raises(ValueError, match="did you mean 'fwhm'"):
+        ouster.replaced(divergence_vertical_rad=1e-3, divergence_kind="FWHM")
+    with pytest.raises(ValueError, match="0 to 90 degrees"):
+        ouster.replaced(divergence_vertical_rad=1.0, divergence_kind="1/e2-half")
 
 
 def test_label_schemes():

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/pipeline/provenance.h"
+
+#include <nlohmann/json.hpp>
+
+#include "adasplats/core/executor.h"
+#include "bindings.h"
+#include "json.h"
+#include "keywords.h"
+
+namespace adasplats::python {
+namespace {
+
+constexpr const char* kDoc =
+    "Where figures measured by this process come from, as every --report tells it: a dict\n"
+    "version, commit and dirty (of the sources the module was built from; None: unknown), date\n"
+    "(UTC), command, machine (cpu, cores, memory_bytes, system, compiler) and device.\n"
+    "threads is what the work used; 0: all.";
+
+}  // namespace
+
+void bind_provenance(py::module_& module) {
+  module.def(
+      "provenance",
+      [](int threads) {
+        return python_of(to_json(provenance_of(Executor(threads).threads(), DeviceChoice())));
+      },
+      py::arg("threads") = 0, documented("provenance", "threads=0", kDoc).c_str());
+}
+
+}  // namespace adasplats::python
