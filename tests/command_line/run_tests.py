@@ -2,13 +2,30 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs test modules of this folder (all without arguments): run_tests.py [MODULE...]
 
-ADASPLATS_PROGRAM names the program under test. The last line says "N passed, N failed".
+ADASPLATS_PROGRAM names the program under test. The last line says "N passed, N failed". Where
+ADASPLATS_TEST_RESULTS names a folder, command_line_MODULE.xml there tells which cases were skipped.
 """
+import os
 import sys
 import unittest
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent
+
+
+def write_skipped(result, modules):
+    """The skipped cases, as tools/check_skips.py reads them."""
+    folder = os.environ.get("ADASPLATS_TEST_RESULTS")
+    if not folder:
+        return
+    suite = ElementTree.Element("testsuite", tests=str(result.testsRun))
+    for test, reason in result.skipped:
+        classname, _, name = test.id().rpartition(".")
+        case = ElementTree.SubElement(suite, "testcase", classname=classname, name=name)
+        ElementTree.SubElement(case, "skipped", message=reason)
+    name = "_".join(modules).replace("test_", "command_line_")
+    ElementTree.ElementTree(suite).write(Path(folder) / f"{name}.xml", encoding="utf-8")
 
 
 def main():
@@ -16,6 +33,7 @@ def main():
     modules = sys.argv[1:] or sorted(path.stem for path in FOLDER.glob("test_*.py"))
     suite = unittest.defaultTestLoader.loadTestsFromNames(modules)
     result = unittest.TextTestRunner(verbosity=2, stream=sys.stdout).run(suite)
+    write_skipped(result, modules)
     failed = len(result.failures) + len(result.errors)
     print(f"{result.testsRun - failed} passed, {failed} failed")
     return 1 if failed or result.testsRun == 0 else 0

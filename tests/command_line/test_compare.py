@@ -131,6 +131,20 @@ class Street(CompareTest):
         self.assertEqual((data["offset_m"], data["every"], data["preset"]), ([1, 1, -1], 40, ""))
         self.assertAlmostEqual(data["points"], 4000, delta=1000)
         self.assertGreater(results["machine"]["memory_bytes"], 0)
+        told = results["provenance"]
+        self.assertEqual(told["command"], results["command"])
+        for entry in results["competitors"]:
+            own = entry["provenance"]
+            self.assertEqual(set(entry["made_by"]), set(CHILD_STEPS))
+            for made_by in entry["made_by"].values():
+                self.assertEqual((made_by["version"], made_by["commit"], made_by["dirty"]),
+                                 (told["version"], told["commit"], told["dirty"]))
+            self.assertEqual((own["commit"], own["dirty"]), (told["commit"], told["dirty"]))
+            self.assertTrue(told["date"] <= own["first_date"] <= own["last_date"], own)
+        removed = data["removed"]
+        self.assertEqual((removed["rule"], removed["paper"]), ("movable", "movable"))
+        self.assertEqual(sum(removed["by_class"].values()), removed["points"])
+        self.assertIn("car", removed["by_class"])
         self.assertEqual(results["limits"]["seconds"], 3600)
         self.assertGreater(results["limits"]["memory_bytes"], 0)
         self.assertEqual(results["paper"]["table"], "PC3D-Paris")
@@ -189,11 +203,13 @@ class Street(CompareTest):
             self.assertFalse(path.name.startswith("."), path)
 
     def test_again(self):
-        before, results = states(self.output), (self.output / "compare.json").read_bytes()
+        before, results = states(self.output), results_of(self.output)
         self.assertEqual(len(before), 1 + 2 * len(CHILD_STEPS))
         self.compare(*self.BOTH)
         self.assertEqual(self.run_again(before), set())
-        self.assertEqual((self.output / "compare.json").read_bytes(), results)
+        again = results_of(self.output)
+        self.assertGreaterEqual(again["provenance"].pop("date"), results["provenance"].pop("date"))
+        self.assertEqual(again, results)
 
         (self.output / "pictures" / "imls-c2c.png").unlink()
         self.compare(*self.BOTH)
@@ -212,6 +228,15 @@ class Street(CompareTest):
         os.utime(scan)
         self.compare(*self.BOTH)
         self.assertEqual(self.run_again(before), {"basic/resimulate", "imls/resimulate"})
+
+        # What another program did is not taken over.
+        before = states(self.output)
+        state_file = self.output / "work" / "basic" / "picture.json"
+        state = json.loads(state_file.read_text())
+        state["made_by"]["commit"] = "0" * 40
+        state_file.write_text(json.dumps(state))
+        self.compare(*self.BOTH)
+        self.assertEqual(self.run_again(before), {"basic/picture"})
 
         # A broken memory of a step counts as none.
         before = states(self.output)
@@ -329,7 +354,8 @@ class Street(CompareTest):
         shutil.copytree(self.folder / "street", self.folder / "avenue")
         self.refuse(73, "avenue", "-o", "out", *COARSE, says=["\"street\"", "'avenue'"])
         self.refuse(73, "street", "-o", "no such/out", says=["no such"])
-        self.refuse(73, "street", "-o", "street/mesh.ply", says=["mesh.ply"])
+        self.refuse(64, "street", "-o", "street/mesh.ply", says=["mesh.ply", "lies in the input"])
+        self.refuse(73, "street", "-o", "own/thesis.txt", says=["thesis.txt"])
         self.assertEqual(self.run_again(before), set())
 
     def test_arguments(self):
@@ -411,6 +437,37 @@ class Presets(CompareTest):
         self.compare(*paper)
         self.assertEqual(self.run_again(before), set())
 
+    def test_what_the_paper_removes(self):
+        """Section "Adaptive Splatting": moving and parked cars, pedestrians; whatever the scheme."""
+        still = tiny_place()
+        vehicles = [(10 + 0.1 * i, -3, 0.05 * i, 10) for i in range(30)]
+        points = [(x, y, z, {40: 7, 50: 1, 80: 5}[label]) for x, y, z, label in still] + vehicles
+        (self.folder / "paris").mkdir()
+        write_cloud(self.folder / "paris" / "Soufflot_1.ply", points[::2])
+        write_cloud(self.folder / "paris" / "Soufflot_2.ply", points[1::2])
+        paper = ["paris", "--preset", "paper-pc3d", "-o", "out", "--picture-width", "64", "--methods",
+                 "basic,semantic,imls"]
+        self.compare(*paper)
+        self.assertEqual(results_of(self.output)["data"]["removed"],
+                         {"rule": "movable", "points": 30, "by_class": {"vehicles": 30},
+                          "paper": "movable"})
+        for name, row in rows_of(self.output).items():
+            self.assertEqual(row["state"], "done", (name, row))
+            self.assertEqual(row["generate"]["points_in"], len(points), name)
+            self.assertIn("--remove movable", row["generate"]["command"])
+            self.assertNotIn("vehicles", row["c2c"]["by_class"])
+            # All are compared with the same points, of which the same are left out.
+            self.assertEqual(row["c2c"]["original_points"], len(still), name)
+        self.assertIn("movable: 30 of", (self.output / "report.md").read_text(encoding="utf-8"))
+        # The scheme knows nothing that moves, so that "moving" would remove nothing.
+        self.refuse(64, *paper, "--remove", "moving", says=["--remove moving", "--remove movable"])
+        self.compare(*paper, "--remove", "none")
+        self.assertEqual(results_of(self.output)["data"]["removed"]["points"], 0)
+        self.assertIn("nothing; the paper removes what is movable",
+                      (self.output / "report.md").read_text(encoding="utf-8"))
+        for row in rows_of(self.output).values():
+            self.assertEqual(row["c2c"]["original_points"], len(points))
+
     def places(self):
         lines = (self.output / "work" / "trajectory.csv").read_text().splitlines()
         return [[float(v) for v in line.split(",")[1:4]] for line in lines if line[0].isdigit()]
@@ -456,6 +513,12 @@ class Presets(CompareTest):
         self.compare("city.ply", "--preset", "paper-mcity", "--mesh", "artist=city.obj", *self.RUN)
         results = results_of(self.output)
         self.assertEqual((results["data"]["inputs"], results["data"]["labels"]), (["city.ply"], ""))
+        self.assertEqual(results["data"]["removed"],
+                         {"rule": "none", "points": 0, "by_class": {}, "paper": "none"})
+        for option in [["--remove", "movable"], ["--labels", "semantickitti"],
+                       ["--poisson-depth", "9"], ["--held-out-scans", "0:1"]]:
+            self.refuse(64, "city.ply", "--preset", "paper-mcity", *self.RUN, *option,
+                        says=[option[0]])
         self.assertNotIn(str(self.folder), json.dumps(results, ensure_ascii=False))
         rows = rows_of(self.output)
         self.assertEqual([(row["state"], row["kind"]) for row in rows.values()],

@@ -28,7 +28,7 @@ class Config(ProgramTest):
         self.assertNotEqual(flags.read_bytes(), self.model("default.ply").read_bytes())
 
     def test_command_line_wins(self):
-        config = self.config("neighbors = 7\ndenoise = false\n")
+        config = self.config('method = "basic"\nneighbors = 7\ndenoise = false\n')
         report = self.report("model", self.cloud, "-o", self.folder / "m.ply", "--remove", "none",
                              "--config", config, "--neighbors", "31")
         self.assertEqual(report["parameters"]["neighbors"], 31)

@@ -22,9 +22,9 @@ class DeviceTest(ProgramTest):
     def jobs(self, model, scans):
         """A command line with an output (or none) of everything that casts or models."""
         out = self.folder / "output"
-        return {"model": ["model", self.cloud, "-o", out, "--labels", "semantickitti"],
+        return {"model": ["model", self.cloud, "-o", f"{out}.ply", "--labels", "semantickitti"],
                 "simulate": self.simulate_words(model, "output"),
-                "render": ["render", model, "-o", out, "--width", "64", "--height", "48"],
+                "render": ["render", model, "-o", f"{out}.png", "--width", "64", "--height", "48"],
                 "resimulate": ["evaluate", "resimulate", model, scans],
                 "truth": ["evaluate", "truth", model, model, "--trajectory", self.poses],
                 "presence": ["evaluate", "presence", model, self.cloud],

@@ -89,8 +89,10 @@ class Presence(ProgramTest):
 
     def test_errors(self):
         model = self.model()
-        # Splats as a cloud: they do not say who saw them.
-        self.run_bad(65, "evaluate", "presence", model, model, says=["no sensor positions"])
+        bare = self.folder / "bare.xyz"
+        bare.write_text("1 2 3\n4 5 6\n")
+        self.run_bad(65, "evaluate", "presence", model, bare, says=["no sensor positions"])
+        self.run_bad(65, "evaluate", "presence", model, model, says=["is a splat model"])
         self.run_bad(64, "evaluate", "presence", model, self.cloud, "--within", "0",
                      says=["greater than 0"])
 

@@ -80,20 +80,20 @@ class Export(ProgramTest):
 
     def test_what_cannot_be(self):
         model = self.model()
-        out = self.folder / "out"
         bad = lambda source, name, *words, says: self.run_bad(64, "export", source, "-o",
                                                               self.folder / name, *words, says=says)
         bad(model, "out.ply", says=["splat model", "gaussian-3d, gaussian-2d or glb", "--format"])
         bad(model, "out.mcap", says=["splat model", "gaussian-3d, gaussian-2d or glb"])
-        bad(model, "out", says=["without an ending", "--format"])
+        bad(model, "out", says=["out", ".ply, .glb or .mcap"])
         bad(model, "out.ply", "--format", "ply", says=["not as ply"])
         bad(self.cloud, "out.mcap", says=["point cloud", "glb or ply"])
         bad(self.cloud, "out.ply", "--format", "gaussian-3d", says=["not as gaussian-3d"])
         bad(self.cloud, "out.ply", "--format", "gausian-3d", says=["did you mean 'gaussian-3d'"])
-        bad(model, "model.ply", "--format", "gaussian-3d", says=["is the input"])
+        bad(model, "model.ply", "--format", "gaussian-3d", says=["is an input, too"])
         (self.folder / "mesh.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         bad(self.folder / "mesh.obj", "out.glb", says=["triangle mesh"])
-        self.run_bad(66, "export", self.folder / "lost.ply", "-o", out, says=["lost.ply"])
+        self.run_bad(66, "export", self.folder / "lost.ply", "-o", self.folder / "out.glb",
+                     says=["lost.ply"])
         self.run_bad(73, "export", self.cloud, "-o", self.folder / "no such" / "a.glb")
         self.assertFalse(any(name.startswith("out") for name in self.names()))
 

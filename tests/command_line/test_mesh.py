@@ -77,7 +77,7 @@ class MeshesAsScenes(ProgramTest):
         for x in values[::4]:
             self.assertAlmostEqual(x, 4, delta=1e-4)  # the first pose is at x = 4
         content = json.loads((scans / "adasplats.json").read_text())
-        self.assertEqual(content["labels"], "semantickitti")
+        self.assertEqual(content["labels"]["name"], "semantickitti")
 
     def test_obj_is_the_same_scene(self):
         obj = self.folder / "wall.obj"
@@ -169,10 +169,11 @@ class Meshing(ProgramTest):
         self.run_bad(64, "mesh", self.cloud, *out, "--method", "impls", says=["imls"])
         self.run_bad(73, "mesh", self.cloud, "-o", self.folder)
         self.run_bad(66, "mesh", self.folder / "none.ply", *out, says=["none.ply"])
-        if run("mesh", self.cloud, *out).returncode != 69:
-            self.run_bad(64, "mesh", self.cloud, *out, "--voxel", "0", says=["voxel"])
-            self.run_bad(64, "mesh", self.cloud, *out, "--truncation", "9", says=["truncation"])
-            self.run_bad(64, "mesh", self.cloud, *out, "--neighbors", "2", says=["neighbors"])
+        mesh = ["mesh", self.cloud, *out, "--labels", "semantickitti"]
+        if run(*mesh).returncode != 69:
+            self.run_bad(64, *mesh, "--voxel", "0", says=["voxel"])
+            self.run_bad(64, *mesh, "--truncation", "9", says=["truncation"])
+            self.run_bad(64, *mesh, "--neighbors", "2", says=["neighbors"])
 
 
 class Poisson(ProgramTest):

@@ -22,17 +22,17 @@ class Output(ProgramTest):
     def test_no_such_folder(self):
         lost = self.folder / "no such" / "out"
         simulate = ["simulate", self.cloud, "--trajectory", self.poses, "-o", lost]
-        self.run_bad(73, "model", self.cloud, "-o", lost, says=["no such"])
+        self.run_bad(73, "model", self.cloud, "-o", f"{lost}.ply", says=["no such"])
         self.run_bad(73, *simulate, says=["no such"])
-        self.run_bad(73, "render", self.cloud, "-o", lost, says=["no such"])
+        self.run_bad(73, "render", self.cloud, "-o", f"{lost}.png", says=["no such"])
         self.run_bad(73, "synth", "street", "-o", lost, says=["no such"])
-        self.run_bad(73, "info", self.cloud, "--report", lost, says=["no such"])
+        self.run_bad(73, "info", self.cloud, "--report", f"{lost}.json", says=["no such"])
         self.assertEqual(self.names(), self.BEFORE)
 
     def test_output_that_is_a_folder_or_a_device(self):
         self.run_bad(73, "model", self.cloud, "-o", self.folder)
         self.run_bad(73, "model", self.cloud, "-o", "/dev/full")
-        self.run_bad(73, "simulate", self.cloud, "--trajectory", self.poses, "-o", self.poses)
+        self.run_bad(73, "simulate", self.cloud, "--trajectory", self.poses, "-o", self.sensor)
 
     def test_file_too_large(self):
         old = self.folder / "model.ply"

@@ -25,7 +25,7 @@ class Pipeline(ProgramTest):
     def test_reports_have_the_documented_keys(self):
         model = self.folder / "m.ply"
         report = self.report("model", self.cloud, "-o", model, "--labels", "semantickitti")
-        for key in ["program", "version", "command", "parameters", "threads", "points_in",
+        for key in ["program", "version", "command", "provenance", "parameters", "threads", "points_in",
                     "points_used", "primitives", "seconds", "peak_memory_bytes", "warnings"]:
             self.assertIn(key, report)
         self.assertEqual(report["points_in"], len(tiny_place()))
@@ -136,7 +136,12 @@ class Pipeline(ProgramTest):
             for number, name, group in [(40, "street", "ground"), (50, "house", "surface"),
                                         (80, "mast", "linear")]))
         model = self.folder / "m.ply"
-        self.run_good("model", self.cloud, "-o", model, "--method", "semantic", "--labels", scheme)
+        made = ["model", self.cloud, "-o", model, "--method", "semantic", "--labels", scheme]
+        said = run(*made)  # nothing of this scheme moves, which the default would remove
+        self.assertEqual((said.returncode, said.stderr),
+                         (0, "adasplats: warning: the label scheme 'mine' has no class that is "
+                             "movable; nothing is removed\n"))
+        self.run_good(*made, "--remove", "none")
         self.assertIn("80 mast", self.run_good("info", model).stdout)
 
     def test_street(self):
@@ -146,7 +151,8 @@ class Pipeline(ProgramTest):
         self.assertAlmostEqual(report["mapping_points"], 5000, delta=1000)
         self.assertGreater(report["driving_scans"], 0)
         kinds = [facts["kind"] for facts in self.report(
-            "info", street / "mapping.ply", street / "mesh.ply", street)["files"]]
+            "info", street / "mapping.ply", street / "mesh.ply",
+            street / "sequences")["files"]]
         self.assertEqual(kinds, ["point cloud", "mesh", "sequence"])
         content = json.loads((street / "adasplats.json").read_text())
         self.assertEqual(content["seed"], 3)

@@ -15,6 +15,7 @@ columns = 360
 rotation_hz = 10
 max_range_m = 100
 divergence_deg = [2.0, 2.0]
+divergence_kind = "1/e2"
 """
 
 

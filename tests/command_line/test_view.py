@@ -73,7 +73,7 @@ class ViewTest(ProgramTest):
         self.model("place/other.ply")
         self.run_bad(64, "view", self.folder / "place", says=["model.ply", "other.ply"])
         (self.folder / "empty").mkdir()
-        self.run_bad(64, "view", self.folder / "empty", says=["neither"])
+        self.run_bad(66, "view", self.folder / "empty", says=["neither"])
 
     def test_what_is_refused(self):
         model = self.model()

@@ -1,0 +1,54 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""Origins that nobody measured are no evidence; those that cannot be are refused."""
+import json
+import math
+import unittest
+
+from support import ProgramTest, run, tiny_place
+
+
+class Origins(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.bare = self.folder / "bare.xyz"
+        self.bare.write_text("".join(f"{x} {y} {z}\n" for x, y, z, _ in tiny_place()))
+
+    def model(self, *arguments):
+        """The --report of a model; warnings are allowed."""
+        report = self.folder / "report.json"
+        result = run("model", *arguments, "-o", self.folder / "m.ply", "--report", report)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(report.read_text(encoding="utf-8"))
+
+    def test_the_nearest_pose_is_a_guess_and_checks_nothing(self):
+        report = self.model(self.bare, "--trajectory", self.poses)
+        self.assertFalse(report["ray_checked"])
+        self.assertTrue(report["oriented"])
+        self.assertEqual(report["origins"], {"none": 0, "guessed": report["points_in"],
+                                             "stated": 0, "measured": 0})
+        self.assertEqual(sum("guessed" in text for text in report["warnings"]), 1)
+
+    def test_one_input_does_not_take_origins_from_another(self):
+        alone = self.model(self.cloud)
+        self.assertTrue(alone["ray_checked"])
+        both = self.model(self.cloud, self.bare)
+        self.assertTrue(both["ray_checked"])
+        self.assertEqual(both["origins"]["measured"], alone["points_in"])
+        self.assertEqual(both["origins"]["none"], len(tiny_place()))
+
+    def test_impossible_viewpoints_are_refused(self):
+        self.run_bad(64, "model", self.bare, "--viewpoint", "5e6,0,0", "-o", self.folder / "m.ply",
+                     says=["viewpoint", "5000 km"])
+        ring = self.folder / "ring.xyz"
+        ring.write_text("".join(
+            f"{10 * math.cos(a / 57.3)} {10 * math.sin(a / 57.3)} {h / 10}\n"
+            for a in range(360) for h in range(-20, 21)))
+        self.run_bad(64, "model", ring, "--viewpoint", "40,0,0", "-o", self.folder / "m.ply",
+                     says=["viewpoint 40.00,0.00,0.00", "behind others"])
+        self.assertFalse((self.folder / "m.ply").exists())
+        self.assertEqual(self.model(ring, "--viewpoint", "0,0,0")["origins"]["stated"], 360 * 41)
+
+
+if __name__ == "__main__":
+    unittest.main()
