@@ -14,6 +14,8 @@ import pathlib
 import subprocess
 import sys
 
+from provenance import provenance_of
+
 PARTS = {
     "all parts": [],
     "beams from poses": ["--beams-from-poses"],
@@ -66,7 +68,8 @@ def main():
         folder = out / name.replace(" ", "-")
         rows[name] = row_of(program, training, held_out, folder, [*common, *flags])
         print(line_of(name, rows[name]), flush=True)
-    (out / "ablation.json").write_text(json.dumps(rows, indent=2) + "\n")
+    result = {"provenance": provenance_of(program), "rows": rows}
+    (out / "ablation.json").write_text(json.dumps(result, indent=2) + "\n")
 
 
 if __name__ == "__main__":

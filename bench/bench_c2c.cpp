@@ -4,6 +4,7 @@
 // nanoflann, in one run on the same points. nanoflann gets them in Hilbert order and is not charged
 // for the sorting, which favours it several times over; ours gets them as they come.
 //   bench_c2c [--points N] [--input FILE|SEQUENCE] [--jitter M] [--threads N] [--repeats N]
+//             [--json FILE]
 // Without an input two noisy samples of a made-up street; with one, the input and a jittered copy.
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <nanoflann.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -19,7 +21,9 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/random.h"
 #include "adasplats/evaluate/cloud_metrics.h"
+#include "adasplats/io/atomic_file.h"
 #include "adasplats/neighbors/hilbert.h"
+#include "adasplats/pipeline/provenance.h"
 
 namespace {
 
@@ -32,6 +36,7 @@ struct Arguments {
   double jitter_m = 0.02;
   int threads = 0;
   int repeats = 3;
+  std::string json;
 };
 
 struct FlannCloud {
@@ -125,8 +130,9 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-void compare(const PointCloud& simulated, const PointCloud& original, int repeats,
+void compare(const PointCloud& simulated, const PointCloud& original, const Arguments& arguments,
              const Executor& executor) {
+  const int repeats = arguments.repeats;
   std::printf("%zu against %zu points, %d threads\n", simulated.size(), original.size(),
               executor.threads());
   const std::vector<Vec3f> from = in_hilbert_order(simulated.positions, executor);
@@ -147,6 +153,14 @@ void compare(const PointCloud& simulated, const PointCloud& original, int repeat
   }
   std::printf("median of %d: ours %.2f s, nanoflann %.2f s, ratio %.2f\n", repeats, median(ours_s),
               median(flann_s), median(ratios));
+  if (arguments.json.empty()) return;
+  const nlohmann::ordered_json result = {{"provenance", to_json(provenance_of(executor.threads()))},
+                                         {"simulated_points", simulated.size()},
+                                         {"original_points", original.size()},
+                                         {"ours_s", median(ours_s)},
+                                         {"nanoflann_s", median(flann_s)},
+                                         {"ratio", median(ratios)}};
+  write_file(arguments.json, result.dump(2) + "\n");
 }
 
 std::optional<Arguments> parse(int argc, char** argv) {
@@ -165,6 +179,8 @@ std::optional<Arguments> parse(int argc, char** argv) {
       arguments.threads = std::stoi(value);
     } else if (name == "--repeats") {
       arguments.repeats = std::max(1, std::stoi(value));
+    } else if (name == "--json") {
+      arguments.json = value;
     } else {
       return std::nullopt;
     }
@@ -175,14 +191,14 @@ std::optional<Arguments> parse(int argc, char** argv) {
 void run(const Arguments& arguments) {
   const Executor executor(arguments.threads);
   if (arguments.input.empty()) {
-    compare(street(arguments.points, 0, executor), street(arguments.points, 1, executor),
-            arguments.repeats, executor);
+    compare(street(arguments.points, 0, executor), street(arguments.points, 1, executor), arguments,
+            executor);
     return;
   }
   ProgressSink quiet;
   const std::vector<std::filesystem::path> inputs = {arguments.input};
   const PointCloud cloud = load_cloud(inputs, {}, executor, quiet).first;
-  compare(jittered(cloud, arguments.jitter_m, executor), cloud, arguments.repeats, executor);
+  compare(jittered(cloud, arguments.jitter_m, executor), cloud, arguments, executor);
 }
 
 }  // namespace
@@ -201,6 +217,6 @@ int main(int argc, char** argv) {
   }
   std::fprintf(stderr,
                "usage: bench_c2c [--points N] [--input FILE|SEQUENCE] [--jitter M] [--threads N] "
-               "[--repeats N]\n");
+               "[--repeats N] [--json FILE]\n");
   return 64;
 }

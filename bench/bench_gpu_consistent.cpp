@@ -101,7 +101,7 @@ int run(int argc, char** argv) {
     steps_timer.begin("order");
     steps->load(std::move(copy), {});
     consistent_disks(*steps, !cloud.sensor_positions.empty(), {},
-                     [&](std::string_view name) { steps_timer.begin(name); });
+                     [&](std::string_view name, int) { steps_timer.begin(name); });
     steps_timer.begin("take");
     model.disks = steps->take_splats().disks;
     steps_timer.end();

@@ -13,13 +13,15 @@
 #include <cstring>
 #include <filesystem>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "adasplats/cloud/load_cloud.h"
 #include "adasplats/core/error.h"
-#include "adasplats/gpu/device.h"
 #include "adasplats/gpu/gpu_model.h"
+#include "adasplats/pipeline/device_choice.h"
+#include "adasplats/pipeline/provenance.h"
 #include "adasplats/splats/build_model.h"
 #include "adasplats/synth/street.h"
 
@@ -111,12 +113,18 @@ int run(int argc, char** argv) {
   std::sort(runs.begin(), runs.end(),
             [](const Run& a, const Run& b) { return a.seconds < b.seconds; });
   const Run& median = runs[runs.size() / 2];
-  std::printf(
-      "{\"device\": \"%s\", \"points\": %zu, \"method\": \"%s\", \"resample\": %s, "
-      "\"splats\": %zu, \"seconds\": %.4f, \"fastest_s\": %.4f, \"slowest_s\": %.4f}\n",
-      find_gpus().devices[0].name.c_str(), cloud.size(), argument(2, "semantic").c_str(),
-      options.resample ? "true" : "false", median.report.primitives, median.seconds,
-      runs.front().seconds, runs.back().seconds);
+  const DeviceChoice device = choose_device({.kind = DeviceKind::cuda});
+  const nlohmann::ordered_json result = {
+      {"provenance", to_json(provenance_of(executor.threads(), device))},
+      {"device", device.gpus[0].name},
+      {"points", cloud.size()},
+      {"method", argument(2, "semantic")},
+      {"resample", options.resample},
+      {"splats", median.report.primitives},
+      {"seconds", median.seconds},
+      {"fastest_s", runs.front().seconds},
+      {"slowest_s", runs.back().seconds}};
+  std::printf("%s\n", result.dump().c_str());
   if (argument(5, "") == "cpu") {
     const Run cpu = timed_build(cloud, options, executor, nullptr);
     print_run("cpu", cpu);

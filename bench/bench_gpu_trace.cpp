@@ -18,6 +18,7 @@
 #include "adasplats/cloud/trajectory.h"
 #include "adasplats/gpu/device.h"
 #include "adasplats/gpu/gpu_scene.h"
+#include "adasplats/pipeline/provenance.h"
 #include "adasplats/simulate/scan.h"
 #include "adasplats/splats/splat_model.h"
 #include "adasplats/trace/tracer.h"
@@ -135,6 +136,10 @@ int main(int argc, char** argv) try {
 
   nlohmann::ordered_json json;
   const GpuSearch search = find_gpus();
+  const DeviceOptions chosen = {
+      .kind = arguments.backend == GpuBackend::optix ? DeviceKind::optix : DeviceKind::cuda,
+      .gpus = arguments.gpus};
+  json["provenance"] = to_json(provenance_of(Executor().threads(), choose_device(chosen)));
   json["device"] = search.devices.front().name;
   json["cuda_of_driver"] = search.driver;
   json["backend"] = scene.name();

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How many scans a second `adasplats view` sends to one page that drives a LiDAR.
 
-usage: bench_live.py PROGRAM MODEL [--sensor NAME] [--seconds S] [--runs N]
+usage: bench_live.py PROGRAM MODEL [--sensor NAME] [--seconds S] [--runs N] [--json FILE]
 
 Starts the program, drives the sensor in a circle of 10 m around where it begins, takes every scan
 and answers "ready" as the page does, and prints the median over the runs as JSON. Standard library
@@ -22,6 +22,8 @@ import sys
 import time
 import urllib.parse
 import urllib.request
+
+from provenance import provenance_of
 
 
 class Live:
@@ -93,6 +95,7 @@ def main():
     arguments.add_argument("--sensor", default="hdl-64-paper")
     arguments.add_argument("--seconds", type=float, default=10)
     arguments.add_argument("--runs", type=int, default=3)
+    arguments.add_argument("--json", help="also write the figures here")
     given = arguments.parse_args()
     server = subprocess.Popen([given.program, "view", given.model, "--no-browser", "--sensor",
                                given.sensor], stdout=subprocess.PIPE, text=True)
@@ -105,10 +108,15 @@ def main():
         server.terminate()
         server.wait()
     rate, points, seconds = (statistics.median(values) for values in zip(*runs))
-    print(json.dumps({"splats": scene["layers"][0]["count"], "sensor": given.sensor,
-                      "device": scene["device"], "scans_per_s": round(rate, 1),
-                      "points_per_scan": points, "simulation_ms": round(1000 * seconds, 2),
-                      "runs": [round(run[0], 1) for run in runs]}, indent=2))
+    text = json.dumps({"provenance": provenance_of(given.program),
+                       "splats": scene["layers"][0]["count"], "sensor": given.sensor,
+                       "device": scene["device"], "scans_per_s": round(rate, 1),
+                       "points_per_scan": points, "simulation_s": round(seconds, 5),
+                       "runs": [round(run[0], 1) for run in runs]}, indent=2)
+    print(text)
+    if given.json:
+        with open(given.json, "w", encoding="ascii") as file:
+            file.write(text + "\n")
 
 
 if __name__ == "__main__":

@@ -2,17 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // k nearest neighbours of every point of a cloud: PointIndex beside nanoflann, in one run on the
 // same points (in Hilbert order for both, which favours nanoflann several times over).
-//   bench_neighbors INPUT [K] [THREADS] [REPEATS]
+//   bench_neighbors INPUT [K] [THREADS] [REPEATS] [RESULT.json]
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <nanoflann.hpp>
+#include <nlohmann/json.hpp>
 
 #include "adasplats/cloud/load_cloud.h"
 #include "adasplats/core/error.h"
+#include "adasplats/io/atomic_file.h"
 #include "adasplats/neighbors/point_index.h"
+#include "adasplats/pipeline/provenance.h"
 
 namespace {
 
@@ -119,6 +122,16 @@ int run(int argc, char** argv) {
   }
   std::printf("median of %d: ours %.2f s, nanoflann %.2f s, ratio %.2f\n", repeats, median(ours_s),
               median(flann_s), median(ratios));
+  if (argc > 5) {
+    const nlohmann::ordered_json result = {
+        {"provenance", to_json(provenance_of(executor.threads()))},
+        {"points", points.size()},
+        {"neighbors", k},
+        {"ours_s", median(ours_s)},
+        {"nanoflann_s", median(flann_s)},
+        {"ratio", median(ratios)}};
+    write_file(argv[5], result.dump(2) + "\n");
+  }
   return 0;
 }
 
@@ -126,7 +139,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr, "usage: bench_neighbors INPUT [K] [THREADS] [REPEATS]\n");
+    std::fprintf(stderr, "usage: bench_neighbors INPUT [K] [THREADS] [REPEATS] [RESULT.json]\n");
     return 64;
   }
   try {

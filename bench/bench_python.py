@@ -106,7 +106,8 @@ def main():
     parser.add_argument("--repeats", type=int, default=9)
     parser.add_argument("--json", help="also write the figures here")
     arguments = parser.parse_args()
-    figures = {"cast": cast_memory(arguments), "simulate": simulated(arguments)}
+    figures = {"provenance": adasplats.provenance(), "cast": cast_memory(arguments),
+               "simulate": simulated(arguments)}
     text = json.dumps(figures, indent=2)
     print(text)
     if arguments.json:

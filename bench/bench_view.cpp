@@ -4,7 +4,7 @@
 // What the viewer's server has to do: the tree of a model (of a PLY, or of a plane of so many
 // splats) and of its centers as points, and scan packets. One thread stands beside as many as the
 // machine has.
-//   bench_view [MODEL.ply | SPLATS]
+//   bench_view [MODEL.ply | SPLATS] [RESULT.json]
 
 #include <algorithm>
 #include <charconv>
@@ -13,12 +13,15 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/random.h"
+#include "adasplats/io/atomic_file.h"
+#include "adasplats/pipeline/provenance.h"
 #include "adasplats/splats/splat_model.h"
 #include "adasplats/view/level_tree.h"
 #include "adasplats/view/scan_packet.h"
@@ -45,7 +48,8 @@ SplatModel plane_of(std::size_t splats) {
   return model;
 }
 
-void measure_tree(const char* name, const LevelInput& input, const Executor& executor) {
+nlohmann::ordered_json measure_tree(const char* name, const LevelInput& input,
+                                    const Executor& executor) {
   std::vector<double> seconds;
   std::size_t nodes = 0, elements = 0;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
@@ -62,9 +66,15 @@ void measure_tree(const char* name, const LevelInput& input, const Executor& exe
               executor.threads(), seconds[kRepeats / 2], nodes,
               static_cast<double>(elements * sizeof(LevelElement)) * 1e-6,
               static_cast<double>(elements) / static_cast<double>(size));
+  return {{"input", name},
+          {"size", size},
+          {"threads", executor.threads()},
+          {"seconds", seconds[kRepeats / 2]},
+          {"nodes", nodes},
+          {"elements_over_size", static_cast<double>(elements) / static_cast<double>(size)}};
 }
 
-void measure_packets() {
+nlohmann::ordered_json measure_packets() {
   Scan scan;
   for (std::size_t i = 0; i < kPacketPoints; ++i) {
     scan.positions.push_back({static_cast<float>(i), 1, 2});
@@ -82,25 +92,31 @@ void measure_packets() {
   const double seconds = seconds_since(start);
   std::printf("packets of %zu points: %.0f a second, %.1f GB/s, one thread\n", kPacketPoints,
               kPackets / seconds, 1e-9 * static_cast<double>(bytes) / seconds);
+  return {{"points", kPacketPoints}, {"per_s", kPackets / seconds}};
 }
 
-void run(const std::string& what) {
+void run(const std::string& what, const std::string& json) {
   std::size_t splats = 0;
   const auto [rest, problem] = std::from_chars(what.data(), what.data() + what.size(), splats);
   const bool is_count = problem == std::errc() && rest == what.data() + what.size();
   const SplatModel model = is_count ? plane_of(splats) : load_model(what);
   std::vector<Vec3f> centers;
   for (const Disk& disk : model.disks) centers.push_back(disk.center);
+  nlohmann::ordered_json result = {{"provenance", to_json(provenance_of(Executor().threads()))},
+                                   {"trees", nlohmann::ordered_json::array()}};
   for (const int threads : {1, 0}) {
     const Executor executor(threads);
-    measure_tree("splats",
-                 {.disks = model.disks, .classes = model.classes, .intensities = model.intensities},
-                 executor);
-    measure_tree("points",
-                 {.positions = centers, .classes = model.classes, .intensities = model.intensities},
-                 executor);
+    result["trees"].push_back(measure_tree(
+        "splats",
+        {.disks = model.disks, .classes = model.classes, .intensities = model.intensities},
+        executor));
+    result["trees"].push_back(measure_tree(
+        "points",
+        {.positions = centers, .classes = model.classes, .intensities = model.intensities},
+        executor));
   }
-  measure_packets();
+  result["packets"] = measure_packets();
+  if (!json.empty()) write_file(json, result.dump(2) + "\n");
 }
 
 }  // namespace
@@ -108,7 +124,7 @@ void run(const std::string& what) {
 
 int main(int argc, char** argv) {
   try {
-    adasplats::run(argc > 1 ? argv[1] : "2000000");
+    adasplats::run(argc > 1 ? argv[1] : "2000000", argc > 2 ? argv[2] : "");
     return EXIT_SUCCESS;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_view: %s\n", error.what());

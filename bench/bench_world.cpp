@@ -18,6 +18,7 @@
 
 #include "adasplats/core/random.h"
 #include "adasplats/io/atomic_file.h"
+#include "adasplats/pipeline/provenance.h"
 #include "adasplats/simulate/world.h"
 
 namespace adasplats {
@@ -124,10 +125,13 @@ void run(const Options& options) {
   }
   std::printf("many frames cost %.3f of few\n", ratio);
   if (options.json.empty()) return;
-  const nlohmann::json result = {{"splats_per_frame", options.splats_per_frame},
-                                 {"threads", executor.threads()},
-                                 {"ratio", ratio},
-                                 {"figures", rows}};
+  const nlohmann::ordered_json result = {{"provenance", to_json(provenance_of(executor.threads()))},
+                                         {"splats_per_frame", options.splats_per_frame},
+                                         {"threads", executor.threads()},
+                                         {"few_frames_s", figures[0].median_s()},
+                                         {"many_frames_s", figures[1].median_s()},
+                                         {"ratio", ratio},
+                                         {"figures", rows}};
   write_file(options.json, result.dump(2) + "\n");
 }
 

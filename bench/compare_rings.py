@@ -2,17 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compares simulated scans with the real ones of the same poses, ring by ring.
 
-usage: compare_rings.py SENSOR.toml REAL SIMULATED -o PREFIX [--scan N]
+usage: compare_rings.py SENSOR.toml REAL SIMULATED --scans FIRST:COUNT[:STRIDE] -o PREFIX
+                        [--scan N] [--report FILE]
   SENSOR.toml  elevations_deg and beam_origins_m tell the ring of a point (its cone)
   REAL         sequence folder: scans as the sensor measured them, not motion-compensated
   SIMULATED    sequence folder of the same scans (adasplats simulate --rolling-shutter)
+  --scans      which of them count. Of a simulation with --ray-drop those that the drop model was not
+               fitted to: with 'fit-drop --every 2', which takes the even ones, 1:COUNT:2
 Prints points and median elevation per ring, and over all cells of ring x azimuth the share that
 only one of them fills and the difference of ranges where both do. Writes PREFIX_ranges.png (real,
 simulated, difference: blue nearer, red farther, black nothing) and PREFIX_pattern.png (azimuth
-across, elevation up; left real, right simulated, 12 degrees of azimuth around forward).
+across, elevation up; left real, right simulated, 12 degrees of azimuth around forward) of scan N,
+the first of the chosen ones unless told. --report writes the figures as JSON.
 """
 import argparse
+import json
 import pathlib
+import sys
 import struct
 import tomllib
 import zlib
@@ -100,60 +106,124 @@ def pattern(points, width=900, height=900, half_deg=6.0):
     return picture
 
 
+def chosen_scans(text, real, simulated):
+    """Numbers of "FIRST:COUNT[:STRIDE]", which both folders must have."""
+    try:
+        first, count, stride = ([int(part) for part in text.split(":")] + [1])[:3]
+    except ValueError:
+        first, count, stride = 0, 0, 0
+    if first < 0 or count < 1 or stride < 1 or text.count(":") not in (1, 2):
+        sys.exit(f"--scans: expected FIRST:COUNT[:STRIDE], found '{text}'")
+    chosen = range(first, first + count * stride, stride)
+    for folder in (real, simulated):
+        scans = len(list((folder / "velodyne").glob("*.bin")))
+        if chosen[-1] >= scans:
+            sys.exit(f"--scans {text}: {folder} has {scans} scans, 0 to {scans - 1}")
+    return chosen
+
+
+class Comparison:
+    """What is counted over the scans: of each ring, and of the cells of ring x azimuth."""
+
+    def __init__(self, fan):
+        self.fan = fan
+        rings = len(fan.elevations)
+        self.scans = 0
+        self.counts = np.zeros((2, rings))
+        self.elevations = [[[] for _ in range(rings)] for _ in range(2)]
+        self.both, self.alone, self.errors = 0, np.zeros(2), []
+
+    def add(self, scan_of_sides):
+        """Adds one scan, real and simulated; gives their range images."""
+        rings = len(self.fan.elevations)
+        images = []
+        for side, points in enumerate(scan_of_sides):
+            points = points[np.linalg.norm(points[:, :3], axis=1) > 2.5]
+            ring, off_deg = self.fan.rings(points)
+            points, ring = points[off_deg < 0.1], ring[off_deg < 0.1]
+            self.counts[side] += np.bincount(ring, minlength=rings)
+            seen = np.degrees(np.arctan2(points[:, 2], np.hypot(points[:, 0], points[:, 1])))
+            for k in range(rings):
+                self.elevations[side][k].extend(seen[ring == k][::7])
+            images.append(range_image(points, ring, rings))
+        real, simulated = images
+        filled = (real > 0) & (simulated > 0)
+        self.scans += 1
+        self.both += int(filled.sum())
+        self.alone += [((real > 0) & ~filled).sum(), ((simulated > 0) & ~filled).sum()]
+        self.errors.append((simulated - real)[filled])
+        return images
+
+    def figures(self):
+        """Everything as JSON has it; None where there is nothing to measure."""
+        median = lambda values: float(np.median(values)) if len(values) else None
+        rings = [{"points_a_scan": [float(n) for n in self.counts[:, k] / self.scans],
+                  "elevation_deg": [median(self.elevations[side][k]) for side in range(2)]}
+                 for k in range(self.counts.shape[1])]
+        error = np.concatenate(self.errors)
+        total = max(self.both + self.alone.sum(), 1)
+        return {
+            "rings": rings,
+            "cells": {"both": self.both / total, "real_alone": self.alone[0] / total,
+                      "simulated_alone": self.alone[1] / total},
+            "range_error_m": {"median": median(error), "median_absolute": median(np.abs(error)),
+                              "within_10_cm": float(np.mean(np.abs(error) < 0.1))
+                              if len(error) else None},
+        }
+
+
+def write_pictures(prefix, images, scan_of_sides):
+    stripe = np.full((8, COLUMNS, 3), 128, np.uint8)
+    tall = [np.repeat(part, 4, axis=0) for part in (
+        range_colors(images[0]), range_colors(images[1]), difference_colors(*images))]
+    write_png(pathlib.Path(prefix + "_ranges.png"),
+              np.concatenate([tall[0], stripe, tall[1], stripe, tall[2]]))
+    sides = [pattern(points) for points in scan_of_sides]
+    write_png(pathlib.Path(prefix + "_pattern.png"),
+              np.concatenate([sides[0], np.full((900, 8, 3), 128, np.uint8), sides[1]], axis=1))
+
+
+def text_of(figures):
+    text = "ring  points a scan: real  simulated  ratio   elevation seen, deg: real  simulated\n"
+    for k, ring in enumerate(figures["rings"]):
+        a, b = ring["points_a_scan"]
+        seen = [np.nan if value is None else value for value in ring["elevation_deg"]]
+        text += (f"{k:4d}  {a:20.1f}  {b:9.1f}  {b / max(a, 1):5.3f}  {seen[0]:26.3f}  "
+                 f"{seen[1]:9.3f}\n")
+    cells, error = figures["cells"], figures["range_error_m"]
+    text += (f"scans {', '.join(map(str, figures['scans']))}: cells filled by both "
+             f"{cells['both']:.3f}, real alone {cells['real_alone']:.3f}, simulated alone "
+             f"{cells['simulated_alone']:.3f}\n")
+    if error["median"] is not None:
+        text += (f"range, simulated - real: median {error['median']:+.3f} m, median of |.| "
+                 f"{error['median_absolute']:.3f} m, within 10 cm {error['within_10_cm']:.3f}\n")
+    return text
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("sensor")
     parser.add_argument("real", type=pathlib.Path)
     parser.add_argument("simulated", type=pathlib.Path)
+    parser.add_argument("--scans", required=True, help="FIRST:COUNT[:STRIDE]")
     parser.add_argument("-o", dest="prefix", required=True)
-    parser.add_argument("--scan", type=int, default=2, help="of the pictures")
+    parser.add_argument("--scan", type=int, help="of the pictures")
+    parser.add_argument("--report", type=pathlib.Path, help="write the figures as JSON")
     arguments = parser.parse_args()
-    fan = Fan(arguments.sensor)
-    rings = len(fan.elevations)
-    scans = sorted((arguments.real / "velodyne").glob("*.bin"))
-    counts = np.zeros((2, rings))
-    elevations = [[[] for _ in range(rings)] for _ in range(2)]
-    both, alone, errors = 0, np.zeros(2), []
-    for index in range(len(scans)):
-        images = []
-        for side, folder in enumerate((arguments.real, arguments.simulated)):
-            points = read_scan(folder, index)
-            points = points[np.linalg.norm(points[:, :3], axis=1) > 2.5]
-            ring, off_deg = fan.rings(points)
-            points, ring = points[off_deg < 0.1], ring[off_deg < 0.1]
-            counts[side] += np.bincount(ring, minlength=rings)
-            seen = np.degrees(np.arctan2(points[:, 2], np.hypot(points[:, 0], points[:, 1])))
-            for k in range(rings):
-                elevations[side][k].extend(seen[ring == k][::7])
-            images.append(range_image(points, ring, rings))
-        real, simulated = images
-        filled = (real > 0) & (simulated > 0)
-        both += filled.sum()
-        alone += [((real > 0) & ~filled).sum(), ((simulated > 0) & ~filled).sum()]
-        errors.append((simulated - real)[filled])
-        if index == arguments.scan:
-            stripe = np.full((8, COLUMNS, 3), 128, np.uint8)
-            tall = [np.repeat(part, 4, axis=0) for part in (
-                range_colors(real), range_colors(simulated), difference_colors(real, simulated))]
-            write_png(pathlib.Path(arguments.prefix + "_ranges.png"),
-                      np.concatenate([tall[0], stripe, tall[1], stripe, tall[2]]))
-            sides = [pattern(read_scan(folder, index))
-                     for folder in (arguments.real, arguments.simulated)]
-            write_png(pathlib.Path(arguments.prefix + "_pattern.png"),
-                      np.concatenate([sides[0], np.full((900, 8, 3), 128, np.uint8), sides[1]],
-                                     axis=1))
-    print("ring  points a scan: real  simulated  ratio   elevation seen, deg: real  simulated")
-    for k in range(rings):
-        a, b = counts[:, k] / len(scans)
-        seen = [np.median(elevations[side][k]) if elevations[side][k] else np.nan
-                for side in range(2)]
-        print(f"{k:4d}  {a:20.1f}  {b:9.1f}  {b / max(a, 1):5.3f}  {seen[0]:26.3f}  {seen[1]:9.3f}")
-    error = np.concatenate(errors)
-    total = both + alone.sum()
-    print(f"cells filled by both {both / total:.3f}, real alone {alone[0] / total:.3f}, "
-          f"simulated alone {alone[1] / total:.3f}")
-    print(f"range, simulated - real: median {np.median(error):+.3f} m, median of |.| "
-          f"{np.median(np.abs(error)):.3f} m, within 10 cm {np.mean(np.abs(error) < 0.1):.3f}")
+    chosen = chosen_scans(arguments.scans, arguments.real, arguments.simulated)
+    pictured = chosen[0] if arguments.scan is None else arguments.scan
+    if pictured not in chosen:
+        sys.exit(f"--scan {pictured}: not one of --scans {arguments.scans}")
+    comparison = Comparison(Fan(arguments.sensor))
+    for index in chosen:
+        sides = [read_scan(folder, index) for folder in (arguments.real, arguments.simulated)]
+        images = comparison.add(sides)
+        if index == pictured:
+            write_pictures(arguments.prefix, images, sides)
+    figures = {"scans": list(chosen), **comparison.figures()}
+    print(text_of(figures), end="")
+    if arguments.report:
+        arguments.report.write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -6,12 +6,13 @@
 # usage: bench/results_gpu.sh BIN_DIR OUT.json [SEQUENCE]
 #   BIN_DIR   folder of the built programs (build/release/bin)
 #   SEQUENCE  kitti-0005/sequences/00; without it that figure is left out
-# With two GPUs or more the batched scans are measured on one and on two of them.
-# ADASPLATS_COMMIT names the version where this is no clone. Needs about 3 GB in TMPDIR.
+# With two GPUs or more the batched scans are measured on one and on two of them. The commit is that
+# of the programs (ADASPLATS_COMMIT when they were built outside of a clone). Needs about 3 GB in
+# TMPDIR.
 set -euo pipefail
 
 [[ $# -ge 2 ]] || {
-  sed -n '6,11p' "${BASH_SOURCE[0]}" | cut -c3- >&2
+  sed -n '6,12p' "${BASH_SOURCE[0]}" | cut -c3- >&2
   exit 64
 }
 bin=$1
@@ -19,8 +20,6 @@ out=$2
 sequence=${3:-}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-commit=${ADASPLATS_COMMIT:-$(git -C "$root" rev-parse HEAD)}
 gpus=$(nvidia-smi --query-gpu=name --format=csv,noheader | wc -l)
 
 # street NAME POINTS: a street and its basic splats.
@@ -53,10 +52,10 @@ if [[ -n $sequence ]]; then
   "$bin/bench_gpu_generate" "$sequence" consistent resample 3 >"$work/generate_kitti0005.json"
 fi
 
-python3 - "$work" "$out" "$commit" "bench/results_gpu.sh BIN_DIR OUT.json ${sequence:+SEQUENCE}" <<'PYTHON'
-import json, pathlib, subprocess, sys
+python3 - "$work" "$out" "bench/results_gpu.sh BIN_DIR OUT.json${sequence:+ SEQUENCE}" <<'PYTHON'
+import json, pathlib, sys
 
-work, out, commit, command = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3], sys.argv[4]
+work, out, command = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
 
 
 def read(name):
@@ -67,16 +66,12 @@ def read(name):
                       else file.read_text())
 
 
-def query(field):
-    return subprocess.run(["nvidia-smi", f"--query-gpu={field}", "--format=csv,noheader"],
-                          capture_output=True, text=True, check=True).stdout.splitlines()[0]
-
-
 cuda, optix = read("cuda_2m"), read("optix_2m")
+told = cuda["provenance"]
 best = max((cuda, optix), key=lambda run: run.get("batched_per_s", 0))
 result = {
-    "device": query("name"), "driver": query("driver_version"), "commit": commit,
-    "command": command,
+    "device": told["device"]["name"], "driver": told["device"]["kernel_driver"],
+    "commit": told["commit"], "command": command, "provenance": {**told, "command": command},
     "hdl64_single_per_s": max(cuda["single_per_s"], optix.get("single_per_s", 0)),
     "hdl64_batched_per_s": best["batched_per_s"],
     "hdl64_batched_8m_per_s": max(read("cuda_8m")["batched_per_s"],
@@ -93,6 +88,10 @@ if read("two_gpus"):
 result["runs"] = {name: read(name) for name in
                   ("cuda_2m", "optix_2m", "cuda_8m", "optix_8m", "one_gpu", "two_gpus",
                    "generate_12m", "generate_kitti0005") if read(name)}
+versions = {(run["provenance"]["commit"], run["provenance"]["dirty"])
+            for run in result["runs"].values()}
+if len(versions) != 1:
+    sys.exit(f"results_gpu: the programs are of several versions: {sorted(versions)}")
 pathlib.Path(out).write_text(json.dumps(result, indent=2) + "\n")
-print(json.dumps({k: v for k, v in result.items() if k != "runs"}, indent=2))
+print(json.dumps({k: v for k, v in result.items() if k not in ("runs", "provenance")}, indent=2))
 PYTHON

@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""Makes one JSON of the reports of a part, and one of all parts (bench/results_cpu.sh calls it).
+
+usage: collect_results.py part FOLDER OUT.json COMMAND    all *.json below FOLDER, folders as keys
+       collect_results.py all OUT.json PART.json...
+       collect_results.py current PART.json PROGRAM       exit code 0: of the program's commit
+
+The reports of a part must come from one commit. Parts of several commits stay visibly so: then the
+result names none, and each part its own.
+"""
+import json
+import pathlib
+import sys
+
+from provenance import provenance_of
+
+# What reports hold besides figures, or too finely for a table.
+LEFT_OUT = {"program", "version", "command", "device", "provenance", "parameters", "warnings",
+            "files", "by_range", "by_incidence", "by_elevation", "laser_bias", "step_seconds"}
+
+
+def figures_of(report):
+    if not isinstance(report, dict):
+        return report
+    return {key: value for key, value in report.items() if key not in LEFT_OUT}
+
+
+def common(values, what, folder):
+    """The one value of all."""
+    if not values or any(value != values[0] for value in values):
+        sys.exit(f"collect_results: {folder}: the reports differ in their {what}: {values}")
+    return values[0]
+
+
+def part(folder, out, command):
+    folder, result, sources = pathlib.Path(folder), {}, []
+    for file in sorted(folder.rglob("*.json")):
+        report = json.loads(file.read_text())
+        if isinstance(report, dict) and "provenance" in report:
+            sources.append(report["provenance"])
+        place = result
+        for name in file.relative_to(folder).parts[:-1]:
+            place = place.setdefault(name, {})
+        place.setdefault(file.stem, {})
+        place[file.stem] = figures_of(report)
+    dates = sorted(source["date"] for source in sources)
+    cores = [source["machine"].pop("cores", 0) for source in sources]  # a part may vary them
+    told = {key: common([source[key] for source in sources], key, folder)
+            for key in ("version", "commit", "dirty", "machine")}
+    told["machine"]["cores"] = max(cores)
+    devices = [{name: source["device"].get(name) for name in ("kind", "name", "driver")}
+               for source in sources]
+    told["device"] = common(devices, "device", folder)
+    told.update(first_date=dates[0] if dates else None, last_date=dates[-1] if dates else None,
+                command=command)
+    write(out, {"provenance": told, **result})
+
+
+def everything(out, parts):
+    results = {pathlib.Path(file).stem: json.loads(pathlib.Path(file).read_text())
+               for file in parts}
+    sources = [(x["provenance"]["commit"], x["provenance"]["dirty"]) for x in results.values()]
+    one = sources[0] if len(set(sources)) == 1 else (None, None)
+    write(out, {"commit": one[0], "dirty": one[1], "parts": results})
+
+
+def is_current(file, program):
+    told = json.loads(pathlib.Path(file).read_text())["provenance"]
+    now = provenance_of(program)
+    same = (told["commit"], told["dirty"]) == (now["commit"], now["dirty"])
+    return same and now["dirty"] is not True and now["commit"] != "unknown"
+
+
+def write(out, result):
+    pathlib.Path(out).write_text(json.dumps(result, indent=1) + "\n")
+
+
+def main():
+    match sys.argv[1:]:
+        case ["part", folder, out, command]:
+            part(folder, out, command)
+        case ["all", out, *parts] if parts:
+            everything(out, parts)
+        case ["current", file, program]:
+            sys.exit(0 if is_current(file, program) else 1)
+        case _:
+            sys.exit(__doc__)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,93 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Makes all of docs/compare with one version of the program.
+# usage: bench/compare_all.sh [--bin DIR] [--only NAME] [--methods A,B] [--docs DIR] REAL_DATA WORK
+#   REAL_DATA  folder with kitti-0005, semantickitti-00 and tls-street as unpacked
+#   WORK       folder for models and scans; a run that was interrupted goes on there
+#   --bin      folder of the built program (default: build/release/bin); nothing is built
+#   --only     one of kitti-0005, semantickitti-00, street, tls-street (to try)
+#   --methods  these alone (to try)
+#   --docs     where the reports go (default: docs/compare)
+# Poisson meshes need PoissonRecon on PATH, or adasplats-poisson beside the program.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+bin=$root/build/release/bin
+docs=$root/docs/compare
+only=
+methods=
+usage() {
+  sed -n '6,13s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+  exit 64
+}
+while [[ ${1:-} == --* ]]; do
+  (($# >= 2)) || usage
+  case $1 in
+    --bin) bin=$(realpath "$2") ;;
+    --only) only=$2 ;;
+    --methods) methods=$2 ;;
+    --docs) docs=$(realpath -m "$2") ;;
+    *) usage ;;
+  esac
+  shift 2
+done
+(($# == 2)) || usage
+mkdir -p "$2"
+work=$(realpath "$2")
+# Commands are told with these names, not with those of this machine.
+ln -sfn "$(realpath "$1")" "$work/real"
+cd "$work"
+mkdir -p out
+
+# compare NAME DATA OPTIONS...: one comparison, its reports into docs/compare/NAME.
+compare() {
+  local name=$1 data=$2
+  shift 2
+  [[ -z $only || $only == "$name" ]] || return 0
+  [[ -z $methods ]] || set -- "$@" --methods "$methods"
+  echo "## $name"
+  "$bin/adasplats" compare "$data" -o "out/$name" --picture-width 420 --time-limit 3600 \
+    --memory-limit 16 "$@"
+  made+=("$name")
+}
+
+# same_version NAME...: every comparison, and every step in it, is of one clean commit.
+same_version() {
+  python3 - "$@" <<'PYTHON'
+import json, sys
+versions = set()
+for name in sys.argv[1:]:
+    results = json.load(open(f"out/{name}/compare.json", encoding="utf-8"))
+    for part in [results, *results["competitors"]]:
+        told = part.get("provenance", {})
+        versions.add((told.get("commit"), told.get("dirty")))
+if len(versions) != 1:
+    sys.exit(f"compare_all: the comparisons are of several versions: {sorted(map(str, versions))}")
+print("compare_all: all of commit", *versions.pop())
+PYTHON
+}
+
+made=()
+compare kitti-0005 real/kitti-0005
+compare semantickitti-00 real/semantickitti-00 --scans 0:8:2 \
+  --held-out real/semantickitti-00/sequences/00 --held-out-scans 1:8:2
+if [[ -z $only || $only == street ]]; then
+  # Of this very program, and not made again where it is: steps are done again for newer inputs.
+  version=$(sha256sum <"$bin/adasplats")
+  if [[ $(cat street2m.version 2>/dev/null) != "$version" ]]; then
+    "$bin/adasplats" synth street --points 2000000 -o street2m --overwrite
+    echo "$version" >street2m.version
+  fi
+fi
+compare street street2m
+compare tls-street real/tls-street
+((${#made[@]})) || usage
+same_version "${made[@]}"
+for name in "${made[@]}"; do
+  rm -rf "${docs:?}/$name"
+  mkdir -p "$docs/$name"
+  cp -r "out/$name"/{compare.json,report.md,pictures} "$docs/$name"
+done
+# One page that needs nothing else, as an example; the others would say the same again in megabytes.
+if [[ " ${made[*]} " == *" street "* ]]; then cp out/street/report.html "$docs/street"; fi

@@ -1,0 +1,22 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where figures come from that a script measures with the program."""
+import json
+import os
+import pathlib
+import shlex
+import subprocess
+import sys
+import tempfile
+
+
+def provenance_of(program):
+    """What the program's reports say of version, commit, date, machine and device, with the
+    running script's command."""
+    with tempfile.TemporaryDirectory() as folder:
+        report = pathlib.Path(folder) / "report.json"
+        subprocess.run([program, "sensors", "--report", str(report)], check=True,
+                       stdout=subprocess.DEVNULL)
+        provenance = json.loads(report.read_text())["provenance"]
+    words = [os.path.basename(sys.argv[0]), *sys.argv[1:]]
+    return {**provenance, "command": shlex.join(words)}

@@ -1,0 +1,322 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""Writes the figures of README.md and docs/*.md from the JSON that measured them.
+
+A figure is a link whose definition, at the end of the document, names file, key and format:
+
+    Built in [66 s][kitti time].
+    [kitti time]: bench/results/cpu.json "kitti/models/consistent/model/seconds/total as 0 s"
+
+The key goes down through objects by name, through lists by the member "name". Zeros of the format
+stand for digits, its unit scales: % cm mm ms GB MB kB M k; "0,000" groups, "0.0x" is a ratio, "text"
+takes the value as it is. "A over B" divides, "mean of A, B" averages (of values under the same
+file), "1 - A" takes the rest. What the file lacks becomes "–". Whole tables stand between
+
+    <!-- table: comparison compare/street/compare.json -->   and   <!-- /table -->
+
+(a name of TABLES, a file, for bench/results also the key of the models).
+
+Between <!-- log --> and <!-- /log --> are figures of an earlier version that nothing measures again;
+elsewhere in the documents of STRICT a figure that is no such link is a fault.
+
+usage: tools/make_figures.py               writes the documents
+       tools/make_figures.py --check       says what differs; exit code 1 where something does; before
+                                           that shows that it finds a figure changed by hand
+"""
+import json
+import pathlib
+import re
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+STRICT = ("README.md", "docs/results.md", "docs/performance.md")
+MISSING = "–"
+# Measured before comparisons told their commit; a file that tells one leaves this list.
+BEFORE_COMMITS = tuple(f"docs/compare/{name}/compare.json" for name in
+                       ("kitti-0005", "semantickitti-00", "street", "tls-street"))
+
+DEFINITION = re.compile(r'^\[([^\]\n]+)\]: (\S+\.json) "(.+) as (.+)"$', re.M)
+LINK = re.compile(r"\[([^\[\]\n]*)\]\[([^\[\]\n]+)\]")
+TABLE = re.compile(r"(<!-- table: (\w+) (\S+\.json)(?: (\S+))? -->\n)(.*?)(<!-- /table -->)", re.S)
+FORMAT = re.compile(r"(0,000|0)(?:\.(0+))?( ?)(%|cm|mm|ms|s|m|GB|MB|kB|M|k|x|times|)$")
+SCALES = {"%": 100, "cm": 100, "mm": 1000, "ms": 1000, "GB": 1e-9, "MB": 1e-6, "kB": 1e-3,
+          "M": 1e-6, "k": 1e-3}
+# What reads like a measured figure: a number with one of these behind it.
+NAKED = re.compile(r"(?<![\w.,-])\d[\d,.]*\d*(?: to \d[\d.,]*)? ?"
+                   r"(?:%|cm\b|mm\b|ms\b|s\b|GB\b|MB\b|x\b|times\b|scans/s\b|a second\b)")
+# What is no claim of ours: comments, links' targets, the paper's figures, names of measures.
+CODE = (re.compile(r"^```.*?^```", re.S | re.M), re.compile(r"`[^`\n]*`"))
+QUIET = (re.compile(r"<!-- log -->.*?<!-- /log -->", re.S),
+         re.compile(r"<!-- table: .*?<!-- /table -->", re.S), re.compile(r"<!--.*?-->", re.S),
+         re.compile(r"\(?\bpaper(?:: [^)|]*|, [^)|]*)"),
+         re.compile(r"\]\([^)]*\)"), re.compile(r"(?:within|more than|>) \d+ cm"))
+
+
+class Fault(Exception):
+    """A definition that cannot be followed."""
+
+
+def part_of(value, name):
+    """One step down; None where there is none."""
+    if isinstance(value, dict):
+        return value.get(name)
+    if isinstance(value, list):
+        return next((x for x in value if isinstance(x, dict) and x.get("name") == name), None)
+    return None
+
+
+def value_at(data, key):
+    """The value of a key, see the module's text; None where one of its parts is missing."""
+    if key.startswith("1 - "):
+        rest = value_at(data, key[4:])
+        return None if rest is None else 1 - rest
+    if key.startswith("mean of "):
+        values = [value_at(data, part) for part in key[8:].split(", ")]
+        return None if None in values else sum(values) / len(values)
+    if " over " in key:
+        above, below = (value_at(data, part) for part in key.split(" over "))
+        return None if above is None or not below else above / below
+    for name in key.split("/"):
+        data = part_of(data, name)
+    return data
+
+
+def text_of(value, form):
+    """A value as a document shows it."""
+    if value is None:
+        return MISSING
+    if form == "text":
+        return str(value)
+    match = FORMAT.fullmatch(form)
+    if not match:
+        raise Fault(f"'{form}' is no format: zeros and a unit, like '0.00 cm'")
+    whole, places, space, unit = match.groups()
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise Fault(f"{value!r} is no number")
+    number = f"{value * SCALES.get(unit, 1):{',' if ',' in whole else ''}.{len(places or '')}f}"
+    return number + space + unit
+
+
+class Files:
+    """The JSON files, each read once; whether one tells its commit."""
+
+    def __init__(self):
+        self.read = {}
+
+    def at(self, document, name):
+        path = (document.parent / name).resolve()
+        if path not in self.read:
+            self.read[path] = json.loads(path.read_text()) if path.exists() else {}
+        return self.read[path]
+
+    def faults(self, root):
+        """Files that tell no commit, and those that BEFORE_COMMITS excuses for nothing."""
+        for path, data in sorted(self.read.items()):
+            name = str(path.relative_to(root.resolve()))
+            parts = list(data.get("parts", {}).values()) or [data]
+            commits = [x.get("provenance", {}).get("commit", x.get("commit")) for x in parts]
+            told = all(commit and commit != "unknown" for commit in commits)
+            if data and told == (name in BEFORE_COMMITS):
+                yield name + (": tells its commit and stands in BEFORE_COMMITS" if told else
+                              ": tells no commit")
+
+
+# ---- whole tables --------------------------------------------------------------------------
+
+COMPARISON = [
+    ("primitives", "generate/primitives", "0.00 M"), ("generate", "generate/seconds", "0 s"),
+    ("C2C", "c2c/c2c_m", "0.00 cm"), ("fence", "c2c/by_class/fence/c2c_m", "0.0 cm"),
+    ("pole", "c2c/by_class/pole/c2c_m", "0.0 cm"),
+    ("traffic-sign", "c2c/by_class/traffic-sign/c2c_m", "0.0 cm"),
+    ("no hit", "resimulate/no_hit", "0.0 %"), ("early", "resimulate/early_50cm", "0.0 %"),
+    ("late", "resimulate/late_50cm", "0.0 %"),
+    ("median", "resimulate/range_error_m/median", "0.00 cm"),
+    ("within 10 cm", "resimulate/within/0.10", "0.0 %"),
+    ("RMSE", "resimulate/range_error_m/rmse", "0.00 m"), ("holes", "truth/hole_share", "0.0 %"),
+    ("ghosts", "truth/ghost_share", "0.0 %"),
+    ("to surface", "truth/surface_distance_m/mean", "0.00 cm")]
+THIN = ("fence", "pole", "traffic-sign")
+
+
+def c2c_columns(sensor, name):
+    at = f"{sensor}/c2c/by_class/%s/c2c_m"
+    columns = [(f"C2C {name}", f"{sensor}/c2c/c2c_m", "0.00 cm")]
+    columns += [(f"{thing} {name}", at % thing, "0.00 cm") for thing in THIN]
+    mean = "mean of " + ", ".join(at % thing for thing in THIN)
+    return columns + [(f"thin mean {name}", mean, "0.00 cm")]
+
+
+MODELS = [("splats", "model/primitives", "0.00 M"), *c2c_columns("hdl-64-paper", "HDL-64"),
+          *c2c_columns("hdl-32-paper", "HDL-32"),
+          *(column for column in COMPARISON if column[1].startswith("resimulate"))]
+# Name: (the rows' key where the document gives none, columns). A column that no row fills is left
+# out.
+TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS)}
+
+
+def rows_of(data, key):
+    """(title, entry) of every row."""
+    rows = value_at(data, key)
+    if isinstance(rows, dict):
+        rows = [{"title": name, **entry} for name, entry in rows.items()]
+    return [(row.get("title", row.get("name")), row) for row in rows or []]
+
+
+def table_of(kind, data, key):
+    if kind not in TABLES:
+        raise Fault(f"no table '{kind}'; known: {', '.join(TABLES)}")
+    default_key, columns = TABLES[kind]
+    rows = rows_of(data, key or default_key)
+    if not rows:
+        return f"{MISSING} (not measured yet)\n"
+    columns = [c for c in columns if any(value_at(row, c[1]) is not None for _, row in rows)]
+    lines = ["| model | " + " | ".join(name for name, _, _ in columns) + " |",
+             "|---|" + "--:|" * len(columns)]
+    for title, row in rows:
+        cells = [text_of(value_at(row, at), form) for _, at, form in columns]
+        lines.append(f"| {title} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+# ---- documents -----------------------------------------------------------------------------
+
+def made(document, text, files):
+    """The text with every figure and table as the files have them, and what cannot be followed."""
+    faults = []
+
+    def guarded(function, otherwise):
+        try:
+            return function()
+        except Fault as fault:
+            faults.append(f"{document.name}: {fault}")
+            return otherwise
+
+    known = {}
+    for name, file, key, form in DEFINITION.findall(text):
+        known[name] = guarded(
+            lambda: text_of(value_at(files.at(document, file), key), form), None)
+    used = {name for _, name in LINK.findall(text)}
+    faults += [f"{document.name}: nothing uses the figure [{name}]" for name in known
+               if name not in used]
+    prose = hidden(text, CODE)
+    faults += [f"{document.name}: nothing defines [{name}]" for name in
+               sorted({name for _, name in LINK.findall(prose)}) if f"\n[{name}]: " not in text]
+
+    def table(match):
+        begin, kind, file, key, before, end = match.groups()
+        return begin + guarded(lambda: table_of(kind, files.at(document, file), key), before) + end
+
+    text = TABLE.sub(table, text)
+    return LINK.sub(lambda m: m[0] if known.get(m[2]) is None else f"[{known[m[2]]}][{m[2]}]",
+                    text), faults
+
+
+def blank(match):
+    """Blanks in its place: lines keep their numbers."""
+    return re.sub(r"[^\n]", " ", match[0])
+
+
+def hidden(text, patterns):
+    for pattern in patterns:
+        text = pattern.sub(blank, text)
+    return text
+
+
+def naked_figures(text):
+    """(line, figure) of what claims something and names no source."""
+    figures = {name for name, *_ in DEFINITION.findall(text)}
+    text = hidden(text, (*QUIET, *CODE, DEFINITION))
+    text = LINK.sub(lambda m: blank(m) if m[2] in figures else m[0], text)
+    for number, line in enumerate(text.splitlines(), 1):
+        for match in NAKED.finditer(line):
+            yield number, match[0]
+
+
+def differences(name, before, after):
+    for number, (old, new) in enumerate(zip(before.splitlines(), after.splitlines()), 1):
+        if old == new:
+            continue
+        shown = {m[2]: m[1] for m in LINK.finditer(old)}
+        changed = [f"[{m[2]}] is '{m[1]}' in its file, not '{shown[m[2]]}'"
+                   for m in LINK.finditer(new) if shown.get(m[2]) != m[1]]
+        yield f"{name}:{number}: " + ("; ".join(changed) or f"'{new}' expected, not '{old}'")
+    if len(before.splitlines()) != len(after.splitlines()):
+        yield f"{name}: a table has other lines than its file"
+
+
+def documents(root):
+    return [root / "README.md", *sorted((root / "docs").glob("*.md"))]
+
+
+def work(root, check):
+    """Writes or checks all documents; what is wrong, one line each."""
+    files, faults, missing = Files(), [], 0
+    for document in documents(root):
+        before = document.read_text(encoding="utf-8")
+        after, found = made(document, before, files)
+        faults += found
+        name = str(document.relative_to(root))
+        missing += after.count(f"[{MISSING}][")
+        if check:
+            faults += differences(name, before, after)
+        elif after != before:
+            document.write_text(after, encoding="utf-8")
+            print(f"make_figures: wrote {name}")
+        if name in STRICT:
+            faults += [f"{name}:{line}: '{figure}' names no source" for line, figure in
+                       naked_figures(after)]
+    faults += files.faults(root)
+    if missing:
+        print(f"make_figures: {missing} figures have not been measured yet ('{MISSING}')")
+    return faults
+
+
+def self_test():
+    """A figure, a table and a naked figure, each changed by hand, are found."""
+    text = ("Built in [2.50 s][time], [88 %][share] of it.\n\n"
+            "<!-- table: comparison ../a.json -->\n<!-- /table -->\n"
+            '\n[time]: ../a.json "x/seconds as 0.00 s"\n[share]: ../a.json "1 - x/rest as 0 %"\n')
+    data = {"commit": "1a2b", "x": {"seconds": 2.504, "rest": 0.12},
+            "competitors": [{"title": "A", "generate": {"seconds": 3}}]}
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        (root / "docs").mkdir()
+        (root / "README.md").write_text("Nothing here.\n")
+        (root / "a.json").write_text(json.dumps(data))
+        page = root / "docs" / "results.md"
+        page.write_text(text)
+        assert work(root, check=False) == [] and work(root, check=True) == []
+        good = page.read_text()
+        assert "| A | 3 s |" in good and "[2.50 s][time]" in good, good
+        for old, new, said in (("2.50 s", "2.40 s", "results.md:1: [time] is '2.50 s'"),
+                               ("| 3 s |", "| 2 s |", "results.md:6"),
+                               ("of it.", "of it, 7 GB.", "'7 GB' names no source"),
+                               ("as 0 %", "as 8 %", "is no format"),
+                               ("x/seconds as", "x/second as", "[time] is '–'")):
+            page.write_text(good.replace(old, new))
+            faults = work(root, check=True)
+            assert len(faults) == 1 and said in faults[0], (old, faults)
+            print(f"self-test found: {faults[0]}")
+        page.write_text(good)
+        (root / "a.json").write_text(json.dumps({**data, "commit": ""}))
+        assert work(root, check=True) == ["a.json: tells no commit"]
+
+
+def main():
+    if sys.argv[1:] not in ([], ["--check"]):
+        sys.exit(__doc__)
+    check = sys.argv[1:] == ["--check"]
+    if check:
+        self_test()
+    faults = work(ROOT, check)
+    for fault in faults:
+        print(fault, file=sys.stderr)
+    if faults:
+        sys.exit(f"make_figures: {len(faults)} faults; tools/make_figures.py writes the figures")
+    print("make_figures: every figure is as its file has it")
+
+
+if __name__ == "__main__":
+    main()
