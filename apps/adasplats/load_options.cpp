@@ -59,6 +59,12 @@ void add_load_options(OptionSet& app, LoadOptions& options) {
       ->capture_default_str()
       ->type_name("SHARE")
       ->group(kGroup);
+  app.add_option(
+         "--own-body", options.own_body_m,
+         "Points nearer than this to their sensor are the recording vehicle itself and left "
+         "out, m; 0 keeps all (default: those that go along with the sensor)")
+      ->type_name("M")
+      ->group(kGroup);
   app.add_flag("--strict", options.strict, "Points that are not finite are an error")
       ->group(kGroup);
   app.add_flag("--salvage", options.salvage, "Read the whole records of truncated LAS files")

@@ -52,6 +52,7 @@ def read(
     salvage: bool = False,
     max_distance_m: float = 100000.0,
     max_dropped: float = 0.01,
+    own_body_m: float | None = None,
     threads: int = 0,
     progress: Progress | None = None,
 ) -> PointCloud: ...
@@ -102,6 +103,7 @@ def model(
     salvage: bool = False,
     max_distance_m: float = 100000.0,
     max_dropped: float = 0.01,
+    own_body_m: float | None = None,
     device: Device = "auto",
     gpus: Sequence[int] | None = None,
     threads: int = 0,

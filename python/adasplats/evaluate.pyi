@@ -66,6 +66,7 @@ def presence(
     salvage: bool = False,
     max_distance_m: float = 100000.0,
     max_dropped: float = 0.01,
+    own_body_m: float | None = None,
     device: Device = "auto",
     gpus: Sequence[int] | None = None,
     threads: int = 0,

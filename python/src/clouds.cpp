@@ -37,7 +37,9 @@ constexpr const char* kReadDoc =
     "trajectory\n"
     "(a path) tell where the sensor was; label_field names the column of classes. Points that are\n"
     "not finite or far are dropped with a warning, with strict or above the share max_dropped an\n"
-    "error; an intensity that is not known is NaN.\n"
+    "error; an intensity that is not known is NaN. Points on the recording vehicle itself are "
+    "left\n"
+    "out: those that go along with the sensor, or all nearer to it than own_body_m (0 keeps all).\n"
     "Raises FileNotFoundError, ValueError (what is in a file), OSError.";
 
 constexpr const char* kCloudDoc =
@@ -173,6 +175,7 @@ void take_load_options(Keywords& keywords, LoadOptions& options) {
   keywords.take("salvage", options.salvage);
   keywords.take("max_distance_m", options.max_distance_m);
   keywords.take("max_dropped", options.max_dropped);
+  keywords.take("own_body_m", options.own_body_m);
 }
 
 bool is_path(py::handle value) {

@@ -170,6 +170,17 @@ class Dropped(ProgramTest):
         self.assertEqual(report["points_in"], len(tiny_place()))
         self.assertEqual(report["points_intensity_unknown"], len(tiny_place()) // 2)
 
+    def test_own_body(self):
+        rows = self.rows(lambda k, x, y, z: (x, y, z, 0, 0, 2))
+        command = self.model_of("body.csv", "x y z sensor_x sensor_y sensor_z\n" + rows)
+        self.assertEqual(self.report(*command)["points_own_body"], 0)  # a station keeps its floor
+        near = sum((x * x + y * y + (z - 2) ** 2) ** 0.5 < 2.5 for x, y, z, *_ in tiny_place())
+        self.assertGreater(near, 0)
+        self.assertEqual(self.report(*command, "--own-body", 2.5)["points_own_body"], near)
+        self.run_bad(64, *self.model_of("none.xyz", self.rows()), "--own-body", "2",
+                     says=["where it was"])
+        self.run_bad(64, *command, "--own-body", "-1", says=["own body"])
+
     def test_degrees(self):
         degrees = lambda k, x, y, z: (2.34 + x / 73000, 48.84 + y / 111000, z)
         self.run_bad(65, *self.model_of("d.xyz", self.rows(degrees)),

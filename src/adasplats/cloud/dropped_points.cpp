@@ -48,6 +48,17 @@ void tell_dropped(const std::string& input, const LoadReport& report, const Load
        "are these two places, or coordinates of two systems? --max-distance M keeps them, ");
 }
 
+void tell_own_body(const std::string& input, const LoadReport& report, const LoadOptions& options,
+                   ProgressSink& progress) {
+  if (report.own_body == 0) return;
+  progress.warn(input + ": " + share_text(report.own_body, report.points_read) +
+                (options.own_body_m
+                     ? " are nearer to their sensor than " + short_text(*options.own_body_m, 9) +
+                           " m, left out"
+                     : " go along with the sensor: the recording vehicle itself, left out "
+                       "(--own-body 0 keeps them)"));
+}
+
 void require_metres(const std::string& input, Vec3d low, Vec3d high) {
   constexpr double kMostLongitude = 180, kMostLatitude = 90;
   constexpr double kLeastSteepness = 1000;

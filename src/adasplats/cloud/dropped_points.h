@@ -16,6 +16,10 @@ namespace adasplats {
 void tell_dropped(const std::string& input, const LoadReport& report, const LoadOptions& options,
                   ProgressSink& progress);
 
+/// Warns of points on the vehicle that carried the sensor, which were left out.
+void tell_own_body(const std::string& input, const LoadReport& report, const LoadOptions& options,
+                   ProgressSink& progress);
+
 /// Throws data where the box of all points can only be one of degrees: within 180 and 90 without
 /// holding 0, 0, and more than a thousand times as high as it is wide. (Degrees are 111 km, so that
 /// points of a place whose heights differ by 1 % of its width look like that.)

@@ -11,6 +11,7 @@
 #include "adasplats/cloud/cloud_inputs.h"
 #include "adasplats/cloud/cloud_part.h"
 #include "adasplats/cloud/dropped_points.h"
+#include "adasplats/cloud/own_body.h"
 #include "adasplats/cloud/point_origins.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/number_text.h"
@@ -65,6 +66,8 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Input>
   if (!(options.max_distance_m > 0)) throw usage("a largest distance that is not positive");
   if (!(options.max_dropped >= 0 && options.max_dropped <= 1))
     throw usage("the largest share of points that may be dropped is 0 to 1");
+  if (options.own_body_m && !(*options.own_body_m >= 0 && std::isfinite(*options.own_body_m)))
+    throw usage("the radius of the recording vehicle's own body is negative or not finite");
 }
 
 std::vector<CloudPart> read_parts(std::span<const Input> inputs, const LoadOptions& options,
@@ -228,8 +231,19 @@ void keep_only(std::vector<T>& values, const Kept& kept) {
   std::size_t end = 0;
   for (std::size_t i = 0; i < values.size(); ++i)
     if (kept[i] != 0) values[end++] = values[i];
+  const bool is_much_smaller = end < values.size() / 4 * 3;
   values.resize(end);
-  values.shrink_to_fit();
+  if (is_much_smaller) values.shrink_to_fit();
+}
+
+void keep_only(PointCloud& cloud, const Kept& kept) {
+  keep_only(cloud.positions, kept);
+  keep_only(cloud.sensor_positions, kept);
+  keep_only(cloud.origin_kinds, kept);
+  keep_only(cloud.intensities, kept);
+  keep_only(cloud.classes, kept);
+  keep_only(cloud.instances, kept);
+  keep_only(cloud.scan_indices, kept);
 }
 
 /// The part's cloud relative to `origin`, without the points that are dropped.
@@ -260,14 +274,7 @@ PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin, const Poi
   cloud.origin = origin;
   cloud.positions = std::move(positions);
   part = {};
-  if (count_dropped(kept) == 0) return cloud;
-  keep_only(cloud.positions, kept);
-  keep_only(cloud.sensor_positions, kept);
-  keep_only(cloud.origin_kinds, kept);
-  keep_only(cloud.intensities, kept);
-  keep_only(cloud.classes, kept);
-  keep_only(cloud.instances, kept);
-  keep_only(cloud.scan_indices, kept);
+  if (count_dropped(kept) > 0) keep_only(cloud, kept);
   return cloud;
 }
 
@@ -325,6 +332,23 @@ PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, ProgressSink& 
   return all;
 }
 
+/// Leaves out the points on the vehicle that carried the sensor; gives how many.
+std::size_t drop_own_body(PointCloud& cloud, std::optional<double> radius_m,
+                          const Executor& executor) {
+  if (radius_m && *radius_m == 0) return 0;
+  if (radius_m && !cloud.has_beams()) {
+    throw Error(ErrorKind::usage,
+                "points near their sensor are to be left out, but no point says where it was");
+  }
+  Kept flags =
+      radius_m ? points_within(cloud, *radius_m, executor) : find_own_body(cloud, {}, executor);
+  if (flags.empty()) return 0;
+  for (std::uint8_t& flag : flags) flag = flag == 0 ? 1 : 0;
+  const std::size_t dropped = count_dropped(flags);
+  if (dropped > 0) keep_only(cloud, flags);
+  return dropped;
+}
+
 }  // namespace
 
 std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
@@ -360,6 +384,8 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
     if (!listed[p].is_sequence) check_origins(clouds.back(), listed[p].path, executor);
   }
   PointCloud cloud = joined(std::move(clouds), origin, progress);
+  report.own_body = drop_own_body(cloud, options.own_body_m, executor);
+  tell_own_body(name_of(inputs), report, options, progress);
   report.origins = count_origins(cloud);
   return {std::move(cloud), report};
 }

@@ -45,6 +45,9 @@ struct LoadOptions {
   /// error: single faults are rarer, and more is a second place or another format. Of 51 small
   /// real files none has any; no returns of organised clouds (NaN, NaN, NaN) do not count.
   double max_dropped = 0.01;
+  /// Points on the vehicle that carried the sensor are left out: where this is not given those that
+  /// find_own_body() finds, else all that are nearer to their sensor, m; with 0 none.
+  std::optional<double> own_body_m;
 };
 
 /// What was dropped on the way.
@@ -63,6 +66,8 @@ struct LoadReport {
   /// Farther than max_distance_m from the componentwise median, or beyond 1e12 m, where doubles no
   /// longer hold 0.1 mm.
   std::size_t dropped_far = 0;
+  /// On the vehicle that carried the sensor.
+  std::size_t own_body = 0;
 };
 
 /// Loads and accumulates point files and SemanticKITTI sequence folders (see read_points and

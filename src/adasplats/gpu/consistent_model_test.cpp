@@ -137,13 +137,6 @@ std::size_t compare(const PointCloud& cloud, const ConsistentOptions& options,
   return both.finish();
 }
 
-/// No vehicle, but a small room.
-ConsistentOptions room_options() {
-  ConsistentOptions options;
-  options.least_range_m = 0.5;
-  return options;
-}
-
 /// Points at random heights on a lattice, as seen from two places above it.
 PointCloud lattice(int n, double step_m, double noise_m) {
   PointCloud cloud;
@@ -164,11 +157,11 @@ PointCloud without_sensors(PointCloud cloud) {
 }
 
 TEST_F(ConsistentOnGpu, ScannedRoomIsTheSameAfterEveryStep) {
-  EXPECT_GT(compare(scanned_room(), room_options()), 1000U);
+  EXPECT_GT(compare(scanned_room(), {}), 1000U);
 }
 
 TEST_F(ConsistentOnGpu, EveryRayAndAllItsDisksCount) {
-  ConsistentOptions options = room_options();
+  ConsistentOptions options;
   options.evidence.stride = 1;
   options.cover.overlap = 0.95;  // leaves gaps to fill
   EXPECT_GT(compare(scanned_room(), options), 1000U);
@@ -177,7 +170,7 @@ TEST_F(ConsistentOnGpu, EveryRayAndAllItsDisksCount) {
 TEST_F(ConsistentOnGpu, DuplicatesAndOtherCellsAreTheSame) {
   PointCloud cloud = scanned_room();
   for (std::size_t i = 0; i < 3000; ++i) cloud.positions[i + 1000] = cloud.positions[i % 7];
-  ConsistentOptions options = room_options();
+  ConsistentOptions options;
   for (const double small_cell_m : {0.0, 0.01}) {
     options.small_cell_m = small_cell_m;
     options.split_scale = 255;  // every cell
@@ -187,33 +180,32 @@ TEST_F(ConsistentOnGpu, DuplicatesAndOtherCellsAreTheSame) {
 
 TEST_F(ConsistentOnGpu, EqualPrioritiesAreTakenInTheirOrder) {
   // Nearly all disks of a flat lattice cover the same number: the order decides, one by one.
-  ConsistentOptions options;
-  options.least_range_m = 0.1;
+  const ConsistentOptions options;
   EXPECT_GT(compare(lattice(150, 0.05, 0), options), 100U);
   EXPECT_GT(compare(lattice(150, 0.05, 0.01), options), 100U);
 }
 
 TEST_F(ConsistentOnGpu, CloudsWithoutSensorPositionsAreTheSame) {
-  EXPECT_GT(compare(without_sensors(scanned_room()), room_options()), 1000U);
+  EXPECT_GT(compare(without_sensors(scanned_room()), {}), 1000U);
   for (const double noise_m : {0.0, 0.01}) {  // without noise seeds stand on borders of sectors
-    EXPECT_GT(compare(without_sensors(lattice(150, 0.05, noise_m)), room_options()), 100U);
+    EXPECT_GT(compare(without_sensors(lattice(150, 0.05, noise_m)), {}), 100U);
   }
 }
 
 TEST_F(ConsistentOnGpu, OriginsOfSeveralKindsAreTheSame) {
   PointCloud cloud = scanned_room();
   cloud.origin_kinds.assign(cloud.size(), OriginKind::measured);
-  EXPECT_GT(compare(cloud, room_options()), 1000U);
+  EXPECT_GT(compare(cloud, {}), 1000U);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (cloud.positions[i].x > 0) cloud.origin_kinds[i] = OriginKind::guessed;
     if (cloud.positions[i].y > 0) cloud.origin_kinds[i] = OriginKind::stated;
     if (cloud.positions[i].x > 2) cloud.origin_kinds[i] = OriginKind::none;
   }
-  EXPECT_GT(compare(cloud, room_options()), 1000U);
+  EXPECT_GT(compare(cloud, {}), 1000U);
 }
 
 TEST_F(ConsistentOnGpu, WithoutRoundsNoRayIsAsked) {
-  ConsistentOptions options = room_options();
+  ConsistentOptions options;
   options.balance_rounds = 0;
   options.cover.unchecked_sectors = 0;
   EXPECT_GT(compare(scanned_room(), options), 1000U);
@@ -223,7 +215,7 @@ TEST_F(ConsistentOnGpu, RemovedClassesAreLeftOut) {
   ClassTables tables;
   tables.removed.resize(1 << 16);
   tables.removed[kPerson] = 1;
-  EXPECT_GT(compare(scanned_room(), room_options(), tables), 1000U);
+  EXPECT_GT(compare(scanned_room(), {}, tables), 1000U);
 }
 
 TEST_F(ConsistentOnGpu, SmallAndDegenerateClouds) {
@@ -233,20 +225,20 @@ TEST_F(ConsistentOnGpu, SmallAndDegenerateClouds) {
     cloud.sensor_positions.resize(cloud.size(), {0, 0, 1.7F});
     return cloud;
   };
-  EXPECT_EQ(compare(cloud_of({{3, 1, 1}}), room_options()), 0U);
-  EXPECT_EQ(compare(cloud_of(std::vector<Vec3f>(5000, {3, 1, 1})), room_options()), 0U);
-  EXPECT_EQ(compare(cloud_of(std::vector<Vec3f>(50, {0, 0, 1.7F})), room_options()), 0U);
+  EXPECT_EQ(compare(cloud_of({{3, 1, 1}}), {}), 0U);
+  EXPECT_EQ(compare(cloud_of(std::vector<Vec3f>(5000, {3, 1, 1})), {}), 0U);
+  EXPECT_EQ(compare(cloud_of(std::vector<Vec3f>(50, {0, 0, 1.7F})), {}), 0U);
   for (const int n : {2, 7, 9, 31, 32, 33, 159, 160, 161, 1025}) {
     std::vector<Vec3f> line, plane;
     for (int i = 0; i < n; ++i) {
       line.push_back({0.05F * static_cast<float>(i), 0, 0});
       plane.push_back({0.1F * static_cast<float>(i % 20), 0.1F * static_cast<float>(i / 20), 0});
     }
-    compare(cloud_of(line), room_options());
-    compare(cloud_of(plane), room_options());
+    compare(cloud_of(line), {});
+    compare(cloud_of(plane), {});
     plane.insert(plane.end(), {{1e12F, 0, 0}, {0, -1e9F, 0}});
-    compare(cloud_of(plane), room_options());
-    compare(without_sensors(cloud_of(plane)), room_options());
+    compare(cloud_of(plane), {});
+    compare(without_sensors(cloud_of(plane)), {});
   }
 }
 
@@ -254,7 +246,7 @@ ConsistentSplats model_of(const PointCloud& cloud) {
   const Executor executor(1);
   const Steps steps = gpu::make_cuda_consistent_steps(0, executor);
   steps->load(cloud, {});
-  EXPECT_TRUE(consistent_disks(*steps, true, room_options(), [](std::string_view, int) {}).checked);
+  EXPECT_TRUE(consistent_disks(*steps, true, {}, [](std::string_view, int) {}).checked);
   return steps->take_splats();
 }
 

@@ -147,6 +147,7 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
   json["points_not_finite"] = result.loaded.dropped_not_finite;
   json["points_no_return"] = result.loaded.no_returns;
   json["points_far"] = result.loaded.dropped_far;
+  json["points_own_body"] = result.loaded.own_body;
   json["points_intensity_unknown"] = result.loaded.unknown_intensities;
   json["beams"] = result.loaded.beams;
   json["points_in"] = built.points_in;

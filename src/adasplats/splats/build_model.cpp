@@ -189,11 +189,18 @@ std::size_t remove_beyond(double reach_m, PointCloud& cloud) {
   return removed;
 }
 
-std::string warning_of_far_points(std::size_t points, double reach_m) {
-  return std::to_string(points) + (points == 1 ? " point lies" : " points lie") + " more than " +
-         std::to_string(std::lround(reach_m / 1000)) +
-         " km from the middle of the cloud and are left out: so far do cells reach (larger "
-         "ones, --cell and --small-cell, reach farther)";
+/// Says what was removed; throws data where that is no single fault, but a second place.
+void tell_beyond(std::size_t removed, std::size_t all, double reach_m, ProgressSink& progress) {
+  constexpr double kMostRemoved = 0.01;  // as LoadOptions::max_dropped
+  if (removed == 0) return;
+  const std::string what =
+      std::to_string(removed) + (removed == 1 ? " point lies" : " points lie") + " more than " +
+      std::to_string(std::lround(reach_m / 1000)) +
+      " km from the middle of the cloud, farther than cells reach (larger ones, --cell and "
+      "--small-cell, reach farther)";
+  if (static_cast<double>(removed) > kMostRemoved * static_cast<double>(all))
+    throw Error(ErrorKind::data, "of " + std::to_string(all) + " points " + what);
+  progress.warn(what + ": left out");
 }
 
 /// Ours.
@@ -257,8 +264,7 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
   if (options.method == SplatMethod::consistent) {
     const double reach_m = kMostFusionCells * options.consistent.smallest_cell_m();
     report.points_noise = remove_beyond(reach_m, cloud);
-    if (report.points_noise > 0) progress.warn(warning_of_far_points(report.points_noise, reach_m));
-    require_points(cloud.size());
+    tell_beyond(report.points_noise, report.points_in, reach_m, progress);
   }
   model.origin = cloud.origin;
   model.method = std::string(method_name(options.method));

@@ -30,11 +30,11 @@ struct ConsistentOptions {
   double largest_spacing = 1.2;
   /// Where there are no rays to tell what is free, disks stay smaller and end where points end.
   double unchecked_largest_spacing = 0.6;
-  double isolated = 3;       ///< a cell that wants so many times the largest has no splat
-  double least_range_m = 2;  ///< nearer points have no ray: the vehicle itself
-  int balance_rounds = 4;    ///< of shrinking and removing seeds; 0: no ray check
-  JudgeOptions judge;        ///< of seeds
-  EvidenceOptions evidence;  ///< its stride is the largest: of few rays more are taken
+  double isolated = 3;         ///< a cell that wants so many times the largest has no splat
+  double least_range_m = 0.1;  ///< nearer points have no ray: no LiDAR measures them
+  int balance_rounds = 4;      ///< of shrinking and removing seeds; 0: no ray check
+  JudgeOptions judge;          ///< of seeds
+  EvidenceOptions evidence;    ///< its stride is the largest: of few rays more are taken
   std::size_t evidence_rays = 2'000'000;  ///< enough of them for a round
   CoverOptions cover;
   int strict_rounds = 5;            ///< of limiting chosen disks

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <string>
 
@@ -33,7 +34,6 @@ BuildOptions consistent_options() {
   BuildOptions options;
   options.method = SplatMethod::consistent;
   options.remove = DynamicRemoval::none;
-  options.consistent.least_range_m = 0.5;  // no vehicle, but a small room
   return options;
 }
 
@@ -378,8 +378,59 @@ TEST(ConsistentModel, DegenerateCloudsFinish) {
       expect_sound(build(cloud_of(plane)));
       // Outliers far beyond what floats can square.
       plane.insert(plane.end(), {{1e30F, 0, 0}, {0, -3e38F, 0}, {1e12F, 1e12F, 0}});
-      expect_sound(build(cloud_of(plane)));
+      if (n < 300) {  // most of the points
+        EXPECT_THROW(build(cloud_of(plane)), Error);
+      } else {
+        expect_sound(build(cloud_of(plane)));
+      }
     }
+  }
+}
+
+TEST(ConsistentModel, AStationKeepsTheFloorAroundIt) {
+  const Vec3f station = {0, 0, 1.5F};
+  PointCloud cloud;
+  for (int ring = 10; ring < 85; ++ring) {  // beams down to 10 degrees from the vertical
+    for (int a = 0; a < 720; ++a) {
+      const double azimuth = a * std::numbers::pi / 360;
+      const double out = 1.5 * std::tan(ring * std::numbers::pi / 180);
+      if (out > 5) continue;
+      cloud.positions.push_back({static_cast<float>(out * std::cos(azimuth)),
+                                 static_cast<float>(out * std::sin(azimuth)), 0});
+    }
+  }
+  cloud.sensor_positions.assign(cloud.size(), station);
+  cloud.origin_kinds.assign(cloud.size(), OriginKind::stated);
+  const std::size_t points = cloud.size();
+  const Built built = build(std::move(cloud));
+  ASSERT_TRUE(built.report.consistent);
+  EXPECT_EQ(built.report.consistent->rays, points);  // not only those from 2 m on
+  std::vector<Ray> rays;
+  for (const double out : {0.4, 0.6, 0.9, 1.2, 1.8}) {
+    for (int a = 3; a < 360; a += 10) {
+      const double azimuth = a * std::numbers::pi / 180;
+      const Vec3d end = {out * std::cos(azimuth), out * std::sin(azimuth), -1.5};
+      Ray& ray = rays.emplace_back();
+      ray.origin = station;
+      ray.direction = vec_cast<float>(end / length(end));
+    }
+  }
+  const Executor executor(1);
+  std::vector<Hit> hits(rays.size());
+  make_cpu_tracer(built.model.view(), executor)->nearest(rays, hits, executor);
+  for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(hits[i].valid()) << "beam " << i;
+}
+
+/// Adds points of a second place 21 km away.
+void add_far_points(int count, PointCloud& cloud) {
+  for (int i = 0; i < count; ++i) {
+    PointCloud far;
+    const float along = 0.03F * static_cast<float>(i % 20);
+    far.positions = {{21000.0F + along, 0.03F * static_cast<float>(i / 20), 1}};
+    far.sensor_positions = {{20990, 0, 1}};
+    far.classes.assign(cloud.classes.empty() ? 0 : 1, 40);
+    far.intensities.assign(cloud.intensities.empty() ? 0 : 1, 0.5F);
+    append(cloud, std::move(far));
   }
 }
 
@@ -387,24 +438,23 @@ TEST(ConsistentModel, DegenerateCloudsFinish) {
 TEST(ConsistentModel, PointsBeyondAllCellsAreLeftOutAndSaid) {
   PointCloud cloud = scanned_room();
   const std::size_t points = cloud.size();
+  const int few = static_cast<int>(points / 200);
   const Built expected = build(cloud);
-  for (int i = 0; i < 300; ++i)
-    append(cloud, [&] {
-      PointCloud far;
-      const float along = 0.03F * static_cast<float>(i % 20);
-      far.positions = {{21000.0F + along, 0.03F * static_cast<float>(i / 20), 1}};
-      far.sensor_positions = {{20990, 0, 1}};
-      far.classes.assign(cloud.classes.empty() ? 0 : 1, 40);
-      far.intensities.assign(cloud.intensities.empty() ? 0 : 1, 0.5F);
-      return far;
-    }());
+  add_far_points(few, cloud);
   const Built built = build(cloud);
-  EXPECT_EQ(built.report.points_noise, 300U);
+  EXPECT_EQ(built.report.points_noise, static_cast<std::size_t>(few));
   EXPECT_EQ(built.report.points_used, points);
   ASSERT_EQ(built.warnings.texts.size(), 1U);
-  EXPECT_NE(built.warnings.texts[0].find("300 points lie more than 21 km"), std::string::npos)
+  EXPECT_NE(built.warnings.texts[0].find(std::to_string(few) + " points lie more than 21 km"),
+            std::string::npos)
       << built.warnings.texts[0];
   EXPECT_EQ(built.model.size(), expected.model.size());
+}
+
+TEST(ConsistentModel, ASecondPlaceBeyondAllCellsIsAnError) {
+  PointCloud cloud = scanned_room();
+  add_far_points(static_cast<int>(cloud.size() / 50), cloud);
+  EXPECT_THROW(build(cloud), Error);
 }
 
 /// What the recipe makes of a cloud in canonical order.

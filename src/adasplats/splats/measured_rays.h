@@ -19,7 +19,7 @@ namespace adasplats {
 class MeasuredRays {
  public:
   /// Needs sensor positions. Points whose origin nobody measured or stated, and those nearer to
-  /// their sensor than `least_range_m` (the vehicle), have no ray.
+  /// their sensor than `least_range_m` have no ray.
   MeasuredRays(const PointCloud& cloud, double least_range_m, const Executor& executor);
 
   std::size_t size() const { return points_.size(); }
