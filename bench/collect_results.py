@@ -5,7 +5,8 @@
 
 usage: collect_results.py part FOLDER OUT.json COMMAND    all *.json below FOLDER, folders as keys
        collect_results.py all OUT.json PART.json...
-       collect_results.py current PART.json PROGRAM       exit code 0: of the program's commit
+       collect_results.py current PART.json PROGRAM COMMAND
+                                    exit code 0: of the program's clean commit and this command
 
 The reports of a part must come from one commit. Parts of several commits stay visibly so: then the
 result names none, and each part its own.
@@ -66,11 +67,12 @@ def everything(out, parts):
     write(out, {"commit": one[0], "dirty": one[1], "parts": results})
 
 
-def is_current(file, program):
+def is_current(file, program, command):
     told = json.loads(pathlib.Path(file).read_text())["provenance"]
     now = provenance_of(program)
     same = (told["commit"], told["dirty"]) == (now["commit"], now["dirty"])
-    return same and now["dirty"] is not True and now["commit"] != "unknown"
+    return (same and told["command"] == command and now["dirty"] is not True
+            and now["commit"] != "unknown")
 
 
 def write(out, result):
@@ -83,8 +85,8 @@ def main():
             part(folder, out, command)
         case ["all", out, *parts] if parts:
             everything(out, parts)
-        case ["current", file, program]:
-            sys.exit(0 if is_current(file, program) else 1)
+        case ["current", file, program, command]:
+            sys.exit(0 if is_current(file, program, command) else 1)
         case _:
             sys.exit(__doc__)
 

@@ -8,7 +8,7 @@
 #   WORK       folder for models and scans; a run that was interrupted goes on there
 #   --bin      folder of the built program (default: build/release/bin); nothing is built
 #   --only     one of kitti-0005, semantickitti-00, street, tls-street (to try)
-#   --methods  these alone (to try)
+#   --methods  these alone (to try; needs --docs)
 #   --docs     where the reports go (default: docs/compare)
 # Poisson meshes need PoissonRecon on PATH, or adasplats-poisson beside the program.
 set -euo pipefail
@@ -33,6 +33,8 @@ while [[ ${1:-} == --* ]]; do
   shift 2
 done
 (($# == 2)) || usage
+# Two rows of a table are not to replace the table.
+[[ -n $methods && $docs == "$root/docs/compare" ]] && usage
 mkdir -p "$2"
 work=$(realpath "$2")
 # Commands are told with these names, not with those of this machine.
@@ -59,12 +61,15 @@ import json, sys
 versions = set()
 for name in sys.argv[1:]:
     results = json.load(open(f"out/{name}/compare.json", encoding="utf-8"))
-    for part in [results, *results["competitors"]]:
-        told = part.get("provenance", {})
-        versions.add((told.get("commit"), told.get("dirty")))
+    steps = [step for one in results["competitors"] for step in one.get("made_by", {}).values()]
+    for told in [results["provenance"], *steps]:
+        versions.add((told["commit"], told["dirty"]))
 if len(versions) != 1:
     sys.exit(f"compare_all: the comparisons are of several versions: {sorted(map(str, versions))}")
-print("compare_all: all of commit", *versions.pop())
+commit, dirty = versions.pop()
+if commit == "unknown" or dirty:
+    sys.exit(f"compare_all: the program is of no clean commit: {commit}, dirty: {dirty}")
+print("compare_all: all of commit", commit)
 PYTHON
 }
 

@@ -25,11 +25,16 @@ usage() {
 }
 while [[ ${1:-} == --* ]]; do
   case $1 in
-    --bin) bin=$(realpath "$2") && shift 2 ;;
-    --out) out=$(realpath -m "$2") && own_out=true && shift 2 ;;
-    --small) small=true && shift ;;
+    --bin) bin=$(realpath "$2") ;;
+    --out) out=$(realpath -m "$2") own_out=true ;;
+    --small)
+      small=true
+      shift
+      continue
+      ;;
     *) usage ;;
   esac
+  shift 2
 done
 (($# >= 2)) || usage
 $small && [[ -z ${own_out:-} ]] && usage
@@ -149,16 +154,16 @@ measure_large() {
 
 measure_bytes() {
   street street "$(points 300000)"
-  local threads s
+  local threads s made cast
   s=$(file street)
   for threads in 1 2 3; do
     report "threads/$threads/model" model "$s/mapping.ply" --labels semantickitti \
       --method semantic --threads $threads -o "$(file model.ply)"
     report "threads/$threads/simulate" simulate "$(file model.ply)" --sensor hdl-64-paper \
       --trajectory "$s/sequences/00" --threads $threads --every 9 -o "$(file scans)" --overwrite
-    printf '{"model": "%s", "scans": "%s"}\n' "$(sha256sum <"$(file model.ply)" | cut -c1-16)" \
-      "$(cat "$(file scans)"/sequences/00/{velodyne/*.bin,labels/*.label} | sha256sum | cut -c1-16)" \
-      >"$part/threads/$threads/sha256.json"
+    made=$(sha256sum <"$(file model.ply)" | cut -c1-16)
+    cast=$(cat "$(file scans)"/sequences/00/{velodyne/*.bin,labels/*.label} | sha256sum | cut -c1-16)
+    printf '{"model": "%s", "scans": "%s"}\n' "$made" "$cast" >"$part/threads/$threads/sha256.json"
   done
   python3 - "$part" <<'PYTHON'
 import json, pathlib, sys
@@ -233,8 +238,9 @@ measure_live() {
 
 for part in $all_parts; do
   [[ $named == "  " || $named == *" $part "* ]] || continue
+  command="bench/results_cpu.sh$($small && echo ' --small') REAL_DATA WORK $part"
   if [[ $named == "  " && -s $part.json ]] &&
-    "${collect[@]}" current "$part.json" "$bin/adasplats"; then
+    "${collect[@]}" current "$part.json" "$bin/adasplats" "$command"; then
     echo "$part: measured before"
     continue
   fi
@@ -243,8 +249,7 @@ for part in $all_parts; do
   cut -d ' ' -f 1 /proc/loadavg >"$part/load_average.json"
   begin=$SECONDS
   "measure_$part"
-  "${collect[@]}" part "$part" "$part.json" \
-    "bench/results_cpu.sh$($small && echo ' --small') REAL_DATA WORK $part"
+  "${collect[@]}" part "$part" "$part.json" "$command"
   rm -rf "files/$part"
   echo "$part: done in $((SECONDS - begin)) s"
 done

@@ -37,12 +37,24 @@ trace() {
     --json "$work/$name.json" "$@" >"$work/log"
 }
 
+# trace_optix NAME ARGUMENTS...: nothing where the driver has no OptiX; any other failure is one.
+trace_optix() {
+  local name=$1
+  trace "$@" --backend optix 2>"$work/said" && return
+  grep -q 'it comes with the NVIDIA driver' "$work/said" || {
+    cat "$work/said" >&2
+    exit 1
+  }
+  echo "results_gpu: without $name: $(cat "$work/said")" >&2
+  echo '{}' >"$work/$name.json"
+}
+
 street 2m 3300000
 street 8m 13000000
 trace cuda_2m 2m --backend cuda
-trace optix_2m 2m --backend optix || echo '{}' >"$work/optix_2m.json"
+trace_optix optix_2m 2m
 trace cuda_8m 8m --backend cuda --quick
-trace optix_8m 8m --backend optix --quick || echo '{}' >"$work/optix_8m.json"
+trace_optix optix_8m 8m --quick
 if ((gpus > 1)); then
   trace one_gpu 2m --quick --gpus 0
   trace two_gpus 2m --quick --gpus 0,1
@@ -91,7 +103,9 @@ result["runs"] = {name: read(name) for name in
 versions = {(run["provenance"]["commit"], run["provenance"]["dirty"])
             for run in result["runs"].values()}
 if len(versions) != 1:
-    sys.exit(f"results_gpu: the programs are of several versions: {sorted(versions)}")
+    sys.exit(f"results_gpu: the programs are of several versions: {sorted(map(str, versions))}")
+if told["commit"] == "unknown" or told["dirty"]:
+    sys.exit(f"results_gpu: the programs are of no clean commit: {versions}")
 pathlib.Path(out).write_text(json.dumps(result, indent=2) + "\n")
 print(json.dumps({k: v for k, v in result.items() if k not in ("runs", "provenance")}, indent=2))
 PYTHON

@@ -43,7 +43,9 @@ if(ADASPLATS_VIEWER)
   else()
     execute_process(COMMAND ${ADASPLATS_NODE} --version OUTPUT_VARIABLE ADASPLATS_NODE_VERSION
                     OUTPUT_STRIP_TRAILING_WHITESPACE)
-    if(ADASPLATS_NODE_VERSION VERSION_LESS v18)
+    # With a letter before it no version is less than another.
+    string(REGEX REPLACE "^v" "" node_version "${ADASPLATS_NODE_VERSION}")
+    if(node_version VERSION_LESS 18)
       set(missing "no Node.js 18 or newer (found ${ADASPLATS_NODE_VERSION})")
     else()
       # The packages are fetched when the build is configured, so that a machine without network says

@@ -43,12 +43,8 @@ count_failure() {
 check() {
   local name=$1 status=0 begin=$SECONDS log=$logs/$1.log
   shift
-  # In the background, because bash ignores set -e in what it runs as a condition.
-  (
-    set -euo pipefail
-    "$@"
-  ) >"$log" 2>&1 </dev/null &
-  wait $! || status=$?
+  # In a shell of its own, because bash ignores set -e in all that a condition runs, whatever is set.
+  bash -euo pipefail -c '"$@"' check "$@" >"$log" 2>&1 </dev/null || status=$?
   case $status in
     0)
       count_pass
@@ -68,7 +64,7 @@ check() {
 }
 
 check_scripts() {
-  local -a scripts=(.ci/run scripts/*.sh tools/*.sh)
+  local -a scripts=(.ci/run scripts/*.sh tools/*.sh bench/*.sh)
   local script
   for script in "${scripts[@]}"; do bash -n "$script"; done
   shellcheck "${scripts[@]}"
@@ -141,6 +137,8 @@ check_skipped() {
   check skips tools/check_skips.py "$logs" && sed 's/^/    /' "$logs/skips.log"
 }
 
+export root
+export -f check_scripts fetch_packages build_release build_asan build_example
 rm -rf "$logs"
 mkdir -p "$logs"
 built=true

@@ -116,8 +116,10 @@ class Files:
         for path, data in sorted(self.read.items()):
             name = str(path.relative_to(root.resolve()))
             parts = list(data.get("parts", {}).values()) or [data]
-            commits = [x.get("provenance", {}).get("commit", x.get("commit")) for x in parts]
-            told = all(commit and commit != "unknown" for commit in commits)
+            sources = [x.get("provenance", x) for x in parts]
+            told = all(x.get("commit", "unknown") not in (None, "", "unknown") for x in sources)
+            if any(x.get("dirty") for x in sources):
+                yield name + ": measured with changes that no commit holds"
             if data and told == (name in BEFORE_COMMITS):
                 yield name + (": tells its commit and stands in BEFORE_COMMITS" if told else
                               ": tells no commit")
@@ -302,6 +304,8 @@ def self_test():
         page.write_text(good)
         (root / "a.json").write_text(json.dumps({**data, "commit": ""}))
         assert work(root, check=True) == ["a.json: tells no commit"]
+        (root / "a.json").write_text(json.dumps({**data, "dirty": True}))
+        assert work(root, check=True) == ["a.json: measured with changes that no commit holds"]
 
 
 def main():

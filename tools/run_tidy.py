@@ -48,13 +48,15 @@ def find_clang_tidy():
 def with_headers(source):
     """The source and every header of ours that it includes, directly or not."""
     found, pending = set(), [source]
+    # Where its includes may stand: beside it and in the folders above.
+    roots = [folder for folder in source.parents if folder.is_relative_to(ROOT)]
     while pending:
         path = pending.pop()
         if path in found:
             continue
         found.add(path)
         for name in OUR_INCLUDE.findall(path.read_bytes()):
-            for folder in (ROOT / "src", path.parent):
+            for folder in (ROOT / "src", *roots):
                 header = folder / os.fsdecode(name)
                 if header.is_file():
                     pending.append(header)

@@ -17,7 +17,7 @@ std::pair<Option*, Option*> add_echo_inputs(OptionSet& app, EchoInputs& inputs) 
            "is SEQUENCE itself, whose poses may be far apart");
   app.add_option("--sensor", inputs.sensor, "Sensor whose beams are looked for in raw scans")
       ->capture_default_str()
-      ->type_name("SENSOR");
+      ->type_name("NAME|FILE");
   return {model, sequence};
 }
 

@@ -25,6 +25,6 @@ void bind_hits(py::module_& module);
 void bind_evaluate(py::module_& module);
 void bind_synth(py::module_& module);
 /// Makes every function of the finished module say in words what is wrong with its arguments.
-void explain_wrong_arguments(py::module_ module);
+void explain_wrong_arguments(const py::module_& module);
 
 }  // namespace adasplats::python

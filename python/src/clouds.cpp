@@ -208,24 +208,12 @@ std::vector<std::filesystem::path> paths_of(py::handle value, const char* name,
   return paths;
 }
 
-void bind_clouds(py::module_& module) {
-  const std::string init_doc = documented(
-      "__init__",
-      "self, positions, *, classes=None, instances=None, intensities=None, sensor_positions=None, "
-      "origin_kinds=None, scan_indices=None, origin=None",
-      "See the class.");
-  py::class_<PointCloud, std::shared_ptr<PointCloud>> type(module, "PointCloud", kCloudDoc);
-  type.def(py::init(&make_cloud), py::arg("positions"), py::kw_only(),
-           py::arg("classes") = py::none(), py::arg("instances") = py::none(),
-           py::arg("intensities") = py::none(), py::arg("sensor_positions") = py::none(),
-           py::arg("origin_kinds") = py::none(), py::arg("scan_indices") = py::none(),
-           py::arg("origin") = py::none(), init_doc.c_str())
-      .def("__len__", &PointCloud::size)
-      .def("__repr__",
-           [](const PointCloud& cloud) {
-             return "<adasplats.PointCloud of " + std::to_string(cloud.size()) + " points>";
-           })
-      .def_property_readonly(
+namespace {
+
+using CloudClass = py::class_<PointCloud, std::shared_ptr<PointCloud>>;
+
+void bind_attributes(CloudClass& type) {
+  type.def_property_readonly(
           "positions",
           [](const py::object& self) {
             return array_view(self.cast<const PointCloud&>().positions, self);
@@ -259,7 +247,28 @@ void bind_clouds(py::module_& module) {
           "origin", [](const PointCloud& cloud) { return array_of(cloud.origin); },
           "(3,) float64, world coordinates of the local origin, m.")
       .def_property_readonly("world_positions", &world_positions,
-                             "(N, 3) float64, origin + positions: a new array.")
+                             "(N, 3) float64, origin + positions: a new array.");
+}
+
+}  // namespace
+
+void bind_clouds(py::module_& module) {
+  const std::string init_doc = documented(
+      "__init__",
+      "self, positions, *, classes=None, instances=None, intensities=None, sensor_positions=None, "
+      "origin_kinds=None, scan_indices=None, origin=None",
+      "See the class.");
+  CloudClass type(module, "PointCloud", kCloudDoc);
+  type.def(py::init(&make_cloud), py::arg("positions"), py::kw_only(),
+           py::arg("classes") = py::none(), py::arg("instances") = py::none(),
+           py::arg("intensities") = py::none(), py::arg("sensor_positions") = py::none(),
+           py::arg("origin_kinds") = py::none(), py::arg("scan_indices") = py::none(),
+           py::arg("origin") = py::none(), init_doc.c_str())
+      .def("__len__", &PointCloud::size)
+      .def("__repr__",
+           [](const PointCloud& cloud) {
+             return "<adasplats.PointCloud of " + std::to_string(cloud.size()) + " points>";
+           })
       .def(
           "save",
           [](const PointCloud& cloud, py::handle path) {
@@ -274,6 +283,7 @@ void bind_clouds(py::module_& module) {
                      "OSError,\nValueError (another ending).")
               .c_str());
 
+  bind_attributes(type);
   add_pickling<PointCloud>(type, "PointCloud");
 
   const std::string read_doc = documented(

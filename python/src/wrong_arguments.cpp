@@ -161,7 +161,7 @@ void wrap_members(const py::object& type) {
 
 }  // namespace
 
-void explain_wrong_arguments(py::module_ module) {
+void explain_wrong_arguments(const py::module_& module) {
   for (const auto& [key, value] : py::dict(module.attr("__dict__"))) {
     if (PyType_Check(value.ptr()) == 1) {
       wrap_members(py::reinterpret_borrow<py::object>(value));

@@ -496,6 +496,8 @@ class Presets(CompareTest):
         self.assertEqual(self.places(), [[4, 0, 2], [6, 0, 2], [8, 0, 2]])
         self.compare(*kitti, "--scans", "1:2", "--time-limit", "0.01")
         self.assertEqual(self.places(), [[6, 0, 2], [8, 0, 2]])
+        self.compare(*kitti, "--scans", "0:2:2", "--time-limit", "0.01")
+        self.assertEqual(self.places(), [[4, 0, 2], [8, 0, 2]])
         self.assertLess(results_of(self.output)["data"]["points"], data["points"])
         self.refuse(64, "dataset", "--preset", "paper-kitti", "-o", "other", "--scans", "3:1",
                     says=["3 scans"])

@@ -204,10 +204,8 @@ std::vector<Vec3d> along_the_points(const PointCloud& cloud) {
 /// Where the vehicle was while it took these scans.
 Trajectory poses_of_scans(const fs::path& sequence, const ScanRange& range) {
   const Trajectory all = load_trajectory(sequence);
-  const std::size_t first = std::min(range.first, all.size());
-  const std::size_t end = first + std::min(range.count, all.size() - first);
   Trajectory chosen;
-  for (std::size_t k = first; k < end; k += range.stride) chosen.push_back(all[k]);
+  for (const std::size_t k : chosen_scans(range, all.size(), sequence)) chosen.push_back(all[k]);
   return chosen;
 }
 

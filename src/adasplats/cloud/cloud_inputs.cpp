@@ -118,6 +118,7 @@ std::vector<CloudInput> files_of(const Folder& folder) {
                     " .bin files, scans in the frame of a sensor that moves; name the sequence "
                     "folder, which has poses.txt and them in a folder 'velodyne'");
   std::vector<CloudInput> inputs;
+  inputs.reserve(files.size());
   for (const fs::path& file : files) inputs.push_back({file, false});
   return inputs;
 }

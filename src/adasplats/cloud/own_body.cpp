@@ -205,6 +205,7 @@ class Search {
   /// Which of the near points lie where enough stations saw something from farther away.
   std::vector<std::uint8_t> confirm(const std::vector<std::uint32_t>& near) const {
     std::vector<CellKey> around;
+    around.reserve(near.size());
     for (const std::uint32_t i : near)
       around.push_back(cell_of(cloud_.positions[i], options_.cell_m));
     sort_unique(around);

@@ -39,6 +39,7 @@ std::vector<fs::path> resolve_cloud_inputs(const fs::path& input) {
   const std::vector<CloudInput> inputs = cloud_inputs(input);
   if (inputs.size() > 1 && !inputs.front().is_sequence) return {input};
   std::vector<fs::path> paths;
+  paths.reserve(inputs.size());
   for (const CloudInput& one : inputs) paths.push_back(one.path);
   return paths;
 }

@@ -8,7 +8,7 @@
 
 namespace adasplats {
 
-/// Scans [first, first + count) of a sequence, every `stride`-th.
+/// `count` scans of a sequence (or as many as there are) from `first` on, every `stride`-th.
 struct ScanRange {
   std::size_t first = 0;
   std::size_t count = static_cast<std::size_t>(-1);

@@ -82,16 +82,18 @@ class Renderer {
 
     const int width = (right - corner.x) * axis;
     std::vector<Vec3f> colors(samples.size());  // row by row
+    const auto place = [width](int x, int y) {
+      return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+             static_cast<std::size_t>(x);
+    };
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const int x = samples[i].x - corner.x * axis, y = samples[i].y - corner.y * axis;
-      colors[static_cast<std::size_t>(y * width + x)] = shade(shading_.tables(), rays[i], hits[i]);
+      colors[place(x, y)] = shade(shading_.tables(), rays[i], hits[i]);
     }
     for (int y = corner.y; y < bottom; ++y)
       for (int x = corner.x; x < right; ++x)
         store(
-            &colors[static_cast<std::size_t>((y - corner.y) * axis * width +
-                                             (x - corner.x) * axis)],
-            width,
+            &colors[place((x - corner.x) * axis, (y - corner.y) * axis)], width,
             &image.pixels[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                                static_cast<std::size_t>(x))]);
   }

@@ -71,6 +71,8 @@ ADASPLATS_HD inline double largest_seed_m(const MeasuredPoints& points,
                                           const TypicalSpacing& typical,
                                           const ConsistentOptions& options) {
   const bool beam = has_beam(points, members);
+  // The first cells of their sort, made by splitting cells that were of the other one.
+  if (typical.of(beam) == 0) return options.cell_m;
   return options.largest_seed(beam) * typical.of(beam) *
          static_cast<double>(spacing_unit_m(points, members, beam));
 }
