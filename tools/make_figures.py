@@ -37,6 +37,7 @@ MISSING = "–"
 BEFORE_COMMITS = tuple(f"docs/compare/{name}/compare.json" for name in
                        ("kitti-0005", "semantickitti-00", "street", "tls-street"))
 
+LOOKS_DEFINED = re.compile(r'^\[[^\]\n]+\]: \S+\.json.*$', re.M)
 DEFINITION = re.compile(r'^\[([^\]\n]+)\]: (\S+\.json) "(.+) as (.+)"$', re.M)
 LINK = re.compile(r"\[([^\[\]\n]*)\]\[([^\[\]\n]+)\]")
 TABLE = re.compile(r"(<!-- table: (\w+) (\S+\.json)(?: (\S+))? -->\n)(.*?)(<!-- /table -->)", re.S)
@@ -125,6 +126,17 @@ class Files:
                               ": tells no commit")
 
 
+def figure_of(data, key, form):
+    """The text of a value, "–" where its file or its part of it has not been measured."""
+    value = value_at(data, key)
+    names = key.removeprefix("1 - ").removeprefix("mean of ").split("/")
+    of_several = names[0] in ("parts", "runs", "competitors")
+    part = value_at(data, "/".join(names[:2 if of_several else 1]))
+    if value is None and part is not None:
+        raise Fault(f"nothing is at '{key}'")
+    return text_of(value, form)
+
+
 # ---- whole tables --------------------------------------------------------------------------
 
 COMPARISON = [
@@ -197,8 +209,10 @@ def made(document, text, files):
 
     known = {}
     for name, file, key, form in DEFINITION.findall(text):
-        known[name] = guarded(
-            lambda: text_of(value_at(files.at(document, file), key), form), None)
+        known[name] = guarded(lambda: figure_of(files.at(document, file), key, form), None)
+    whole = {match[0] for match in DEFINITION.finditer(text)}
+    faults += [f"{document.name}: '{line}' is no definition of a figure" for line in
+               LOOKS_DEFINED.findall(text) if line not in whole]
     used = {name for _, name in LINK.findall(text)}
     faults += [f"{document.name}: nothing uses the figure [{name}]" for name in known
                if name not in used]
@@ -296,10 +310,11 @@ def self_test():
                                ("| 3 s |", "| 2 s |", "results.md:6"),
                                ("of it.", "of it, 7 GB.", "'7 GB' names no source"),
                                ("as 0 %", "as 8 %", "is no format"),
-                               ("x/seconds as", "x/second as", "[time] is '–'")):
+                               ("x/seconds as", "x/second as", "nothing is at 'x/second'"),
+                               ('0.00 s"', '0.00 s" ', "is no definition of a figure")):
             page.write_text(good.replace(old, new))
             faults = work(root, check=True)
-            assert len(faults) == 1 and said in faults[0], (old, faults)
+            assert faults and said in faults[0], (old, faults)
             print(f"self-test found: {faults[0]}")
         page.write_text(good)
         (root / "a.json").write_text(json.dumps({**data, "commit": ""}))

@@ -65,6 +65,10 @@ void add_load_options(OptionSet& app, LoadOptions& options) {
          "out, m; 0 keeps all (default: those that go along with the sensor)")
       ->type_name("M")
       ->group(kGroup);
+  app.add_flag("--trust-origins", options.trust_origins,
+               "Take sensor positions though points lie behind others as seen from there, as later "
+               "returns do")
+      ->group(kGroup);
   app.add_flag("--strict", options.strict, "Points that are not finite are an error")
       ->group(kGroup);
   app.add_flag("--salvage", options.salvage, "Read the whole records of truncated LAS files")

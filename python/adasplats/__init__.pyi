@@ -53,6 +53,7 @@ def read(
     max_distance_m: float = 100000.0,
     max_dropped: float = 0.01,
     own_body_m: float | None = None,
+    trust_origins: bool = False,
     threads: int = 0,
     progress: Progress | None = None,
 ) -> PointCloud: ...
@@ -104,6 +105,7 @@ def model(
     max_distance_m: float = 100000.0,
     max_dropped: float = 0.01,
     own_body_m: float | None = None,
+    trust_origins: bool = False,
     device: Device = "auto",
     gpus: Sequence[int] | None = None,
     threads: int = 0,

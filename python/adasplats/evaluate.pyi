@@ -67,6 +67,7 @@ def presence(
     max_distance_m: float = 100000.0,
     max_dropped: float = 0.01,
     own_body_m: float | None = None,
+    trust_origins: bool = False,
     device: Device = "auto",
     gpus: Sequence[int] | None = None,
     threads: int = 0,

@@ -176,6 +176,7 @@ void take_load_options(Keywords& keywords, LoadOptions& options) {
   keywords.take("max_distance_m", options.max_distance_m);
   keywords.take("max_dropped", options.max_dropped);
   keywords.take("own_body_m", options.own_body_m);
+  keywords.take("trust_origins", options.trust_origins);
 }
 
 bool is_path(py::handle value) {

@@ -381,7 +381,8 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
     clouds.push_back(
         localized(std::move(gathered.parts[p]), gathered.kept[p], origin, origins, executor));
-    if (!listed[p].is_sequence) check_origins(clouds.back(), listed[p].path, executor);
+    if (!listed[p].is_sequence)
+      check_origins(clouds.back(), listed[p].path, options.trust_origins, executor);
   }
   PointCloud cloud = joined(std::move(clouds), origin, progress);
   report.own_body = drop_own_body(cloud, options.own_body_m, executor);

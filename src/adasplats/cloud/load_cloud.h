@@ -45,6 +45,9 @@ struct LoadOptions {
   /// error: single faults are rarer, and more is a second place or another format. Of 51 small
   /// real files none has any; no returns of organised clouds (NaN, NaN, NaN) do not count.
   double max_dropped = 0.01;
+  /// Sensor positions are not judged by what lies behind what as seen from them. For files with
+  /// later returns, which do lie behind earlier ones.
+  bool trust_origins = false;
   /// Points on the vehicle that carried the sensor are left out: where this is not given those that
   /// find_own_body() finds, else all that are nearer to their sensor, m; with 0 none.
   std::optional<double> own_body_m;

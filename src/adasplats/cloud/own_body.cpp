@@ -149,9 +149,18 @@ class Search {
   }
 
   std::vector<std::uint8_t> run() {
-    const std::vector<std::uint32_t> near = near_points();
-    const std::vector<std::uint8_t> confirmed = confirm(near);
-    const std::vector<std::uint8_t> is_body = rings_of_body(near, confirmed);
+    const std::vector<std::uint32_t> near = points_between(0, options_.reach_m);
+    const std::vector<std::uint32_t> around = points_around();
+    std::vector<std::uint32_t> both = near;
+    both.insert(both.end(), around.begin(), around.end());
+    const std::vector<std::uint32_t> stations = seen_from(both);
+    // The station of a point around is one of those that see it.
+    const auto needed = static_cast<std::uint32_t>(options_.confirmed_by);
+    std::size_t unconfirmed = 0;
+    for (std::size_t n = near.size(); n < both.size(); ++n)
+      if (stations[n] < needed + 1) ++unconfirmed;
+    if (share(unconfirmed, around.size()) > options_.most_unconfirmed) return {};
+    const std::vector<std::uint8_t> is_body = rings_of_body(near, stations);
     std::vector<std::uint8_t> flags;
     for (const std::uint32_t i : near) {
       if (is_body[ring_of(i)] == 0) continue;
@@ -162,9 +171,12 @@ class Search {
   }
 
  private:
-  bool is_near(std::size_t i) const {
-    return static_cast<double>(length(cloud_.positions[i] - cloud_.sensor_positions[i])) <
-           options_.reach_m;
+  double range_m(std::size_t i) const {
+    return static_cast<double>(length(cloud_.positions[i] - cloud_.sensor_positions[i]));
+  }
+  bool is_near(std::size_t i) const { return range_m(i) < options_.reach_m; }
+  static double share(std::size_t part, std::size_t all) {
+    return all == 0 ? 0 : static_cast<double>(part) / static_cast<double>(all);
   }
   std::uint32_t station_of(std::size_t i) const {
     return stations_.find(cell_of(cloud_.sensor_positions[i], options_.station_m));
@@ -181,13 +193,23 @@ class Search {
            number(static_cast<double>(d.z) + options_.reach_m);
   }
 
-  std::vector<std::uint32_t> near_points() const {
+  std::vector<std::uint32_t> points_between(double least_m, double most_m) const {
     return concatenated(cloud_.size(), executor_, [&](std::size_t begin, std::size_t end) {
-      std::vector<std::uint32_t> near;
-      for (std::size_t i = begin; i < end; ++i)
-        if (is_measured(cloud_, i) && is_near(i)) near.push_back(static_cast<std::uint32_t>(i));
-      return near;
+      std::vector<std::uint32_t> points;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!is_measured(cloud_, i)) continue;
+        const double range = range_m(i);
+        if (range >= least_m && range < most_m) points.push_back(static_cast<std::uint32_t>(i));
+      }
+      return points;
     });
+  }
+  std::vector<std::uint32_t> points_around() const {
+    const auto all = points_between(options_.reach_m, 2 * options_.reach_m);
+    const std::size_t stride = all.size() / options_.around + 1;
+    std::vector<std::uint32_t> chosen;
+    for (std::size_t k = 0; k < all.size(); k += stride) chosen.push_back(all[k]);
+    return chosen;
   }
 
   /// Which cells points that are not near lie in, each with their station.
@@ -202,45 +224,42 @@ class Search {
     return pairs;
   }
 
-  /// Which of the near points lie where enough stations saw something from farther away.
-  std::vector<std::uint8_t> confirm(const std::vector<std::uint32_t>& near) const {
-    std::vector<CellKey> around;
-    around.reserve(near.size());
-    for (const std::uint32_t i : near)
-      around.push_back(cell_of(cloud_.positions[i], options_.cell_m));
-    sort_unique(around);
-    for (const CellKey along : kAlong) around = widened(around, along);
-    const CellSet cells(std::move(around));
-    const auto seen_from = count_seconds(
+  /// How many stations saw something from farther than a body reaches in the cell of each of these
+  /// points or in one beside it, whichever most did.
+  std::vector<std::uint32_t> seen_from(const std::vector<std::uint32_t>& points) const {
+    std::vector<CellKey> wanted;
+    wanted.reserve(points.size());
+    for (const std::uint32_t i : points)
+      wanted.push_back(cell_of(cloud_.positions[i], options_.cell_m));
+    sort_unique(wanted);
+    for (const CellKey along : kAlong) wanted = widened(wanted, along);
+    const CellSet cells(std::move(wanted));
+    const auto of_cells = count_seconds(
         concatenated(cloud_.size(), executor_,
                      [&](std::size_t begin, std::size_t end) { return seen(cells, begin, end); }),
         cells.size(), executor_);
-    std::vector<std::uint8_t> confirmed(near.size());
-    executor_.for_chunks(near.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> stations(points.size());
+    executor_.for_chunks(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {
-        for (const CellKey key :
-             with_neighbors(cell_of(cloud_.positions[near[n]], options_.cell_m)))
-          if (seen_from[cells.find(key)] >= static_cast<std::uint32_t>(options_.confirmed_by))
-            confirmed[n] = 1;
+        const CellKey own = cell_of(cloud_.positions[points[n]], options_.cell_m);
+        for (const CellKey key : with_neighbors(own))
+          stations[n] = std::max(stations[n], of_cells[cells.find(key)]);
       }
     });
-    return confirmed;
+    return stations;
   }
 
   std::vector<std::uint8_t> rings_of_body(const std::vector<std::uint32_t>& near,
-                                          const std::vector<std::uint8_t>& confirmed) const {
+                                          const std::vector<std::uint32_t>& seen_from) const {
     std::vector<std::size_t> points(rings()), unconfirmed(rings());
     std::vector<std::uint64_t> pairs;
     for (std::size_t n = 0; n < near.size(); ++n) {
       const std::size_t ring = ring_of(near[n]);
       ++points[ring];
-      if (confirmed[n] == 0) ++unconfirmed[ring];
+      if (seen_from[n] < static_cast<std::uint32_t>(options_.confirmed_by)) ++unconfirmed[ring];
       pairs.push_back(pair_of(ring, station_of(near[n])));
     }
     const auto stations = count_seconds(std::move(pairs), rings(), executor_);
-    const auto share = [](auto part, auto all) {
-      return static_cast<double>(part) / static_cast<double>(all);
-    };
     std::vector<std::uint8_t> is_body(rings());
     for (std::size_t r = 0; r < rings(); ++r) {
       is_body[r] = points[r] > 0 && share(stations[r], stations_.size()) >= options_.least_share &&

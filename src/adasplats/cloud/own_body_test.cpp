@@ -69,6 +69,28 @@ TEST(OwnBody, ASensorAtRestKeepsWhatStandsBesideIt) {
   EXPECT_TRUE(find_own_body(drive(30, 0.01F, true).cloud, {}, Executor(2)).empty());
 }
 
+TEST(OwnBody, RoomsOfABuildingKeepTheirFloors) {
+  Drive rooms;
+  for (int room = 0; room < 9; ++room) {
+    const Vec3f station = {20.0F * static_cast<float>(room), 0, kHeight_m};
+    for (int y = -30; y <= 30; ++y)
+      for (int x = -30; x <= 30; ++x)
+        rooms.add({station.x + 0.2F * static_cast<float>(x), 0.2F * static_cast<float>(y), 0},
+                  station);
+  }
+  EXPECT_TRUE(find_own_body(rooms.cloud, {}, Executor(2)).empty());
+}
+
+TEST(OwnBody, AScannerOfProfilesKeepsTheRoad) {
+  Drive profiles;
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3f sensor = {0.02F * static_cast<float>(k), 0, 2.5F};
+    for (int y = -80; y <= 80; ++y)
+      profiles.add({sensor.x, 0.1F * static_cast<float>(y), 0}, sensor);
+  }
+  EXPECT_TRUE(find_own_body(profiles.cloud, {}, Executor(2)).empty());
+}
+
 TEST(OwnBody, OnlyMeasuredOriginsTell) {
   Drive guessed = drive(30, 0.8F, true);
   guessed.cloud.origin_kinds.assign(guessed.cloud.size(), OriginKind::guessed);

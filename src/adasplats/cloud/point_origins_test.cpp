@@ -149,6 +149,8 @@ TEST(PointOrigins, SmallViewsAreNotJudged) {
   EXPECT_EQ(station_objection(view_from_station({}, executor)), "");
   const std::vector<Vec3f> one = {{1, 0, 0}};
   EXPECT_EQ(station_objection(view_from_station(one, executor)), "");
+  const std::vector<Vec3f> behind = {{5, 0, 0}, {10, 0, 0}};  // half of them
+  EXPECT_EQ(station_objection(view_from_station(behind, executor)), "");
   const std::vector<Vec3f> same(100, Vec3f{0, 0, 0});
   EXPECT_EQ(station_objection(view_from_station(same, executor)), "");
 }

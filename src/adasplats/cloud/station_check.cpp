@@ -89,6 +89,7 @@ std::string in_percent(double share) { return std::to_string(std::lround(100 * s
 StationView view_from_station(std::span<const Vec3f> from_station, const Executor& executor) {
   StationView view;
   const std::vector<Direction> directions = directions_of(from_station, executor);
+  view.points = directions.size();
   if (directions.empty()) return view;
   view.nearest_m =
       static_cast<double>(std::ranges::min_element(directions, {}, &Direction::range_m)->range_m);
@@ -107,11 +108,11 @@ std::string station_objection(const StationView& view) {
     return "the nearest point is " + std::to_string(std::lround(view.nearest_m / 1000)) +
            " km away, farther than LiDARs measure";
   }
-  if (view.share_behind > kMostBehind) {
+  if (view.points >= kLeastView && view.share_behind > kMostBehind) {
     return in_percent(view.share_behind) +
            " of the points lie behind others as seen from there; of what one station measured, at "
            "most " +
-           in_percent(kMostBehind) + " do";
+           in_percent(kMostBehind) + " do (but for later returns: --trust-origins)";
   }
   return {};
 }

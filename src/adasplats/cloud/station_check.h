@@ -15,6 +15,7 @@ inline constexpr double kFarthestOriginM = 10e3;
 
 /// How a cloud looks from one place.
 struct StationView {
+  std::size_t points = 0;   ///< that were looked at
   double nearest_m = 0;     ///< distance to the nearest point
   double share_behind = 0;  ///< of the points, those that lie behind others, 0..1
   double cell_rad = 0;      ///< of the directions that were compared
@@ -31,6 +32,8 @@ StationView view_from_station(std::span<const Vec3f> from_station, const Executo
 /// twice as much. The same scans joined over 65 m of a drive have 0.27, and four stations of a
 /// terrestrial scanner 0.15 to 0.27 from most places. A wrong place only metres off can stay below.
 inline constexpr double kMostBehind = 0.1;
+/// Views of fewer points are too coarse to tell.
+inline constexpr std::size_t kLeastView = 1000;
 
 /// What makes it impossible that all points were measured from there; empty: nothing.
 std::string station_objection(const StationView& view);
