@@ -238,7 +238,8 @@ measure_live() {
 
 for part in $all_parts; do
   [[ $named == "  " || $named == *" $part "* ]] || continue
-  command="bench/results_cpu.sh$($small && echo ' --small') REAL_DATA WORK $part"
+  command="bench/results_cpu.sh REAL_DATA WORK $part"
+  if $small; then command=${command/REAL_DATA/--small REAL_DATA}; fi
   if [[ $named == "  " && -s $part.json ]] &&
     "${collect[@]}" current "$part.json" "$bin/adasplats" "$command"; then
     echo "$part: measured before"
