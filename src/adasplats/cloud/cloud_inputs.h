@@ -20,7 +20,8 @@ struct CloudInput {
 /// - a tree of sequences (FOLDER/sequences/NAME or FOLDER/NAME, each with `velodyne`): all of them
 ///   by name;
 /// - a folder whose files of points have one extension, such as tiles of LAS: those by name. Files
-///   of other extensions that points do not come in (.md, .json, .prj, ...) do not count.
+///   of other extensions that points do not come in (.md, .json, .prj, ...) do not count, nor does
+///   text without points (readme.txt, an index of the tiles as CSV).
 /// Errors: no_input (a folder without points; one that cannot be listed), data (scans in the
 /// sensor's frame, as `simulate` writes them beside poses.csv, or several .bin), usage for every
 /// other folder, with a list of what is in it: sequences beside files of points, points of several

@@ -55,9 +55,28 @@ TEST(FileKind, ByHeaderAndLines) {
   EXPECT_EQ(kind("a.csv", "0" + unit + "1" + unit + "2" + unit), FileKind::trajectory);
   EXPECT_EQ(kind("a.csv", "0" + unit + "1" + unit + "0.5" + unit), FileKind::points);
   EXPECT_EQ(kind("a.xyz", "1 2 3\n4 5 6\n"), FileKind::points);
-  EXPECT_EQ(kind("a.xyz", ""), FileKind::points);
+  EXPECT_EQ(kind("a.xyz", ""), FileKind::points);  // an error when it is read
   EXPECT_EQ(kind("a.md", "x"), FileKind::other);
   EXPECT_EQ(kind_of_file(folder.path() / "absent.ply"), FileKind::points);
+}
+
+TEST(FileKind, TextIsPointsWhereALineIsOne) {
+  const TemporaryFolder folder;
+  const auto kind = [&](const std::string& content) {
+    return kind_of_file(folder.write("a.txt", content));
+  };
+  for (const char* points :
+       {"1 2 3", "# a\n// b\n1 2 3\n", "2\n1 2 3 0.5\n4 5 6 0.5\n", "X;Y;Z\n1;2;3\n",
+        "\xef\xbb\xbf"
+        "1,2,3\n",
+        "x y z\r1 2 3\r", "\"x\",\"y\",\"z\"\n\"1\",\"2\",\"3\"\n",
+        "x\ty\tz\tname\n1\t2\tnan\t4\n"})
+    EXPECT_EQ(kind(points), FileKind::points) << points;
+  for (const char* prose :
+       {"Tiles of the survey.\n\n40 tiles of 500 m.\n", "40 tiles of 500 m\n", "1 2\n", "2024\n",
+        "MIT License\n\nCopyright 2024\n1 2 3\nx\n", "tile,min_x,min_y,min_z\na.las,1,2,3\n",
+        "x,y,z\n", "0.1\n0.2\n", "\n \n"})
+    EXPECT_EQ(kind(prose), FileKind::other) << prose;
 }
 
 TEST(CloudInputs, FilesAndSequencesAreThemselves) {
@@ -102,6 +121,23 @@ TEST(CloudInputs, TilesOfOneExtension) {
   folder.write("c.csv", "x,y,z\n1,2,3\n");
   expect_error(ErrorKind::usage, {"a.XYZ, b.xyz, c.csv", "name what is meant"},
                [&] { cloud_inputs(folder.path()); });
+}
+
+TEST(CloudInputs, ProseBesideTilesAndSequencesDoesNotCount) {
+  const TemporaryFolder folder;
+  for (const char* of : {"tiles/", "drives/"}) {
+    folder.write(std::string(of) + "readme.txt", "What this is.\nLook at 3 tiles.\n");
+    folder.write(std::string(of) + "LICENSE.txt", "MIT License\n\nCopyright (c) 2024\n");
+    folder.write(std::string(of) + "index.csv", "file,points,date\na.las,1,2024-01-01\n");
+  }
+  folder.write("tiles/a.las", "LASF");
+  write_sequence(folder, "drives/sequences/00");
+  EXPECT_EQ(names_of(folder.path() / "tiles"), std::vector<std::string>{"a.las"});
+  EXPECT_EQ(names_of(folder.path() / "drives"),
+            std::vector<std::string>{"sequences/00 (sequence)"});
+  // Whoever names a file means it.
+  EXPECT_EQ(cloud_inputs(folder.path() / "tiles/readme.txt").size(), 1U);
+  require_points(folder.path() / "tiles/readme.txt");
 }
 
 TEST(CloudInputs, MeshesModelsAndTrajectoriesAmongPoints) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,24 +26,26 @@ bool is_one_of(std::string_view word, std::initializer_list<std::string_view> wo
   return std::ranges::find(words, word) != words.end();
 }
 
-/// The whole lines at the beginning of a file; none where it cannot be read.
-std::vector<std::string> first_lines(const std::filesystem::path& path) {
+/// The whole lines at the beginning of a file, whatever ends them; nothing where it cannot be read.
+std::optional<std::vector<std::string>> first_lines(const std::filesystem::path& path) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   std::vector<std::string> lines;
   try {
     InputFile file(path);
     const auto size =
         static_cast<std::size_t>(std::min<std::uint64_t>(kMostBytes, file.size_bytes()));
     std::string_view text(reinterpret_cast<const char*>(file.peek(size).data()), size);
+    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     while (!text.empty()) {
-      const std::size_t end = text.find('\n');
+      const std::size_t end = text.find_first_of("\r\n");
       if (end == std::string_view::npos && size == kMostBytes) break;  // cut
       std::string_view line = text.substr(0, end);
       text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-      while (line.ends_with('\r') || line.ends_with(' ')) line.remove_suffix(1);
+      while (line.ends_with(' ')) line.remove_suffix(1);
       if (!line.empty()) lines.emplace_back(line);
     }
   } catch (const Error&) {
-    // Whoever reads the file says what is wrong with it.
+    return std::nullopt;  // whoever reads the file says what is wrong with it
   }
   return lines;
 }
@@ -66,8 +69,11 @@ std::vector<std::string> words_of(std::string_view line) {
     if (begin == std::string_view::npos) break;
     line.remove_prefix(begin);
     const std::size_t end = std::min(line.find_first_of(", ;\t"), line.size());
-    words.push_back(lower_case(line.substr(0, end)));
+    std::string_view word = line.substr(0, end);
     line.remove_prefix(end);
+    if (word.size() >= 2 && word.front() == '"' && word.back() == '"')
+      word = word.substr(1, word.size() - 2);
+    words.push_back(lower_case(word));
   }
   return words;
 }
@@ -102,14 +108,33 @@ bool is_matrix_pose(const std::vector<double>& v) {
   return orthonormality_error(rotation) <= kTolerance;
 }
 
+bool is_comment(std::string_view line) { return line.starts_with('#') || line.starts_with("//"); }
+
+/// Whether the first line that can be a point is one: what comes before it are comments, counts (as
+/// PTS has them) and at most one line of names, as read_text_points understands them. Prose (a
+/// readme, a licence, an index of tiles) is none.
+bool has_a_point(const std::vector<std::string>& lines) {
+  constexpr std::size_t kCoordinates = 3;
+  bool has_names = false;
+  for (const std::string& line : lines) {
+    if (is_comment(line)) continue;
+    const std::vector<std::string> words = words_of(line);
+    const bool begins_with_number = !words.empty() && parse_number<double>(words.front());
+    if (begins_with_number && words.size() == 1) continue;
+    if (begins_with_number || has_names) return numbers_of(words).size() >= kCoordinates;
+    has_names = true;
+  }
+  return false;
+}
+
 FileKind kind_of_text(const std::vector<std::string>& lines) {
   constexpr std::size_t kLeastTimedPoses = 3;
-  if (lines.empty()) return FileKind::points;
+  if (!has_a_point(lines)) return FileKind::other;
   if (names_a_quaternion(words_of(lines.front()))) return FileKind::trajectory;
   std::size_t poses = 0, matrices = 0, others = 0;
   double before_s = -std::numeric_limits<double>::infinity();
   for (const std::string& line : lines) {
-    if (line.starts_with('#') || line.starts_with("//")) continue;
+    if (is_comment(line)) continue;
     const std::vector<double> numbers = numbers_of(words_of(line));
     if (is_timed_pose(numbers, before_s)) {
       ++poses;
@@ -130,10 +155,11 @@ FileKind kind_of_file(const std::filesystem::path& file) {
   const std::string extension = lower_case(file.extension().string());
   if (is_one_of(extension, {".obj", ".gltf", ".glb"})) return FileKind::mesh;
   if (is_one_of(extension, {".pcd", ".las", ".laz", ".bin", ".ptx"})) return FileKind::points;
-  const std::vector<std::string> lines = first_lines(file);
-  if (is_one_of(extension, {".xyz", ".pts", ".csv", ".txt", ".asc"})) return kind_of_text(lines);
-  const bool is_ply = !lines.empty() && lines.front() == "ply";
-  const FileKind kind = is_ply ? kind_of_ply(lines) : FileKind::points;
+  const bool is_text = is_one_of(extension, {".xyz", ".pts", ".csv", ".txt", ".asc"});
+  const auto lines = first_lines(file);
+  if (is_text) return lines ? kind_of_text(*lines) : FileKind::points;
+  const bool is_ply = lines && !lines->empty() && lines->front() == "ply";
+  const FileKind kind = is_ply ? kind_of_ply(*lines) : FileKind::points;
   return kind == FileKind::points && extension != ".ply" ? FileKind::other : kind;
 }
 

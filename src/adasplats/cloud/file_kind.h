@@ -10,11 +10,11 @@ namespace adasplats {
 
 /// What a file is, as far as its name and its first bytes tell.
 enum class FileKind : std::uint8_t {
-  points,       ///< of a format of points, and nothing says otherwise
+  points,       ///< of a format of points, and nothing says otherwise; text with a point in it
   mesh,         ///< OBJ, glTF, a PLY that declares faces
   splat_model,  ///< a PLY with a radius and a normal
   trajectory,   ///< text with columns qw, qx, qy, qz, or whose lines are poses
-  other,        ///< none of these
+  other,        ///< none of these, such as prose
 };
 
 /// Looks at the name and at most 64 KiB. What cannot be read is what its name says.
