@@ -140,6 +140,15 @@ TEST(CloudInputs, ProseBesideTilesAndSequencesDoesNotCount) {
   require_points(folder.path() / "tiles/readme.txt");
 }
 
+// E57 is not read: it must not be left out without a word.
+TEST(CloudInputs, E57Counts) {
+  const TemporaryFolder folder;
+  folder.write("a.e57", "ASTM-E57");
+  EXPECT_EQ(names_of(folder.path()), std::vector<std::string>{"a.e57"});
+  folder.write("b.las", "LASF");
+  expect_error(ErrorKind::usage, {"points (a.e57, b.las)"}, [&] { cloud_inputs(folder.path()); });
+}
+
 TEST(CloudInputs, MeshesModelsAndTrajectoriesAmongPoints) {
   const TemporaryFolder folder;
   folder.write("a/mapping.ply", kCloud);

@@ -154,7 +154,8 @@ FileKind kind_of_text(const std::vector<std::string>& lines) {
 FileKind kind_of_file(const std::filesystem::path& file) {
   const std::string extension = lower_case(file.extension().string());
   if (is_one_of(extension, {".obj", ".gltf", ".glb"})) return FileKind::mesh;
-  if (is_one_of(extension, {".pcd", ".las", ".laz", ".bin", ".ptx"})) return FileKind::points;
+  if (is_one_of(extension, {".pcd", ".las", ".laz", ".bin", ".ptx", ".e57"}))
+    return FileKind::points;  // E57 is not read, which whoever reads it says
   const bool is_text = is_one_of(extension, {".xyz", ".pts", ".csv", ".txt", ".asc"});
   const auto lines = first_lines(file);
   if (is_text) return lines ? kind_of_text(*lines) : FileKind::points;
