@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -251,6 +252,33 @@ TEST(LoadCloud, LongitudesAndLatitudesAreNoMetres) {
   EXPECT_EQ(load({folder.write("p.xyz", "5 6 0\n5.1 6.1 30\n")}).first.size(), 2U);
   EXPECT_EQ(load({folder.write("s.xyz", "-0.001 -0.001 0\n0.001 0.001 30\n")}).first.size(), 2U);
   EXPECT_EQ(load({folder.write("one.xyz", "2.34 48.84 35\n")}).first.size(), 1U);
+}
+
+// A LAS 1.2 file of one point of format 0 whose GeoTIFF keys say US survey feet.
+TEST(LoadCloud, FeetAreNoMetres) {
+  const TemporaryFolder folder;
+  std::string content(227 + 54 + 16 + 20, '\0');
+  const auto put = [&content](std::size_t place, auto value) {
+    std::memcpy(content.data() + place, &value, sizeof(value));
+  };
+  std::memcpy(content.data(), "LASF", 4);
+  put(24, std::uint16_t{0x0201});
+  put(94, std::uint16_t{227});
+  put(96, std::uint32_t{227 + 54 + 16});
+  put(100, std::uint32_t{1});
+  put(105, std::uint16_t{20});
+  put(107, std::uint32_t{1});
+  for (const std::size_t axis : {0U, 1U, 2U}) put(131 + 8 * axis, 0.01);
+  std::memcpy(content.data() + 229, "LASF_Projection", 15);
+  put(245, std::uint16_t{34735});
+  put(247, std::uint16_t{16});
+  put(281 + 8, std::uint16_t{3076});
+  put(281 + 14, std::uint16_t{9001});
+  EXPECT_EQ(load({folder.write("metres.las", content)}).first.size(), 1U);
+  put(281 + 14, std::uint16_t{9003});
+  const auto feet = folder.write("feet.las", content);
+  expect_error(ErrorKind::data, {"feet.las", "not in metres", "US survey feet", "pdal translate"},
+               [&] { load({feet}); });
 }
 
 // Oracle: analytic. Outliers move neither the origin nor the rest.

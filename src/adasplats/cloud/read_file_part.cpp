@@ -187,13 +187,20 @@ std::vector<Vec3d> read_sensor_positions(const PointFile& file, const LoadOption
 
 /// What a reader says beside the columns.
 void take_comment(const PointFile& file, const std::string& comment, ProgressSink& progress) {
-  constexpr std::string_view kNotRead = "not read: ";
+  constexpr std::string_view kNotRead = "not read: ", kNotMetres = "not metres: ";
   if (comment.starts_with("salvaged")) progress.warn(file.path.string() + ": " + comment);
   if (comment.starts_with("geographic: ") && file.table.rows > 0)
     throw Error(ErrorKind::data,
                 file.path.string() + ": its coordinates are longitudes and latitudes (" + comment +
                     "), not metres; project them first (UTM, say, with 'pdal translate IN OUT "
                     "reprojection --filters.reprojection.out_srs=...')");
+  if (comment.starts_with(kNotMetres) && file.table.rows > 0)
+    throw Error(ErrorKind::data,
+                file.path.string() + ": its coordinates are not in metres (" +
+                    comment.substr(kNotMetres.size()) +
+                    "); bring them to a system that is, heights included (UTM zone 18 and NAVD88, "
+                    "say, with 'pdal translate IN OUT reprojection "
+                    "--filters.reprojection.out_srs=EPSG:32618+5703')");
   if (!comment.starts_with(kNotRead)) return;
   const std::string name = lower_case(comment.substr(kNotRead.size()));
   const auto is_class = [&](std::string_view known) { return known == name; };

@@ -123,7 +123,7 @@ Table read_las(const std::filesystem::path& path, const LasReadOptions& options)
   }
   Table table = columns.take();
   extras.append_to(table);
-  if (description.geographic) table.comments.push_back("geographic: " + *description.geographic);
+  table.comments = description.comments();
   if (rows < header.points) {
     table.comments.push_back("salvaged " + std::to_string(rows) + " of " +
                              std::to_string(header.points) + " records");

@@ -182,6 +182,27 @@ TEST(Las, LongitudesAndLatitudesAreSaid) {
   EXPECT_TRUE(comments(las_vlr("other", 2112, "GEOGCS[\"x\"]")).empty());
 }
 
+// Oracle: the units' numbers in GeoTIFF 1.0, section 6.3.1.3.
+TEST(Las, UnitsThatAreNoMetresAreSaid) {
+  const auto comments = [](int key, int unit) {
+    std::string directory;
+    for (const int value : {1, 1, 0, 2, 1024, 0, 1, 1, key, 0, 1, unit})
+      directory += bytes_of(static_cast<std::uint16_t>(value));
+    return read(las_with(las_vlr("LASF_Projection", 34735, directory), 1, 0)).comments;
+  };
+  for (const int key : {3076, 4099})
+    for (const int unit : {9001, 0, 32767}) EXPECT_TRUE(comments(key, unit).empty());
+  EXPECT_EQ(comments(3076, 9002).at(0),
+            "not metres: x and y in feet (0.3048 m), by GeoTIFF key 3076 = 9002");
+  EXPECT_EQ(comments(4099, 9003).at(0),
+            "not metres: z in US survey feet (1200/3937 m), by GeoTIFF key 4099 = 9003");
+  EXPECT_EQ(comments(3076, 9005).at(0),
+            "not metres: x and y in the unit EPSG 9005, by GeoTIFF key 3076 = 9005");
+  const std::string wkt = "PROJCS[\"x\",GEOGCS[\"y\",UNIT[\"degree\",0.017]],UNIT[\"ft\",0.3048]]";
+  EXPECT_EQ(read(las_with(las_vlr("LASF_Projection", 2112, wkt), 1, 0)).comments.at(0),
+            "not metres: x and y in ft (0.3048 m), by the WKT");
+}
+
 TEST(Las, NoPointsIsAnEmptyTable) {
   const Table table = read(las_header(2, 3, 34, 0));
   EXPECT_EQ(table.rows, 0U);

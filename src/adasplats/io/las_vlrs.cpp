@@ -9,6 +9,7 @@
 
 #include "adasplats/io/las_records.h"
 #include "adasplats/io/records.h"
+#include "adasplats/io/wkt_units.h"
 
 namespace adasplats {
 namespace {
@@ -19,6 +20,9 @@ constexpr std::uint16_t kWktRecord = 2112;
 constexpr std::uint16_t kGeoKeysRecord = 34735;
 constexpr std::uint16_t kModelTypeKey = 1024;
 constexpr std::uint16_t kModelTypeGeographic = 2;
+constexpr std::uint16_t kLinearUnitsKey = 3076;
+constexpr std::uint16_t kVerticalUnitsKey = 4099;
+constexpr std::uint16_t kMetre = 9001;
 
 template <class T>
 T value_at(std::string_view bytes, std::size_t offset) {
@@ -76,6 +80,32 @@ bool is_geographic_directory(std::string_view record) {
   return false;
 }
 
+/// A unit of GeoTIFF that is no metre; nothing for metres and what the file defines itself.
+std::optional<std::string> foreign_unit(std::uint16_t unit) {
+  constexpr std::uint16_t kFirst = 9000, kLast = 9099;  // lengths
+  if (unit == kMetre || unit < kFirst || unit > kLast) return std::nullopt;
+  switch (unit) {
+    case 9002: return "feet (0.3048 m)";
+    case 9003: return "US survey feet (1200/3937 m)";
+    case 9036: return "kilometres";
+    default: return "the unit EPSG " + std::to_string(unit);
+  }
+}
+
+/// Which coordinates a GeoTIFF key directory has in another unit than metres.
+std::optional<std::string> foreign_units_of_directory(std::string_view record) {
+  constexpr std::size_t kKeyBytes = 8;
+  for (; record.size() >= kKeyBytes; record.remove_prefix(kKeyBytes)) {
+    const auto key = value_at<std::uint16_t>(record, 0);
+    if (key != kLinearUnitsKey && key != kVerticalUnitsKey) continue;
+    const auto value = value_at<std::uint16_t>(record, 6);
+    if (const auto unit = foreign_unit(value))
+      return std::string(key == kLinearUnitsKey ? "x and y" : "z") + " in " + *unit +
+             ", by GeoTIFF key " + std::to_string(key) + " = " + std::to_string(value);
+  }
+  return std::nullopt;
+}
+
 /// Whether a coordinate system in words is one of angles: a projected one names its base, too.
 bool is_geographic_text(std::string_view text) {
   const auto has = [text](std::string_view word) {
@@ -86,7 +116,26 @@ bool is_geographic_text(std::string_view text) {
   return has("GEOGCS[") || has("GEOGCRS[") || has("GEOGRAPHICCRS[") || has("GEODCRS[");
 }
 
+void take_projection(std::uint16_t number, std::string_view record, LasDescription& description) {
+  if (number == kGeoKeysRecord) {
+    if (is_geographic_directory(record)) description.geographic = "GTModelType 2, geographic";
+    if (const auto units = foreign_units_of_directory(record)) description.not_metres = units;
+  }
+  if (number == kWktRecord) {
+    if (is_geographic_text(record))
+      description.geographic = std::string(record.substr(0, record.find(',')));
+    if (const auto units = foreign_units_of_wkt(record)) description.not_metres = units;
+  }
+}
+
 }  // namespace
+
+std::vector<std::string> LasDescription::comments() const {
+  std::vector<std::string> comments;
+  if (geographic) comments.push_back("geographic: " + *geographic);
+  if (not_metres) comments.push_back("not metres: " + *not_metres);
+  return comments;
+}
 
 LasDescription read_las_description(const std::filesystem::path& path, const LasHeader& header) {
   LasDescription description;
@@ -105,12 +154,7 @@ LasDescription read_las_description(const std::filesystem::path& path, const Las
     const std::string_view record(reinterpret_cast<const char*>(file.peek(length).data()), length);
     if (user == "LASF_Spec" && number == kExtraBytesRecord)
       description.extra_fields = extra_fields_of(record, header);
-    if (user == "LASF_Projection") {
-      if (number == kGeoKeysRecord && is_geographic_directory(record))
-        description.geographic = "GTModelType 2, geographic";
-      if (number == kWktRecord && is_geographic_text(record))
-        description.geographic = std::string(record.substr(0, record.find(',')));
-    }
+    if (user == "LASF_Projection") take_projection(number, record, description);
     file.skip(length);
   }
   return description;

@@ -30,6 +30,11 @@ struct LasDescription {
   std::vector<LasExtraField> extra_fields;
   /// Where x and y are longitude and latitude: what says so.
   std::optional<std::string> geographic;
+  /// Where a length of the coordinates is no metre: which, its unit and what says so.
+  std::optional<std::string> not_metres;
+
+  /// What of it whoever reads the points must know, as comments of the table (read_las()).
+  std::vector<std::string> comments() const;
 };
 
 /// Reads the records between the header and the points, as far as they are whole. Errors: io.

@@ -53,7 +53,7 @@ Table read_laz(const std::filesystem::path& path, const LasReadOptions& options)
   }
   Table table = columns.take();
   const LasDescription description = read_las_description(path, header);
-  if (description.geographic) table.comments.push_back("geographic: " + *description.geographic);
+  table.comments = description.comments();
   for (const LasExtraField& field : description.extra_fields)
     table.comments.push_back("not read: " + field.name);
   if (rows < header.points) {

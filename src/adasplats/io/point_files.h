@@ -24,8 +24,8 @@ struct LasReadOptions {
 /// classification (u8), return_number, number_of_returns (u8), and where the format has them
 /// gps_time (f64), red, green, blue (u16), point_source_id (u16), user_data (u8), and of LAS (not
 /// LAZ) the attributes in extra bytes that the file describes, in their types (scaled ones f64).
-/// Comments: "geographic: WHAT SAYS SO" where x and y are longitude and latitude, "not read: NAME"
-/// of an attribute of LAZ. LAZ through LASzip where it was found at build time, else an error that
+/// Comments: "geographic: WHAT SAYS SO" where x and y are longitude and latitude, "not metres: X IN
+/// UNIT, WHAT SAYS SO" where coordinates are in feet, say, "not read: NAME" of an attribute of LAZ. LAZ through LASzip where it was found at build time, else an error that
 /// says what to install. Memory: at most 2x the file's size (LAS), what the points take (LAZ).
 /// Errors: no_input, io, data.
 Table read_las(const std::filesystem::path& path, const LasReadOptions& options = {});
