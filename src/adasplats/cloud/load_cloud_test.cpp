@@ -254,8 +254,8 @@ TEST(LoadCloud, LongitudesAndLatitudesAreNoMetres) {
   EXPECT_EQ(load({folder.write("one.xyz", "2.34 48.84 35\n")}).first.size(), 1U);
 }
 
-// A LAS 1.2 file of one point of format 0 whose GeoTIFF keys say US survey feet.
-TEST(LoadCloud, FeetAreNoMetres) {
+// A LAS 1.2 file of one point of format 0 with GeoTIFF keys.
+TEST(LoadCloud, LasInFeetAndWithheldPoints) {
   const TemporaryFolder folder;
   std::string content(227 + 54 + 16 + 20, '\0');
   const auto put = [&content](std::size_t place, auto value) {
@@ -275,6 +275,13 @@ TEST(LoadCloud, FeetAreNoMetres) {
   put(281 + 8, std::uint16_t{3076});
   put(281 + 14, std::uint16_t{9001});
   EXPECT_EQ(load({folder.write("metres.las", content)}).first.size(), 1U);
+  put(281 + 16 + 15, std::uint8_t{0x80});
+  const auto withheld = folder.write("withheld.las", content);
+  Listener listener;
+  EXPECT_TRUE(load_cloud(std::span(&withheld, 1), {}, Executor(1), listener).first.empty());
+  EXPECT_NE(listener.warnings.at(0).find("1 of 1 points are flagged as withheld"),
+            std::string::npos);
+  put(281 + 16 + 15, std::uint8_t{0});
   put(281 + 14, std::uint16_t{9003});
   const auto feet = folder.write("feet.las", content);
   expect_error(ErrorKind::data, {"feet.las", "not in metres", "US survey feet", "pdal translate"},

@@ -187,7 +187,11 @@ std::vector<Vec3d> read_sensor_positions(const PointFile& file, const LoadOption
 
 /// What a reader says beside the columns.
 void take_comment(const PointFile& file, const std::string& comment, ProgressSink& progress) {
-  constexpr std::string_view kNotRead = "not read: ", kNotMetres = "not metres: ";
+  constexpr std::string_view kNotRead = "not read: ", kNotMetres = "not metres: ",
+                             kWithheld = "withheld: ";
+  if (comment.starts_with(kWithheld))
+    progress.warn(file.path.string() + ": " + comment.substr(kWithheld.size()) +
+                  " are flagged as withheld (deleted), left out");
   if (comment.starts_with("salvaged")) progress.warn(file.path.string() + ": " + comment);
   if (comment.starts_with("geographic: ") && file.table.rows > 0)
     throw Error(ErrorKind::data,

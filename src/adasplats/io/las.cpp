@@ -35,6 +35,7 @@ LasPoint decode_point(const LasHeader& header, const LasFormat& format, const st
   if (format.is_extended) {
     point.return_number = returns & 0x0f;
     point.number_of_returns = static_cast<std::uint8_t>(returns >> 4);
+    point.is_withheld = (field<std::uint8_t>(record, 15) & kLasExtendedWithheld) != 0;
     point.classification = field<std::uint8_t>(record, 16);
     point.user_data = field<std::uint8_t>(record, 17);
     point.point_source_id = field<std::uint16_t>(record, 20);
@@ -42,7 +43,10 @@ LasPoint decode_point(const LasHeader& header, const LasFormat& format, const st
     point.return_number = returns & 0x07;
     point.number_of_returns = static_cast<std::uint8_t>((returns >> 3) & 0x07);
     // The upper three bits are flags (synthetic, key point, withheld).
-    point.classification = field<std::uint8_t>(record, 15) & 0x1f;
+    constexpr unsigned kWithheld = 1U << 7;
+    const auto classification = field<std::uint8_t>(record, 15);
+    point.is_withheld = (classification & kWithheld) != 0;
+    point.classification = classification & 0x1f;
     point.user_data = field<std::uint8_t>(record, 17);
     point.point_source_id = field<std::uint16_t>(record, 18);
   }
@@ -123,7 +127,8 @@ Table read_las(const std::filesystem::path& path, const LasReadOptions& options)
   }
   Table table = columns.take();
   extras.append_to(table);
-  table.comments = description.comments();
+  columns.drop_withheld(table);
+  for (std::string& comment : description.comments()) table.comments.push_back(std::move(comment));
   if (rows < header.points) {
     table.comments.push_back("salvaged " + std::to_string(rows) + " of " +
                              std::to_string(header.points) + " records");

@@ -3,7 +3,9 @@
 #include "adasplats/io/las_records.h"
 
 #include <array>
+#include <string>
 #include <utility>
+#include <variant>
 
 namespace adasplats {
 
@@ -37,6 +39,7 @@ LasColumns::LasColumns(const LasFormat& format, std::size_t expected_points)
 }
 
 void LasColumns::push(const LasPoint& point) {
+  if (point.is_withheld) withheld_.push_back(size());
   x_.push_back(point.position.x);
   y_.push_back(point.position.y);
   z_.push_back(point.position.z);
@@ -75,6 +78,28 @@ Table LasColumns::take() {
   add("point_source_id", point_source_id_);
   add("user_data", user_data_);
   return table;
+}
+
+void LasColumns::drop_withheld(Table& table) const {
+  if (withheld_.empty()) return;
+  for (Column& column : table.columns) {
+    std::visit(
+        [this](auto& values) {
+          auto next = withheld_.begin();
+          std::size_t end = 0;
+          for (std::size_t row = 0; row < values.size(); ++row) {
+            if (next != withheld_.end() && *next == row)
+              ++next;
+            else
+              values[end++] = values[row];
+          }
+          values.resize(end);
+        },
+        column.values);
+  }
+  table.comments.push_back("withheld: " + std::to_string(withheld_.size()) + " of " +
+                           std::to_string(table.rows) + " points");
+  table.rows -= withheld_.size();
 }
 
 }  // namespace adasplats

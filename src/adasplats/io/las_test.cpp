@@ -85,8 +85,10 @@ TEST(Las, FieldsOfEveryPointFormat) {
                                                  {10, 67, 4, 22, 30}}) {
     SCOPED_TRACE(e.format);
     const auto bytes = static_cast<std::size_t>(e.bytes) + 3;  // with extra bytes
-    const Table table = read(las_header(e.minor, e.format, e.bytes + 3, 2) +
-                             las_record(bytes, 1, -2, 2147483647) + las_record(bytes, 4, 5, 6));
+    std::string records = las_record(bytes, 1, -2, 2147483647) + las_record(bytes, 4, 5, 6);
+    if (e.format >= 6)  // all flags but withheld
+      for (const std::size_t row : {0U, 1U}) put(records, row * bytes + 15, std::uint8_t{0x0b});
+    const Table table = read(las_header(e.minor, e.format, e.bytes + 3, 2) + records);
     EXPECT_EQ(values_of(table, "x"), (Doubles{1 * 0.01, 4 * 0.01}));
     EXPECT_EQ(values_of(table, "y"), (Doubles{-2 * 0.01 + 1000, 5 * 0.01 + 1000}));
     EXPECT_EQ(values_of(table, "z")[0], 2147483647 * 0.01 + 2000);
@@ -112,8 +114,27 @@ TEST(Las, FieldsOfEveryPointFormat) {
 
 TEST(Las, ClassificationFlagsAreNoClass) {
   std::string record = las_record(20, 0, 0, 0);
-  put(record, 15, std::uint8_t{0xe2});
+  put(record, 15, std::uint8_t{0x62});
   EXPECT_EQ(values_of(read(las_header(2, 0, 20, 1) + record), "classification"), Doubles{2});
+}
+
+// Oracle: tables 8 and 17 of the specification: bit 7 of the classification, bit 2 of the flags.
+TEST(Las, WithheldPointsAreLeftOut) {
+  for (const int format : {0, 6}) {
+    const std::size_t bytes = (format == 0 ? 20U : 30U) + 1;
+    std::string records;
+    for (const int x : {1, 2, 3}) records += las_record(bytes, x, 0, 0);
+    for (std::size_t row = 0; row < 3; ++row) put(records, row * bytes + 15, std::uint8_t{0});
+    put(records, bytes + 15, static_cast<std::uint8_t>(format == 0 ? 0x82 : 0x04));
+    const std::string header = las_header(4, format, static_cast<int>(bytes), 3);
+    const Table table = read(header + records);
+    EXPECT_EQ(table.rows, 2U);
+    EXPECT_EQ(values_of(table, "x"), (Doubles{0.01, 0.03}));
+    EXPECT_EQ(table.comments, std::vector<std::string>{"withheld: 1 of 3 points"});
+    for (const std::size_t row : {0U, 2U})
+      put(records, row * bytes + 15, static_cast<std::uint8_t>(format == 0 ? 0x80 : 0x04));
+    EXPECT_EQ(read(header + records).rows, 0U);
+  }
 }
 
 // Fault 21.
@@ -274,7 +295,8 @@ TEST(Las, ScaleAndOffsetThatMakeNoCoordinates) {
 TEST(Las, CountsOf64Bits) {
   std::string header = las_header(4, 6, 30, 0);
   put(header, 247, std::uint64_t{2});
-  const std::string records = las_record(30, 1, 0, 0) + las_record(30, 2, 0, 0);
+  std::string records = las_record(30, 1, 0, 0) + las_record(30, 2, 0, 0);
+  for (const std::size_t row : {0U, 1U}) put(records, row * 30 + 15, std::uint8_t{0});  // no flags
   EXPECT_EQ(read(header + records).rows, 2U);
   // 2^32 + 2 must not be taken for 2, nor 2^64 - 1 wrap.
   put(header, 247, (std::uint64_t{1} << 32) + 2);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/las_records.h"
@@ -52,8 +53,9 @@ Table read_laz(const std::filesystem::path& path, const LasReadOptions& options)
                                          std::to_string(header.points) + ": " + fault);
   }
   Table table = columns.take();
+  columns.drop_withheld(table);
   const LasDescription description = read_las_description(path, header);
-  table.comments = description.comments();
+  for (std::string& comment : description.comments()) table.comments.push_back(std::move(comment));
   for (const LasExtraField& field : description.extra_fields)
     table.comments.push_back("not read: " + field.name);
   if (rows < header.points) {

@@ -33,10 +33,12 @@ LasPoint decode_point(const LasHeader& header, const laszip_point_struct& from) 
   point.position = header.position(from.X, from.Y, from.Z);
   point.intensity = from.intensity;
   if (las_format(header.format).is_extended) {
+    point.is_withheld = (from.extended_classification_flags & kLasExtendedWithheld) != 0;
     point.classification = from.extended_classification;
     point.return_number = from.extended_return_number;
     point.number_of_returns = from.extended_number_of_returns;
   } else {
+    point.is_withheld = from.withheld_flag != 0;
     point.classification = from.classification;
     point.return_number = from.return_number;
     point.number_of_returns = from.number_of_returns;

@@ -25,9 +25,11 @@ struct LasReadOptions {
 /// gps_time (f64), red, green, blue (u16), point_source_id (u16), user_data (u8), and of LAS (not
 /// LAZ) the attributes in extra bytes that the file describes, in their types (scaled ones f64).
 /// Comments: "geographic: WHAT SAYS SO" where x and y are longitude and latitude, "not metres: X IN
-/// UNIT, WHAT SAYS SO" where coordinates are in feet, say, "not read: NAME" of an attribute of LAZ. LAZ through LASzip where it was found at build time, else an error that
-/// says what to install. Memory: at most 2x the file's size (LAS), what the points take (LAZ).
-/// Errors: no_input, io, data.
+/// UNIT, WHAT SAYS SO" where coordinates are in feet, say, "not read: NAME" of an attribute of LAZ,
+/// "withheld: N of M points": points that are flagged as withheld are deleted, and left out. LAZ
+/// through LASzip where it was found at build time, else an error that says what to install.
+/// Memory: at most 2x the file's size (LAS), what the points take (LAZ). Errors: no_input, io,
+/// data.
 Table read_las(const std::filesystem::path& path, const LasReadOptions& options = {});
 
 /// Text: XYZ, PTS (a line with a count of points alone), CSV (comma, semicolon, tab or blank; a
