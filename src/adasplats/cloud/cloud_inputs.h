@@ -32,8 +32,9 @@ std::vector<CloudInput> cloud_inputs(const std::filesystem::path& path);
 /// itself where it is one. Errors: no_input (a folder that cannot be listed).
 std::vector<std::filesystem::path> sequences_of_tree(const std::filesystem::path& folder);
 
-/// Throws usage where two sequences of a tree begin at the very same pose: each is in a frame of
-/// its own then, as those of SemanticKITTI are, and together they are no place.
+/// Throws usage where two sequences, of a tree or named one by one, begin at the very same pose:
+/// each is in a frame of its own then, as those of SemanticKITTI are, and together they are no
+/// place; or it is one sequence, named twice.
 void require_one_world(std::span<const CloudInput> sequences);
 
 /// Throws data where a file that a format of points may hold is something else: a triangle mesh (a

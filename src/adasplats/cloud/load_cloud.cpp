@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -28,12 +29,13 @@ using Input = CloudInput;
 
 std::vector<Input> list_inputs(std::span<const std::filesystem::path> paths) {
   if (paths.empty()) throw Error(ErrorKind::usage, "no inputs to load");
-  std::vector<Input> inputs;
+  std::vector<Input> inputs, sequences;
   for (const std::filesystem::path& path : paths) {
     const std::vector<Input> found = cloud_inputs(path);
-    if (found.size() > 1 && found.front().is_sequence) require_one_world(found);
     inputs.insert(inputs.end(), found.begin(), found.end());
   }
+  std::ranges::copy_if(inputs, std::back_inserter(sequences), &Input::is_sequence);
+  if (sequences.size() > 1) require_one_world(sequences);
   return inputs;
 }
 

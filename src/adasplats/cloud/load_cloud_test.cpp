@@ -125,6 +125,16 @@ TEST(LoadCloud, TwoSequencesCountScansOn) {
   EXPECT_EQ(cloud.scan_indices, (std::vector<std::uint32_t>{0, 1, 1, 2, 3, 3}));
 }
 
+// Two drives of SemanticKITTI lie one on the other; a sequence named twice has every point twice.
+TEST(LoadCloud, SequencesNamedOneByOneAreOneWorldToo) {
+  const TemporaryFolder folder;
+  write_sequence(folder, 2, 0, "a/");
+  write_sequence(folder, 2, 0, "b/");
+  const auto a = folder.path() / "a", b = folder.path() / "b";
+  expect_error(ErrorKind::usage, {a.string(), b.string(), "very same pose"}, [&] { load({a, b}); });
+  expect_error(ErrorKind::usage, {a.string(), "very same pose"}, [&] { load({a, a}); });
+}
+
 // Oracle: analytic; float steps at 1 km are 0.06 mm.
 TEST(LoadCloud, UtmCoordinatesKeepMillimetres) {
   const TemporaryFolder folder;
