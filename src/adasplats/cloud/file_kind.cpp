@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,13 @@ namespace {
 constexpr std::size_t kMostBytes = std::size_t{1} << 16;
 constexpr double kTolerance = 1e-3;  // of rotations, as read_trajectory has it
 
-bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
+constexpr std::array<std::string_view, 3> kMeshes = {".obj", ".gltf", ".glb"};
+// E57 is not read, which whoever reads it says.
+constexpr std::array<std::string_view, 6> kPoints = {".pcd", ".las", ".laz",
+                                                     ".bin", ".ptx", ".e57"};
+constexpr std::array<std::string_view, 5> kTexts = {".xyz", ".pts", ".csv", ".txt", ".asc"};
+
+bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
   return std::ranges::find(words, word) != words.end();
 }
 
@@ -153,15 +160,19 @@ FileKind kind_of_text(const std::vector<std::string>& lines) {
 
 FileKind kind_of_file(const std::filesystem::path& file) {
   const std::string extension = lower_case(file.extension().string());
-  if (is_one_of(extension, {".obj", ".gltf", ".glb"})) return FileKind::mesh;
-  if (is_one_of(extension, {".pcd", ".las", ".laz", ".bin", ".ptx", ".e57"}))
-    return FileKind::points;  // E57 is not read, which whoever reads it says
-  const bool is_text = is_one_of(extension, {".xyz", ".pts", ".csv", ".txt", ".asc"});
+  if (is_one_of(extension, kMeshes)) return FileKind::mesh;
+  if (is_one_of(extension, kPoints)) return FileKind::points;
   const auto lines = first_lines(file);
-  if (is_text) return lines ? kind_of_text(*lines) : FileKind::points;
+  if (is_one_of(extension, kTexts)) return lines ? kind_of_text(*lines) : FileKind::points;
   const bool is_ply = lines && !lines->empty() && lines->front() == "ply";
   const FileKind kind = is_ply ? kind_of_ply(*lines) : FileKind::points;
   return kind == FileKind::points && extension != ".ply" ? FileKind::other : kind;
+}
+
+bool has_extension_of_a_kind(const std::filesystem::path& file) {
+  const std::string extension = lower_case(file.extension().string());
+  return extension == ".ply" || is_one_of(extension, kMeshes) || is_one_of(extension, kPoints) ||
+         is_one_of(extension, kTexts);
 }
 
 std::string_view plural_name_of(FileKind kind) {

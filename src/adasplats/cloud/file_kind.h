@@ -20,6 +20,9 @@ enum class FileKind : std::uint8_t {
 /// Looks at the name and at most 64 KiB. What cannot be read is what its name says.
 FileKind kind_of_file(const std::filesystem::path& file);
 
+/// Whether files with such a name can be anything but FileKind::other.
+bool has_extension_of_a_kind(const std::filesystem::path& file);
+
 /// "points", "meshes", ...
 std::string_view plural_name_of(FileKind kind);
 

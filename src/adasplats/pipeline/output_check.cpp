@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "adasplats/cloud/cloud_inputs.h"
+#include "adasplats/cloud/file_kind.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/number_text.h"
 
@@ -32,15 +33,14 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
   return differ.first == outer.end();
 }
 
-/// Whether the folder is read for files like `file`.
-bool is_read_for(const fs::path& folder, const fs::path& file) {
+/// Whether `file` would count in a folder that is read for its files: as one of them, or as
+/// something else that makes the folder unclear.
+bool counts_in(const fs::path& folder, const fs::path& file) {
   const fs::path parent = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  if (!is_same(folder, parent)) return false;
+  if (!is_same(folder, parent) || !has_extension_of_a_kind(file)) return false;
   try {
-    const auto extension = [](const fs::path& p) { return lower_case(p.extension().string()); };
-    return std::ranges::any_of(cloud_inputs(folder), [&](const CloudInput& input) {
-      return !input.is_sequence && extension(input.path) == extension(file);
-    });
+    return std::ranges::any_of(cloud_inputs(folder),
+                               [](const CloudInput& input) { return !input.is_sequence; });
   } catch (const Error&) {
     return false;  // whoever reads the folder says what is wrong with it
   }
@@ -68,8 +68,8 @@ void require_no_input(const fs::path& file, std::span<const fs::path> inputs) {
       throw Error(ErrorKind::usage,
                   file.string() + ": is an input, too (" + input.string() + "); write elsewhere");
     std::error_code ignored;
-    if (fs::is_directory(input, ignored) && is_read_for(input, file))
-      throw Error(ErrorKind::usage, file.string() + ": would be one of the points of the input " +
+    if (fs::is_directory(input, ignored) && counts_in(input, file))
+      throw Error(ErrorKind::usage, file.string() + ": would count among the files of the input " +
                                         input.string() + " from then on; write elsewhere");
   }
 }

@@ -14,7 +14,8 @@ void require_ending(const std::filesystem::path& file, std::span<const std::stri
 void require_ending(const std::filesystem::path& file, const std::string& ending);
 
 /// Throws usage where writing `file` would replace one of `inputs`, by whatever name (links), or
-/// put it among files that an input folder is read for.
+/// put it among the files that an input folder is read for, as points or as anything else that is
+/// looked for there (FileKind).
 void require_no_input(const std::filesystem::path& file,
                       std::span<const std::filesystem::path> inputs);
 

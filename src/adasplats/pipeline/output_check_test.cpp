@@ -43,6 +43,9 @@ TEST(OutputCheck, FilesAreNoInputsByWhateverName) {
   require_no_input(folder.path() / "new.ply", std::vector<fs::path>{input});
   // Beside the files of an input folder it would be one of them.
   refuse_file(folder.path() / "in/b.ply", {folder.path() / "in"});
+  // Of another format it would make the folder unclear.
+  for (const char* name : {"in/b.csv", "in/b.LAS", "in/b.glb", "in/b.txt"})
+    refuse_file(folder.path() / name, {folder.path() / "in"});
   require_no_input(folder.path() / "in/b.json", std::vector<fs::path>{folder.path() / "in"});
   require_no_input(folder.path() / "b.ply", std::vector<fs::path>{folder.path() / "in"});
 }
