@@ -57,7 +57,7 @@ class EvaluateResimulateCommand final : public Command {
                  "Beams start at the poses, even where the sensor is recognised");
     add_path(app, "--motion", job_.motion,
              "How the sensor moved, for scans that are not motion-compensated: poses in the "
-             "sequence's time (CSV, KITTI poses)");
+             "sequence's time (CSV, TUM, KITTI poses)");
     app.add_flag("--keep-moving", keep_moving_, "Count beams on moving objects");
     app.add_flag("--drop-movable", job_.options.drop_movable,
                  "Leave out beams on movable objects (parked cars)");

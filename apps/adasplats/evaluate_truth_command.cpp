@@ -59,7 +59,7 @@ class EvaluateTruthCommand final : public Command {
     require(add_path(app, "MODEL", job_.model, "Splat model or triangle mesh"));
     require(add_path(app, "TRUTH", job_.truth, "True surface: a triangle mesh, with classes"));
     require(add_path(app, "--trajectory", job_.trajectory,
-                     "Poses of the sensor: KITTI poses.txt, CSV, or a sequence folder"));
+                     "Poses of the sensor: KITTI poses.txt, CSV, TUM, or a sequence folder"));
     app.add_option("--sensor", job_.sensor, "As of simulate")
         ->capture_default_str()
         ->type_name("NAME|FILE");

@@ -88,7 +88,7 @@ class SimulateCommand final : public Command {
   void add_drive_options(OptionSet& app) {
     DriveOptions& drive = job_.drive;
     require(add_path(app, "--trajectory", drive.trajectory,
-                     "Poses of the sensor: KITTI poses.txt, CSV, or a sequence folder"));
+                     "Poses of the sensor: KITTI poses.txt, CSV, TUM, or a sequence folder"));
     add_vector(app, "--offset", offset_, "Shift of the trajectory in world axes, m")
         ->default_str("0,0,0");
     add_vector(app, "--mount", mount_, "Where the sensor sits in the frame of the poses, m")

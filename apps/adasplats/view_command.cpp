@@ -29,7 +29,8 @@ class ViewCommand final : public Command {
     add_paths(app, "--cloud", job_.clouds, "Points to show beside the model: a file or a sequence");
     add_paths(app, "--errors", job_.errors, "Points with errors: what evaluate --errors wrote");
     add_paths(app, "--sequence", job_.sequences, "Recorded scans, and where they were taken");
-    add_paths(app, "--poses", job_.trajectories, "A trajectory to show: KITTI poses.txt or CSV");
+    add_paths(app, "--poses", job_.trajectories,
+              "A trajectory to show: KITTI poses.txt, CSV or TUM");
     app.add_option("--sensor", job_.sensor, "The LiDAR to begin with: one of 'adasplats sensors'")
         ->capture_default_str()
         ->type_name("NAME");

@@ -139,9 +139,11 @@ void bind_trajectories(py::module_& module) {
           "read",
           [](py::handle path) { return TrajectoryObject{load_trajectory(path_of(path, "path"))}; },
           py::arg("path"),
-          documented("read", "path",
-                     "A KITTI poses.txt, a CSV time,x,y,z,qw,qx,qy,qz, or a sequence folder.\n"
-                     "Raises FileNotFoundError, ValueError.")
+          documented(
+              "read", "path",
+              "A KITTI poses.txt, a CSV with the first line time,x,y,z,qw,qx,qy,qz, TUM with its\n"
+              "line of names, or a sequence folder.\n"
+              "Raises FileNotFoundError, ValueError.")
               .c_str())
       .def(
           "save",

@@ -180,7 +180,11 @@ void require_points(const fs::path& file) {
           "evaluate take models");
     case FileKind::trajectory:
       return refuse(
-          "is a trajectory (a line is a pose), not points; it can be given as --trajectory");
+          "is a trajectory (a line is a pose), not points; --trajectory takes it where a line "
+          "before "
+          "the poses names the columns (time,x,y,z,qw,qx,qy,qz or # timestamp tx ty tz qx qy qz "
+          "qw) "
+          "or where it has KITTI's 12 numbers a line");
     case FileKind::points:
     case FileKind::other: return;
   }

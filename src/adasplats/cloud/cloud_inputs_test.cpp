@@ -50,6 +50,8 @@ TEST(FileKind, ByHeaderAndLines) {
   EXPECT_EQ(kind("a.obj", "v 1 2 3\n"), FileKind::mesh);
   EXPECT_EQ(kind("a.csv", kPoses), FileKind::trajectory);
   EXPECT_EQ(kind("a.txt", std::string(kIdentity) + kIdentity), FileKind::trajectory);
+  EXPECT_EQ(kind("a.txt", "# a drive\n# timestamp tx ty tz qx qy qz qw\n0 1 2 3 0 0 0 1\n"),
+            FileKind::trajectory);
   // Without a header the times must ascend: normals beside a curvature of 0 have unit length, too.
   const std::string unit = ",1,2,3,0.6,0,0.8,0\n";
   EXPECT_EQ(kind("a.csv", "0" + unit + "1" + unit + "2" + unit), FileKind::trajectory);

@@ -101,8 +101,8 @@ std::vector<double> numbers_of(const std::vector<std::string>& words) {
   return numbers;
 }
 
-/// A time that ascends, a position, a quaternion: normals beside a curvature of 0 have its length,
-/// too, but hardly in the order of a coordinate.
+/// A time that ascends, a position, a quaternion in either order: normals beside a curvature of 0
+/// have its length, too, but hardly in the order of a coordinate.
 bool is_timed_pose(const std::vector<double>& v, double before_s) {
   if (v.size() != 8 || !(v[0] > before_s)) return false;
   const double norm = std::sqrt(v[4] * v[4] + v[5] * v[5] + v[6] * v[6] + v[7] * v[7]);
@@ -134,10 +134,20 @@ bool has_a_point(const std::vector<std::string>& lines) {
   return false;
 }
 
+/// Whether the line before the first numbers, or a comment there (as in TUM's), names a quaternion.
+bool has_pose_names(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) {
+    const std::vector<std::string> words = words_of(line);
+    if (names_a_quaternion(words)) return true;
+    if (!is_comment(line) && !numbers_of(words).empty()) return false;
+  }
+  return false;
+}
+
 FileKind kind_of_text(const std::vector<std::string>& lines) {
   constexpr std::size_t kLeastTimedPoses = 3;
   if (!has_a_point(lines)) return FileKind::other;
-  if (names_a_quaternion(words_of(lines.front()))) return FileKind::trajectory;
+  if (has_pose_names(lines)) return FileKind::trajectory;
   std::size_t poses = 0, matrices = 0, others = 0;
   double before_s = -std::numeric_limits<double>::infinity();
   for (const std::string& line : lines) {

@@ -413,7 +413,7 @@ TEST(LoadCloud, ViewpointAndTrajectoryFillSensorPositions) {
   const PointCloud seen = load({bare, own}, options).first;
   EXPECT_TRUE((seen.sensor_positions.at(1) == Vec3f{1, 2, 30}));
   EXPECT_TRUE((seen.sensor_positions.at(2) == Vec3f{7, 8, 9}));
-  options.trajectory = folder.write("t.csv", "0,0,0,2,1,0,0,0\n1,10,0,3,1,0,0,0\n");
+  options.trajectory = folder.write("t.csv", "time,x,y,z,qw,qx,qy,qz\n0,0,0,2,1,0,0,0\n1,10,0,3,1,0,0,0\n");
   expect_error(ErrorKind::usage, {"viewpoint", "trajectory"}, [&] { load({bare}, options); });
   options.viewpoint.reset();
   const PointCloud driven = load({bare}, options).first;

@@ -16,6 +16,8 @@ namespace {
 
 using enum OriginKind;
 
+const std::string kPoseNames = "time,x,y,z,qw,qx,qy,qz\n";
+
 std::pair<PointCloud, LoadReport> load(const std::vector<std::filesystem::path>& inputs,
                                        const LoadOptions& options = {}) {
   ProgressSink quiet;
@@ -71,7 +73,7 @@ TEST(PointOrigins, KindsByWhereTheyComeFrom) {
   EXPECT_TRUE(stated_cloud.has_beams() && stated_cloud.has_all_origins());
 
   options.viewpoint.reset();
-  options.trajectory = folder.write("t.csv", "0,0,0,2,1,0,0,0\n1,10,0,3,1,0,0,0\n");
+  options.trajectory = folder.write("t.csv", kPoseNames + "0,0,0,2,1,0,0,0\n1,10,0,3,1,0,0,0\n");
   const PointCloud driven = load({bare}, options).first;
   EXPECT_EQ(driven.origin_kinds, (std::vector<OriginKind>{guessed, guessed}));
   EXPECT_FALSE(driven.has_beams());
@@ -113,7 +115,7 @@ TEST(PointOrigins, FartherThanAnyLidarMeasuresIsAnError) {
   expect_error(ErrorKind::usage, {"viewpoint 5000000.00,0.00,0.00", "bare.xyz", "5000 km"},
                [&] { load({bare}, options); });
   options.viewpoint.reset();
-  options.trajectory = folder.write("t.csv", "0,400000,5500000,2,1,0,0,0\n");
+  options.trajectory = folder.write("t.csv", kPoseNames + "0,400000,5500000,2,1,0,0,0\n");
   expect_error(ErrorKind::usage, {"trajectory", "bare.xyz", "km"}, [&] { load({bare}, options); });
   const auto own = folder.write("own.csv", "x,y,z,sensor_x,sensor_y,sensor_z\n1,2,3,0,20000,0\n");
   expect_error(ErrorKind::data, {"own.csv", "point 0", "20 km"}, [&] { load({own}); });

@@ -25,10 +25,13 @@ using Trajectory = std::vector<TimedPose>;
 ///   world_from_velodyne = inv(Tr) * pose * Tr. Without a calib.txt they are world_from_sensor,
 ///   unless a folder `velodyne` is beside them: a sequence must say which frame its poses are in
 ///   (the identity as Tr: the LiDAR's). Times from `times.txt` beside it, else 0.1 s apart.
-/// - CSV: time,x,y,z,qw,qx,qy,qz with or without that header line.
-/// Errors (ErrorKind::data with the line): a sequence without Tr, wrong number of values, not
-/// finite, rotation not orthonormal to 1e-3, quaternion norm off by more than 1e-3, time that does
-/// not ascend.
+/// - CSV with a first line time,x,y,z,qw,qx,qy,qz, or TUM: values between blanks, and before them a
+///   line '# timestamp tx ty tz qx qy qz qw'. The names (of either) tell the order; other columns
+///   are skipped. Without them it is an error: the order of a quaternion cannot be guessed.
+/// Lines that begin with '#' are comments.
+/// Errors (ErrorKind::data with the line): a sequence without Tr, wrong number of values, columns
+/// that are not named, not finite, rotation not orthonormal to 1e-3, quaternion norm off by more
+/// than 1e-3, time that does not ascend.
 Trajectory read_trajectory(const std::filesystem::path& path);
 
 /// Writes a CSV as read_trajectory reads it, 9 digits behind the point.

@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "adasplats/cloud/rotation.h"
@@ -23,6 +24,8 @@ namespace {
 constexpr double kTolerance = 1e-3;  // of rotation matrices and quaternion norms
 constexpr double kDefaultPeriodS = 0.1;
 constexpr std::string_view kCsvHeader = "time,x,y,z,qw,qx,qy,qz";
+constexpr const char* kCalibrationName = "calib.txt";
+constexpr const char* kTimesName = "times.txt";
 
 /// Whether a file beside another is there. What is there and cannot be read is left to the reader.
 bool is_there(const std::filesystem::path& path) {
@@ -62,22 +65,30 @@ std::string short_text(double value) {
   return std::string(buffer.data(), result.ptr);
 }
 
+double finite_number(const FilePlace& place, const std::vector<std::string_view>& fields,
+                     std::size_t index) {
+  const auto number = parse_number<double>(fields[index]);
+  if (!number || !std::isfinite(*number))
+    throw data_error(place, "value " + std::to_string(index + 1) + " " + shown(fields[index]) +
+                                " is not a finite number");
+  return *number;
+}
+
+void require_count(const FilePlace& place, const std::vector<std::string_view>& fields,
+                   std::size_t expected) {
+  if (fields.size() != expected)
+    throw data_error(place, "found " + std::to_string(fields.size()) + " values, expected " +
+                                std::to_string(expected));
+}
+
 /// `N` finite numbers, or an error that names the line.
 template <std::size_t N>
 std::array<double, N> finite_numbers(const std::filesystem::path& path, std::uint64_t line,
                                      const std::vector<std::string_view>& fields) {
   const FilePlace place{path, {}, line};
-  if (fields.size() != N)
-    throw data_error(
-        place, "found " + std::to_string(fields.size()) + " values, expected " + std::to_string(N));
+  require_count(place, fields, N);
   std::array<double, N> numbers;
-  for (std::size_t i = 0; i < N; ++i) {
-    const auto number = parse_number<double>(fields[i]);
-    if (!number || !std::isfinite(*number))
-      throw data_error(place, "value " + std::to_string(i + 1) + " " + shown(fields[i]) +
-                                  " is not a finite number");
-    numbers[i] = *number;
-  }
+  for (std::size_t i = 0; i < N; ++i) numbers[i] = finite_number(place, fields, i);
   return numbers;
 }
 
@@ -99,7 +110,7 @@ constexpr const char* kStateFrame =
 /// The `Tr:` line of a KITTI calib.txt: camera_from_velodyne. A sequence needs one, since its poses
 /// are the camera's.
 std::optional<RigidTransform> read_calibration(const std::filesystem::path& folder) {
-  const std::filesystem::path path = folder / "calib.txt";
+  const std::filesystem::path path = folder / kCalibrationName;
   if (!is_there(path)) {
     if (!is_there(folder / "velodyne")) return std::nullopt;
     throw Error(ErrorKind::data, path.string() +
@@ -152,7 +163,7 @@ Trajectory read_kitti_poses(const std::filesystem::path& path,
                             const std::vector<NumberedLine>& lines) {
   const std::filesystem::path folder = path.parent_path();
   const auto camera_from_sensor = read_calibration(folder);
-  const std::vector<double> times_s = read_times(folder / "times.txt", lines.size());
+  const std::vector<double> times_s = read_times(folder / kTimesName, lines.size());
   Trajectory trajectory;
   trajectory.reserve(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -163,26 +174,93 @@ Trajectory read_kitti_poses(const std::filesystem::path& path,
   return trajectory;
 }
 
-bool is_csv_header(const NumberedLine& line) {
-  return std::ranges::equal(split_commas(line.text), split_commas(kCsvHeader));
+/// Where a line of a timed pose has time, x, y, z, qw, qx, qy and qz.
+struct PoseColumns {
+  std::array<std::size_t, 8> of{};
+  std::size_t count = 0;  ///< all columns of the line
+};
+
+std::vector<std::string_view> split_fields(std::string_view line) {
+  return line.find(',') != std::string_view::npos ? split_commas(line) : split_blanks(line);
 }
 
-Trajectory read_csv_poses(const std::filesystem::path& path,
-                          const std::vector<NumberedLine>& lines) {
+bool is_comment(std::string_view line) { return line.starts_with('#'); }
+
+/// The columns that a line names, as our CSV and the TUM format call them; nothing where one is
+/// missing.
+std::optional<PoseColumns> columns_named_by(std::string_view line) {
+  constexpr std::array<std::array<std::string_view, 2>, 8> kNames = {{{"time", "timestamp"},
+                                                                      {"x", "tx"},
+                                                                      {"y", "ty"},
+                                                                      {"z", "tz"},
+                                                                      {"qw", "qw"},
+                                                                      {"qx", "qx"},
+                                                                      {"qy", "qy"},
+                                                                      {"qz", "qz"}}};
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+  while (is_comment(line)) line.remove_prefix(1);
+  const std::vector<std::string_view> fields = split_fields(line);
+  PoseColumns columns;
+  columns.count = fields.size();
+  for (std::size_t k = 0; k < kNames.size(); ++k) {
+    const auto found = std::ranges::find_if(fields, [&](std::string_view field) {
+      return std::ranges::find(kNames[k], lower_case(field)) != kNames[k].end();
+    });
+    if (found == fields.end()) return std::nullopt;
+    columns.of[k] = static_cast<std::size_t>(found - fields.begin());
+  }
+  return columns;
+}
+
+/// What a file says of itself before its poses.
+struct Heading {
+  std::optional<PoseColumns> columns;
+  std::size_t lines = 0;  ///< comments and the line of names
+};
+
+Heading heading_of(const std::vector<NumberedLine>& lines) {
+  Heading heading;
+  for (; heading.lines < lines.size(); ++heading.lines) {
+    const std::string& text = lines[heading.lines].text;
+    const auto columns = columns_named_by(text);
+    if (columns) heading.columns = columns;
+    if (!columns && !is_comment(text)) break;
+  }
+  return heading;
+}
+
+Trajectory read_timed_poses(const std::filesystem::path& path, const PoseColumns& columns,
+                            const std::vector<NumberedLine>& lines) {
   Trajectory trajectory;
   for (const NumberedLine& line : lines) {
-    if (&line == &lines.front() && is_csv_header(line)) continue;
-    const auto v = finite_numbers<8>(path, line.number, split_commas(line.text));
+    const FilePlace place{path, {}, line.number};
+    const std::vector<std::string_view> fields = split_fields(line.text);
+    require_count(place, fields, columns.count);
+    std::array<double, 8> v;
+    for (std::size_t k = 0; k < v.size(); ++k) v[k] = finite_number(place, fields, columns.of[k]);
     const double norm = std::sqrt(v[4] * v[4] + v[5] * v[5] + v[6] * v[6] + v[7] * v[7]);
     if (!(std::fabs(norm - 1) <= kTolerance))
-      throw data_error({path, {}, line.number},
-                       "the quaternion's norm is " + short_text(norm) + ", expected 1");
+      throw data_error(place, "the quaternion's norm is " + short_text(norm) + ", expected 1");
     if (!trajectory.empty()) require_ascending(path, line.number, trajectory.back().time_s, v[0]);
     const Mat3d rotation =
         rotation_from_quaternion(v[4] / norm, v[5] / norm, v[6] / norm, v[7] / norm);
     trajectory.push_back({v[0], {rotation, {v[1], v[2], v[3]}}});
   }
   return trajectory;
+}
+
+/// Lines that may be timed poses say which value is which: of the quaternion the usual orders
+/// differ, and nothing in the numbers tells them apart.
+void require_rows_of_matrices(const std::filesystem::path& path, const NumberedLine& first) {
+  constexpr std::size_t kTimedPose = 8;
+  const bool has_commas = first.text.find(',') != std::string::npos;
+  if (!has_commas && split_blanks(first.text).size() != kTimedPose) return;
+  throw data_error({path, {}, first.number},
+                   "no line before it names the columns; expected a first line '" +
+                       std::string(kCsvHeader) +
+                       "' (CSV), '# timestamp tx ty tz qx qy qz qw' (TUM) or another order of "
+                       "these names, or KITTI's rows of 12 numbers");
 }
 
 void append_fixed(std::string& text, double value) {
@@ -195,11 +273,14 @@ void append_fixed(std::string& text, double value) {
 }  // namespace
 
 Trajectory read_trajectory(const std::filesystem::path& path) {
-  const std::vector<NumberedLine> lines = filled_lines(path);
-  const bool is_csv = !lines.empty() && lines.front().text.find(',') != std::string::npos;
-  Trajectory trajectory = is_csv ? read_csv_poses(path, lines) : read_kitti_poses(path, lines);
-  if (trajectory.empty()) throw Error(ErrorKind::data, path.string() + ": holds no poses");
-  return trajectory;
+  std::vector<NumberedLine> lines = filled_lines(path);
+  const Heading heading = heading_of(lines);
+  lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(heading.lines));
+  std::erase_if(lines, [](const NumberedLine& line) { return is_comment(line.text); });
+  if (lines.empty()) throw Error(ErrorKind::data, path.string() + ": holds no poses");
+  if (heading.columns) return read_timed_poses(path, *heading.columns, lines);
+  require_rows_of_matrices(path, lines.front());
+  return read_kitti_poses(path, lines);
 }
 
 void write_trajectory_csv(const std::filesystem::path& path, const Trajectory& trajectory) {

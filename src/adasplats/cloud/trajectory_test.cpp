@@ -31,6 +31,7 @@ RigidTransform yawed(double yaw_rad, Vec3d translation) {
   return {rotation_from_yaw_pitch_roll(yaw_rad, 0, 0), translation};
 }
 
+const std::string kHeader = "time,x,y,z,qw,qx,qy,qz\n";
 constexpr const char* kIdentityLine = "1 0 0 0 0 1 0 0 0 0 1 0\n";
 
 // Oracle: analytic, a quarter turn to the left at (1, 2, 3).
@@ -87,12 +88,13 @@ TEST(ReadTrajectory, RoundedRotationsBecomeOrthonormal) {
   EXPECT_LT(rotation_distance(read, exact), 2e-5);
 }
 
-TEST(ReadTrajectory, CsvWithAndWithoutHeader) {
+TEST(ReadTrajectory, CsvWithAHeader) {
   const TemporaryFolder folder;
   const std::string rows =
       "1,10,20,30,1,0,0,0\n1.5, 11 ,20,30,0.7071067811865476,0,0,+0.7071067811865476\n";
   for (const std::string header :
-       {"", "time,x,y,z,qw,qx,qy,qz\n", "time, x, y, z, qw, qx, qy, qz\r\n"}) {
+       {"time,x,y,z,qw,qx,qy,qz\n", "# made by hand\nTime, x, y, z, qw, qx, qy, qz\r\n",
+        "#timestamp,tx,ty,tz,qw,qx,qy,qz\n"}) {
     const Trajectory trajectory = read_trajectory(folder.write("poses.csv", header + rows));
     ASSERT_EQ(trajectory.size(), 2U);
     EXPECT_EQ(trajectory[1].time_s, 1.5);
@@ -100,10 +102,26 @@ TEST(ReadTrajectory, CsvWithAndWithoutHeader) {
   }
 }
 
+// Oracle: the same quarter turn to the left; TUM has qw last, where ours has it first.
+TEST(ReadTrajectory, NamesTellTheOrder) {
+  const TemporaryFolder folder;
+  const std::string c = "0.7071067811865476";
+  for (const std::string& text : std::vector<std::string>{
+           "# ground truth\n# timestamp tx ty tz qx qy qz qw\n1.5 11 20 30 0 0 " + c + " " + c +
+               "\n",
+           "timestamp\ttx\tty\ttz\tqx\tqy\tqz\tqw\n1.5\t11\t20\t30\t0\t0\t" + c + "\t" + c + "\n",
+           "time,x,y,z,qx,qy,qz,qw,speed\n1.5,11,20,30,0,0," + c + "," + c + ",x\n"}) {
+    const Trajectory trajectory = read_trajectory(folder.write("poses.txt", text));
+    ASSERT_EQ(trajectory.size(), 1U) << text;
+    EXPECT_EQ(trajectory[0].time_s, 1.5);
+    EXPECT_LT(pose_distance(trajectory[0].world_from_sensor, yawed(kPi / 2, {11, 20, 30})), 1e-15);
+  }
+}
+
 TEST(ReadTrajectory, SlightlyLongQuaternionsAreNormalised) {
   const TemporaryFolder folder;
   const Trajectory trajectory =
-      read_trajectory(folder.write("poses.csv", "0,0,0,0,1.0005,0,0,0\n"));
+      read_trajectory(folder.write("poses.csv", kHeader + "0,0,0,0,1.0005,0,0,0\n"));
   EXPECT_LT(orthonormality_error(trajectory[0].world_from_sensor.rotation), 1e-15);
 }
 
@@ -126,23 +144,29 @@ TEST_P(ReadTrajectoryBad, IsADataErrorWithTheLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, ReadTrajectoryBad,
-    testing::Values(BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n\n1 0 0 0 0 1 0 0 0 0 1\n", 3,
-                            "11 values"},
-                    BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0\n", 1, "13 values"},
-                    BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1 x\n", 1, "'x'"},
-                    BadFile{"poses.txt", "1 0 0 nan 0 1 0 0 0 0 1 0\n", 1, "'nan'"},
-                    BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1 inf\n", 1, "'inf'"},
-                    BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1 1e999\n", 1, "1e999"},
-                    BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1.001 0\n", 1, "orthonormal"},
-                    BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 -1 0\n", 1, "orthonormal"},
-                    BadFile{"poses.txt", "0 0 0 0 0 0 0 0 0 0 0 0\n", 1, "orthonormal"},
-                    BadFile{"poses.csv", "0,0,0,0,1,0,0,0\n1,0,0,0,1,0,0\n", 2, "7 values"},
-                    BadFile{"poses.csv", "0,0,0,0,1,0,0,\n", 1, "''"},
-                    BadFile{"poses.csv", "time,x,y,z,qx,qy,qz,qw\n0,0,0,0,1,0,0,0\n", 1, "'time'"},
-                    BadFile{"poses.csv", "0,0,0,0,1,0,0,0\n1,0,0,0,0.99,0,0,0\n", 2, "0.99"},
-                    BadFile{"poses.csv", "0,0,0,0,0,0,0,0\n", 1, "norm"},
-                    BadFile{"poses.csv", "2,0,0,0,1,0,0,0\n1,0,0,0,1,0,0,0\n", 2, "time 1 s"},
-                    BadFile{"poses.csv", "2,0,0,0,1,0,0,0\n2,0,0,0,1,0,0,0\n", 2, "time 2 s"}));
+    testing::Values(
+        BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n\n1 0 0 0 0 1 0 0 0 0 1\n", 3, "11 values"},
+        BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0\n", 1, "13 values"},
+        BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1 x\n", 1, "'x'"},
+        BadFile{"poses.txt", "1 0 0 nan 0 1 0 0 0 0 1 0\n", 1, "'nan'"},
+        BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1 inf\n", 1, "'inf'"},
+        BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1 1e999\n", 1, "1e999"},
+        BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1.001 0\n", 1, "orthonormal"},
+        BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 -1 0\n", 1, "orthonormal"},
+        BadFile{"poses.txt", "0 0 0 0 0 0 0 0 0 0 0 0\n", 1, "orthonormal"},
+        BadFile{"poses.csv", "time,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0,0,1,0,0\n", 3,
+                "7 values"},
+        BadFile{"poses.csv", "time,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,\n", 2, "''"},
+        BadFile{"poses.csv", "0,0,0,0,1,0,0,0\n", 1, "time,x,y,z,qw,qx,qy,qz"},
+        BadFile{"poses.txt", "0 0 0 0 0 0 0 1\n", 1, "# timestamp tx ty tz"},
+        BadFile{"poses.csv", "time,x,y,z,qx,qy,qz\n0,0,0,0,1,0,0\n", 1, "names"},
+        BadFile{"poses.csv", "time,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0,0,0.99,0,0,0\n", 3,
+                "0.99"},
+        BadFile{"poses.csv", "time,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,0,0\n", 2, "norm"},
+        BadFile{"poses.csv", "time,x,y,z,qw,qx,qy,qz\n2,0,0,0,1,0,0,0\n1,0,0,0,1,0,0,0\n", 3,
+                "time 1 s"},
+        BadFile{"poses.csv", "time,x,y,z,qw,qx,qy,qz\n2,0,0,0,1,0,0,0\n2,0,0,0,1,0,0,0\n", 3,
+                "time 2 s"}));
 
 TEST(ReadTrajectory, TimesThatDoNotFit) {
   const TemporaryFolder folder;

@@ -21,7 +21,7 @@ class WorldFileTest : public testing::Test {
     folder_.write("street.ply", "not read here");
     folder_.write("way.csv", "time,x,y,z,qw,qx,qy,qz\n0,10,0,0,1,0,0,0\n2,30,0,0,1,0,0,0\n");
     folder_.write("turned.csv",
-                  "0,10,0,0,0.70710678118654752,0,0,0.70710678118654752\n"
+                  "time,x,y,z,qw,qx,qy,qz\n0,10,0,0,0.70710678118654752,0,0,0.70710678118654752\n"
                   "2,30,0,0,0.70710678118654752,0,0,0.70710678118654752\n");
     SplatModel splats;
     splats.disks = {{{0, 0, 0}, 1, {1, 0, 0}}, {{0, 3, 0}, 1, {1, 0, 0}}};
@@ -169,7 +169,7 @@ TEST_F(WorldFileTest, ValuesOfAnotherKind) {
     expect_refused(object + line, {"world.toml:3:", key});
   }
   expect_refused(object + "present = \"during\"", {":3:", "trajectory"});
-  folder_.write("one.csv", "0,0,0,0,1,0,0,0\n");
+  folder_.write("one.csv", "time,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n");
   expect_refused(object + "trajectory = \"one.csv\"\npresent = \"during\"", {":1:", "one pose"});
 }
 
