@@ -34,6 +34,10 @@ using Trajectory = std::vector<TimedPose>;
 /// than 1e-3, time that does not ascend.
 Trajectory read_trajectory(const std::filesystem::path& path);
 
+/// The files that read_trajectory(path) reads: it, and beside KITTI's rows the calib.txt and the
+/// times.txt that are there. Errors: those of reading the file.
+std::vector<std::filesystem::path> trajectory_files(const std::filesystem::path& path);
+
 /// Writes a CSV as read_trajectory reads it, 9 digits behind the point.
 void write_trajectory_csv(const std::filesystem::path& path, const Trajectory& trajectory);
 

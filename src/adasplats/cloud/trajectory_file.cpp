@@ -283,6 +283,14 @@ Trajectory read_trajectory(const std::filesystem::path& path) {
   return read_kitti_poses(path, lines);
 }
 
+std::vector<std::filesystem::path> trajectory_files(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files = {path};
+  if (heading_of(filled_lines(path)).columns) return files;
+  for (const char* name : {kCalibrationName, kTimesName})
+    if (const auto file = path.parent_path() / name; is_there(file)) files.push_back(file);
+  return files;
+}
+
 void write_trajectory_csv(const std::filesystem::path& path, const Trajectory& trajectory) {
   std::string text(kCsvHeader);
   text += '\n';

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "adasplats/cloud/trajectory.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/scene/gltf.h"
 #include "adasplats/simulate/world_file.h"
@@ -30,7 +31,8 @@ std::vector<std::filesystem::path> files_of_scene(const std::filesystem::path& m
   add_geometry(world.model);
   for (const WorldFileObject& object : world.objects) {
     add_geometry(object.geometry);
-    add(object.trajectory);
+    if (object.trajectory.empty()) continue;
+    for (const std::filesystem::path& file : trajectory_files(object.trajectory)) add(file);
   }
   return files;
 }
