@@ -18,6 +18,7 @@ namespace {
 
 using io_test::bytes_of;
 using io_test::expect_error;
+using io_test::put;
 using io_test::TemporaryFolder;
 using io_test::values_of;
 
@@ -179,6 +180,27 @@ TEST(KittiBin, FiveFloatsAreNotTakenForFour) {
   for (const int points : {20, 40, 51, 500})
     EXPECT_EQ(read_points(folder.file("b.bin", circle(points, 4))).rows,
               static_cast<std::size_t>(points));
+}
+
+// The name is no way out among the scans of a sequence.
+TEST(KittiBin, FiveFloatsInASequenceAreToBeConverted) {
+  const TemporaryFolder folder;
+  for (const char* name : {"b.bin", "b.pcd.bin"})
+    for (const int points : {20, 51})
+      expect_error(ErrorKind::data, {name, "nuScenes", "leave the ring out"},
+                   [&] { read_kitti_bin(folder.file(name, circle(points, 5))); });
+}
+
+TEST(KittiBin, IntensitiesThatAreNotFiniteAreNotKnown) {
+  const TemporaryFolder folder;
+  for (const float value : {std::nanf(""), HUGE_VALF, -HUGE_VALF}) {
+    std::string content = circle(3, 4);
+    put(content, 12, value);
+    EXPECT_EQ(read_kitti_bin(folder.file("a.bin", content)).rows, 3U);
+    std::string five = circle(3, 5);
+    put(five, 12, value);
+    EXPECT_EQ(read_points(folder.file("a.pcd.bin", five)).rows, 3U);
+  }
 }
 
 TEST(KittiBin, OtherFilesAreNotTakenForScans) {

@@ -46,13 +46,18 @@ std::vector<float> flat(const Table& table) {
   return values;
 }
 
+/// Intensities that are not finite are not known.
+bool can_be_intensity(float value) {
+  return !std::isfinite(value) || (value >= 0 && value <= kMostIntensity);
+}
+
 /// Whether of every five floats the fourth can be an intensity and the fifth a ring.
 bool has_rings(const Table& table) {
   const std::vector<float> values = flat(table);
   for (std::size_t i = 0; i + kNuScenesFloats <= values.size(); i += kNuScenesFloats) {
     const float intensity = values[i + 3];
     const float ring = values[i + 4];
-    if (intensity < 0 || intensity > kMostIntensity) return false;
+    if (!can_be_intensity(intensity)) return false;
     if (!(ring >= 0 && ring < kMostRings) || ring != std::trunc(ring)) return false;
   }
   return true;
@@ -69,15 +74,20 @@ bool looks_like_five(const Table& four) {
 }
 
 constexpr const char* kFiveFloats =
-    "has 5 floats a point (x, y, z, intensity, ring), as nuScenes has them; name it *.pcd.bin to "
-    "have it read so";
+    "has 5 floats a point (x, y, z, intensity, ring), as nuScenes has them";
+
+// What to do with five floats: a file on its own can be read by its name, a sequence's cannot.
+constexpr const char* kNameIt = "; name it *.pcd.bin to have it read so";
+constexpr const char* kConvertIt =
+    "; a sequence has scans of 4 (float32 x, y, z, intensity): leave the ring out";
 
 /// A file of four floats a point says nothing of itself: its values must be possible.
-void require_kitti_values(const std::filesystem::path& path, const Table& table) {
-  if (looks_like_five(table)) throw data_error({path, {}, {}}, kFiveFloats);
+void require_kitti_values(const std::filesystem::path& path, const Table& table,
+                          const char* cure_of_five) {
+  if (looks_like_five(table))
+    throw data_error({path, {}, {}}, std::string(kFiveFloats) + cure_of_five);
   const std::vector<float>& intensities = floats(table, 3);
-  const auto wrong = std::ranges::find_if(
-      intensities, [](float value) { return value < 0 || value > kMostIntensity; });
+  const auto wrong = std::ranges::find_if_not(intensities, can_be_intensity);
   if (wrong == intensities.end()) return;
   const auto row = static_cast<std::size_t>(wrong - intensities.begin());
   throw data_error({path, row * kKittiFloats * sizeof(float) + 3 * sizeof(float), {}},
@@ -100,37 +110,39 @@ void refuse_cloud_compare(InputFile& file) {
                      "is a file of CloudCompare's own format; save it as PLY or LAS there");
 }
 
-void require_whole_points(const InputFile& file, std::size_t floats_a_point, const char* what) {
+void require_whole_points(const InputFile& file, std::size_t floats_a_point,
+                          const std::string& what) {
   const std::size_t record_bytes = floats_a_point * sizeof(float);
   const std::uint64_t left = file.size_bytes() % record_bytes;
   if (left == 0) return;
-  throw data_error(
-      {file.path(), file.size_bytes(), {}},
-      std::string(what) + ", found " + std::to_string(left) + " bytes after the last whole point");
+  throw data_error({file.path(), file.size_bytes(), {}},
+                   what + ", found " + std::to_string(left) + " bytes after the last whole point");
+}
+
+Table read_four_floats(const std::filesystem::path& path, const char* cure_of_five) {
+  InputFile file(path);
+  refuse_cloud_compare(file);
+  const bool five = file.size_bytes() % (kNuScenesFloats * sizeof(float)) == 0;
+  require_whole_points(
+      file, kKittiFloats,
+      "a KITTI scan has 16 bytes a point (float32 x, y, z, intensity)" +
+          (five ? std::string("; this one may be of nuScenes, which has 20") + cure_of_five : ""));
+  Table table = read_floats(file, {"x", "y", "z", "intensity"});
+  require_kitti_values(path, table, cure_of_five);
+  return table;
 }
 
 }  // namespace
 
 Table read_kitti_bin(const std::filesystem::path& path) {
-  InputFile file(path);
-  refuse_cloud_compare(file);
   if (is_nuscenes_name(path))
-    throw data_error({path, {}, {}},
-                     "is named as a nuScenes sweep, which has 5 floats a point; expected a KITTI "
-                     "scan of 4");
-  const bool five = file.size_bytes() % (kNuScenesFloats * sizeof(float)) == 0;
-  require_whole_points(
-      file, kKittiFloats,
-      five ? "a KITTI scan has 16 bytes a point (float32 x, y, z, intensity; one of nuScenes has "
-             "20 and is named *.pcd.bin)"
-           : "a KITTI scan has 16 bytes a point (float32 x, y, z, intensity)");
-  Table table = read_floats(file, {"x", "y", "z", "intensity"});
-  require_kitti_values(path, table);
-  return table;
+    throw data_error({path, {}, {}}, "is named as a nuScenes sweep, which has 5 floats a point" +
+                                         std::string(kConvertIt));
+  return read_four_floats(path, kConvertIt);
 }
 
 Table read_bin(const std::filesystem::path& path) {
-  if (!is_nuscenes_name(path)) return read_kitti_bin(path);
+  if (!is_nuscenes_name(path)) return read_four_floats(path, kNameIt);
   InputFile file(path);
   refuse_cloud_compare(file);
   require_whole_points(file, kNuScenesFloats,

@@ -42,14 +42,14 @@ Table read_las(const std::filesystem::path& path, const LasReadOptions& options 
 /// left out, a comment says how many. All columns are f64. Locale-independent.
 Table read_text_points(const std::filesystem::path& path);
 
-/// KITTI / SemanticKITTI scan: float32 x, y, z, intensity ("remission"), little-endian. The file
-/// does not say what it holds, so its values must be possible. Errors: data for an intensity below
-/// 0 or above 65535, and for what is recognised as five floats a point or CloudCompare's own
-/// format.
+/// KITTI / SemanticKITTI scan of a sequence: float32 x, y, z, intensity ("remission"),
+/// little-endian. The file does not say what it holds, so its values must be possible. Errors: data
+/// for an intensity below 0 or above 65535 (one that is not finite is not known), and for what is
+/// recognised as five floats a point or CloudCompare's own format.
 Table read_kitti_bin(const std::filesystem::path& path);
 
 /// A `.bin` by its name: of nuScenes (`*.pcd.bin`: float32 x, y, z, intensity, ring), else
-/// read_kitti_bin. Errors: data, likewise for a fifth column that holds no rings (whole numbers
+/// as read_kitti_bin. Errors: data, likewise for a fifth column that holds no rings (whole numbers
 /// from 0 to 255).
 Table read_bin(const std::filesystem::path& path);
 
