@@ -124,7 +124,7 @@ KittiSequence open_kitti_sequence(const std::filesystem::path& folder) {
   return sequence;
 }
 
-KittiScan read_kitti_scan(const KittiSequence& sequence, std::size_t index) {
+KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index) {
   const std::filesystem::path& path = sequence.scans.at(index);
   KittiScan scan;
   // A scan in which nothing returned is an empty file.
@@ -138,6 +138,19 @@ KittiScan read_kitti_scan(const KittiSequence& sequence, std::size_t index) {
     for (std::size_t i = 0; i < table.rows; ++i) scan.positions[i] = {x[i], y[i], z[i]};
     scan.intensities = float_column(table, "intensity");
   }
+  return scan;
+}
+
+std::optional<KittiScan> try_kitti_points(const KittiSequence& sequence, std::size_t index) {
+  try {
+    return read_kitti_points(sequence, index);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+KittiScan read_kitti_scan(const KittiSequence& sequence, std::size_t index) {
+  KittiScan scan = read_kitti_points(sequence, index);
   if (!sequence.labels.empty()) read_labels(sequence.labels.at(index), scan);
   return scan;
 }

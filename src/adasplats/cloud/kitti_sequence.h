@@ -42,4 +42,11 @@ struct KittiScan {
 /// Errors: data where the label file has another number of entries ("n labels, m points").
 KittiScan read_kitti_scan(const KittiSequence& sequence, std::size_t index);
 
+/// The same without labels.
+KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index);
+
+/// The same; nothing where the scan cannot be read. For what looks into scans that nobody chose:
+/// whoever reads one that was chosen says what is wrong with it.
+std::optional<KittiScan> try_kitti_points(const KittiSequence& sequence, std::size_t index);
+
 }  // namespace adasplats

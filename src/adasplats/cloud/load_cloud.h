@@ -82,12 +82,14 @@ struct LoadReport {
 /// (names in any case): intensity from the first of intensity, reflectance, remission,
 /// reflectivity, luma and their scalar_ twins; classes are the low 16 bits of the label column,
 /// instances its high 16 bits or the column `instance`; `scan_index` as save_cloud_ply writes it.
-/// Memory: sequences 1.1x the cloud; files the reader's plus 24 bytes a point. Up to five scans of
-/// a sequence are read to recognise its sensor, whichever are chosen. What is dropped is told as
-/// warnings. Errors: those of the readers; data for sensor positions that are impossible (usage for
-/// options that state one); data for too much dropped (max_dropped) and for longitudes and
-/// latitudes instead of metres (require_metres); usage for options that fit nothing and for named
-/// columns that are not there; data for labels that are no whole numbers from 0 to 2^32 - 1.
+/// Memory: sequences 1.1x the cloud; files the reader's plus 24 bytes a point. Whichever scans of a
+/// sequence are chosen, up to five are read to recognise its sensor and up to eight to check its
+/// poses (require_poses_that_fit), without labels; there one that cannot be read is skipped. What
+/// is dropped is told as warnings. Errors: those of the readers; data for sensor positions that are
+/// impossible (usage for options that state one); data for too much dropped (max_dropped) and for
+/// longitudes and latitudes instead of metres (require_metres); usage for options that fit nothing
+/// and for named columns that are not there; data for labels that are no whole numbers from 0 to
+/// 2^32 - 1.
 std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
                                              const LoadOptions& options, const Executor& executor,
                                              ProgressSink& progress);

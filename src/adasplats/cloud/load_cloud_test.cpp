@@ -117,6 +117,16 @@ TEST(LoadCloud, ChosenScansAreRenumbered) {
   expect_error(ErrorKind::usage, {"6 scans", "number 6"}, [&] { load({folder.path()}, options); });
 }
 
+TEST(LoadCloud, ScansThatAreNotChosenMayBeBroken) {
+  const TemporaryFolder folder;
+  write_sequence(folder, 6);
+  folder.write("velodyne/000004.bin", std::string(17, 'x'));
+  LoadOptions options;
+  options.scan_count = 2;
+  EXPECT_EQ(load({folder.path()}, options).first.size(), 3U);
+  expect_error(ErrorKind::data, {"000004.bin"}, [&] { load({folder.path()}); });
+}
+
 TEST(LoadCloud, TwoSequencesCountScansOn) {
   const TemporaryFolder folder;
   write_sequence(folder, 2, 0, "a/");
@@ -413,7 +423,8 @@ TEST(LoadCloud, ViewpointAndTrajectoryFillSensorPositions) {
   const PointCloud seen = load({bare, own}, options).first;
   EXPECT_TRUE((seen.sensor_positions.at(1) == Vec3f{1, 2, 30}));
   EXPECT_TRUE((seen.sensor_positions.at(2) == Vec3f{7, 8, 9}));
-  options.trajectory = folder.write("t.csv", "time,x,y,z,qw,qx,qy,qz\n0,0,0,2,1,0,0,0\n1,10,0,3,1,0,0,0\n");
+  options.trajectory =
+      folder.write("t.csv", "time,x,y,z,qw,qx,qy,qz\n0,0,0,2,1,0,0,0\n1,10,0,3,1,0,0,0\n");
   expect_error(ErrorKind::usage, {"viewpoint", "trajectory"}, [&] { load({bare}, options); });
   options.viewpoint.reset();
   const PointCloud driven = load({bare}, options).first;

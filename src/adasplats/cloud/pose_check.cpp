@@ -151,10 +151,14 @@ std::array<RigidTransform, PoseEvidence::kWays> motions(const RigidTransform& ea
 
 void add_pair(const KittiSequence& sequence, std::size_t earlier, std::size_t later,
               PoseEvidence& evidence) {
-  const NearPoints source = near_points(read_kitti_scan(sequence, later), kSourceReach_m);
+  const auto later_scan = try_kitti_points(sequence, later);
+  if (!later_scan) return;
+  const NearPoints source = near_points(*later_scan, kSourceReach_m);
   const std::vector<Vec3d> moved = upright_points(source);
   if (moved.size() < kLeastPoints) return;
-  const NearPoints target = near_points(read_kitti_scan(sequence, earlier), kTargetReach_m);
+  const auto earlier_scan = try_kitti_points(sequence, earlier);
+  if (!earlier_scan) return;
+  const NearPoints target = near_points(*earlier_scan, kTargetReach_m);
   const Occupied occupied(target);
   const auto ways = motions(sequence.trajectory[earlier].world_from_sensor,
                             sequence.trajectory[later].world_from_sensor);

@@ -31,7 +31,8 @@ struct PoseEvidence {
 
 /// Judges up to four pairs of scans that are 3 to 15 m apart by their poses. Ground looks the same
 /// from everywhere, so only points in columns of 1 m that something of at least 1 m fills count. A
-/// vehicle that stands, scans farther apart and places without upright things give no pairs.
+/// vehicle that stands, scans farther apart and places without upright things give no pairs,
+/// nor do scans that cannot be read.
 PoseEvidence weigh_poses(const KittiSequence& sequence);
 
 /// Throws data with the figures where weigh_poses(sequence) contradicts.

@@ -105,6 +105,19 @@ TEST(PoseCheck, WhatTellsNothingIsBelieved) {
   EXPECT_EQ(weigh_poses(KittiSequence{}).pairs, 0U);
 }
 
+// A scan that nobody chose must not stop what reads others; labels tell nothing of poses.
+TEST(PoseCheck, ScansThatCannotBeReadAreSkipped) {
+  const TemporaryFolder folder;
+  KittiSequence sequence = drive(folder, street(), 12, kHonest);
+  for (std::size_t k = 0; k < sequence.scans.size(); ++k)
+    sequence.labels.push_back(folder.path() / "labels/none.label");
+  EXPECT_EQ(weigh_poses(sequence).pairs, 3U);
+  folder.write("velodyne/0.bin", std::string(17, 'x'));  // earlier of the first pair
+  EXPECT_EQ(weigh_poses(sequence).pairs, 2U);
+  std::filesystem::remove(sequence.scans[9]);  // later of the last one
+  EXPECT_EQ(weigh_poses(sequence).pairs, 1U);
+}
+
 // Cars around drive as fast: they stand still for the sensor, and are most of what it sees.
 TEST(PoseCheck, TrafficAtOnesOwnSpeedIsNoContradiction) {
   const TemporaryFolder folder;

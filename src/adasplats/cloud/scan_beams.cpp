@@ -126,9 +126,9 @@ ScanBeams recognize_beams(const KittiSequence& sequence) {
   for (std::size_t k = 0; k < scans; ++k) {
     // Not the first and the last one: their speeds are less sure.
     const std::size_t index = (2 * k + 1) * sequence.scans.size() / (2 * scans);
-    const KittiScan scan = read_kitti_scan(sequence, index);
-    for (std::size_t i = 0; i < scan.positions.size(); i += kEvery) {
-      const Vec3d point = vec_cast<double>(scan.positions[i]);
+    const auto scan = try_kitti_points(sequence, index);
+    for (std::size_t i = 0; scan && i < scan->positions.size(); i += kEvery) {
+      const Vec3d point = vec_cast<double>(scan->positions[i]);
       const double range_m = length(point);
       if (!(range_m >= kLeastRange_m && range_m <= kMostRange_m)) continue;
       as_measured_m.push_back(distance_from_fan(point));
