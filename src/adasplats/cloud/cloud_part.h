@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -13,6 +14,16 @@
 #include "adasplats/core/rigid_transform.h"
 
 namespace adasplats {
+
+/// Beyond it doubles do not hold 0.1 mm, and no place on Earth has such coordinates.
+inline constexpr double kLargestCoordinateM = 1e12;
+
+/// Whether these are coordinates of a place: finite, and not beyond that.
+inline bool is_place(Vec3d p) {
+  // False for NaN as well.
+  return std::fabs(p.x) <= kLargestCoordinateM && std::fabs(p.y) <= kLargestCoordinateM &&
+         std::fabs(p.z) <= kLargestCoordinateM;
+}
 
 /// Consecutive points of a part that came from one file.
 struct PartRun {

@@ -22,8 +22,6 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kGrain = std::size_t{1} << 16;
-// Beyond it doubles do not hold 0.1 mm, and no place on Earth has such coordinates.
-constexpr double kLargestCoordinateM = 1e12;
 
 using Input = CloudInput;
 
@@ -63,8 +61,8 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Input>
     throw usage("a viewpoint and a trajectory both give the sensor position");
   if ((options.viewpoint || !options.trajectory.empty()) && !any_file)
     throw usage("a sensor position is given, but every input has its own");
-  if (options.viewpoint && !is_finite(*options.viewpoint))
-    throw usage("the viewpoint is not finite");
+  if (options.viewpoint && !is_place(*options.viewpoint))
+    throw usage("the viewpoint is not finite, or beyond 1e12 m");
   if (!(options.max_distance_m > 0)) throw usage("a largest distance that is not positive");
   if (!(options.max_dropped >= 0 && options.max_dropped <= 1))
     throw usage("the largest share of points that may be dropped is 0 to 1");
@@ -92,13 +90,6 @@ std::vector<CloudPart> read_parts(std::span<const Input> inputs, const LoadOptio
 
 /// Which points of a part stay, 1 or 0 each.
 using Kept = std::vector<std::uint8_t>;
-
-/// Whether these are coordinates of a place.
-bool is_place(Vec3d p) {
-  // False for NaN as well.
-  return std::fabs(p.x) <= kLargestCoordinateM && std::fabs(p.y) <= kLargestCoordinateM &&
-         std::fabs(p.z) <= kLargestCoordinateM;
-}
 
 Kept finite_points(const CloudPart& part, const Executor& executor) {
   Kept kept(part.size());
@@ -248,6 +239,18 @@ void keep_only(PointCloud& cloud, const Kept& kept) {
   keep_only(cloud.scan_indices, kept);
 }
 
+/// Throws data for a sensor position that is no place: a float of it would be infinite.
+void require_sensor_places(const CloudPart& part, const Kept& kept) {
+  for (std::size_t i = 0; i < part.world_sensors.size(); ++i) {
+    if (kept[i] == 0 || !is_finite(part.world_sensors[i]) || is_place(part.world_sensors[i]))
+      continue;
+    throw Error(ErrorKind::data, part.runs.front().file.string() +
+                                     ": the sensor position of point " + std::to_string(i) +
+                                     " (from 0) is beyond 1e12 m; expected metres, or NaN " +
+                                     "where it is not known");
+  }
+}
+
 /// The part's cloud relative to `origin`, without the points that are dropped.
 PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin, const PointOrigins& origins,
                      const Executor& executor) {
@@ -381,10 +384,10 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
 
   std::vector<PointCloud> clouds;
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
+    require_sensor_places(gathered.parts[p], gathered.kept[p]);
     clouds.push_back(
         localized(std::move(gathered.parts[p]), gathered.kept[p], origin, origins, executor));
-    if (!listed[p].is_sequence)
-      check_origins(clouds.back(), listed[p].path, options.trust_origins, executor);
+    if (!listed[p].is_sequence) check_origins(clouds.back(), listed[p].path, options, executor);
   }
   PointCloud cloud = joined(std::move(clouds), origin, progress);
   report.own_body = drop_own_body(cloud, options.own_body_m, executor);

@@ -29,16 +29,18 @@ std::string place_text(Vec3d place) {
   return text;
 }
 
+/// A file can say itself that origins are stated or guessed: what the options did not give is no
+/// advice.
 Error origin_error(const std::filesystem::path& file, const PointCloud& cloud, std::size_t point,
-                   const std::string& objection) {
+                   const LoadOptions& options, const std::string& objection) {
   const OriginKind kind = cloud.origin_kind(point);
   const std::string place =
       place_text(cloud.origin + vec_cast<double>(cloud.sensor_positions[point]));
-  if (kind == OriginKind::stated)
+  if (kind == OriginKind::stated && options.viewpoint)
     return Error(ErrorKind::usage, "the viewpoint " + place + " cannot be where " + file.string() +
                                        " was measured: " + objection +
                                        "; leave it out, or give the trajectory of the recording");
-  if (kind == OriginKind::guessed)
+  if (kind == OriginKind::guessed && !options.trajectory.empty())
     return Error(ErrorKind::usage, "the trajectory cannot be that of " + file.string() +
                                        ": its pose nearest to point " + std::to_string(point) +
                                        " (from 0) is at " + place + ", " + objection);
@@ -73,6 +75,9 @@ std::vector<Vec3f> points_from_station(const PointCloud& cloud, std::size_t firs
 PointOrigins::PointOrigins(const LoadOptions& options) : viewpoint_(options.viewpoint) {
   if (options.trajectory.empty()) return;
   trajectory_ = read_trajectory(options.trajectory);
+  for (const TimedPose& pose : trajectory_)
+    if (!is_place(pose.world_from_sensor.translation))
+      throw Error(ErrorKind::data, options.trajectory.string() + ": a position is beyond 1e12 m");
   nearest_.emplace(trajectory_);
 }
 
@@ -92,24 +97,24 @@ PointOrigin PointOrigins::of(const CloudPart& part, std::size_t i, Vec3d world,
   return {world, OriginKind::none};
 }
 
-void check_origins(const PointCloud& cloud, const std::filesystem::path& file, bool trusted,
-                   const Executor& executor) {
+void check_origins(const PointCloud& cloud, const std::filesystem::path& file,
+                   const LoadOptions& options, const Executor& executor) {
   if (cloud.sensor_positions.empty()) return;
   const std::size_t far = first_too_far(cloud);
   if (far < cloud.size()) {
     const Vec3f along = cloud.positions[far] - cloud.sensor_positions[far];
     const long distance_km = std::lround(static_cast<double>(length(along)) / 1000);
     throw origin_error(
-        file, cloud, far,
+        file, cloud, far, options,
         "it is " + std::to_string(distance_km) + " km from the point, farther than LiDARs measure");
   }
-  if (trusted) return;
+  if (options.trust_origins) return;
   std::size_t first = 0;
   while (first < cloud.size() && !is_beam(cloud.origin_kind(first))) ++first;
   if (first == cloud.size()) return;
   const std::vector<Vec3f> points = points_from_station(cloud, first);
   const std::string objection = station_objection(view_from_station(points, executor));
-  if (!objection.empty()) throw origin_error(file, cloud, first, objection);
+  if (!objection.empty()) throw origin_error(file, cloud, first, options, objection);
 }
 
 }  // namespace adasplats

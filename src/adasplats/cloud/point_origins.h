@@ -37,9 +37,9 @@ class PointOrigins {
 };
 
 /// Checks the origins of the points of one file (not of a sequence): none is farther away than
-/// LiDARs measure, and where all are the same place, that station sees its points (unless it is
-/// `trusted`). Errors: data, or usage where the origin was stated, with the figure.
-void check_origins(const PointCloud& cloud, const std::filesystem::path& file, bool trusted,
-                   const Executor& executor);
+/// LiDARs measure, and where all are the same place, that station sees its points (trust_origins).
+/// Errors: data, or usage where the options state the origin or have it guessed, with the figure.
+void check_origins(const PointCloud& cloud, const std::filesystem::path& file,
+                   const LoadOptions& options, const Executor& executor);
 
 }  // namespace adasplats

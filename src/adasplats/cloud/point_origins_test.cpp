@@ -121,6 +121,33 @@ TEST(PointOrigins, FartherThanAnyLidarMeasuresIsAnError) {
   expect_error(ErrorKind::data, {"own.csv", "point 0", "20 km"}, [&] { load({own}); });
 }
 
+// The file says that it was stated or guessed: --viewpoint and --trajectory were never given.
+TEST(PointOrigins, ImpossibleOnesOfAFileAreTheFiles) {
+  const TemporaryFolder folder;
+  for (const char* kind : {"1", "2", "3"}) {
+    const auto file = folder.write(
+        "a.csv", std::string("x,y,z,sensor_x,sensor_y,sensor_z,origin_kind\n1,2,3,0,20000,0,") +
+                     kind + "\n");
+    expect_error(ErrorKind::data, {"a.csv", "point 0", "20 km"}, [&] { load({file}); });
+  }
+}
+
+TEST(PointOrigins, BeyondEveryPlaceIsAnErrorOfItsOwn) {
+  const TemporaryFolder folder;
+  const std::string names = "x,y,z,sensor_x,sensor_y,sensor_z\n1,2,3,0,0,0\n";
+  for (const char* sensor : {"0,1e13,0", "0,0,-1e300"}) {
+    const auto file = folder.write("a.csv", names + "1,2,3," + sensor + "\n");
+    expect_error(ErrorKind::data, {"a.csv", "point 1", "beyond 1e12 m"}, [&] { load({file}); });
+  }
+  LoadOptions options;
+  options.viewpoint = Vec3d{0, 0, 1e300};
+  const auto bare = folder.write("bare.xyz", "1 0 0\n");
+  expect_error(ErrorKind::usage, {"viewpoint", "1e12"}, [&] { load({bare}, options); });
+  options.viewpoint.reset();
+  options.trajectory = folder.write("t.csv", kPoseNames + "0,0,0,1e300,1,0,0,0\n");
+  expect_error(ErrorKind::data, {"t.csv", "1e12"}, [&] { load({bare}, options); });
+}
+
 TEST(PointOrigins, AStationMustSeeItsPoints) {
   const Executor executor(2);
   const Vec3f here = {3, 0, 0};
