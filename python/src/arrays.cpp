@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "arrays.h"
 
+#include <array>
 #include <cmath>
+#include <cstring>
 
 #include "adasplats/cloud/rotation.h"
 
@@ -38,6 +40,14 @@ py::array number_array(py::handle value, const std::string& name) {
 
 py::array as_float64(const py::array& array) {
   return py::array_t<double, py::array::forcecast>::ensure(array);
+}
+
+/// A value of a one-dimensional array, which may be unaligned (a field of packed records, say).
+template <class T>
+T value_at(const py::array& array, std::size_t index) {
+  T value;
+  std::memcpy(&value, array.data(static_cast<py::ssize_t>(index)), sizeof(T));
+  return value;
 }
 
 template <class T>
@@ -120,9 +130,8 @@ std::vector<std::uint64_t> whole_numbers_of(py::handle value, std::size_t count,
   const py::array wide = is_signed ? py::array(py::array_t<std::int64_t>::ensure(given))
                                    : py::array(py::array_t<std::uint64_t>::ensure(given));
   for (std::size_t i = 0; i < count; ++i) {
-    const void* p = wide.data(static_cast<py::ssize_t>(i));
-    if (is_signed && *static_cast<const std::int64_t*>(p) < 0) throw out_of_range(i);
-    numbers[i] = *static_cast<const std::uint64_t*>(p);
+    if (is_signed && value_at<std::int64_t>(wide, i) < 0) throw out_of_range(i);
+    numbers[i] = value_at<std::uint64_t>(wide, i);
     if (numbers[i] > most) throw out_of_range(i);
   }
   return numbers;
@@ -137,7 +146,7 @@ std::vector<double> numbers_of(py::handle value, std::size_t count, const char* 
   const py::array wide = as_float64(given);
   std::vector<double> numbers(count);
   for (std::size_t i = 0; i < count; ++i) {
-    numbers[i] = *static_cast<const double*>(wide.data(static_cast<py::ssize_t>(i)));
+    numbers[i] = value_at<double>(wide, i);
     if (nan == NotANumber::is_unknown && std::isnan(numbers[i])) continue;
     if (!std::isfinite(numbers[i]))
       throw py::value_error(std::string(name) + "[" + std::to_string(i) + "] is not finite");
@@ -147,12 +156,14 @@ std::vector<double> numbers_of(py::handle value, std::size_t count, const char* 
 
 namespace {
 
-RigidTransform transform_of(const double* m, std::size_t index, const std::string& name) {
+RigidTransform transform_of(const std::byte* matrix, std::size_t index, const std::string& name) {
+  std::array<double, 16> m;
+  std::memcpy(m.data(), matrix, sizeof(m));  // it may be unaligned
   const auto fail = [&](const std::string& what) {
     return py::value_error(name + ": matrix " + std::to_string(index) + " " + what);
   };
-  for (int i = 0; i < 16; ++i)
-    if (!std::isfinite(m[i])) throw fail("is not finite");
+  for (const double value : m)
+    if (!std::isfinite(value)) throw fail("is not finite");
   if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
     throw fail("has another last row than 0 0 0 1");
   const Mat3d rotation{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}};
@@ -172,8 +183,9 @@ std::vector<RigidTransform> transforms_of(py::handle value, const char* name) {
   const auto packed = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
   std::vector<RigidTransform> transforms;
   const auto count = static_cast<std::size_t>(packed.size()) / 16;
+  const auto* const bytes = static_cast<const std::byte*>(py::array(packed).data());
   for (std::size_t i = 0; i < count; ++i)
-    transforms.push_back(transform_of(packed.data() + 16 * i, i, name));
+    transforms.push_back(transform_of(bytes + 16 * sizeof(double) * i, i, name));
   return transforms;
 }
 

@@ -206,6 +206,23 @@ def test_attributes_come_back():
     assert adasplats.PointCloud(POINTS).classes is None
 
 
+# Fields of packed records are unaligned. Read wrongly, these crash under a sanitizer alone.
+def test_attributes_in_packed_records():
+    records = np.zeros(3, [("tag", "u1"), ("class", "u8"), ("instance", "i8"), ("intensity", "f8"),
+                           ("pose", "f8", (4, 4))])
+    records["class"], records["instance"] = [1, 2, 65535], [0, 1, 2]
+    records["intensity"], records["pose"] = [0.25, 0.5, 1], np.eye(4)
+    records["pose"][:, 0, 3] = [1, 2, 3]
+    assert not records["class"].flags.aligned
+    cloud = adasplats.PointCloud(POINTS, classes=records["class"], instances=records["instance"],
+                                 intensities=records["intensity"])
+    np.testing.assert_array_equal(cloud.classes, [1, 2, 65535])
+    np.testing.assert_array_equal(cloud.instances, [0, 1, 2])
+    np.testing.assert_array_equal(cloud.intensities, [0.25, 0.5, 1])
+    for poses in (records["pose"], same(records["pose"].copy(), "unaligned")):
+        np.testing.assert_array_equal(adasplats.Trajectory(poses).poses, records["pose"])
+
+
 def test_far_coordinates_keep_millimetres():
     far = POINTS + [700000.125, 5000000.5, 100]
     cloud = adasplats.PointCloud(far)
