@@ -33,13 +33,12 @@ constexpr const char* kReadDoc =
     "paths: a path or a list of them (PLY, PCD, LAS/LAZ, KITTI bin, text, npy, a sequence folder, "
     "a\n"
     "folder of point files). Keywords are those of 'adasplats model' for loading: first_scan,\n"
-    "scan_count (None: all) and scan_stride choose scans of a sequence; viewpoint (3,) or "
-    "trajectory\n"
-    "(a path) tell where the sensor was; label_field names the column of classes. Points that are\n"
-    "not finite or far are dropped with a warning, with strict or above the share max_dropped an\n"
-    "error; an intensity that is not known is NaN. Points on the recording vehicle itself are "
-    "left\n"
-    "out: those that go along with the sensor, or all nearer to it than own_body_m (0 keeps all).\n"
+    "scan_count (None: all) and scan_stride choose scans of a sequence; viewpoint (3,) or\n"
+    "trajectory (a path) tell where the sensor was; label_field names the column of classes.\n"
+    "Points that are not finite or far are dropped with a warning; above the share max_dropped\n"
+    "that is an error, and with strict any that is not finite is one. An intensity that is not\n"
+    "known is NaN. Points on the recording vehicle itself are left out: those that go along with\n"
+    "the sensor, or all nearer to it than own_body_m (0 keeps all).\n"
     "Raises FileNotFoundError, ValueError (what is in a file), OSError.";
 
 constexpr const char* kCloudDoc =
