@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 """What is read and written is what was meant: folders, frames, formats, dropped points, outputs."""
+import json
 import os
 import shutil
 import struct
@@ -176,7 +177,11 @@ class Dropped(ProgramTest):
         self.assertEqual(self.report(*command)["points_own_body"], 0)  # a station keeps its floor
         near = sum((x * x + y * y + (z - 2) ** 2) ** 0.5 < 2.5 for x, y, z, *_ in tiny_place())
         self.assertGreater(near, 0)
-        self.assertEqual(self.report(*command, "--own-body", 2.5)["points_own_body"], near)
+        report = self.folder / "near.json"
+        result = run(*command, "--own-body", "2.5", "--report", report)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("2.5 m, left out", result.stderr)
+        self.assertEqual(json.loads(report.read_text())["points_own_body"], near)
         self.run_bad(64, *self.model_of("none.xyz", self.rows()), "--own-body", "2",
                      says=["where it was"])
         self.run_bad(64, *command, "--own-body", "-1", says=["own body"])
