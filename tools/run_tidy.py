@@ -4,7 +4,8 @@
 """Runs clang-tidy over the sources of src/, apps/ and python/ (tests and benchmarks are not checked).
 
 A file that passed is not run again until it, a header of ours that it includes, its compile
-command or .clang-tidy changes: what passed is kept as stamps in BUILD/tidy. Nearly all the time goes
+command or .clang-tidy changes: what passed is kept as stamps, for all clones of a user, in
+$ADASPLATS_TIDY_CACHE (~/.cache/adasplats/tidy), for 30 days after its last use. Nearly all the time goes
 into the headers of others, so sources that can are judged together (tools/source_batches.py); where
 that finds anything each is judged alone, and that counts. Versions of clang-tidy find different
 things, so only the pinned one judges: others skip (exit code 77).
@@ -23,10 +24,12 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 
 import source_batches
 
 PINNED = 14  # Debian 12's
+KEPT_S = 30 * 24 * 3600
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CHECKED = (ROOT / "src", ROOT / "apps", ROOT / "python" / "src")
 DIAGNOSTIC = re.compile(r"^(?=/[^\n]*:\d+:\d+: (?:error|warning): )", re.MULTILINE)
@@ -65,13 +68,25 @@ def with_headers(source):
 
 
 def stamp_of(source, command, version):
-    """A hash of everything that the verdict on a source depends on."""
+    """A hash of everything that the verdict on a source depends on, wherever the clone lies."""
     state = hashlib.sha256()
-    for part in (version, command):
+    for part in (version, command.replace(str(ROOT), "")):
         state.update(part.encode() + b"\0")
     for path in settings_of(source) + with_headers(source):
-        state.update(os.fsencode(path) + b"\0" + hashlib.sha256(path.read_bytes()).digest())
+        state.update(os.fsencode(path.relative_to(ROOT)) + b"\0" +
+                     hashlib.sha256(path.read_bytes()).digest())
     return state.hexdigest()
+
+
+def stamp_folder():
+    """Where stamps are kept; those that nothing used for long are removed."""
+    cache = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache")
+    folder = pathlib.Path(os.environ.get("ADASPLATS_TIDY_CACHE") or cache / "adasplats/tidy")
+    folder.mkdir(parents=True, exist_ok=True)
+    for stamp in folder.iterdir():
+        if stamp.stat().st_mtime < time.time() - KEPT_S:
+            stamp.unlink(missing_ok=True)
+    return folder
 
 
 def for_clang(entry):
@@ -137,8 +152,7 @@ class Tidy:
     def __init__(self, program, version, build):
         self.program, self.version = program, version
         self.folder, self.entries = clang_commands(build)
-        self.stamps = build / "tidy"
-        self.stamps.mkdir(exist_ok=True)
+        self.stamps = stamp_folder()
 
     def stamp(self, pair):
         return self.stamps / stamp_of(*pair, self.version)
@@ -200,9 +214,10 @@ def main():
 
     pairs = list(sources_of(tidy.entries))
     stamps = [tidy.stamp(pair) for pair in pairs]
-    for old in set(tidy.stamps.iterdir()) - set(stamps):
-        old.unlink()
     stale = [pair for pair, stamp in zip(pairs, stamps) if not stamp.exists()]
+    for stamp in stamps:
+        if stamp.exists():
+            stamp.touch()  # used
     faulty, said = 0, set()
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         # The largest first, so that none is left for one core at the end.

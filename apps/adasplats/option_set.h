@@ -4,7 +4,9 @@
 
 #include <deque>
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 // The parser itself takes seconds to compile: only the files that run it include it.
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours

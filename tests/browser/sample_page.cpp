@@ -7,6 +7,7 @@
 #include <exception>
 #include <fstream>
 #include <iostream>
+#include <vector>
 
 #include "adasplats/io/png.h"
 #include "report_page/report_page.h"

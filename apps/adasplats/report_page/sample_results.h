@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 // Results as `adasplats compare` writes them, made up, for tests and for trying the page.
 namespace adasplats::app::page {
