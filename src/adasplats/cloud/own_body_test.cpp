@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "adasplats/core/random.h"
+
 namespace adasplats {
 namespace {
 
@@ -35,7 +37,7 @@ Drive drive(int scans, float step_m, bool body) {
       const double azimuth = a * std::numbers::pi / 180;
       const Vec3f across = {static_cast<float>(std::cos(azimuth)),
                             static_cast<float>(std::sin(azimuth)), 0};
-      for (const float range_m : {2.1F, 2.6F, 3.2F, 3.9F, 4.7F, 5.8F, 7.2F, 9.1F, 12.0F}) {
+      for (float range_m = 2.1F; range_m < 16; range_m += 0.2F) {
         drive.add(sensor + across * range_m - Vec3f{0, 0, kHeight_m}, sensor);
       }
       if (across.y > 0.3F) drive.add(sensor + across * (3 / across.y) + Vec3f{0, 0, 0.5F}, sensor);
@@ -89,6 +91,22 @@ TEST(OwnBody, AScannerOfProfilesKeepsTheRoad) {
       profiles.add({sensor.x, 0.1F * static_cast<float>(y), 0}, sensor);
   }
   EXPECT_TRUE(find_own_body(profiles.cloud, {}, Executor(2)).empty());
+}
+
+TEST(OwnBody, AMapThatIsSeenFromNearbyAloneKeepsTheRoad) {
+  // Each point from within 1.5 m along the road, as a mobile scanner with two profiles measures.
+  Drive map;
+  for (std::uint64_t k = 0; k < 200'000; ++k) {
+    Random random(1, 0, k);
+    const double along = random.uniform(0, 40), across = random.uniform(-9, 9);
+    const Vec3f sensor = {static_cast<float>(along + random.uniform(-1.5, 1.5)), 0, 2};
+    const bool wall = std::fabs(across) > 7;
+    map.add(
+        {static_cast<float>(along), static_cast<float>(wall ? std::copysign(7, across) : across),
+         wall ? static_cast<float>(std::fabs(across) - 7) : 0},
+        sensor);
+  }
+  EXPECT_TRUE(find_own_body(map.cloud, {}, Executor(2)).empty());
 }
 
 TEST(OwnBody, OnlyMeasuredOriginsTell) {
