@@ -9,6 +9,34 @@ namespace {
 
 constexpr const char* kGroup = "Input";
 
+/// What of the points is dropped, and when that is an error.
+void add_refusals(OptionSet& app, LoadOptions& options) {
+  app.add_option("--max-distance", options.max_distance_m,
+                 "Points farther than this from the median of all are dropped, m")
+      ->capture_default_str()
+      ->group(kGroup);
+  app.add_option("--max-dropped", options.max_dropped,
+                 "Share of the points that may be dropped as far or not finite before it is an "
+                 "error")
+      ->capture_default_str()
+      ->type_name("SHARE")
+      ->group(kGroup);
+  app.add_option(
+         "--own-body", options.own_body_m,
+         "Points nearer than this to their sensor are the recording vehicle itself and left "
+         "out, m; 0 keeps all (default: those that go along with the sensor)")
+      ->type_name("M")
+      ->group(kGroup);
+  app.add_flag("--trust-origins", options.trust_origins,
+               "Take sensor positions though points lie behind others as seen from there, as later "
+               "returns do")
+      ->group(kGroup);
+  app.add_flag("--strict", options.strict, "Points that are not finite are an error")
+      ->group(kGroup);
+  app.add_flag("--salvage", options.salvage, "Read the whole records of truncated LAS files")
+      ->group(kGroup);
+}
+
 }  // namespace
 
 void add_load_options(OptionSet& app, LoadOptions& options) {
@@ -49,30 +77,7 @@ void add_load_options(OptionSet& app, LoadOptions& options) {
   app.add_flag("--beams-from-poses", options.beams_from_poses,
                "Beams of sequences start at their poses, even where the sensor is recognised")
       ->group(kGroup);
-  app.add_option("--max-distance", options.max_distance_m,
-                 "Points farther than this from the median of all are dropped, m")
-      ->capture_default_str()
-      ->group(kGroup);
-  app.add_option("--max-dropped", options.max_dropped,
-                 "Share of the points that may be dropped as far or not finite before it is an "
-                 "error")
-      ->capture_default_str()
-      ->type_name("SHARE")
-      ->group(kGroup);
-  app.add_option(
-         "--own-body", options.own_body_m,
-         "Points nearer than this to their sensor are the recording vehicle itself and left "
-         "out, m; 0 keeps all (default: those that go along with the sensor)")
-      ->type_name("M")
-      ->group(kGroup);
-  app.add_flag("--trust-origins", options.trust_origins,
-               "Take sensor positions though points lie behind others as seen from there, as later "
-               "returns do")
-      ->group(kGroup);
-  app.add_flag("--strict", options.strict, "Points that are not finite are an error")
-      ->group(kGroup);
-  app.add_flag("--salvage", options.salvage, "Read the whole records of truncated LAS files")
-      ->group(kGroup);
+  add_refusals(app, options);
 }
 
 std::string given_load_option(const OptionSet& app) { return app.first_given(kGroup); }

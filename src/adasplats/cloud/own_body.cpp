@@ -101,7 +101,7 @@ class View {
   void add(Vec3f from_sensor) {
     const float range_m = length(from_sensor);
     if (!(range_m > 0)) return;
-    if (ranges_m_.empty()) ranges_m_.resize(std::size_t{6} * kCells * kCells, kInfinity);
+    if (ranges_m_.empty()) ranges_m_.resize(6 * kCells * kCells, kInfinity);
     float& shortest_m = ranges_m_[cell_of(from_sensor)];
     shortest_m = std::min(shortest_m, range_m);
   }
@@ -116,7 +116,7 @@ class View {
   }
 
  private:
-  static constexpr int kCells = 256;
+  static constexpr std::size_t kCells = 256;
 
   static std::size_t cell_of(Vec3f v) {
     int axis = 0;
@@ -124,11 +124,11 @@ class View {
       if (std::fabs(v[k]) > std::fabs(v[axis])) axis = k;
     const float along = std::fabs(v[axis]);
     const auto cell = [along](float across) {
-      return std::clamp(static_cast<int>((across / along + 1) * (kCells / 2)), 0, kCells - 1);
+      constexpr auto kHalf = static_cast<float>(kCells) / 2;
+      return std::min(static_cast<std::size_t>((across / along + 1) * kHalf), kCells - 1);
     };
-    const int face = 2 * axis + (v[axis] < 0 ? 1 : 0);
-    return static_cast<std::size_t>((face * kCells + cell(v[(axis + 1) % 3])) * kCells +
-                                    cell(v[(axis + 2) % 3]));
+    const std::size_t face = 2 * static_cast<std::size_t>(axis) + (v[axis] < 0 ? 1 : 0);
+    return (face * kCells + cell(v[(axis + 1) % 3])) * kCells + cell(v[(axis + 2) % 3]);
   }
 
   std::vector<float> ranges_m_;
