@@ -475,7 +475,8 @@ class Presets(CompareTest):
     def test_semantickitti(self):
         cloud, poses = self.folder / "cloud.ply", self.folder / "poses.csv"
         write_cloud(cloud, tiny_place())
-        lines = [f"{0.1 * k:.1f},{4 + 2 * k},0,2,1,0,0,0" for k in range(3)]
+        lines = ["time,x,y,z,qw,qx,qy,qz"]
+        lines += [f"{0.1 * k:.1f},{4 + 2 * k},0,2,1,0,0,0" for k in range(3)]
         poses.write_text("\n".join(lines) + "\n")
         run("model", cloud, "-o", self.folder / "m.ply", "--labels", "semantickitti", check=True)
         run("simulate", self.folder / "m.ply", "--trajectory", poses, "-o",

@@ -42,6 +42,12 @@ class RealFiles : public testing::Test {
     }
   }
 
+  /// How many points the reader has left out as withheld.
+  static std::size_t withheld_of(const Table& table) {
+    for (const std::string& comment : table.comments)
+      if (const auto count = number_after(comment, "withheld: ")) return *count;
+    return 0;
+  }
   /// The number that follows `word` in a file's line of the catalogue.
   static std::optional<std::size_t> number_after(const std::string& what, const std::string& word) {
     const std::size_t found = what.find(word);
@@ -73,7 +79,7 @@ TEST_F(RealFiles, LasAndPcdHaveTheCataloguedPoints) {
       continue;
     }
     const Table table = read_points(folder_ / name);
-    EXPECT_EQ(std::optional(table.rows), number_after(what, "points "));
+    EXPECT_EQ(std::optional(table.rows + withheld_of(table)), number_after(what, "points "));
     for (const Column& column : table.columns) EXPECT_EQ(column.size(), table.rows);
     EXPECT_NE(table.find("x"), nullptr);
     ++read;
@@ -147,9 +153,9 @@ TEST_F(RealFiles, CompressedPcdUnpacksToAnImage) {
 
 // LAS headers hold the box of their points: every coordinate lies in it, and touches it.
 TEST_F(RealFiles, LasPointsTouchTheHeadersBox) {
+  // The box of wontcompress3.las holds points that are withheld.
   for (const char* name : {"PDAL+PDAL__test__data__las__simple.las",
                            "PDAL+PDAL__test__data__autzen__autzen-bmx-2010.las",
-                           "PDAL+PDAL__test__data__las__wontcompress3.las",
                            "laz-rs+laz-rs__tests__data__point-time.las"}) {
     SCOPED_TRACE(name);
     std::ifstream file(folder_ / name, std::ios::binary);
