@@ -4,6 +4,9 @@
 
 // Private to trace/: what differs between Embree 3 and 4, so that nothing else has to know.
 
+#ifndef ADASPLATS_EMBREE_MAJOR
+#error "who includes this needs the version that CMake found"
+#endif
 #if ADASPLATS_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
 #else
