@@ -21,7 +21,8 @@ import zlib
 from pathlib import Path
 
 # No settings, updates or extensions; still the browser asks these hosts for itself.
-OWN_HOSTS = {"update.googleapis.com", "clients2.google.com", "accounts.google.com"}
+OWN_HOSTS = {"update.googleapis.com", "clients2.google.com", "accounts.google.com",
+             "www.google.com"}  # the last since Chromium 150
 QUIET = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
          "--disable-component-update", "--disable-sync", "--disable-extensions", "--no-first-run",
          "--disable-default-apps", "--no-default-browser-check", "--hide-scrollbars",
