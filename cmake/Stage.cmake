@@ -26,8 +26,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     adasplats_host_options(-Wno-restrict)
   endif()
 endif()
-if(CMAKE_BUILD_TYPE STREQUAL "Release")
-  adasplats_host_options(-O3)
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # A source that others are compiled with is taken for a header: its own types may be in no other.
+  adasplats_host_options(-Wno-subobject-linkage)
 endif()
 if(ADASPLATS_WERROR)
   adasplats_host_options(-Werror)
@@ -42,26 +43,31 @@ if(ADASPLATS_SANITIZE)
   target_compile_definitions(adasplats_options INTERFACE ADASPLATS_SANITIZED)
 endif()
 
-# adasplats_cold_sources(files...): code that runs once a command or once an option. It compiles in
-# half the time with -O1, and gives the same values: no option of ours lets a level change them.
-# Files are those of the folder this is called in.
-function(adasplats_cold_sources)
+# adasplats_cold(TARGET): its code runs once a command or once an option. It compiles in half the
+# time with -O1, and gives the same values: no option of ours lets a level change them.
+function(adasplats_cold target)
   if(CMAKE_BUILD_TYPE STREQUAL "Release")
-    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS $<$<COMPILE_LANGUAGE:CXX>:-O1>)
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-O1>)
   endif()
+endfunction()
+
+# adasplats_compiled_alone(files...): not with others in one go where CMAKE_UNITY_BUILD is on, e.g.
+# for they have the same names for another instruction set. Files of the folder this is called in.
+function(adasplats_compiled_alone)
+  set_property(SOURCE ${ARGN} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 set(ADASPLATS_STAGES "")
 
 # adasplats_stage(NAME [COLD] [DEPENDS stages...] [LINK PRIVATE|PUBLIC libs...] [DEFINE macros...]
-#                 [CUDA])
-# COLD: its sources are adasplats_cold_sources.
+#                 [ALONE sources...] [CUDA])
+# COLD: adasplats_cold. ALONE: adasplats_compiled_alone, names without ".cpp".
 # LINK takes imported targets of packages only, which adasplatsConfig.cmake finds again for a
 # consumer; DEFINE is seen by NAME's own sources alone. CUDA: its *.cu are compiled, too, where
 # there is a CUDA compiler.
 # The library of src/adasplats/NAME: its *.cpp but *_test.cpp, which become NAME's test program.
 function(adasplats_stage name)
-  cmake_parse_arguments(ARG "CUDA;COLD" "" "DEPENDS;LINK;DEFINE" ${ARGN})
+  cmake_parse_arguments(ARG "CUDA;COLD" "" "ALONE;DEPENDS;LINK;DEFINE" ${ARGN})
   set(folder ${PROJECT_SOURCE_DIR}/src/adasplats/${name})
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   file(GLOB tests CONFIGURE_DEPENDS ${folder}/*_test.cpp)
@@ -70,20 +76,24 @@ function(adasplats_stage name)
   endif()
   if(ARG_CUDA AND ADASPLATS_CUDA)
     file(GLOB cuda_sources CONFIGURE_DEPENDS ${folder}/*.cu)
+    adasplats_cuda_unity(cuda_sources ${name} ${cuda_sources})
     list(APPEND sources ${cuda_sources})
   endif()
   set(target adasplats_${name})
   set(dependencies ${ARG_DEPENDS})
   list(TRANSFORM dependencies PREPEND adasplats_)
-  if(ARG_COLD)
-    adasplats_cold_sources(${sources})
-  endif()
   if(sources)
+    foreach(file IN LISTS ARG_ALONE)
+      adasplats_compiled_alone(${folder}/${file}.cpp)
+    endforeach()
     add_library(${target} STATIC ${sources})
     target_include_directories(
       ${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
                        $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     target_compile_features(${target} PUBLIC cxx_std_20)
+    if(ARG_COLD)
+      adasplats_cold(${target})
+    endif()
     target_compile_definitions(${target} PRIVATE ${ARG_DEFINE})
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:adasplats_options>)
     if(ARG_LINK)
@@ -127,8 +137,10 @@ endfunction()
 # library against may be slow.
 function(adasplats_test name)
   set(target adasplats_${name}_test)
-  adasplats_cold_sources(${ARGN})
   add_executable(${target} ${ARGN})
+  adasplats_cold(${target})
+  # Each test has helpers of its own, which may have the name of another's.
+  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(${target} PRIVATE adasplats_options GTest::gtest_main
                                           nlohmann_json::nlohmann_json
                                           tomlplusplus::tomlplusplus Threads::Threads)

@@ -28,7 +28,7 @@ HEAVY = ("nlohmann/", "toml++/", "CLI/", "tbb/", "oneapi/", "embree", "Eigen/", 
 LIGHT = ("nlohmann/json_fwd.hpp",)  # declarations alone
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 STAGE = re.compile(r"^[ \t]*adasplats_stage\(([^)]*)\)", re.MULTILINE)
-STAGE_KEYWORDS = ("COLD", "DEPENDS", "LINK", "DEFINE", "CUDA")
+STAGE_KEYWORDS = ("COLD", "DEPENDS", "LINK", "DEFINE", "ALONE", "CUDA")
 SOURCE_SUFFIXES = (".h", ".cpp", ".cu", ".cuh")
 OUTSIDE = ("apps", "examples", "python")  # what uses the stages from outside
 

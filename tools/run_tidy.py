@@ -34,6 +34,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 CHECKED = (ROOT / "src", ROOT / "apps", ROOT / "python" / "src")
 DIAGNOSTIC = re.compile(r"^(?=/[^\n]*:\d+:\d+: (?:error|warning): )", re.MULTILINE)
 OUR_INCLUDE = re.compile(rb'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
+JOINED = re.compile(r'^#include "(.+)"$', re.MULTILINE)
 
 
 def find_clang_tidy():
@@ -92,14 +93,25 @@ def stamp_folder():
 def for_clang(entry):
     """A compile command that clang can follow: without ccache and what stands before it, and without
     the warnings that only GCC has."""
-    command = re.sub(r"^\S.*/ccache ", "", entry["command"]).replace("-Wno-restrict ", "")
+    command = re.sub(r"^\S.*/ccache ", "", entry["command"])
+    command = re.sub(r"-Wno-(restrict|subobject-linkage) ", "", command)
     return {**entry, "command": command}
+
+
+def one_by_one(entry):
+    """The entry; for a file in which CMake joined sources (CMAKE_UNITY_BUILD), one for each of
+    these."""
+    file = pathlib.Path(entry["file"])
+    if file.parent.name != "Unity":
+        return [entry]
+    return [{**entry, "file": source, "command": entry["command"].replace(entry["file"], source)}
+            for source in JOINED.findall(file.read_text(encoding="utf-8"))]
 
 
 def clang_commands(build):
     """The compile commands for clang-tidy, written to a folder of their own."""
     with open(build / "compile_commands.json", encoding="utf-8") as file:
-        entries = [for_clang(entry) for entry in json.load(file)]
+        entries = [for_clang(alone) for entry in json.load(file) for alone in one_by_one(entry)]
     folder = build / "tidy-commands"
     folder.mkdir(exist_ok=True)
     (folder / "compile_commands.json").write_text(json.dumps(entries), encoding="utf-8")

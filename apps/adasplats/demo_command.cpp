@@ -12,7 +12,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kDemoExamples =
     "  adasplats demo\n"
     "  adasplats demo -o /tmp/demo --points 1000000 --report /tmp/demo.json\n";
 
@@ -34,7 +34,7 @@ class DemoCommand final : public Command {
   explicit DemoCommand(CLI::App& program)
       : Command(program, "demo",
                 "Make a street, model it with every method, simulate, measure and draw it",
-                kExamples) {
+                kDemoExamples) {
     OptionSet& app = options();
     writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create"));
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");

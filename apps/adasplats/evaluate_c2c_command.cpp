@@ -12,7 +12,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kEvaluateC2cExamples =
     "  adasplats evaluate c2c scans street/mapping.ply\n"
     "  adasplats evaluate c2c scans street/mapping.ply --by-class --labels semantickitti\n"
     "  adasplats evaluate c2c scans street/mapping.ply --picture distances.png\n";
@@ -43,7 +43,8 @@ std::string table_of(const std::vector<std::pair<std::string, ClassDistance>>& b
 class EvaluateC2cCommand final : public Command {
  public:
   explicit EvaluateC2cCommand(CLI::App& evaluate)
-      : Command(evaluate, "c2c", "Distances between simulated and measured points", kExamples) {
+      : Command(evaluate, "c2c", "Distances between simulated and measured points",
+                kEvaluateC2cExamples) {
     OptionSet& app = options();
     require(add_path(app, "SIMULATED", job_.simulated,
                      "Point file, sequence folder or output of simulate"));

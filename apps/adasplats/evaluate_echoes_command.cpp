@@ -13,7 +13,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kEvaluateEchoesExamples =
     "  adasplats evaluate echoes place.ply sequences/01\n"
     "  adasplats evaluate echoes place.ply sequences/01_raw --motion sequences/00 \\\n"
     "    --drop drop.toml --scans 1:4:2\n";
@@ -36,7 +36,7 @@ class EvaluateEchoesCommand final : public Command {
   explicit EvaluateEchoesCommand(CLI::App& evaluate)
       : Command(evaluate, "echoes",
                 "Compare intensities, and which beams find nothing, with held-out scans",
-                kExamples) {
+                kEvaluateEchoesExamples) {
     OptionSet& app = options();
     const auto [model, sequence] = add_echo_inputs(app, inputs_);
     require(model);

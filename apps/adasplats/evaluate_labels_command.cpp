@@ -14,7 +14,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kEvaluateLabelsExamples =
     "  adasplats evaluate labels simkitti32/sequences/08 dataset/sequences/08\n"
     "  adasplats evaluate labels simkitti32/sequences/08 dataset/sequences/08 --every 50\n";
 
@@ -24,7 +24,8 @@ class EvaluateLabelsCommand final : public Command {
  public:
   explicit EvaluateLabelsCommand(CLI::App& evaluate)
       : Command(evaluate, "labels",
-                "How many simulated points have the class of the nearest measured one", kExamples) {
+                "How many simulated points have the class of the nearest measured one",
+                kEvaluateLabelsExamples) {
     OptionSet& app = options();
     require(add_path(app, "SIMULATED", job_.simulated, "Sequence folder with labels"));
     require(add_path(app, "ORIGINAL", job_.original, "The sequence that it was made from"));

@@ -14,14 +14,15 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kEvaluatePresenceExamples =
     "  adasplats evaluate presence model.ply sequences/00\n"
     "  adasplats evaluate presence model.ply street/mapping.ply --labels semantickitti\n";
 
 class EvaluatePresenceCommand final : public Command {
  public:
   explicit EvaluatePresenceCommand(CLI::App& evaluate)
-      : Command(evaluate, "presence", "Which measured points a model has a surface at", kExamples) {
+      : Command(evaluate, "presence", "Which measured points a model has a surface at",
+                kEvaluatePresenceExamples) {
     OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model, "Splat model or triangle mesh"));
     require(

@@ -13,7 +13,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kEvaluateResimulateExamples =
     "  adasplats evaluate resimulate place.ply sequences/01\n"
     "  adasplats evaluate resimulate place.ply sequences/01 --max-range 80 --report "
     "held-out.json\n";
@@ -42,7 +42,8 @@ std::string table_of(const ResimulateResult& result) {
 class EvaluateResimulateCommand final : public Command {
  public:
   explicit EvaluateResimulateCommand(CLI::App& evaluate)
-      : Command(evaluate, "resimulate", "Cast the beams of held-out scans again", kExamples) {
+      : Command(evaluate, "resimulate", "Cast the beams of held-out scans again",
+                kEvaluateResimulateExamples) {
     OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model, "Splat model or mesh"));
     require(add_path(app, "SEQUENCE", job_.sequence, "SemanticKITTI sequence folder"));

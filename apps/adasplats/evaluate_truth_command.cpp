@@ -14,7 +14,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kEvaluateTruthExamples =
     "  adasplats evaluate truth model.ply street/mesh.ply \\\n"
     "      --trajectory street/true_driving_trajectory.csv\n"
     "  adasplats evaluate truth model.ply street/mesh.ply --trajectory poses.csv \\\n"
@@ -54,7 +54,7 @@ class EvaluateTruthCommand final : public Command {
  public:
   explicit EvaluateTruthCommand(CLI::App& evaluate)
       : Command(evaluate, "truth", "Cast a sensor's rays into a model and into the true surface",
-                kExamples) {
+                kEvaluateTruthExamples) {
     OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model, "Splat model or triangle mesh"));
     require(add_path(app, "TRUTH", job_.truth, "True surface: a triangle mesh, with classes"));

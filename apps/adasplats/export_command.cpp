@@ -12,7 +12,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kExportExamples =
     "  adasplats export street.ply -o gaussians.ply --format gaussian-3d\n"
     "  adasplats export street.ply -o centers.glb --color intensity\n"
     "  adasplats export sequences/08 -o drive.mcap --scans 0:100\n"
@@ -26,7 +26,7 @@ class ExportCommand final : public Command {
   explicit ExportCommand(CLI::App& program)
       : Command(program, "export",
                 "Write splats as Gaussians or glTF, points as glTF or PLY, scans as MCAP",
-                kExamples) {
+                kExportExamples) {
     OptionSet& app = options();
     require(add_path(app, "INPUT", job_.input,
                      "Splat model, point file, sequence folder or output of 'simulate'"));

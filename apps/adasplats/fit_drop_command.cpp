@@ -15,7 +15,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kFitDropExamples =
     "  adasplats fit-drop place.ply sequences/01_raw --motion sequences/00 -o drop.toml --every 2\n"
     "  adasplats evaluate echoes place.ply sequences/01_raw --motion sequences/00 \\\n"
     "    --drop drop.toml --scans 1:4:2\n";
@@ -23,7 +23,8 @@ constexpr const char* kExamples =
 class FitDropCommand final : public Command {
  public:
   explicit FitDropCommand(CLI::App& program)
-      : Command(program, "fit-drop", "Learn from raw scans which beams tell nothing", kExamples) {
+      : Command(program, "fit-drop", "Learn from raw scans which beams tell nothing",
+                kFitDropExamples) {
     OptionSet& app = options();
     const auto [model, sequence] = add_echo_inputs(app, inputs_);
     require(model);

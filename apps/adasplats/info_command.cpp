@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/gpu/device.h"
 #include "adasplats/pipeline/inputs.h"
 #include "commands.h"
@@ -15,12 +16,10 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kInfoExamples =
     "  adasplats info street/mapping.ply\n"
     "  adasplats info model.ply sequences/00 --labels semantickitti --report facts.json\n"
     "  adasplats info --devices\n";
-
-constexpr double kBytesPerGiB = 1024.0 * 1024 * 1024;
 
 std::string compute_capability(const GpuDevice& gpu) {
   return std::to_string(gpu.compute_major) + "." + std::to_string(gpu.compute_minor);
@@ -75,7 +74,7 @@ class InfoCommand final : public Command {
   explicit InfoCommand(CLI::App& program)
       : Command(program, "info",
                 "Say what point clouds, models, meshes and sequences hold, or which GPUs there are",
-                kExamples) {
+                kInfoExamples) {
     OptionSet& app = options();
     app.add_option_function<std::vector<std::string>>(
            "FILE",

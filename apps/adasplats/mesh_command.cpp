@@ -13,7 +13,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kMeshExamples =
     "  adasplats mesh street/mapping.ply -o imls.ply --method imls --labels semantickitti\n"
     "  adasplats mesh sequences/00 -o poisson.ply --method poisson --depth 11\n"
     "  adasplats render imls.ply street.ply -o both.png\n";
@@ -57,7 +57,7 @@ class MeshCommand final : public Command {
  public:
   explicit MeshCommand(CLI::App& program)
       : Command(program, "mesh", "Turn point clouds into a triangle mesh, to compare with",
-                kExamples) {
+                kMeshExamples) {
     OptionSet& app = options();
     require(app.add_option_function<std::vector<std::string>>(
                    "INPUT",

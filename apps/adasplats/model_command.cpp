@@ -14,7 +14,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kModelExamples =
     "  adasplats model street/mapping.ply -o street.ply --method semantic --labels semantickitti\n"
     "  adasplats model sequences/00 -o place.ply --scans 0:100:2 --remove moving\n"
     "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n";
@@ -37,7 +37,7 @@ std::string figures_of(const BuildReport& built) {
 class ModelCommand final : public Command {
  public:
   explicit ModelCommand(CLI::App& program)
-      : Command(program, "model", "Turn point clouds into a splat model", kExamples) {
+      : Command(program, "model", "Turn point clouds into a splat model", kModelExamples) {
     OptionSet& app = options();
     require(app.add_option_function<std::vector<std::string>>(
                    "INPUT",

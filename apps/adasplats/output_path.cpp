@@ -18,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-constexpr const char* kContentFile = "adasplats.json";
 
 Error cannot_create(const fs::path& path, const std::string& reason) {
   return Error(ErrorKind::cannot_create, path.string() + ": " + reason);

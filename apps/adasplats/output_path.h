@@ -8,6 +8,9 @@
 
 namespace adasplats::app {
 
+/// Of an output folder: says what made it.
+inline constexpr const char* kContentFile = "adasplats.json";
+
 /// Throws cannot_create where a file of that name could not be written: no such folder, no
 /// permission, a folder or a device in its place. To be called before long work.
 void check_output_file(const std::filesystem::path& file);

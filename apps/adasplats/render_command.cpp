@@ -11,7 +11,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kRenderExamples =
     "  adasplats render street.ply -o street.png\n"
     "  adasplats render street.ply -o above.png --birds-eye --color semantic\n"
     "  adasplats render basic.ply adaptive.ply -o both.png --trajectory poses.txt --pose 12\n"
@@ -24,7 +24,7 @@ class RenderCommand final : public Command {
       : Command(program, "render",
                 "Draw splat models, meshes and point clouds, side by side, from above a corner or "
                 "as told",
-                kExamples) {
+                kRenderExamples) {
     OptionSet& app = options();
     require(app.add_option_function<std::vector<std::string>>(
                    "MODEL",

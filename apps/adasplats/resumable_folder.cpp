@@ -20,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-constexpr const char* kContentFile = "adasplats.json";
 // Lines "SHA-256  NAME", as sha256sum writes and checks them.
 constexpr const char* kJournalFile = "journal.sha256";
 constexpr std::size_t kDigits = 64;

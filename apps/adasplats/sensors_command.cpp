@@ -13,7 +13,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kSensorsExamples =
     "  adasplats sensors\n"
     "  adasplats sensors velodyne-vlp-16 -o pattern.png\n"
     "  adasplats sensors --show hesai-ot128 > mine.toml\n"
@@ -24,7 +24,7 @@ class SensorsCommand final : public Command {
   explicit SensorsCommand(CLI::App& program)
       : Command(program, "sensors",
                 "List the LiDAR sensors that are known, describe one, or draw its pattern",
-                kExamples) {
+                kSensorsExamples) {
     OptionSet& app = options();
     app.add_option("SENSOR", sensor_,
                    "A name of the list, or a file: TOML, Ouster metadata (JSON), Velodyne "

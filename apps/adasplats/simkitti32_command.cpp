@@ -13,7 +13,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kSimkitti32Examples =
     "  adasplats simkitti32 dataset/sequences/08 -o simkitti32\n"
     "  adasplats simkitti32 sequences/00 -o vlp16 --sensor velodyne-vlp-16 --offset 0,0,0\n"
     "  adasplats simkitti32 sequences/08 -o part --scans 0:500 --model-every 2\n"
@@ -25,7 +25,7 @@ class SimKitti32Command final : public Command {
   explicit SimKitti32Command(CLI::App& program)
       : Command(program, "simkitti32",
                 "Make a labelled data set of another LiDAR from a SemanticKITTI sequence",
-                kExamples) {
+                kSimkitti32Examples) {
     OptionSet& app = options();
     require(add_path(app, "SEQUENCE", job_.sequence, "SemanticKITTI sequence folder with labels"));
     require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));

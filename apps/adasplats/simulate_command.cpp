@@ -12,7 +12,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kSimulateExamples =
     "  adasplats simulate street.ply --trajectory street/sequences/00 -o scans\n"
     "  adasplats simulate street.ply --sensor hdl-32-paper --trajectory poses.csv \\\n"
     "      --offset 1,1,-0.5 -o scans --format npy\n"
@@ -28,7 +28,8 @@ double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
 class SimulateCommand final : public Command {
  public:
   explicit SimulateCommand(CLI::App& program)
-      : Command(program, "simulate", "Drive a LiDAR through a splat model or a mesh", kExamples) {
+      : Command(program, "simulate", "Drive a LiDAR through a splat model or a mesh",
+                kSimulateExamples) {
     OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model,
                      "Splat model, triangle mesh (PLY, OBJ, glTF) or world file (TOML)"));

@@ -12,7 +12,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kSynthExamples =
     "  adasplats synth street -o street\n"
     "  adasplats synth street -o big --points 12300000 --range-noise 0.02 --seed 7\n";
 
@@ -20,7 +20,7 @@ class SynthStreetCommand final : public Command {
  public:
   explicit SynthStreetCommand(CLI::App& synth)
       : Command(synth, "street", "Make a street with exact geometry, labels and two recordings",
-                kExamples) {
+                kSynthExamples) {
     OptionSet& app = options();
     require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");

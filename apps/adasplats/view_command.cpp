@@ -8,7 +8,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kViewExamples =
     "  adasplats view place.ply\n"
     "  adasplats view place.ply --sequence sequences/00 --sensor velodyne-vlp-16\n"
     "  adasplats view place.ply --cloud mapping.ply --errors distances.ply --port 8123\n"
@@ -21,7 +21,7 @@ class ViewCommand final : public Command {
  public:
   explicit ViewCommand(CLI::App& program)
       : Command(program, "view", "Look at a model in a browser and drive a LiDAR through it",
-                kExamples) {
+                kViewExamples) {
     OptionSet& app = options();
     require(
         add_path(app, "INPUT", job_.input,

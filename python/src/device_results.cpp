@@ -15,7 +15,7 @@
 namespace adasplats::python {
 namespace {
 
-constexpr const char* kDoc =
+constexpr const char* kDeviceResultsDoc =
     "Cast the rays of a LiDAR at poses and leave the hits in GPU memory.\n\n"
     "sensor, poses, motion, rolling_shutter: as simulate() takes them. depth: hits a ray. Without\n"
     "noise, returns and attributes; several GPUs: the first casts. Raises RuntimeError where the\n"
@@ -199,7 +199,7 @@ void add_device_results(SceneClass& type) {
         DeviceArguments arguments;
         arguments.take(keywords);
       },
-      kDoc);
+      kDeviceResultsDoc);
   type.def("cast_on_device", &cast_on_device, py::arg("sensor"), py::arg("poses"), doc.c_str());
 }
 

@@ -7,7 +7,7 @@
 namespace adasplats::python {
 namespace {
 
-constexpr const char* kDoc =
+constexpr const char* kDevicesDoc =
     "The GPUs that can be used: a list of dicts index, name, compute (major, minor), "
     "memory_bytes.\n"
     "Empty where there is none; why_no_gpu() says why.";
@@ -28,7 +28,7 @@ py::list devices() {
 }  // namespace
 
 void bind_devices(py::module_& module) {
-  module.def("devices", &devices, documented("devices", "", kDoc).c_str());
+  module.def("devices", &devices, documented("devices", "", kDevicesDoc).c_str());
   module.def(
       "why_no_gpu", [] { return find_gpus().reason; },
       documented("why_no_gpu", "",

@@ -27,7 +27,7 @@ void fields(Archive& archive, MeshModel& model) {
 namespace adasplats::python {
 namespace {
 
-constexpr const char* kDoc =
+constexpr const char* kMeshesDoc =
     "A place as triangles.\n\n"
     "vertices: (V, 3), world coordinates, m. triangles: (T, 3) of vertex numbers. classes: (T,) "
     "of\n"
@@ -71,7 +71,7 @@ std::shared_ptr<MeshModel> load(py::handle path) {
   return std::make_shared<MeshModel>(load_mesh(file));
 }
 
-void save(const MeshModel& model, py::handle path) {
+void save_mesh(const MeshModel& model, py::handle path) {
   const std::filesystem::path file = path_of(path, "path");
   require_ending(file, ".ply");
   const py::gil_scoped_release released;
@@ -90,7 +90,7 @@ void bind_meshes(py::module_& module) {
   const std::string init_doc =
       documented("__init__", "self, vertices, triangles, *, classes=None, labels=None, origin=None",
                  "See the class.");
-  py::class_<MeshModel, std::shared_ptr<MeshModel>> type(module, "Mesh", kDoc);
+  py::class_<MeshModel, std::shared_ptr<MeshModel>> type(module, "Mesh", kMeshesDoc);
   type.def(py::init(&make_mesh), py::arg("vertices"), py::arg("triangles"), py::kw_only(),
            py::arg("classes") = py::none(), py::arg("labels") = py::none(),
            py::arg("origin") = py::none(), init_doc.c_str())
@@ -98,7 +98,7 @@ void bind_meshes(py::module_& module) {
                   documented("load", "path",
                              "Read a PLY, OBJ or glTF 2.0. Raises FileNotFoundError, ValueError.")
                       .c_str())
-      .def("save", &save, py::arg("path"),
+      .def("save", &save_mesh, py::arg("path"),
            documented(
                "save", "self, path",
                "Write a .ply, whole or not at all. Raises OSError, ValueError (another\nending).")

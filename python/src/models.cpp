@@ -65,7 +65,7 @@ constexpr const char* kModelDoc =
     "what\n"
     "was done. Raises ValueError, OSError, RuntimeError (a GPU that is not there).";
 
-constexpr const char* kClassDoc =
+constexpr const char* kModelsClassDoc =
     "A place as oriented disks.\n\n"
     "centers: (N, 3), world coordinates, m. normals: (N, 3), of unit length. radii: (N,), m, > 0.\n"
     "classes: (N,) of 0 to 65535. intensities: (N,). labels: a name or file as label_scheme() "
@@ -229,7 +229,7 @@ std::shared_ptr<ModelObject> load(py::handle path) {
   return object;
 }
 
-void save(const ModelObject& object, py::handle path) {
+void save_model(const ModelObject& object, py::handle path) {
   const std::filesystem::path file = path_of(path, "path");
   require_ending(file, ".ply");
   const py::gil_scoped_release released;
@@ -338,7 +338,7 @@ void add_properties(ModelClass& type) {
 }  // namespace
 
 void bind_models(py::module_& module) {
-  ModelClass type(module, "Model", kClassDoc);
+  ModelClass type(module, "Model", kModelsClassDoc);
   type.def(py::init(&make_object), py::arg("centers"), py::arg("normals"), py::arg("radii"),
            py::kw_only(), py::arg("classes") = py::none(), py::arg("intensities") = py::none(),
            py::arg("labels") = py::none(), py::arg("origin") = py::none(),
@@ -357,7 +357,7 @@ void bind_models(py::module_& module) {
                              "Raises FileNotFoundError, ValueError.")
                       .c_str());
   type.def(
-      "save", &save, py::arg("path"),
+      "save", &save_model, py::arg("path"),
       documented("save", "self, path",
                  "Write a .ply, whole or not at all. Raises OSError, ValueError (another\nending).")
           .c_str());

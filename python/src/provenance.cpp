@@ -12,7 +12,7 @@
 namespace adasplats::python {
 namespace {
 
-constexpr const char* kDoc =
+constexpr const char* kProvenanceDoc =
     "Where figures measured by this process come from, as every --report tells it: a dict\n"
     "version, commit and dirty (of the sources the module was built from; None: unknown), date\n"
     "(UTC), command, machine (cpu, cores, memory_bytes, system, compiler) and device.\n"
@@ -26,7 +26,7 @@ void bind_provenance(py::module_& module) {
       [](int threads) {
         return python_of(to_json(provenance_of(Executor(threads).threads(), DeviceChoice())));
       },
-      py::arg("threads") = 0, documented("provenance", "threads=0", kDoc).c_str());
+      py::arg("threads") = 0, documented("provenance", "threads=0", kProvenanceDoc).c_str());
 }
 
 }  // namespace adasplats::python

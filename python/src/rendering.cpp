@@ -7,7 +7,7 @@
 namespace adasplats::python {
 namespace {
 
-constexpr const char* kDoc =
+constexpr const char* kRenderingDoc =
     "A picture of the scene: (height, width, 3) uint8, RGB, rows from the top.\n\n"
     "eye, target: (3,) world coordinates, m; without target the middle of the scene, without eye\n"
     "from above a corner of it. birds_eye: straight down, north up. trajectory (a path) and pose:\n"
@@ -76,7 +76,7 @@ void add_rendering(SceneClass& type) {
         RenderArguments arguments;
         arguments.take(keywords);
       },
-      kDoc);
+      kRenderingDoc);
   type.def("render", &render, doc.c_str());
 }
 

@@ -125,7 +125,7 @@ void take_format(Keywords& keywords, ScanFormat& format) {
   keywords.take<ScanFormat>("format", format, kScanFormats);
 }
 
-void save(const ScanList& list, py::handle folder, const py::kwargs& kwargs) {
+void save_scans(const ScanList& list, py::handle folder, const py::kwargs& kwargs) {
   Keywords keywords("save", kwargs);
   ScanFormat format = ScanFormat::semantickitti;
   take_format(keywords, format);
@@ -167,7 +167,7 @@ void bind_scans(py::module_& module) {
            [](const ScanList& list) {
              return "<adasplats.Scans: " + std::to_string(list.scans.size()) + ">";
            })
-      .def("save", &save, py::arg("folder"), doc.c_str());
+      .def("save", &save_scans, py::arg("folder"), doc.c_str());
   add_pickling<ScanList>(type, "Scans");
 }
 

@@ -9,7 +9,7 @@
 namespace adasplats::python {
 namespace {
 
-constexpr const char* kDoc =
+constexpr const char* kScenesDoc =
     "A place that rays are cast into, on the CPU or on GPUs.\n\n"
     "model: a Model, a Mesh, or the path of a model, of a mesh (PLY, OBJ, glTF) or of a world "
     "file.\n"
@@ -80,7 +80,7 @@ void bind_scenes(py::module_& module) {
         arguments.take(keywords);
       },
       "See the class.");
-  SceneClass type(module, "Scene", kDoc);
+  SceneClass type(module, "Scene", kScenesDoc);
   type.def(py::init(&make_scene), py::arg("model"), doc.c_str())
       .def("__len__", [](const SceneObject& o) { return o.scene->view().primitive_count(); })
       .def("__repr__",

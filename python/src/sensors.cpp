@@ -53,7 +53,7 @@ void fields(Archive& archive, LidarModel& model) {
 namespace adasplats::python {
 namespace {
 
-constexpr const char* kClassDoc =
+constexpr const char* kSensorsClassDoc =
     "A LiDAR: which rays one revolution holds.\n\n"
     "name_or_file: a name of sensors(), or a file: TOML, Ouster JSON, Velodyne YAML, a CSV of "
     "rays\n"
@@ -369,7 +369,7 @@ LidarModel sensor_of(py::handle value) {
 
 void bind_sensors(py::module_& module) {
   bind_firings(module);
-  SensorClass type(module, "Sensor", kClassDoc);
+  SensorClass type(module, "Sensor", kSensorsClassDoc);
   type.def(py::init([](py::handle name_or_file) {
              return std::make_shared<LidarModel>(
                  load_lidar_model(path_of(name_or_file, "name_or_file").string()));

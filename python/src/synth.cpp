@@ -10,7 +10,7 @@
 namespace adasplats::python {
 namespace {
 
-constexpr const char* kDoc =
+constexpr const char* kSynthDoc =
     "Make a procedural street with labels and its recordings, for trying things out.\n\n"
     "Writes into folder, which is made where it is not there: mapping.ply, "
     "mapping_trajectory.csv,\n"
@@ -68,7 +68,7 @@ void bind_synth(py::module_& module) {
         StreetArguments arguments;
         arguments.take(keywords);
       },
-      kDoc);
+      kSynthDoc);
   module.def("synth_street", &synth_street, py::arg("folder"), doc.c_str());
 }
 

@@ -25,7 +25,7 @@ void fields(Archive& archive, TrajectoryObject& trajectory) {
 
 constexpr double kPeriod_s = 0.1;  // as read_trajectory has it for poses without times
 
-constexpr const char* kDoc =
+constexpr const char* kTrajectoriesDoc =
     "Where a sensor was when.\n\n"
     "poses: (N, 4, 4) or (4, 4), world_from_sensor: x forward, y left, z up, metres. times: (N,)\n"
     "ascending, s; None: 0.1 s apart. Raises TypeError, ValueError (a matrix that is no rotation\n"
@@ -129,7 +129,7 @@ Trajectory trajectory_of(py::handle value, const char* name) {
 }
 
 void bind_trajectories(py::module_& module) {
-  TrajectoryClass type(module, "Trajectory", kDoc);
+  TrajectoryClass type(module, "Trajectory", kTrajectoriesDoc);
   type.def(py::init([](py::handle poses, py::handle times) {
              return TrajectoryObject{make_trajectory(poses, times)};
            }),

@@ -19,6 +19,7 @@
 #include <system_error>
 #include <thread>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/atomic_file.h"
@@ -34,7 +35,6 @@ constexpr double kPollShare = 0.05;  // of the time so far: short steps are meas
 constexpr int kCannotStart = 127;    // as shells have it
 constexpr int kSignalBase = 128;
 constexpr int kMessageLength = 300;
-constexpr double kBytesPerGiB = 1024.0 * 1024 * 1024;
 
 /// What happens in the new process: only calls that are safe between fork and exec.
 [[noreturn]] void become(char* const* arguments, const char* log, pid_t parent) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/pipeline/machine.h"
 #include "commands.h"
@@ -17,12 +18,11 @@
 namespace adasplats::app {
 namespace {
 
-constexpr double kBytesPerGiB = 1024.0 * 1024 * 1024;
 constexpr double kMostBytes = 1e18;   // fits into what the limit is kept in
 constexpr double kMemoryShare = 0.9;  // of the machine's, where the user gives no limit
 constexpr int kDeepestOctree = 16;
 
-constexpr const char* kExamples =
+constexpr const char* kCompareExamples =
     "  adasplats compare street -o street-comparison\n"
     "  adasplats compare sequences/00 -o kitti --methods basic,descriptors,poisson\n"
     "  adasplats compare Paris --preset paper-pc3d -o pc3d\n"
@@ -76,7 +76,7 @@ class CompareCommand final : public Command {
  public:
   explicit CompareCommand(CLI::App& program)
       : Command(program, "compare", "Compare all methods on the same data with the same rays",
-                kExamples) {
+                kCompareExamples) {
     OptionSet& app = options();
     require(add_path(app, "DATA", job_.data,
                      "Output of 'synth street', SemanticKITTI folder, or point files"));

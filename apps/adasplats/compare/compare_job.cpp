@@ -19,6 +19,7 @@
 #include "compare/steps.h"
 #include "compare/work_folder.h"
 #include "report_page/report_page.h"
+#include "text_table.h"
 
 namespace adasplats::app {
 namespace {
@@ -59,12 +60,6 @@ void check_rules(const CompareJob& job, const ComparisonData& data) {
   load_lidar_model(job.sensor);
 }
 
-std::string vector_text(Vec3d v) {
-  std::array<char, 96> text{};
-  std::snprintf(text.data(), text.size(), "%.3f,%.3f,%.3f", v.x, v.y, v.z);
-  return text.data();
-}
-
 /// Behind and above the middle pose, looking along the way.
 PictureView view_along(const Trajectory& trajectory, Vec3d offset_m) {
   const std::size_t middle = trajectory.size() / 2;
@@ -74,8 +69,8 @@ PictureView view_along(const Trajectory& trajectory, Vec3d offset_m) {
   ahead.z = 0;
   ahead = length(ahead) > 0 ? normalized(ahead) : Vec3d{1, 0, 0};
   const Vec3d up = {0, 0, 1};
-  return {vector_text(place - kBehind_m * ahead + kAbove_m * up),
-          vector_text(place + kAhead_m * ahead)};
+  return {comma_text(place - kBehind_m * ahead + kAbove_m * up),
+          comma_text(place + kAhead_m * ahead)};
 }
 
 /// What every competitor is asked with: data, poses, camera, limits.

@@ -8,6 +8,7 @@
 
 #include "adasplats/core/error.h"
 #include "option_types.h"
+#include "text_table.h"
 
 namespace adasplats::app {
 namespace {
@@ -17,10 +18,6 @@ using Json = nlohmann::ordered_json;
 using Words = std::vector<std::string>;
 
 void add(Words& words, const Words& more) { words.insert(words.end(), more.begin(), more.end()); }
-
-std::string vector_text(Vec3d v) {
-  return std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z);
-}
 
 /// The common view, 16:9.
 Words camera(const CompetitionRules& rules, int width) {
@@ -188,7 +185,7 @@ class Run {
             rules_.sensor,
             "--trajectory",
             rules_.data.trajectory.string(),
-            "--offset=" + vector_text(rules_.offset_m),
+            "--offset=" + comma_text(rules_.offset_m),
             "--every",
             std::to_string(rules_.every)};
   }

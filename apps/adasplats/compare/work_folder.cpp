@@ -15,13 +15,13 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/atomic_file.h"
+#include "output_path.h"
 
 namespace adasplats::app {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-constexpr const char* kContentFile = "adasplats.json";
 constexpr std::streamsize kPartBytes = 1 << 20;
 
 void make_folder(const fs::path& folder) {

@@ -24,7 +24,7 @@ using MaskLeaf = openvdb::MaskTree::LeafNodeType;
 using Plane = std::uint64_t;  // bit 8 y + z
 static_assert(Leaf::DIM == ImlsField::kSide);
 
-constexpr int kSide = ImlsField::kSide;
+constexpr int kLeafSide = ImlsField::kSide;
 
 /// The field as a sparse grid.
 struct SparseField {
@@ -73,7 +73,7 @@ class UpwardBits {
   UpwardBits(const Tree& tree, openvdb::Coord corner) {
     for (int n = 0; n < 8; ++n) {
       leaves_[static_cast<std::size_t>(n)] = tree.probeConstLeaf(
-          corner.offsetBy(kSide * (n >> 2), kSide * (n >> 1 & 1), kSide * (n & 1)));
+          corner.offsetBy(kLeafSide * (n >> 2), kLeafSide * (n >> 1 & 1), kLeafSide * (n & 1)));
     }
   }
   /// Plane x in 0..8; bit 8 y + z is that of (x, y + up_y, z + up_z), steps of 0 or 1.
@@ -89,9 +89,9 @@ class UpwardBits {
 
  private:
   Plane word(int x, int y, int z) const {
-    const int n = 4 * (x / kSide) + 2 * y + z;
+    const int n = 4 * (x / kLeafSide) + 2 * y + z;
     const auto* leaf = leaves_[static_cast<std::size_t>(n)];
-    const auto plane = static_cast<openvdb::Index>(x % kSide);
+    const auto plane = static_cast<openvdb::Index>(x % kLeafSide);
     return leaf == nullptr ? 0 : leaf->getValueMask().template getWord<Plane>(plane);
   }
 
@@ -108,7 +108,7 @@ openvdb::MaskTree whole_cells(const openvdb::FloatTree& tree, const Executor& ex
       const UpwardBits known(tree, leaves[i]->origin());
       whole[i] = std::make_unique<MaskLeaf>(leaves[i]->origin());
       openvdb::util::NodeMask<3> cells;
-      for (int x = 0; x < kSide; ++x) {
+      for (int x = 0; x < kLeafSide; ++x) {
         Plane& plane = cells.getWord<Plane>(static_cast<openvdb::Index>(x));
         plane = ~Plane{0};
         for (int n = 0; n < 8; ++n) plane &= known.at(x + (n >> 2), n >> 1 & 1, n & 1);
@@ -148,7 +148,7 @@ openvdb::BoolGrid::Ptr surface_mask(const SparseField& field, const Executor& ex
     for (std::size_t i = begin; i < end; ++i) {
       masks[i] = std::make_unique<Flags>(leaves[i]->origin(), false, false);
       const UpwardBits inside(field.inside, leaves[i]->origin());
-      for (int x = 0; x < kSide; ++x) {
+      for (int x = 0; x < kLeafSide; ++x) {
         const Plane own = inside.at(x, 0, 0);
         const std::array<Plane, 3> crossed = {own ^ inside.at(x + 1, 0, 0),
                                               own ^ inside.at(x, 1, 0), own ^ inside.at(x, 0, 1)};

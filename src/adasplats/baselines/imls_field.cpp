@@ -16,7 +16,6 @@ constexpr int kSide = ImlsField::kSide;
 constexpr int kBits = 21;  // of a block coordinate in a key
 constexpr std::int64_t kHalf = std::int64_t{1} << (kBits - 1);
 constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
-constexpr std::size_t kGrain = 1 << 14;
 
 using Cell = std::array<std::int64_t, 3>;
 

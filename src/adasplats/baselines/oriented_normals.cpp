@@ -18,7 +18,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 1 << 14;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// Of the K nearest; signs say nothing.

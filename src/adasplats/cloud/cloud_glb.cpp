@@ -24,7 +24,7 @@ static_assert(std::endian::native == std::endian::little, "glTF is little-endian
 // Section 3.6.2.2, "Accessor Data Types".
 constexpr int kUnsignedByte = 5121, kUnsignedShort = 5123, kFloat = 5126;
 constexpr int kArrayBuffer = 34962;
-constexpr int kPoints = 0;
+constexpr int kPointsMode = 0;
 
 /// Turns our x forward, y left, z up into glTF's z, x, y: by -120 degrees about (1, 1, 1).
 constexpr std::string_view kNodeRotation = "[-0.5,-0.5,-0.5,0.5]";  // x y z w
@@ -125,8 +125,8 @@ std::string mesh_members(const std::vector<Attribute>& attributes, std::size_t p
     offset += bytes_of(attribute);
   }
   const std::string bytes = std::to_string(points * stride);
-  return R"(,"meshes":[{"primitives":[{"mode":)" + std::to_string(kPoints) + R"(,"attributes":{)" +
-         names + R"(}}]}],"accessors":[)" + accessors +
+  return R"(,"meshes":[{"primitives":[{"mode":)" + std::to_string(kPointsMode) +
+         R"(,"attributes":{)" + names + R"(}}]}],"accessors":[)" + accessors +
          R"(],"bufferViews":[{"buffer":0,"byteLength":)" + bytes + R"(,"byteStride":)" +
          std::to_string(stride) + R"(,"target":)" + std::to_string(kArrayBuffer) +
          R"(}],"buffers":[{"byteLength":)" + bytes + "}]";

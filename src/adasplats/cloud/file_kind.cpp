@@ -25,8 +25,8 @@ constexpr double kTolerance = 1e-3;  // of rotations, as read_trajectory has it
 
 constexpr std::array<std::string_view, 3> kMeshes = {".obj", ".gltf", ".glb"};
 // E57 is not read, which whoever reads it says.
-constexpr std::array<std::string_view, 6> kPoints = {".pcd", ".las", ".laz",
-                                                     ".bin", ".ptx", ".e57"};
+constexpr std::array<std::string_view, 6> kPointFiles = {".pcd", ".las", ".laz",
+                                                         ".bin", ".ptx", ".e57"};
 constexpr std::array<std::string_view, 5> kTexts = {".xyz", ".pts", ".csv", ".txt", ".asc"};
 
 bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
@@ -171,7 +171,7 @@ FileKind kind_of_text(const std::vector<std::string>& lines) {
 FileKind kind_of_file(const std::filesystem::path& file) {
   const std::string extension = lower_case(file.extension().string());
   if (is_one_of(extension, kMeshes)) return FileKind::mesh;
-  if (is_one_of(extension, kPoints)) return FileKind::points;
+  if (is_one_of(extension, kPointFiles)) return FileKind::points;
   const auto lines = first_lines(file);
   if (is_one_of(extension, kTexts)) return lines ? kind_of_text(*lines) : FileKind::points;
   const bool is_ply = lines && !lines->empty() && lines->front() == "ply";
@@ -181,8 +181,8 @@ FileKind kind_of_file(const std::filesystem::path& file) {
 
 bool has_extension_of_a_kind(const std::filesystem::path& file) {
   const std::string extension = lower_case(file.extension().string());
-  return extension == ".ply" || is_one_of(extension, kMeshes) || is_one_of(extension, kPoints) ||
-         is_one_of(extension, kTexts);
+  return extension == ".ply" || is_one_of(extension, kMeshes) ||
+         is_one_of(extension, kPointFiles) || is_one_of(extension, kTexts);
 }
 
 std::string_view plural_name_of(FileKind kind) {

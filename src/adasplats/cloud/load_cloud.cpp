@@ -21,8 +21,6 @@ namespace adasplats {
 
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 16;
-
 using Input = CloudInput;
 
 std::vector<Input> list_inputs(std::span<const std::filesystem::path> paths) {
@@ -93,7 +91,7 @@ using Kept = std::vector<std::uint8_t>;
 
 Kept finite_points(const CloudPart& part, const Executor& executor) {
   Kept kept(part.size());
-  executor.for_chunks(part.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(part.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
     part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
       const bool finite = is_finite(world);
       kept[i] = finite ? 1 : 0;
@@ -158,7 +156,7 @@ struct Extents {
 
 Extents extents_of(const CloudPart& part, const Kept& kept, const Executor& executor) {
   return executor.sum_chunks(
-      part.size(), kGrain, Extents{}, [&](std::size_t begin, std::size_t end) {
+      part.size(), kCoarseGrain, Extents{}, [&](std::size_t begin, std::size_t end) {
         Extents extents;
         part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
           if (kept[i] != 0) extents += {world, world};
@@ -208,7 +206,7 @@ Extents drop_far(Gathered& gathered, double max_distance_m, const Executor& exec
   const Vec3d median = median_of(gathered);
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
     const CloudPart& part = gathered.parts[p];
-    executor.for_chunks(part.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    executor.for_chunks(part.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
       part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
         if (!is_place(world) || !(length(world - median) <= max_distance_m))
           gathered.kept[p][i] = 0;
@@ -266,7 +264,7 @@ PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin, const Poi
   part.cloud.origin_kinds = std::exchange(cloud.origin_kinds, {});
   if (has_sensors) cloud.sensor_positions.resize(points);
   if (has_kinds) cloud.origin_kinds.resize(points);
-  executor.for_chunks(points, kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(points, kCoarseGrain, [&](std::size_t begin, std::size_t end) {
     part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun& run) {
       if (kept[i] == 0) return;
       positions[i] = vec_cast<float>(world - origin);

@@ -10,7 +10,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 16384;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 bool is_measured(const PointCloud& cloud, std::size_t i) {

@@ -13,7 +13,6 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kMostPoints = std::size_t{1} << 20;
-constexpr std::size_t kGrain = 16384;
 constexpr double kPointsACell = 3;
 constexpr double kFinest_rad = 0.05 * std::numbers::pi / 180;
 constexpr double kCoarsest_rad = 3.2 * std::numbers::pi / 180;

@@ -14,6 +14,13 @@ namespace adasplats {
 
 class ProgressMeter;
 
+/// Elements of one chunk of a loop: of long work (searches, rays), of some arithmetic, and of
+/// little more than memory traffic. Sums go by chunks, so these numbers are part of what decides
+/// bytes.
+inline constexpr std::size_t kFineGrain = 4096;
+inline constexpr std::size_t kGrain = 16384;
+inline constexpr std::size_t kCoarseGrain = 65536;
+
 /// Runs loops on a fixed number of threads. Two executors do not share threads' work; there is no
 /// global one. Results of the library never depend on the number of threads: chunk boundaries
 /// depend on the sizes alone and reductions add chunks in their order.

@@ -59,4 +59,7 @@ ADASPLATS_HD constexpr Mat3d rotation_from_quaternion(double w, double x, double
 /// pitch turns +x *down* (towards -z).
 Mat3d rotation_from_yaw_pitch_roll(double yaw_rad, double pitch_rad, double roll_rad);
 
+/// Of the turn from rotation a to rotation b, in radians, from 0 to pi; exact for small ones, too.
+double angle_between(const Mat3d& a, const Mat3d& b);
+
 }  // namespace adasplats

@@ -67,5 +67,15 @@ TEST(RigidTransform, CompositionAndInverse) {
   expect_near(RigidTransform{} * p, p, 0);
 }
 
+// Oracle: analytic; a turn far below the square root of the precision, where a cosine sees nothing.
+TEST(Rotation, AngleBetweenTwoHoldsFromNothingToHalfATurn) {
+  const Mat3d a = rotation_from_yaw_pitch_roll(0.4, -0.2, 1.1);
+  EXPECT_LE(angle_between(a, a), 1e-15);
+  for (const double angle : {1e-12, 0.3, 3.1}) {
+    EXPECT_NEAR(angle_between(a, a * rotation_from_yaw_pitch_roll(0, angle, 0)), angle, 1e-15);
+  }
+  EXPECT_NEAR(angle_between(a, a * rotation_from_yaw_pitch_roll(kPi, 0, 0)), kPi, 1e-15);
+}
+
 }  // namespace
 }  // namespace adasplats

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/evaluate/beam_accuracy_internal.h"
 
 namespace adasplats {
@@ -11,7 +12,6 @@ namespace {
 
 constexpr std::array<double, 4> kBounds_m = {0.02, 0.05, 0.10, 0.50};
 constexpr double kFar_m = 0.5;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double ranked(std::vector<float>& values, std::size_t rank) {
   const auto nth = values.begin() + static_cast<std::ptrdiff_t>(rank);

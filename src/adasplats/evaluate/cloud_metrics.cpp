@@ -6,15 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/neighbors/point_index.h"
 
 namespace adasplats {
 namespace {
-
-constexpr std::size_t kGrain = 16384;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// F-score bounds in m: 5 cm, 10 cm, and the square root of 0.05 m2, which is what lidar-nerf and
 /// LiDAR4D compare squared distances with.

@@ -9,14 +9,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/beam_grid.h"
 
 namespace adasplats {
 namespace {
-
-constexpr std::size_t kGrain = 4096;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Ranks from 0; equal values share the mean of theirs.
 std::vector<double> ranks_of(std::span<const float> values) {
@@ -70,7 +68,7 @@ void add_pairs(IntensityPairs& pairs, const EchoScene& scene, const KittiSequenc
   scene_from_sensor.translation = scene_from_sensor.translation - scene.origin;
   std::vector<Ray> rays(scan.positions.size());
   std::vector<Hit> hits(rays.size());
-  executor.for_chunks(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const MeasuredBeam beam = sequence.beams.beam_of(index, vec_cast<double>(scan.positions[i]));
       rays[i].origin = vec_cast<float>(scene_from_sensor * beam.origin);
@@ -131,7 +129,7 @@ BeamEchoes kept(const BeamEchoes& beams, const Keep& keep) {
 }
 
 double share(std::size_t part, std::size_t whole) {
-  return whole == 0 ? kNan : static_cast<double>(part) / static_cast<double>(whole);
+  return whole == 0 ? kNaN : static_cast<double>(part) / static_cast<double>(whole);
 }
 
 }  // namespace
@@ -147,7 +145,7 @@ double rank_correlation(std::span<const float> a, std::span<const float> b) {
     aa += from_a * from_a;
     bb += from_b * from_b;
   }
-  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : kNan;
+  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : kNaN;
 }
 
 IntensityAccuracy intensity_accuracy(const EchoScene& scene, const KittiSequence& sequence,

@@ -24,7 +24,7 @@
 namespace adasplats {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoError = std::numeric_limits<float>::quiet_NaN();
 constexpr const char* kErrorName = "error_m";
 /// As load_cloud drops them: doubles no longer hold 0.1 mm; farther than this from the median.
 constexpr double kLargest_m = 1e12;
@@ -195,7 +195,7 @@ ErrorPoints read_error_points(const std::filesystem::path& path) {
   set_positions(points.cloud, places, rows);
   const auto finite = [](double value) {
     const float narrow = static_cast<float>(value);
-    return std::isfinite(narrow) ? narrow : kNaN;
+    return std::isfinite(narrow) ? narrow : kNoError;
   };
   for (const std::uint32_t i : rows) points.errors_m.push_back(finite(errors.as_double(i)));
   if (const Column* const classes = first_of(table, kClassNames))

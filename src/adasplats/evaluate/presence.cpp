@@ -15,7 +15,6 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kRaysAtOnce = std::size_t{1} << 18;
-constexpr std::size_t kGrain = 16384;
 
 void check(const PointCloud& cloud, const PresenceOptions& options) {
   if (!(options.within_m > 0 && std::isfinite(options.within_m))) {

@@ -15,7 +15,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
 constexpr std::array<double, 7> kRangeEdges_m = {10, 20, 30, 40, 50, 75, 100};
 constexpr std::array<double, 6> kIncidenceEdges_deg = {0, 30, 60, 75, 85, 90};
 constexpr double kDegreesPerRadian = 57.29577951308232;
@@ -145,7 +144,7 @@ CastScan cast_scan(const Setting& setting, const KittiSequence& sequence, std::s
   std::vector<BeamToCast> cast(selected.size());
   std::vector<Ray> rays(selected.size());
   std::vector<Hit> hits(selected.size());
-  executor.for_chunks(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Vec3d point = vec_cast<double>(scan.positions[selected[k]]);
       measured[k] = sequence.beams.beam_of(index, point);

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/beam_accuracy_internal.h"
 #include "adasplats/evaluate/beam_neighbors.h"
@@ -18,7 +19,6 @@
 namespace adasplats {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr float kBleedingMargin_m = 0.1F;
 
 /// What is kept of a ray until the end: 12 bytes.

@@ -16,7 +16,7 @@ namespace adasplats::gpu {
 namespace {
 
 constexpr std::size_t kMostRays = std::size_t{1} << 22;  // at once
-constexpr int kPostpone = 10;                            // as in cuda_scene.cu
+constexpr int kPostponeInCheck = 10;                     // as for scans, cuda_scene.cu
 
 /// Adds to a number that is not negative, or to one that wraps: the same bits.
 __device__ void add_to(std::int64_t& sum, std::int64_t value) {
@@ -131,7 +131,7 @@ DeviceEvidence DeviceRays::evidence(const Disk* disks, std::size_t count,
                  measured_ray(points.sensors[point], points.positions[point], options.margin_m);
              if (!castable(ray)) return;
              EvidenceOfRay of_ray = {disks, counts, ray, ray.t_max - 2 * options.margin_m};
-             walk<kPostpone>(tree, ray, box_ray(ray), of_ray);
+             walk<kPostponeInCheck>(tree, ray, box_ray(ray), of_ray);
            });
   return evidence;
 }

@@ -15,7 +15,6 @@ namespace {
 
 constexpr std::size_t kRaysAtOnce = std::size_t{1} << 19;
 constexpr std::size_t kHitsAtOnce = std::size_t{1} << 22;
-constexpr std::size_t kGrain = 1 << 15;
 
 /// One of two batches that are under way.
 struct Slot {

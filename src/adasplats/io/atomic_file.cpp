@@ -16,7 +16,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kBufferBytes = std::size_t{64} << 10;
+constexpr std::size_t kWriteBytes = std::size_t{64} << 10;
 // One system call moves at most about 2 GiB; see write(2).
 constexpr std::size_t kLargestCallBytes = std::size_t{1} << 30;
 
@@ -70,11 +70,11 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::write(const void* data, std::size_t bytes) {
   const char* text = static_cast<const char*>(data);
-  if (buffer_.size() + bytes > kBufferBytes) {
+  if (buffer_.size() + bytes > kWriteBytes) {
     write_through(buffer_.data(), buffer_.size());
     buffer_.clear();
   }
-  if (bytes > kBufferBytes / 2) {
+  if (bytes > kWriteBytes / 2) {
     write_through(buffer_.data(), buffer_.size());
     buffer_.clear();
     write_through(text, bytes);

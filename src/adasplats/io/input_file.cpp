@@ -17,7 +17,7 @@ namespace {
 static_assert(sizeof(std::size_t) == 8, "sizes of files are held in std::size_t");
 
 // Small enough to stay in the L2 cache, so that spreading it over columns reads no memory twice.
-constexpr std::size_t kBufferBytes = std::size_t{256} << 10;
+constexpr std::size_t kReadBytes = std::size_t{256} << 10;
 
 int open_or_throw(const std::filesystem::path& path) {
   // O_NONBLOCK: opening a FIFO that nobody writes returns at once; regular files ignore it.
@@ -53,7 +53,7 @@ InputDescriptor::~InputDescriptor() { ::close(descriptor_); }
 
 InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)), file_(path_) {
   if (size_bytes() == 0) throw data_error({path_, {}, {}}, "the file is empty");
-  buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, size_bytes())));
+  buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kReadBytes, size_bytes())));
 }
 
 void InputFile::skip(std::uint64_t bytes) {

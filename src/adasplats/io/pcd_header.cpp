@@ -30,9 +30,9 @@ ColumnType pcd_type(const LineReader& lines, char type, std::size_t bytes) {
 }
 
 /// Collects the header's lines, then checks that they agree.
-class HeaderParser {
+class PcdHeaderParser {
  public:
-  explicit HeaderParser(LineReader& lines) : lines_(lines) {}
+  explicit PcdHeaderParser(LineReader& lines) : lines_(lines) {}
 
   PcdHeader parse() {
     while (true) {
@@ -183,6 +183,6 @@ std::size_t PcdHeader::record_bytes() const {
   return bytes;
 }
 
-PcdHeader read_pcd_header(LineReader& lines) { return HeaderParser(lines).parse(); }
+PcdHeader read_pcd_header(LineReader& lines) { return PcdHeaderParser(lines).parse(); }
 
 }  // namespace adasplats

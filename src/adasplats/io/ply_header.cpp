@@ -39,9 +39,9 @@ constexpr std::array<TypeWord, 18> kTypeWords = {{{"char", ColumnType::i8},
                                                   {"float64", ColumnType::f64}}};
 
 /// Builds the header line by line; every method takes what follows the line's first word.
-class HeaderParser {
+class PlyHeaderParser {
  public:
-  explicit HeaderParser(LineReader& lines) : lines_(lines) {}
+  explicit PlyHeaderParser(LineReader& lines) : lines_(lines) {}
 
   PlyHeader parse() {
     const std::optional<std::string_view> magic = lines_.next();
@@ -162,6 +162,6 @@ const PlyElement* PlyHeader::find(std::string_view element) const {
   return found == elements.end() ? nullptr : &*found;
 }
 
-PlyHeader read_ply_header(LineReader& lines) { return HeaderParser(lines).parse(); }
+PlyHeader read_ply_header(LineReader& lines) { return PlyHeaderParser(lines).parse(); }
 
 }  // namespace adasplats

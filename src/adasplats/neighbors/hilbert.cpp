@@ -12,7 +12,6 @@ namespace adasplats {
 namespace {
 
 constexpr int kBits = kHilbertBits;
-constexpr std::size_t kGrain = 1 << 16;
 
 /// Spreads the low 21 bits to every third bit.
 constexpr std::uint64_t spread(std::uint64_t v) {
@@ -85,7 +84,7 @@ struct Extent {
 };
 
 Extent extent_of(std::span<const Vec3f> points, const Executor& executor) {
-  return executor.sum_chunks(points.size(), kGrain, Extent{},
+  return executor.sum_chunks(points.size(), kCoarseGrain, Extent{},
                              [&](std::size_t begin, std::size_t end) {
                                Extent extent;
                                for (std::size_t i = begin; i < end; ++i) {
@@ -115,7 +114,7 @@ std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const Ex
   const Extent extent = extent_of(points, executor);
   const HilbertGrid grid(extent.low, extent.high);
   std::vector<std::uint64_t> keys(points.size());
-  executor.for_chunks(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(points.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3<std::uint32_t> cell = grid.cell(points[i]);
       keys[i] = hilbert_key(cell.x, cell.y, cell.z);

@@ -9,12 +9,6 @@
 #include "adasplats/neighbors/group_search.h"
 
 namespace adasplats {
-namespace {
-
-constexpr std::size_t kGrain = 1 << 15;
-
-}  // namespace
-
 PointIndex::PointIndex(std::span<const Vec3f> points, const Executor& executor)
     : PointIndex(Sorted{}, points, hilbert_order(points, executor), executor) {}
 

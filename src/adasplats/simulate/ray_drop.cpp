@@ -9,12 +9,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 
 namespace adasplats {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr auto kHalfTurn = static_cast<float>(std::numbers::pi);
 constexpr std::size_t kN = RayDropModel::kFeatures;
 using Row = std::array<double, kN>;

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/atomic_file.h"
 #include "adasplats/io/number_text.h"
@@ -19,8 +20,6 @@
 
 namespace adasplats {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 const std::vector<std::string>& known_keys() {
   static const std::vector<std::string> keys = {"fitted_to", "usual_reflectance", "weights",

@@ -14,8 +14,6 @@ namespace adasplats {
 
 namespace {
 
-constexpr std::size_t kRaysPerChunk = 4096;
-
 /// What a ray's random numbers are for; each has a stream of its own.
 enum class Draw : std::uint64_t { range = 0, angles = 1, drop = 2 };
 
@@ -59,9 +57,9 @@ class ScanMaker {
   /// Chunk by chunk, in their order, so that threads do not show.
   ChunkedReturns returns(std::span<const Hit> hits) const {
     ChunkedReturns returns;
-    returns.chunks.resize((firings_.size() + kRaysPerChunk - 1) / kRaysPerChunk);
-    executor_.for_chunks(firings_.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
-      returns.chunks[begin / kRaysPerChunk] = returns_of_firings(hits, begin, end);
+    returns.chunks.resize((firings_.size() + kFineGrain - 1) / kFineGrain);
+    executor_.for_chunks(firings_.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
+      returns.chunks[begin / kFineGrain] = returns_of_firings(hits, begin, end);
     });
     for (const auto& chunk : returns.chunks) {
       returns.firsts.push_back(returns.count);
@@ -269,7 +267,7 @@ std::vector<Ray> scan_rays(const LidarModel& sensor, std::span<const Firing> fir
   const auto t_min = static_cast<float>(sensor.min_range_m);
   const auto t_max = static_cast<float>(sensor.max_range_m);
   std::vector<Ray> rays(firings.size());
-  executor.for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       rays[i] = scan_ray(poses.data(), pose_count, from[i], t_min, t_max);
   });

@@ -15,15 +15,6 @@ constexpr std::size_t kMostKnots = 64;
 constexpr double kMostTurn_rad = 0.5 * std::numbers::pi / 180;
 
 /// Angle between two rotations; the cosine is (trace - 1) / 2.
-double turn_between(const Mat3d& a, const Mat3d& b) {
-  const Mat3d turn = a.transposed() * b;
-  // By the sine, which holds for small angles: half the length of the antisymmetric part.
-  const Vec3d axis = {turn.rows[2].y - turn.rows[1].z, turn.rows[0].z - turn.rows[2].x,
-                      turn.rows[1].x - turn.rows[0].y};
-  const double trace = turn.rows[0].x + turn.rows[1].y + turn.rows[2].z;
-  return std::atan2(length(axis), trace - 1.0);
-}
-
 /// Knots that a scan needs: as many segments as half degrees, and as poses of the motion.
 std::size_t knots_needed(const Trajectory& motion, double begin_s, double end_s) {
   const auto by_time = [](const TimedPose& pose, double time_s) { return pose.time_s < time_s; };
@@ -32,10 +23,10 @@ std::size_t knots_needed(const Trajectory& motion, double begin_s, double end_s)
   double turn_rad = 0;
   Mat3d before = interpolate(motion, begin_s).rotation;
   for (auto pose = first; pose != last; ++pose) {
-    turn_rad += turn_between(before, pose->world_from_sensor.rotation);
+    turn_rad += angle_between(before, pose->world_from_sensor.rotation);
     before = pose->world_from_sensor.rotation;
   }
-  turn_rad += turn_between(before, interpolate(motion, end_s).rotation);
+  turn_rad += angle_between(before, interpolate(motion, end_s).rotation);
   const auto poses_inside = static_cast<std::size_t>(last - first);
   const double turns = std::ceil(turn_rad / kMostTurn_rad);
   const auto segments = std::max<std::size_t>(poses_inside + 1, static_cast<std::size_t>(turns));

@@ -16,9 +16,8 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kRaysPerChunk = 4096;
 constexpr std::size_t kRaysPerBundle = 64;  // of one ring: 10 degrees of an HDL-64
-static_assert(kRaysPerChunk % kRaysPerBundle == 0);
+static_assert(kFineGrain % kRaysPerBundle == 0);
 /// Added to every sphere: far above what rays of floats are off by within their range.
 constexpr double kMargin_m = 1e-2;
 
@@ -97,12 +96,6 @@ struct PlacedObject {
   }
 };
 
-double turn_between(const Mat3d& a, const Mat3d& b) {
-  const Mat3d turn = a.transposed() * b;
-  const double trace = turn.rows[0].x + turn.rows[1].y + turn.rows[2].z;
-  return std::acos(std::clamp(0.5 * (trace - 1.0), -1.0, 1.0));
-}
-
 /// Holds the whole object at every time from begin_s to end_s, world coordinates.
 Sphere swept_sphere(const PlacedObject& placed, double begin_s, double end_s) {
   const double scale = placed.object.scale;
@@ -115,7 +108,7 @@ Sphere swept_sphere(const PlacedObject& placed, double begin_s, double end_s) {
     path.add(pose * center);
     // Turning takes the centre off the straight line between two poses by less than an eighth of
     // its acceleration, as for any linear interpolation.
-    const double turn_rad = turn_between(before.rotation, pose.rotation);
+    const double turn_rad = angle_between(before.rotation, pose.rotation);
     bend = std::max(bend, 0.125 * length(center) * turn_rad * turn_rad);
     before = pose;
   };
@@ -250,9 +243,9 @@ ObjectRays rays_in_object(const ScanRays& scan, const PlacedObject& placed, cons
     part.firings.push_back(static_cast<std::uint32_t>(i));
     part.begins_m.push_back(begin_m);
   };
-  std::vector<ObjectRays> parts((scan.rays.size() + kRaysPerChunk - 1) / kRaysPerChunk);
-  executor.for_chunks(scan.rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
-    ObjectRays& part = parts[begin / kRaysPerChunk];
+  std::vector<ObjectRays> parts((scan.rays.size() + kFineGrain - 1) / kFineGrain);
+  executor.for_chunks(scan.rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
+    ObjectRays& part = parts[begin / kFineGrain];
     for (std::size_t first = begin; first < end; first += kRaysPerBundle) {
       if (!scan.bundles[first / kRaysPerBundle].may_meet(local)) continue;
       const std::size_t behind = std::min(end, first + kRaysPerBundle);
@@ -295,7 +288,7 @@ void add_object_hits(const ScanRays& scan, const PlacedObject& placed, const Sph
   } else {
     placed.geometry->tracer->nearest_hits(local.rays, depth, found, executor);
   }
-  executor.for_chunks(local.rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(local.rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<Hit> buffer;
     for (std::size_t i = begin; i < end; ++i) {
       const std::span<Hit> of_ray = std::span(found).subspan(i * slots, slots);
@@ -510,15 +503,14 @@ class WorldCaster final : public ScanCaster {
 
   CastTimes cast(const LidarModel& sensor, std::span<const Firing> firings,
                  std::span<const ScanMotion> scans, int depth, Sink sink) const override {
-    using Clock = std::chrono::steady_clock;
     double added_s = 0;
     std::vector<Hit> all;
     const auto add = [&](std::size_t scan, std::span<const Hit> hits) {
-      const Clock::time_point start = Clock::now();
+      const auto start = std::chrono::steady_clock::now();
       all.assign(hits.begin(), hits.end());
       world_.add_hits(first_scan_ + scan, sensor, firings, scans[scan], 1.0 / sensor.rotation_hz,
                       depth, all, executor_);
-      added_s += std::chrono::duration<double>(Clock::now() - start).count();
+      added_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       sink(scan, all);
     };
     CastTimes times = place_.cast(sensor, firings, scans, depth, add);

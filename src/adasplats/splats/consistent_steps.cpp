@@ -21,8 +21,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 16384;
-
 MeasuredPoints measured_points(const PointCloud& cloud) {
   return {cloud.positions.data(),
           cloud.sensor_positions.empty() ? nullptr : cloud.sensor_positions.data(),

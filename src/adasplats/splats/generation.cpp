@@ -11,15 +11,13 @@
 namespace adasplats {
 namespace {
 
-constexpr std::uint32_t kGrain = 4096;
-
 std::uint32_t scaled_count(int neighbors, double scale) {
   return static_cast<std::uint32_t>(std::max(1.0, std::round(neighbors * scale)));
 }
 
 /// Turns normals to the sensor, or gives them a sign that depends on the data alone.
 void orient_normals(const PointCloud& cloud, std::span<Vec3f> normals, const Executor& executor) {
-  executor.for_chunks(normals.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(normals.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       normals[i] = !is_known(cloud.origin_kind(i))
                        ? with_canonical_sign(normals[i])
@@ -41,10 +39,10 @@ Candidates grow_all(std::span<const SurfacePoint> points, const PointIndex& inde
   candidates.radii.resize(points.size());
   candidates.shifts.resize(points.size());
   candidates.discards.begins.resize(points.size());
-  candidates.discards.chunk_size = kGrain;
-  candidates.discards.chunks.resize((points.size() + kGrain - 1) / kGrain);
+  candidates.discards.chunk_size = kFineGrain;
+  candidates.discards.chunks.resize((points.size() + kFineGrain - 1) / kFineGrain);
   // A chunk of for_each_neighborhood never spans two of these, and its ranks come in order.
-  static_assert(PointIndex::kQueriesPerTask == kGrain);
+  static_assert(PointIndex::kQueriesPerTask == kFineGrain);
   const ProgressPass pass(executor, points.size());
   index.for_each_neighborhood(
       executor, [&](std::uint32_t rank) { return rules[points[rank].group].limit; },
@@ -53,7 +51,7 @@ Candidates grow_all(std::span<const SurfacePoint> points, const PointIndex& inde
             grow_splat(points[rank], neighbors, points.data(), rules[points[rank].group].grow);
         candidates.radii[rank] = splat.radius_m;
         candidates.shifts[rank] = splat.shift_m;
-        std::vector<std::uint32_t>& chunk = candidates.discards.chunks[rank / kGrain];
+        std::vector<std::uint32_t>& chunk = candidates.discards.chunks[rank / kFineGrain];
         candidates.discards.begins[rank] = static_cast<std::uint32_t>(chunk.size());
         // "All points in the neighbourhood inside the sphere of radius alpha r are discarded."
         const float reach = static_cast<float>(alpha) * splat.radius_m;
@@ -68,7 +66,7 @@ std::vector<SurfacePoint> surface_points(const PointCloud& cloud, std::span<cons
                                          std::span<const SemanticGroup> groups,
                                          const Executor& executor) {
   std::vector<SurfacePoint> points(cloud.size());
-  executor.for_chunks(cloud.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(cloud.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       points[i] = {cloud.positions[i], cloud.classes.empty() ? 0U : cloud.classes[i], normals[i],
                    groups.empty() ? 0U : static_cast<std::uint32_t>(groups[i])};
@@ -140,7 +138,7 @@ Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGrou
   result.seeds =
       select_greedily(candidates.radii, candidates.discards, options.selection, executor);
   result.disks.resize(result.seeds.size());
-  executor.for_chunks(result.seeds.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(result.seeds.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const std::uint32_t seed = result.seeds[s];
       const GrownSplat splat{candidates.radii[seed], candidates.shifts[seed]};

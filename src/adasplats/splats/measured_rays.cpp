@@ -10,8 +10,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 16384;
-
 void count_one(std::uint32_t& counter) {
   std::atomic_ref<std::uint32_t>(counter).fetch_add(1, std::memory_order_relaxed);
 }

@@ -9,7 +9,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 16384;
 constexpr std::size_t kRaysAtOnce = std::size_t{1} << 17;
 /// Most rays cross fewer disks; those that do not are cast again for several times as many.
 constexpr std::size_t kHitsAtFirst = 48, kTimesAsMany = 4;

@@ -10,8 +10,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 16384;
-
 template <class T>
 void add(T& sum, T value) {
   std::atomic_ref<T>(sum).fetch_add(value, std::memory_order_relaxed);

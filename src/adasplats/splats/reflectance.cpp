@@ -20,7 +20,6 @@ constexpr std::array<float, 11> kCosines = {0.0F, 0.1F, 0.2F, 0.3F, 0.4F, 0.5F,
                                             0.6F, 0.7F, 0.8F, 0.9F, 1.0F};
 constexpr std::size_t kUnitCosine = kCosines.size() - 1;
 constexpr std::size_t kMostNodes = 18;
-constexpr std::size_t kGrain = 65536;
 constexpr std::size_t kLeastRays = 1000;
 constexpr int kTurns = 5;
 
@@ -92,7 +91,7 @@ class RayCollector {
   void add_batch(const MeasuredRays& measured, std::size_t begin, std::size_t end) {
     std::vector<Ray> rays(end - begin);
     std::vector<Hit> hits(end - begin);
-    executor_.for_chunks(rays.size(), kGrain, [&](std::size_t from, std::size_t to) {
+    executor_.for_chunks(rays.size(), kCoarseGrain, [&](std::size_t from, std::size_t to) {
       for (std::size_t k = from; k < to; ++k) {
         rays[k] = measured.ray(begin + k, 1.0F);
         rays[k].origin = rays[k].origin + model_from_cloud_;
@@ -190,7 +189,7 @@ std::vector<float> fit_reflectances(const Observations& observations, const Disk
                                     std::span<const float> fallback, const Executor& executor) {
   const std::size_t disks = cells.of_disk.size();
   std::vector<Fit> of_disk(disks), of_cell(cells.count);
-  executor.for_chunks(disks, kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(disks, kCoarseGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t d = begin; d < end; ++d) {
       for (const Observation& ray : observations.of(d)) {
         const auto gain = static_cast<double>(response.gain(ray.range_m, ray.cos_incidence));
@@ -273,7 +272,7 @@ std::vector<float> TableFit::solve(std::size_t nodes, std::size_t unit) const {
 template <class Add>
 TableFit fit_table(const Observations& observations, std::span<const float> values,
                    const Executor& executor, const Add& add) {
-  return executor.sum_chunks(values.size(), kGrain, TableFit{},
+  return executor.sum_chunks(values.size(), kCoarseGrain, TableFit{},
                              [&](std::size_t begin, std::size_t end) {
                                TableFit fit;
                                for (std::size_t d = begin; d < end; ++d) {

@@ -13,8 +13,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
-
 /// A point half way between two splats, and the splat it takes its attributes from.
 struct NewPoint {
   Vec3f position;
@@ -70,7 +68,7 @@ std::vector<NewPoint> interpolate_points(const PointCloud& centers, const std::v
     if (options.method == SplatMethod::semantic) return centers.classes[a] == centers.classes[b];
     return groups.empty() || groups[a] == groups[b];
   };
-  std::vector<std::vector<NewPoint>> chunks(centers.size() / kGrain + 1);
+  std::vector<std::vector<NewPoint>> chunks(centers.size() / kFineGrain + 1);
   index.for_each_neighborhood(
       executor,
       [&](std::uint32_t splat) {
@@ -83,7 +81,7 @@ std::vector<NewPoint> interpolate_points(const PointCloud& centers, const std::v
         std::vector<std::uint64_t> neighbors;
         for (std::uint32_t k = 0; k < found.size; ++k) neighbors.push_back(found.key(k));
         fill_around(splat, share_of_missing(wanted, densities[splat]), neighbors, disks, alike,
-                    chunks[splat / kGrain]);
+                    chunks[splat / kFineGrain]);
       });
   std::vector<NewPoint> all;
   for (const auto& chunk : chunks) all.insert(all.end(), chunk.begin(), chunk.end());

@@ -5,14 +5,12 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 1 << 16;
-
 /// Ranks in the order in which candidates are taken.
 std::vector<std::uint32_t> visiting_order(std::span<const float> radii,
                                           const DiscardLists& discards, SelectionOrder order,
                                           const Executor& executor) {
   std::vector<std::uint64_t> keys(radii.size());
-  executor.for_chunks(radii.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(radii.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto rank = static_cast<std::uint32_t>(i);
       keys[i] = visiting_key(order, rank, radii[rank],
@@ -41,7 +39,7 @@ std::vector<std::uint32_t> select_greedily(std::span<const float> radii,
   std::vector<std::uint8_t> states(radii.size(), open);
   std::size_t visited = 0;
   for (const std::uint32_t rank : visiting_order(radii, discards, order, executor)) {
-    if (++visited % kGrain == 0) executor.check_interruption();
+    if (++visited % kCoarseGrain == 0) executor.check_interruption();
     if (states[rank] != open || !(radii[rank] > 0.0F)) continue;
     states[rank] = taken;
     for (const std::uint32_t other : discards.of(rank))

@@ -9,8 +9,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 16384;
-
 /// How far a disk reaches before the surface ends or turns away.
 float radius_grown(std::span<const Disk> seeds, std::uint32_t seed, const NeighborList& neighbors,
                    int sector_count, const CoverOptions& options) {

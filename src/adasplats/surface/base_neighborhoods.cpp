@@ -11,8 +11,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
-
 LocalShape shape_of(std::span<const Vec3f> points, std::uint32_t rank,
                     const NeighborList& neighbors) {
   float extent_m = 0;
@@ -83,13 +81,13 @@ class Pass {
         return *this;
       }
     };
-    const Sum total =
-        executor.sum_chunks(points_.size(), kGrain, Sum{}, [&](std::size_t begin, std::size_t end) {
-          Sum sum;
-          for (std::size_t i = begin; i < end; ++i)
-            sum += {error_sums_[i], double(error_counts_[i])};
-          return sum;
-        });
+    const Sum total = executor.sum_chunks(points_.size(), kFineGrain, Sum{},
+                                          [&](std::size_t begin, std::size_t end) {
+                                            Sum sum;
+                                            for (std::size_t i = begin; i < end; ++i)
+                                              sum += {error_sums_[i], double(error_counts_[i])};
+                                            return sum;
+                                          });
     return total.count > 0 ? total.error / total.count : 0.0;
   }
 
@@ -121,7 +119,7 @@ float squared_radius_of(double radius_m) {
 
 double mean_of(const std::vector<float>& values, const Executor& executor) {
   const double sum =
-      executor.sum_chunks(values.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+      executor.sum_chunks(values.size(), kFineGrain, 0.0, [&](std::size_t begin, std::size_t end) {
         double part = 0;
         for (std::size_t i = begin; i < end; ++i) part += static_cast<double>(values[i]);
         return part;

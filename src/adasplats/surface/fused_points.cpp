@@ -10,7 +10,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 65536;
 /// Points sorted by cell, and where each cell begins.
 struct Cells {
   std::vector<std::uint32_t> begins;  ///< one more than cells
@@ -24,7 +23,7 @@ struct Cells {
 
 Cells sort_into_cells(std::span<const Vec3f> points, double cell_m, const Executor& executor) {
   std::vector<std::uint64_t> keys(points.size());
-  executor.for_chunks(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(points.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       keys[i] = fusion_key(points[i], cell_m);
     }
@@ -41,7 +40,7 @@ Cells sort_into_cells(std::span<const Vec3f> points, double cell_m, const Execut
 std::vector<Vec3f> means_of(std::span<const Vec3f> points, const Cells& cells,
                             const Executor& executor) {
   std::vector<Vec3f> means(cells.size());
-  executor.for_chunks(means.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(means.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) {
       means[cell] = mean_position(points.data(), cells.points_of(cell));
     }

@@ -11,7 +11,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
 constexpr double kBumper_m = 5;  // ahead of and behind a mover
 constexpr double kDoor_m = 0.6;  // beside it
 
@@ -39,7 +38,7 @@ std::vector<Ray> rays_of(const LidarModel& sensor, std::span<const Firing> firin
                          const RigidTransform& world_from_sensor, const Executor& executor) {
   std::vector<Ray> rays(firings.size());
   const Vec3f origin = vec_cast<float>(world_from_sensor.translation);
-  executor.for_chunks(firings.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(firings.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3d direction =
           normalized(world_from_sensor.rotation * vec_cast<double>(firings[i].direction));
@@ -119,7 +118,7 @@ std::vector<Echo> StreetCaster::cast(const LidarModel& sensor, std::span<const F
   const Surfaces moving = {movers.mesh, movers.instances, movers.reflectances};
   constexpr std::uint32_t kMiss = 0xffffffffU;
   std::vector<Echo> echoes(rays.size());
-  executor_.for_chunks(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  executor_.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const bool mover = moving_hits[i].t < fixed_hits[i].t;
       const Hit hit = mover ? moving_hits[i] : fixed_hits[i];

@@ -8,7 +8,7 @@
 namespace adasplats {
 namespace {
 
-constexpr Material kIron = {label::kFence, 0.22F};
+constexpr Material kBlackIron = {label::kFence, 0.22F};
 constexpr Material kPaintedSteel = {label::kFence, 0.42F};
 constexpr double kGardenFenceLine = kSidewalkEdge + 0.12;
 
@@ -21,13 +21,14 @@ void add_garden_edge(MeshBuilder& builder, const Plot& plot, double x0, double x
   const Vec3d from = on_sidewalk(x0, y);
   const Vec3d to = on_sidewalk(x1, y);
   if (plot.edge == GardenEdge::fence) {
-    add_bar_fence(builder, from, to, {.height = 1.5, .bar_spacing = 0.11, .bar = 0.022}, kIron);
+    add_bar_fence(builder, from, to, {.height = 1.5, .bar_spacing = 0.11, .bar = 0.022},
+                  kBlackIron);
   } else if (plot.edge == GardenEdge::wall_with_fence) {
     const Vec3d middle = 0.5 * (from + to);
     builder.box(middle + Vec3d{0, 0, 0.2}, 0.5 * (to - from), {0, 0.11, 0}, {0, 0, 0.4},
                 {label::kOtherStructure, 0.4F});
     add_bar_fence(builder, from + Vec3d{0, 0, 0.6}, to + Vec3d{0, 0, 0.6},
-                  {.height = 0.95, .bar_spacing = 0.11}, kIron);
+                  {.height = 0.95, .bar_spacing = 0.11}, kBlackIron);
   }
 }
 
@@ -40,12 +41,12 @@ void add_garden(MeshBuilder& builder, const Plot& plot) {
   add_garden_edge(builder, plot, gate1 + 0.05, plot.x1 - 0.15);
   const double y = plot.side * kGardenFenceLine;
   add_bar_fence(builder, on_sidewalk(gate0, y), on_sidewalk(gate1, y),
-                {.height = 1.25, .bar_spacing = 0.1, .post_spacing = 0}, kIron);
+                {.height = 1.25, .bar_spacing = 0.1, .post_spacing = 0}, kBlackIron);
   // Mesh fences between neighbours, back to the houses.
   for (const double x : {plot.x0 + 0.05, plot.x1 - 0.05}) {
     const double back = plot.side * (kSidewalkEdge + kBuildingDepth - 0.2);
     add_bar_fence(builder, on_sidewalk(x, y), on_sidewalk(x, back),
-                  {.height = 1.3, .bar_spacing = 0.16, .bar = 0.014}, kIron);
+                  {.height = 1.3, .bar_spacing = 0.16, .bar = 0.014}, kBlackIron);
   }
 }
 

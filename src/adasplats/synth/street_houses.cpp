@@ -7,8 +7,8 @@ namespace adasplats {
 namespace {
 
 constexpr double kBelowGround = 0.5;
-constexpr double kSideMargin = 0.9;  // between a house and its neighbours
-constexpr double kDriveway = 2.6;    // left free beside the house
+constexpr double kSideMargin = 0.9;     // between a house and its neighbours
+constexpr double kDrivewayWidth = 2.6;  // left free beside the house
 constexpr double kHouseDepth = 6.2;
 
 /// Two floors of openings; the door in the middle of the ground floor.
@@ -73,7 +73,7 @@ void add_houses(const StreetPlan& plan, MeshBuilder& builder) {
     Random random = random_of(plan, Purpose::house, plot.number);
     const double front = kSidewalkEdge + kGardenDepth;
     const double side = plot.side;
-    const double x0 = plot.x0 + kSideMargin + kDriveway;
+    const double x0 = plot.x0 + kSideMargin + kDrivewayWidth;
     const double width = plot.x1 - kSideMargin - x0;
     const WallFrame wall = {{x0, side * front, 0}, {1, 0, 0}, {0, -side, 0}};
     const double ground_z = sidewalk_height(plot.center(), front);
@@ -84,8 +84,8 @@ void add_houses(const StreetPlan& plan, MeshBuilder& builder) {
     // A garage at the end of the driveway.
     const WallFrame garage = {{plot.x0 + 0.3, side * (front + 3), 0}, {1, 0, 0}, {0, -side, 0}};
     const double back = kBuildingDepth - kGardenDepth - 3;
-    add_wall_box(builder, garage, {0, kDriveway + 0.5, -kBelowGround, ground_z + 2.5}, -back, 0,
-                 {label::kBuilding, reflectance * 0.9F});
+    add_wall_box(builder, garage, {0, kDrivewayWidth + 0.5, -kBelowGround, ground_z + 2.5}, -back,
+                 0, {label::kBuilding, reflectance * 0.9F});
   }
 }
 

@@ -16,8 +16,6 @@ namespace adasplats {
 
 namespace {
 
-constexpr std::size_t kRaysPerChunk = 4096;
-
 template <unsigned kLanes>
 using Packet = std::conditional_t<kLanes == 16, RTCRayHit16,
                                   std::conditional_t<kLanes == 8, RTCRayHit8, RTCRayHit4>>;
@@ -51,7 +49,7 @@ class EmbreeTracer final : public Tracer {
   void nearest(std::span<const Ray> rays, std::span<Hit> hits,
                const Executor& executor) const override {
     clear_hits(rays, 1, hits);
-    executor.for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
+    executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
       const auto chunk_rays = rays.subspan(begin, end - begin);
       const auto chunk_hits = hits.subspan(begin, end - begin);
       switch (packet_size_) {
@@ -68,7 +66,7 @@ class EmbreeTracer final : public Tracer {
                     const Executor& executor) const override {
     clear_hits(rays, depth, hits);
     const auto slots = static_cast<std::size_t>(depth);
-    executor.for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
+    executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
       cast_singles(rays.subspan(begin, end - begin), slots,
                    hits.subspan(begin * slots, (end - begin) * slots));
     });

@@ -14,7 +14,7 @@ namespace adasplats {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t kGrain = 1 << 15;
+constexpr std::size_t kBuildGrain = 1 << 15;
 constexpr unsigned kBins = 16;
 
 /// x, y, z and one lane to spare: one vector register on x86 and Arm.
@@ -200,9 +200,9 @@ class Builder {
 
   Range gather() {
     const std::size_t count = scene_.primitive_count();
-    std::vector<Gathered> parts((count + kGrain - 1) / kGrain);
-    executor_.for_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
-      parts[begin / kGrain] = gather(begin, end);
+    std::vector<Gathered> parts((count + kBuildGrain - 1) / kBuildGrain);
+    executor_.for_chunks(count, kBuildGrain, [&](std::size_t begin, std::size_t end) {
+      parts[begin / kBuildGrain] = gather(begin, end);
     });
     Range all;
     for (const Gathered& part : parts) {
@@ -272,15 +272,15 @@ class Builder {
       return partition(range, [&](const Item& item) { return is_disk(item.index()); });
     }
     const Binning binning(range);
-    const Split split = range.size() > 2 * kGrain
+    const Split split = range.size() > 2 * kBuildGrain
                             ? best_split(bin_in_parallel(range, binning), binning.bins)
                             : best_split(bin(range.begin, range.end, binning), binning.bins);
     if (split.axis < 0) return halves(range);
     const auto goes_left = [&](const Item& item) {
       return binning.bin_of(item.middle(), split.axis) < split.bin;
     };
-    return range.size() > 2 * kGrain ? partition_in_parallel(range, goes_left)
-                                     : partition(range, goes_left);
+    return range.size() > 2 * kBuildGrain ? partition_in_parallel(range, goes_left)
+                                          : partition(range, goes_left);
   }
 
   Bins bin(std::size_t begin, std::size_t end, const Binning& binning) const {
@@ -290,7 +290,7 @@ class Builder {
   }
 
   Bins bin_in_parallel(const Range& range, const Binning& binning) const {
-    return executor_.sum_chunks(range.size(), kGrain, Bins{},
+    return executor_.sum_chunks(range.size(), kBuildGrain, Bins{},
                                 [&](std::size_t begin, std::size_t end) {
                                   return bin(range.begin + begin, range.begin + end, binning);
                                 });
@@ -329,13 +329,13 @@ class Builder {
   /// Chunks of fixed size, so that the order of items does not depend on threads.
   template <class Predicate>
   std::array<Range, 2> partition_in_parallel(const Range& range, const Predicate& goes_left) {
-    const std::size_t chunks = (range.size() + kGrain - 1) / kGrain;
+    const std::size_t chunks = (range.size() + kBuildGrain - 1) / kBuildGrain;
     std::vector<std::array<Range, 2>> parts(chunks);
-    executor_.for_chunks(range.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    executor_.for_chunks(range.size(), kBuildGrain, [&](std::size_t begin, std::size_t end) {
       Range chunk;
       chunk.begin = range.begin + begin;
       chunk.end = range.begin + end;
-      parts[begin / kGrain] = partition(chunk, goes_left);
+      parts[begin / kBuildGrain] = partition(chunk, goes_left);
     });
     std::array<Range, 2> sides;
     for (const auto& part : parts)
@@ -356,7 +356,7 @@ class Builder {
         std::copy_n(items_.data() + parts[chunk][side].begin, parts[chunk][side].size(),
                     spare_.data() + starts[chunk][side]);
     });
-    executor_.for_chunks(range.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    executor_.for_chunks(range.size(), kBuildGrain, [&](std::size_t begin, std::size_t end) {
       std::copy_n(spare_.data() + range.begin + begin, end - begin,
                   items_.data() + range.begin + begin);
     });

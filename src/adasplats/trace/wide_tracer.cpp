@@ -12,8 +12,6 @@ namespace adasplats {
 
 namespace {
 
-constexpr std::size_t kRaysPerChunk = 4096;
-
 class WideTracer final : public Tracer {
  public:
   WideTracer(const SceneView& scene, detail::WideCast cast, const Executor& executor)
@@ -36,7 +34,7 @@ class WideTracer final : public Tracer {
     clear_hits(rays, depth, hits);
     if (bvh_.root.kind() == WideRef::Kind::nothing) return;
     const auto slots = static_cast<std::size_t>(depth);
-    executor.for_chunks(rays.size(), kRaysPerChunk, [&](std::size_t begin, std::size_t end) {
+    executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
       cast_(bvh_, rays.subspan(begin, end - begin), slots,
             hits.subspan(begin * slots, (end - begin) * slots));
     });

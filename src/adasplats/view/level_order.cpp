@@ -11,7 +11,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 1 << 16;
 /// Of a box that has cells: below, their number a metre is no float.
 constexpr float kLeastSide_m = 1e-25F;
 constexpr std::size_t kMostChildren = 8;
@@ -32,7 +31,7 @@ struct Extent {
 template <class PositionOf>
 HilbertGrid grid_over(std::size_t count, const PositionOf& position_of, const Executor& executor) {
   const Extent extent =
-      executor.sum_chunks(count, kGrain, Extent{}, [&](std::size_t begin, std::size_t end) {
+      executor.sum_chunks(count, kCoarseGrain, Extent{}, [&](std::size_t begin, std::size_t end) {
         Extent part;
         for (std::size_t i = begin; i < end; ++i) {
           part.low = min(part.low, position_of(i));
@@ -56,7 +55,7 @@ CurveOrder order_along_curve(std::size_t count, const HilbertGrid& grid,
   CurveOrder curve;
   curve.keys.resize(count);
   const bool has_cells = grid.cells_per_m > 0;
-  executor.for_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(count, kCoarseGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end && has_cells; ++i) {
       const Vec3<std::uint32_t> cell = grid.cell(position_of(i));
       curve.keys[i] = hilbert_key(cell.x, cell.y, cell.z);
@@ -71,7 +70,7 @@ std::vector<T> gathered(std::span<const T> values, const std::vector<std::uint32
                         const Executor& executor) {
   if (values.empty()) return {};
   std::vector<T> result(order.size());
-  executor.for_chunks(order.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.for_chunks(order.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) result[k] = values[order[k]];
   });
   return result;
@@ -181,8 +180,8 @@ std::vector<std::size_t> LevelOrder::occupied(const LevelBlock& block,
       return *this;
     }
   };
-  const Counts counts =
-      executor.sum_chunks(block.size(), kGrain, Counts{}, [&](std::size_t begin, std::size_t end) {
+  const Counts counts = executor.sum_chunks(
+      block.size(), kCoarseGrain, Counts{}, [&](std::size_t begin, std::size_t end) {
         Counts part;
         for (std::size_t i = block.begin + begin; i < block.begin + end; ++i) {
           if (i == block.begin) continue;

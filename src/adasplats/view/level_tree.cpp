@@ -16,7 +16,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kGrain = 1 << 14;
 /// Nodes whose elements are made at the same time.
 constexpr std::size_t kBatch = 64;
 /// A node is to have at most this share of the elements that it stands for.

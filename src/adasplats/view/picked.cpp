@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr float kFarthest_m = 1e5F;
+constexpr float kLongestPick_m = 1e5F;
 
 void add_attributes(Json& json, const ViewScene& scene, std::uint32_t primitive) {
   const PrimitiveAttributes& attributes = scene.model->attributes();
@@ -37,7 +37,7 @@ std::string picked_message(const ViewScene& scene, const PickMessage& pick,
                            const Executor& executor) {
   const Vec3d direction = (1 / length(pick.direction)) * pick.direction;
   const Ray ray = {vec_cast<float>(pick.origin - scene.model->origin()), 0,
-                   vec_cast<float>(direction), kFarthest_m};
+                   vec_cast<float>(direction), kLongestPick_m};
   Hit hit;
   scene.model->tracer().nearest(std::span(&ray, 1), std::span(&hit, 1), executor);
   Json json = {{"type", "picked"}, {"id", pick.id}, {"hit", hit.valid()}};

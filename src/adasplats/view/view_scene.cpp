@@ -18,8 +18,8 @@ constexpr std::uint32_t kRecordedRings = 64;
 constexpr std::uint32_t kRecordedColumns = 2048;
 
 /// Positions relative to another origin; `storage` holds them where they differ.
-std::span<const Vec3f> moved(std::span<const Vec3f> positions, Vec3d from, Vec3d to,
-                             std::vector<Vec3f>& storage) {
+std::span<const Vec3f> relative_to_origin(std::span<const Vec3f> positions, Vec3d from, Vec3d to,
+                                          std::vector<Vec3f>& storage) {
   const Vec3d shift = from - to;
   if (shift.x == 0 && shift.y == 0 && shift.z == 0) return positions;
   storage.reserve(positions.size());
@@ -86,11 +86,12 @@ ViewLayer splat_layer(std::string name, const SplatModel& model, Vec3d origin,
 ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const float> errors_m,
                       Vec3d origin, const Executor& executor) {
   std::vector<Vec3f> storage;
-  const LevelInput input{.disks = {},
-                         .positions = moved(cloud.positions, cloud.origin, origin, storage),
-                         .classes = cloud.classes,
-                         .intensities = cloud.intensities,
-                         .errors_m = errors_m};
+  const LevelInput input{
+      .disks = {},
+      .positions = relative_to_origin(cloud.positions, cloud.origin, origin, storage),
+      .classes = cloud.classes,
+      .intensities = cloud.intensities,
+      .errors_m = errors_m};
   return {std::move(name),        false,
           !cloud.classes.empty(), !cloud.intensities.empty(),
           !errors_m.empty(),      LevelTree(input, {}, executor)};
