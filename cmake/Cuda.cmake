@@ -5,7 +5,7 @@
 
 # What device code is made for where CMAKE_CUDA_ARCHITECTURES does not say it: the GPUs of this
 # machine, and any newer one (whose driver compiles what is there when it is first used); without
-# one, intermediate code for any from Turing on. Every architecture more is compiled on its own.
+# one, Turing and anything newer. Every architecture more is compiled on its own.
 function(adasplats_cuda_architectures result)
   set(found "")
   find_program(smi nvidia-smi NO_CACHE)
@@ -27,7 +27,7 @@ function(adasplats_cuda_architectures result)
     endif()
   endforeach()
   if(NOT found)
-    set(found 75-virtual)
+    set(found 75)  # assembled, too, so that a build shows whether that can be
   endif()
   set(${result} ${found} PARENT_SCOPE)
 endfunction()
@@ -95,8 +95,8 @@ function(adasplats_use_cuda target)
             $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-ffp-contract=off,-Wall,-Wextra,-Wno-psabi>)
 endfunction()
 
-# Sources that stand for `cuda_sources` (of the stage NAME) where CMAKE_UNITY_BUILD is on: reading the
-# headers of CUDA takes longer than compiling a file. CMake does it from 3.31 on.
+# What of the `sources` *.cu of the stage NAME is compiled: where CMAKE_UNITY_BUILD is on, several in one
+# go, because reading CUDA's headers takes longer than compiling a file (CMake does it from 3.31 on).
 function(adasplats_cuda_unity result name)
   set(sources ${ARGN})
   if(CMAKE_UNITY_BUILD AND CMAKE_VERSION VERSION_LESS 3.31)

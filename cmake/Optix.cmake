@@ -12,7 +12,6 @@ mark_as_advanced(ADASPLATS_BIN2C)
 
 set(programs ${PROJECT_SOURCE_DIR}/src/adasplats/gpu/optix_programs.cu)
 set(embedded ${PROJECT_BINARY_DIR}/optix)
-set_source_files_properties(${programs} PROPERTIES HEADER_FILE_ONLY ON)  # not compiled as kernels
 file(MAKE_DIRECTORY ${embedded})
 add_custom_command(
   OUTPUT ${embedded}/optix_programs.inc

@@ -76,6 +76,7 @@ function(adasplats_stage name)
   endif()
   if(ARG_CUDA AND ADASPLATS_CUDA)
     file(GLOB cuda_sources CONFIGURE_DEPENDS ${folder}/*.cu)
+    list(FILTER cuda_sources EXCLUDE REGEX "/optix_programs\\.cu$")  # cmake/Optix.cmake
     adasplats_cuda_unity(cuda_sources ${name} ${cuda_sources})
     list(APPEND sources ${cuda_sources})
   endif()

@@ -10,8 +10,8 @@ namespace adasplats {
 namespace {
 
 using Names = std::array<std::string_view, 3>;
-constexpr Names kPositionNames = {"x", "y", "z"};
-constexpr Names kSensorNames = {"x_lidar_position", "y_lidar_position", "z_lidar_position"};
+constexpr Names kPositionColumns = {"x", "y", "z"};
+constexpr Names kSensorColumns = {"x_lidar_position", "y_lidar_position", "z_lidar_position"};
 
 std::vector<Vec3d> in_world(Vec3d origin, const std::vector<Vec3f>& positions) {
   std::vector<Vec3d> world;
@@ -41,16 +41,16 @@ void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud) 
   std::vector<ColumnView> columns;
   std::vector<Vec3d> world_positions, world_sensors;
   if (cloud.empty()) {
-    for (const std::string_view name : kPositionNames)
+    for (const std::string_view name : kPositionColumns)
       columns.push_back({name, ColumnType::f32, nullptr, sizeof(float)});
   } else if (cloud.origin == Vec3d{}) {
-    add_vectors(columns, kPositionNames, ColumnType::f32, cloud.positions);
-    add_vectors(columns, kSensorNames, ColumnType::f32, cloud.sensor_positions);
+    add_vectors(columns, kPositionColumns, ColumnType::f32, cloud.positions);
+    add_vectors(columns, kSensorColumns, ColumnType::f32, cloud.sensor_positions);
   } else {
     world_positions = in_world(cloud.origin, cloud.positions);
     world_sensors = in_world(cloud.origin, cloud.sensor_positions);
-    add_vectors(columns, kPositionNames, ColumnType::f64, world_positions);
-    add_vectors(columns, kSensorNames, ColumnType::f64, world_sensors);
+    add_vectors(columns, kPositionColumns, ColumnType::f64, world_positions);
+    add_vectors(columns, kSensorColumns, ColumnType::f64, world_sensors);
   }
   add_values(columns, "origin_kind", ColumnType::u8, cloud.origin_kinds);
   add_values(columns, "intensity", ColumnType::f32, cloud.intensities);

@@ -12,7 +12,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kMostPoints = std::size_t{1} << 20;
+constexpr std::size_t kMostSampled = std::size_t{1} << 20;
 constexpr double kPointsACell = 3;
 constexpr double kFinest_rad = 0.05 * std::numbers::pi / 180;
 constexpr double kCoarsest_rad = 3.2 * std::numbers::pi / 180;
@@ -24,7 +24,7 @@ struct Direction {
 };
 
 std::vector<Direction> directions_of(std::span<const Vec3f> points, const Executor& executor) {
-  const std::size_t stride = (points.size() + kMostPoints - 1) / kMostPoints;
+  const std::size_t stride = (points.size() + kMostSampled - 1) / kMostSampled;
   std::vector<Direction> directions(points.empty() ? 0 : (points.size() + stride - 1) / stride);
   executor.for_chunks(directions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

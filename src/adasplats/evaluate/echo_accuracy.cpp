@@ -12,6 +12,7 @@
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/beam_grid.h"
+#include "adasplats/evaluate/share.h"
 
 namespace adasplats {
 namespace {
@@ -128,10 +129,6 @@ BeamEchoes kept(const BeamEchoes& beams, const Keep& keep) {
   return result;
 }
 
-double share(std::size_t part, std::size_t whole) {
-  return whole == 0 ? kNaN : static_cast<double>(part) / static_cast<double>(whole);
-}
-
 }  // namespace
 
 double rank_correlation(std::span<const float> a, std::span<const float> b) {
@@ -203,9 +200,9 @@ RayDropModel fit_ray_drop(const BeamEchoes& beams) {
   return model;
 }
 
-double DropAccuracy::precision() const { return share(right, predicted); }
-double DropAccuracy::recall() const { return share(right, empty); }
-double DropAccuracy::f1() const { return share(2 * right, predicted + empty); }
+double DropAccuracy::precision() const { return share_of(right, predicted); }
+double DropAccuracy::recall() const { return share_of(right, empty); }
+double DropAccuracy::f1() const { return share_of(2 * right, predicted + empty); }
 
 DropAccuracy drop_accuracy(const BeamEchoes& beams, const RayDropModel* model, bool with_blocked) {
   DropAccuracy accuracy;

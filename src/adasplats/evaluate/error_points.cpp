@@ -69,7 +69,7 @@ bool is_place(Vec3d p) {
 }
 
 /// Componentwise, lower, of one or more places.
-Vec3d median_of(const std::vector<Vec3d>& places, const std::vector<std::uint32_t>& rows) {
+Vec3d median_place(const std::vector<Vec3d>& places, const std::vector<std::uint32_t>& rows) {
   Vec3d median;
   std::vector<double> values(rows.size());
   for (int axis = 0; axis < 3; ++axis) {
@@ -87,7 +87,7 @@ std::vector<std::uint32_t> near_rows(const std::vector<Vec3d>& places) {
   for (std::size_t i = 0; i < places.size(); ++i)
     if (is_place(places[i])) rows.push_back(static_cast<std::uint32_t>(i));
   if (rows.empty()) return rows;
-  const Vec3d median = median_of(places, rows);
+  const Vec3d median = median_place(places, rows);
   std::erase_if(rows, [&](std::uint32_t i) { return length(places[i] - median) > kFarthest_m; });
   return rows;
 }

@@ -13,6 +13,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/beam_accuracy_internal.h"
 #include "adasplats/evaluate/beam_neighbors.h"
+#include "adasplats/evaluate/share.h"
 #include "adasplats/simulate/scan.h"
 #include "adasplats/trace/closest_point.h"
 
@@ -31,10 +32,6 @@ struct TruthBeam {
 
   bool has_point() const { return !std::isnan(surface_m); }
 };
-
-double share(std::size_t part, std::size_t whole) {
-  return whole == 0 ? kNaN : static_cast<double>(part) / static_cast<double>(whole);
-}
 
 /// Casts scans; one object serves all of them.
 class TruthCaster {
@@ -200,8 +197,8 @@ TruthResult result_of(const std::vector<TruthBeam>& beams, const LabelScheme* la
     if (beam.bleeds) ++bleeding;
     if (beam.meets_truth) ++rays_of_class[beam.class_id];
   }
-  result.ghost_share = share(ghosts, beams.size() - result.all.range.rays);
-  result.bleeding_share = share(bleeding, result.all.surface.points);
+  result.ghost_share = share_of(ghosts, beams.size() - result.all.range.rays);
+  result.bleeding_share = share_of(bleeding, result.all.surface.points);
   if (!has_classes) return result;
   for (const auto& [id, rays] : rays_of_class) {
     result.by_class.emplace_back(name_of_class(labels, id),

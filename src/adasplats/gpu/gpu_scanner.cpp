@@ -18,7 +18,7 @@ namespace {
 
 /// Scans in one launch hold about so many rays: enough to fill a GPU several times over, and few
 /// enough that copying the last launch's hits, which nothing overlaps, does not count.
-constexpr std::size_t kRaysAtOnce = std::size_t{1} << 21;
+constexpr std::size_t kScanRaysAtOnce = std::size_t{1} << 21;
 constexpr int kSlots = 2;  // under way on each device
 
 using Clock = std::chrono::steady_clock;
@@ -286,7 +286,7 @@ CastTimes GpuScanner::Impl::cast(std::span<const ScanMotion> motions, Results re
   const std::size_t scan_bytes =
       results == Results::points ? firings_ * sizeof(PointHit) : hits_a_scan * sizeof(Hit);
   const std::size_t lanes = devices_.size() * gpu::kSlots;
-  const std::size_t most = std::clamp<std::size_t>(gpu::kRaysAtOnce / hits_a_scan, 1, 256);
+  const std::size_t most = std::clamp<std::size_t>(gpu::kScanRaysAtOnce / hits_a_scan, 1, 256);
   const std::size_t scans =
       std::max<std::size_t>(1, std::min(most, (motions.size() + lanes - 1) / lanes));
   // Batch k runs in lane k % lanes, so batches come back in their order.

@@ -6,7 +6,7 @@
 namespace adasplats {
 namespace {
 
-constexpr double kBelowGround = 0.5;
+constexpr double kHouseBelowGround = 0.5;
 constexpr double kSideMargin = 0.9;     // between a house and its neighbours
 constexpr double kDrivewayWidth = 2.6;  // left free beside the house
 constexpr double kHouseDepth = 6.2;
@@ -20,7 +20,7 @@ void add_house_front(MeshBuilder& builder, const WallFrame& wall, double width, 
     for (int b = 0; b < kBays; ++b) {
       const double middle = (b + 0.5) * bay;
       const double z = floor == 0 ? ground_z : ground_z + 2.9;
-      const WallRect panel = {b * bay, (b + 1) * bay, floor == 0 ? -kBelowGround : z,
+      const WallRect panel = {b * bay, (b + 1) * bay, floor == 0 ? -kHouseBelowGround : z,
                               floor == 0 ? z + 2.9 : eaves};
       const bool door = floor == 0 && b == 1;
       const WallRect hole = door ? WallRect{middle - 0.5, middle + 0.5, z + 0.2, z + 2.3}
@@ -45,13 +45,14 @@ void add_house_shell(MeshBuilder& builder, const WallFrame& wall, double width, 
   const double ridge = eaves + 2.4;
   const double middle = -0.5 * kHouseDepth;
   for (const double a : {0.0, width}) {
-    builder.quad(wall(a, 0, -kBelowGround), wall(a, -kHouseDepth, -kBelowGround),
+    builder.quad(wall(a, 0, -kHouseBelowGround), wall(a, -kHouseDepth, -kHouseBelowGround),
                  wall(a, -kHouseDepth, eaves), wall(a, 0, eaves), stone);
     builder.triangle(wall(a, 0, eaves), wall(a, -kHouseDepth, eaves), wall(a, middle, ridge),
                      stone);
   }
-  builder.quad(wall(0, -kHouseDepth, -kBelowGround), wall(width, -kHouseDepth, -kBelowGround),
-               wall(width, -kHouseDepth, eaves), wall(0, -kHouseDepth, eaves), stone);
+  builder.quad(wall(0, -kHouseDepth, -kHouseBelowGround),
+               wall(width, -kHouseDepth, -kHouseBelowGround), wall(width, -kHouseDepth, eaves),
+               wall(0, -kHouseDepth, eaves), stone);
   const double slope = 2.4 / (0.5 * kHouseDepth);
   const double over = 0.45;
   for (const double out : {over, -kHouseDepth - over})
@@ -84,8 +85,8 @@ void add_houses(const StreetPlan& plan, MeshBuilder& builder) {
     // A garage at the end of the driveway.
     const WallFrame garage = {{plot.x0 + 0.3, side * (front + 3), 0}, {1, 0, 0}, {0, -side, 0}};
     const double back = kBuildingDepth - kGardenDepth - 3;
-    add_wall_box(builder, garage, {0, kDrivewayWidth + 0.5, -kBelowGround, ground_z + 2.5}, -back,
-                 0, {label::kBuilding, reflectance * 0.9F});
+    add_wall_box(builder, garage, {0, kDrivewayWidth + 0.5, -kHouseBelowGround, ground_z + 2.5},
+                 -back, 0, {label::kBuilding, reflectance * 0.9F});
   }
 }
 

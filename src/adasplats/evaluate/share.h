@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "adasplats/core/constants.h"
+
+namespace adasplats {
+
+/// From 0 to 1; NaN of nothing.
+inline double share_of(std::size_t part, std::size_t whole) {
+  return whole == 0 ? kNaN : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace adasplats
