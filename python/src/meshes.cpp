@@ -65,7 +65,7 @@ std::shared_ptr<MeshModel> make_mesh(py::handle vertices, py::handle triangles, 
   return model;
 }
 
-std::shared_ptr<MeshModel> load(py::handle path) {
+std::shared_ptr<MeshModel> load_mesh_object(py::handle path) {
   const std::filesystem::path file = path_of(path, "path");
   const py::gil_scoped_release released;
   return std::make_shared<MeshModel>(load_mesh(file));
@@ -94,7 +94,7 @@ void bind_meshes(py::module_& module) {
   type.def(py::init(&make_mesh), py::arg("vertices"), py::arg("triangles"), py::kw_only(),
            py::arg("classes") = py::none(), py::arg("labels") = py::none(),
            py::arg("origin") = py::none(), init_doc.c_str())
-      .def_static("load", &load, py::arg("path"),
+      .def_static("load", &load_mesh_object, py::arg("path"),
                   documented("load", "path",
                              "Read a PLY, OBJ or glTF 2.0. Raises FileNotFoundError, ValueError.")
                       .c_str())

@@ -221,7 +221,7 @@ std::shared_ptr<ModelObject> make_object(py::handle centers, py::handle normals,
   return object;
 }
 
-std::shared_ptr<ModelObject> load(py::handle path) {
+std::shared_ptr<ModelObject> load_model_object(py::handle path) {
   const std::filesystem::path file = path_of(path, "path");
   auto object = std::make_shared<ModelObject>();
   const py::gil_scoped_release released;
@@ -351,7 +351,7 @@ void bind_models(py::module_& module) {
   type.def("__repr__", [](const ModelObject& o) {
     return "<adasplats.Model of " + std::to_string(o.model.size()) + " splats>";
   });
-  type.def_static("load", &load, py::arg("path"),
+  type.def_static("load", &load_model_object, py::arg("path"),
                   documented("load", "path",
                              "Read a PLY of splats: x y z nx ny nz radius and what else it has.\n"
                              "Raises FileNotFoundError, ValueError.")
