@@ -75,8 +75,17 @@ def is_current(file, program, command):
             and now["commit"] != "unknown")
 
 
+def text_of(value, margin=""):
+    """JSON with what holds no other objects on one line."""
+    if not isinstance(value, dict) or not any(isinstance(one, dict) for one in value.values()):
+        return json.dumps(value)
+    rows = (f"{margin} {json.dumps(key)}: {text_of(one, margin + ' ')}"
+            for key, one in value.items())
+    return "{\n" + ",\n".join(rows) + f"\n{margin}}}"
+
+
 def write(out, result):
-    pathlib.Path(out).write_text(json.dumps(result, indent=1) + "\n")
+    pathlib.Path(out).write_text(text_of(result) + "\n")
 
 
 def main():

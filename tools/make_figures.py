@@ -11,7 +11,8 @@ A figure is a link whose definition, at the end of the document, names file, key
 The key goes down through objects by name, through lists by the member "name". Zeros of the format
 stand for digits, its unit scales: % cm mm ms GB MB kB M k; "0,000" groups, "0.0x" is a ratio, "text"
 takes the value as it is. "A over B" divides, "mean of A, B" averages (of values under the same
-file), "1 - A" takes the rest. What the file lacks becomes "–". Whole tables stand between
+file), "1 - A" takes the rest; "mean of" is done first, then "over", "1 -" last. What the file lacks
+becomes "–". Whole tables stand between
 
     <!-- table: comparison compare/street/compare.json -->   and   <!-- /table -->
 
@@ -73,12 +74,12 @@ def value_at(data, key):
     if key.startswith("1 - "):
         rest = value_at(data, key[4:])
         return None if rest is None else 1 - rest
-    if key.startswith("mean of "):
-        values = [value_at(data, part) for part in key[8:].split(", ")]
-        return None if None in values else sum(values) / len(values)
     if " over " in key:
         above, below = (value_at(data, part) for part in key.split(" over "))
         return None if above is None or not below else above / below
+    if key.startswith("mean of "):
+        values = [value_at(data, part) for part in key[8:].split(", ")]
+        return None if None in values else sum(values) / len(values)
     for name in key.split("/"):
         data = part_of(data, name)
     return data
@@ -291,10 +292,11 @@ def work(root, check):
 
 def self_test():
     """A figure, a table and a naked figure, each changed by hand, are found."""
-    text = ("Built in [2.50 s][time], [88 %][share] of it.\n\n"
+    text = ("Built in [2.50 s][time], [88 %][share] of it, [0.50x][means].\n\n"
             "<!-- table: comparison ../a.json -->\n<!-- /table -->\n"
-            '\n[time]: ../a.json "x/seconds as 0.00 s"\n[share]: ../a.json "1 - x/rest as 0 %"\n')
-    data = {"commit": "1a2b", "x": {"seconds": 2.504, "rest": 0.12},
+            '\n[time]: ../a.json "x/seconds as 0.00 s"\n[share]: ../a.json "1 - x/rest as 0 %"\n'
+            '[means]: ../a.json "mean of y/a, y/b over mean of y/c, y/b as 0.00x"\n')
+    data = {"commit": "1a2b", "x": {"seconds": 2.504, "rest": 0.12}, "y": {"a": 1, "b": 3, "c": 5},
             "competitors": [{"title": "A", "generate": {"seconds": 3}}]}
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)
@@ -308,7 +310,7 @@ def self_test():
         assert "| A | 3 s |" in good and "[2.50 s][time]" in good, good
         for old, new, said in (("2.50 s", "2.40 s", "results.md:1: [time] is '2.50 s'"),
                                ("| 3 s |", "| 2 s |", "results.md:6"),
-                               ("of it.", "of it, 7 GB.", "'7 GB' names no source"),
+                               ("of it,", "of it, 7 GB,", "'7 GB' names no source"),
                                ("as 0 %", "as 8 %", "is no format"),
                                ("x/seconds as", "x/second as", "nothing is at 'x/second'"),
                                ('0.00 s"', '0.00 s" ', "is no definition of a figure")):
