@@ -51,8 +51,8 @@ function(adasplats_cold target)
   endif()
 endfunction()
 
-# adasplats_compiled_alone(files...): not with others in one go where CMAKE_UNITY_BUILD is on, e.g.
-# for they have the same names for another instruction set. Files of the folder this is called in.
+# adasplats_compiled_alone(files...): not with others in one go where CMAKE_UNITY_BUILD is on: they
+# have the same names for another instruction set, or take a core for a minute. Files of the folder this is called in.
 function(adasplats_compiled_alone)
   set_property(SOURCE ${ARGN} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
