@@ -7,6 +7,8 @@ usage: collect_results.py part FOLDER OUT.json COMMAND    all *.json below FOLDE
        collect_results.py all OUT.json PART.json...
        collect_results.py current PART.json PROGRAM COMMAND
                                     exit code 0: of the program's clean commit and this command
+       collect_results.py compactly FILE.json FOLDER
+                                    the same with a line for what holds no other objects
 
 The reports of a part must come from one commit. Parts of several commits stay visibly so: then the
 result names none, and each part its own.
@@ -94,6 +96,9 @@ def main():
             part(folder, out, command)
         case ["all", out, *parts] if parts:
             everything(out, parts)
+        case ["compactly", file, folder]:
+            write(pathlib.Path(folder) / pathlib.Path(file).name,
+                  json.loads(pathlib.Path(file).read_text()))
         case ["current", file, program, command]:
             sys.exit(0 if is_current(file, program, command) else 1)
         case _:

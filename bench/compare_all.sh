@@ -92,7 +92,8 @@ same_version "${made[@]}"
 for name in "${made[@]}"; do
   rm -rf "${docs:?}/$name"
   mkdir -p "$docs/$name"
-  cp -r "out/$name"/{compare.json,report.md,pictures} "$docs/$name"
+  cp -r "out/$name"/{report.md,pictures} "$docs/$name"
+  python3 "$root/bench/collect_results.py" compactly "out/$name/compare.json" "$docs/$name"
 done
 # One page that needs nothing else, as an example; the others would say the same again in megabytes.
 if [[ " ${made[*]} " == *" street "* ]]; then cp out/street/report.html "$docs/street"; fi
