@@ -97,6 +97,10 @@ RigidTransform transform_from_rows(const std::filesystem::path& path, std::uint6
   const auto v = finite_numbers<12>(path, line, fields);
   const Mat3d matrix{{{v[0], v[1], v[2]}, {v[4], v[5], v[6]}, {v[8], v[9], v[10]}}};
   const double error = orthonormality_error(matrix);
+  if (std::isinf(error))
+    throw data_error({path, {}, line},
+                     "the matrix mirrors: its determinant is negative, a rotation's is 1; do the "
+                     "axes of the file form a left-handed frame?");
   if (!(error <= kTolerance))
     throw data_error({path, {}, line}, "the rotation is not orthonormal to " +
                                            short_text(kTolerance) + " (off by " +

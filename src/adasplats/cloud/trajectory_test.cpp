@@ -153,7 +153,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1 inf\n", 1, "'inf'"},
         BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1 1e999\n", 1, "1e999"},
         BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 1.001 0\n", 1, "orthonormal"},
-        BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 -1 0\n", 1, "orthonormal"},
+        BadFile{"poses.txt", "1 0 0 0 0 1 0 0 0 0 -1 0\n", 1, "mirrors"},
         BadFile{"poses.txt", "0 0 0 0 0 0 0 0 0 0 0 0\n", 1, "orthonormal"},
         BadFile{"poses.csv", "time,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0,0,1,0,0\n", 3,
                 "7 values"},
