@@ -21,7 +21,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/random.h"
 #include "adasplats/evaluate/cloud_metrics.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/neighbors/hilbert.h"
 #include "adasplats/pipeline/provenance.h"
 

@@ -13,7 +13,7 @@
 
 #include "adasplats/cloud/load_cloud.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/neighbors/point_index.h"
 #include "adasplats/pipeline/provenance.h"
 

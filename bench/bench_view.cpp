@@ -20,7 +20,7 @@
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/random.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/provenance.h"
 #include "adasplats/splats/splat_model.h"
 #include "adasplats/view/level_tree.h"

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "adasplats/core/random.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/provenance.h"
 #include "adasplats/simulate/world.h"
 

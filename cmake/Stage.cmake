@@ -59,23 +59,25 @@ endfunction()
 
 set(ADASPLATS_STAGES "")
 
-# adasplats_stage(NAME [COLD] [DEPENDS stages...] [LINK PRIVATE|PUBLIC libs...] [DEFINE macros...]
-#                 [ALONE sources...] [CUDA])
+# adasplats_stage(NAME [COLD] [ROOMS rooms...] [DEPENDS stages...] [LINK PRIVATE|PUBLIC libs...]
+#                 [DEFINE macros...] [ALONE sources...] [CUDA])
 # COLD: adasplats_cold. ALONE: adasplats_compiled_alone, names without ".cpp".
 # LINK takes imported targets of packages only, which adasplatsConfig.cmake finds again for a
 # consumer; DEFINE is seen by NAME's own sources alone. CUDA: its *.cu are compiled, too, where
 # there is a CUDA compiler.
+# ROOMS: the folders within the stage, each may use those before it, not those that "|" joins it to;
+# "." is the stage's own folder, the last where it is not named (tools/check_layers.py proves it).
 # The library of src/adasplats/NAME: its *.cpp but *_test.cpp, which become NAME's test program.
 function(adasplats_stage name)
-  cmake_parse_arguments(ARG "CUDA;COLD" "" "ALONE;DEPENDS;LINK;DEFINE" ${ARGN})
+  cmake_parse_arguments(ARG "CUDA;COLD" "" "ALONE;DEPENDS;LINK;DEFINE;ROOMS" ${ARGN})
   set(folder ${PROJECT_SOURCE_DIR}/src/adasplats/${name})
-  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
-  file(GLOB tests CONFIGURE_DEPENDS ${folder}/*_test.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cpp)
+  file(GLOB_RECURSE tests CONFIGURE_DEPENDS ${folder}/*_test.cpp)
   if(tests)
     list(REMOVE_ITEM sources ${tests})
   endif()
   if(ARG_CUDA AND ADASPLATS_CUDA)
-    file(GLOB cuda_sources CONFIGURE_DEPENDS ${folder}/*.cu)
+    file(GLOB_RECURSE cuda_sources CONFIGURE_DEPENDS ${folder}/*.cu)
     list(FILTER cuda_sources EXCLUDE REGEX "/optix_programs\\.cu$")  # cmake/Optix.cmake
     adasplats_cuda_unity(cuda_sources ${name} ${cuda_sources})
     list(APPEND sources ${cuda_sources})

@@ -4,7 +4,7 @@
 """Checks that the stages under src/adasplats include only what the layout allows.
 
 The order of the stages and what each may use stand in the root CMakeLists.txt, as
-adasplats_stage(NAME DEPENDS ...). From that this script proves:
+adasplats_stage(NAME ROOMS ... DEPENDS ...). From that this script proves:
 
 1. DEPENDS names only stages above; every folder is a stage and every stage a folder.
 2. A file includes headers of its own stage and of stages in its DEPENDS, listed directly. A test
@@ -13,7 +13,10 @@ adasplats_stage(NAME DEPENDS ...). From that this script proves:
    everybody who includes them would pay. Public is what another stage, the program or an example
    includes; a stage's own sources and the headers that only they (or any tests and benchmarks, which
    look inside) include may use what they like.
-4. Includes of our own headers are written in full: "adasplats/STAGE/FILE.h".
+4. Includes of our own headers are written in full: "adasplats/STAGE/ROOM/FILE.h".
+5. The folders of a stage are its ROOMS. A file includes headers of its own room and of rooms before
+   it, not of those that "|" joins its room to; "." is the stage's own folder, the last room where
+   ROOMS does not name it. A test may include every room of its stage.
 
 usage: tools/check_layers.py [ROOT]      tools/check_layers.py --self-test
 """
@@ -28,25 +31,55 @@ HEAVY = ("nlohmann/", "toml++/", "CLI/", "tbb/", "oneapi/", "embree", "Eigen/", 
 LIGHT = ("nlohmann/json_fwd.hpp",)  # declarations alone
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 STAGE = re.compile(r"^[ \t]*adasplats_stage\(([^)]*)\)", re.MULTILINE)
-STAGE_KEYWORDS = ("COLD", "DEPENDS", "LINK", "DEFINE", "ALONE", "CUDA")
+STAGE_KEYWORDS = ("COLD", "ROOMS", "DEPENDS", "LINK", "DEFINE", "ALONE", "CUDA")
 SOURCE_SUFFIXES = (".h", ".cpp", ".cu", ".cuh")
 OUTSIDE = ("apps", "examples", "python")  # what uses the stages from outside
 
 
 def stages_of(cmake_text):
-    """The stages in their order, each with the stages it lists under DEPENDS."""
+    """The stages in their order, each with the stages it lists under DEPENDS, and their rooms:
+    {stage: {room: place in the order}}."""
     text = re.sub(r"#[^\n]*", "", cmake_text)
-    stages = {}
+    stages, rooms = {}, {}
     for match in STAGE.finditer(text):
         name, *words = match.group(1).split()
-        depends, keyword = [], None
+        depends, groups, keyword = [], [], None
         for word in words:
             if word in STAGE_KEYWORDS:
                 keyword = word
             elif keyword == "DEPENDS":
                 depends.append(word)
+            elif keyword == "ROOMS":
+                groups.append(word.split("|"))
         stages[name] = depends
-    return stages
+        rooms[name] = {room: place for place, group in enumerate(groups) for room in group}
+        rooms[name].setdefault(".", len(groups))
+    return stages, rooms
+
+
+def room_of(parts):
+    """The room of a file, of its path's parts from the stage's folder on."""
+    return parts[1] if len(parts) > 2 else "."
+
+
+def check_rooms(rooms, folders):
+    """Faults of the rooms of all stages; folders: {stage: its folders}."""
+    for stage, own in rooms.items():
+        there = folders.get(stage, set())
+        for room in sorted(there - set(own)):
+            yield f"src/adasplats/{stage}/{room}: a folder that is no room of stage '{stage}'"
+        for room in sorted(set(own) - there - {"."}):
+            yield f"CMakeLists.txt: room '{room}' has no folder src/adasplats/{stage}/{room}"
+
+
+def check_room(path, parts, rooms, target):
+    """The fault of one include within a stage against the order of its rooms, or None."""
+    own, used = room_of(parts), room_of(target.split("/")[1:])
+    if own == used or is_test(path) or own not in rooms or used not in rooms:
+        return None
+    if rooms[used] < rooms[own]:
+        return None
+    return f"includes {target}, but room '{used}' does not stand before '{own}'"
 
 
 def check_order(stages, folders):
@@ -124,18 +157,24 @@ def check_public_headers(root, inside, outside):
 
 def check_tree(root):
     """All faults under root, as lines of text."""
-    stages = stages_of((root / "CMakeLists.txt").read_text(encoding="utf-8"))
+    stages, rooms = stages_of((root / "CMakeLists.txt").read_text(encoding="utf-8"))
     if not stages:
         return ["CMakeLists.txt: no adasplats_stage(...) found"]
     source_root = root / "src" / "adasplats"
     faults = list(check_order(stages, {p.name for p in source_root.iterdir() if p.is_dir()}))
+    faults += check_rooms(rooms, {stage: {p.name for p in (source_root / stage).iterdir()
+                                          if p.is_dir()}
+                                  for stage in stages if (source_root / stage).is_dir()})
     inside = includes_of(source_root)
     for path, includes in inside.items():
-        stage = path.relative_to(source_root).parts[0]
+        parts = path.relative_to(source_root).parts
+        stage = parts[0]
         if stage not in stages:
             continue
         for line, bracket, target in includes:
             fault = check_include(path, stage, stages, bracket, target)
+            if not fault and target.startswith(f"adasplats/{stage}/"):
+                fault = check_room(path, parts, rooms[stage], target)
             if fault:
                 faults.append(f"{path.relative_to(root)}:{line}: {fault}")
     outside = {}
@@ -149,7 +188,13 @@ GOOD = {
     "CMakeLists.txt": "adasplats_stage(core LINK PRIVATE TBB::tbb)\n"
                       "# adasplats_stage(ghost DEPENDS top)\n"
                       "adasplats_stage(io DEPENDS core\n  LINK PRIVATE PNG::PNG DEFINE top)\n"
-                      "adasplats_stage(top DEPENDS io)\n",
+                      "adasplats_stage(top DEPENDS io)\n"
+                      "adasplats_stage(house ROOMS low left|right)\n",
+    "src/adasplats/house/low/l.h": "",
+    "src/adasplats/house/low/l_test.cpp": '#include "adasplats/house/h.h"\n',
+    "src/adasplats/house/left/a.h": '#include "adasplats/house/low/l.h"\n',
+    "src/adasplats/house/right/b.h": "",
+    "src/adasplats/house/h.h": '#include "adasplats/house/left/a.h"\n',
     "src/adasplats/core/a.h": "#include <vector>\n",
     "src/adasplats/core/a.cpp": '#include "adasplats/core/a.h"\n#include <tbb/task_arena.h>\n',
     "src/adasplats/io/b.h": '#include "adasplats/core/a.h"\n',
@@ -179,6 +224,15 @@ PLANTS = {
     "has no folder": {"CMakeLists.txt": GOOD["CMakeLists.txt"] + "adasplats_stage(ghost)\n"},
     "depends on 'io', not above": {
         "CMakeLists.txt": GOOD["CMakeLists.txt"].replace("(core ", "(core DEPENDS io ")},
+    "room 'left' does not stand before 'low'": {
+        "src/adasplats/house/low/l.h": '#include "adasplats/house/left/a.h"\n'},
+    "room 'left' does not stand before 'right'": {
+        "src/adasplats/house/right/bad.cpp": '#include "adasplats/house/left/a.h"\n'},
+    "room '.' does not stand before 'left'": {
+        "src/adasplats/house/left/bad.cpp": '#include "adasplats/house/h.h"\n'},
+    "a folder that is no room": {"src/adasplats/house/shed/s.h": ""},
+    "room 'attic' has no folder": {
+        "CMakeLists.txt": GOOD["CMakeLists.txt"].replace("ROOMS low", "ROOMS attic low")},
     "no adasplats_stage(...)": {"CMakeLists.txt": "project(adasplats)\n"},
 }
 

@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "command.h"
 #include "option_types.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adasplats/evaluate/cloud_metrics.h"
-#include "adasplats/io/png.h"
+#include "adasplats/io/arrays/png.h"
 #include "adasplats/simulate/color_bar.h"
 #include "adasplats/simulate/point_image.h"
 

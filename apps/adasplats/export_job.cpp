@@ -14,7 +14,7 @@
 #include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/dataset/mcap_writer.h"
-#include "adasplats/io/number_text.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/output_check.h"
 #include "adasplats/pipeline/scan_range.h"

@@ -12,7 +12,7 @@
 #include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/cloud/pose_check.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/point_files.h"
+#include "adasplats/io/base/point_files.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/scan_range.h"
 #include "adasplats/scene/mesh_model.h"

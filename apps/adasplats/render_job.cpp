@@ -12,7 +12,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/io/png.h"
+#include "adasplats/io/arrays/png.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/model_scene.h"
 #include "adasplats/simulate/point_colors.h"

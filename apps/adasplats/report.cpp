@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/memory.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/machine.h"
 #include "adasplats/pipeline/provenance.h"
 

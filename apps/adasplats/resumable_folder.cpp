@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
-#include "adasplats/io/sha256.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/sha256.h"
 #include "output_path.h"
 
 namespace adasplats::app {

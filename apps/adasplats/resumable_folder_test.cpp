@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "adasplats/cloud/temporary_folder_test.h"
-#include "adasplats/io/atomic_file.h"
-#include "adasplats/io/sha256.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/sha256.h"
 
 namespace adasplats::app {
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "adasplats/io/png.h"
+#include "adasplats/io/arrays/png.h"
 #include "adasplats/sensors/lidar_library.h"
 #include "commands.h"
 #include "option_types.h"

@@ -13,7 +13,7 @@
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/semantickitti_writer.h"
-#include "adasplats/io/sha256.h"
+#include "adasplats/io/base/sha256.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/model_scene.h"
 #include "adasplats/simulate/moving_points.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/words.h"
-#include "adasplats/io/sha256.h"
+#include "adasplats/io/base/sha256.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/scene_files.h"
 

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/io/number_text.h"
-#include "adasplats/io/ply.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/ply/ply.h"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <iostream>
 #include <vector>
 
-#include "adasplats/io/png.h"
+#include "adasplats/io/arrays/png.h"
 #include "report_page/report_page.h"
 #include "report_page/sample_results.h"
 

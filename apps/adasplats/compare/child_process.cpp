@@ -22,7 +22,7 @@
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "interrupt.h"
 
 namespace adasplats::app {

@@ -9,7 +9,7 @@
 
 #include "adasplats/cloud/label_scheme.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/machine.h"
 #include "adasplats/pipeline/provenance.h"

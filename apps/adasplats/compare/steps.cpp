@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/provenance.h"
 
 namespace adasplats::app {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "output_path.h"
 
 namespace adasplats::app {

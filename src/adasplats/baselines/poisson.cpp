@@ -14,7 +14,7 @@
 #include "adasplats/baselines/program.h"
 #include "adasplats/baselines/trim.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/ply.h"
+#include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 namespace {

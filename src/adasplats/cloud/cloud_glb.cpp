@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
-#include "adasplats/io/number_text.h"
-#include "adasplats/io/record_writer.h"
-#include "adasplats/io/records.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/record_writer.h"
+#include "adasplats/io/base/records.h"
 
 namespace adasplats {
 namespace {

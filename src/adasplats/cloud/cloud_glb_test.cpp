@@ -11,7 +11,7 @@
 
 #include "adasplats/cloud/temporary_folder_test.h"
 #include "adasplats/core/rigid_transform.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 
 namespace adasplats {
 namespace {

@@ -10,7 +10,7 @@
 #include "adasplats/cloud/file_kind.h"
 #include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/number_text.h"
+#include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
 

@@ -13,8 +13,8 @@
 
 #include "adasplats/cloud/rotation.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/input_file.h"
-#include "adasplats/io/number_text.h"
+#include "adasplats/io/base/input_file.h"
+#include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
 

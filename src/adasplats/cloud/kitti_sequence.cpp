@@ -10,8 +10,8 @@
 #include <variant>
 
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
-#include "adasplats/io/point_files.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/point_files.h"
 
 namespace adasplats {
 

@@ -15,7 +15,7 @@
 #include "adasplats/cloud/own_body.h"
 #include "adasplats/cloud/point_origins.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/number_text.h"
+#include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
 

@@ -12,7 +12,7 @@
 #include "adasplats/cloud/temporary_folder_test.h"
 #include "adasplats/core/random.h"
 #include "adasplats/core/recordings_test.h"
-#include "adasplats/io/las_writer.h"
+#include "adasplats/io/las/las_writer.h"
 
 namespace adasplats {
 namespace {

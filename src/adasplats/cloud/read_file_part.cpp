@@ -11,8 +11,8 @@
 #include "adasplats/cloud/cloud_inputs.h"
 #include "adasplats/cloud/cloud_part.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/number_text.h"
-#include "adasplats/io/point_files.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/point_files.h"
 
 namespace adasplats {
 

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "adasplats/cloud/load_cloud.h"
-#include "adasplats/io/ply.h"
+#include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 

@@ -13,9 +13,9 @@
 #include "adasplats/cloud/rotation.h"
 #include "adasplats/cloud/trajectory.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
-#include "adasplats/io/line_reader.h"
-#include "adasplats/io/number_text.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/line_reader.h"
+#include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "adasplats/dataset/scan_values.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 
 namespace adasplats {
 namespace {

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "adasplats/cloud/temporary_folder_test.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 
 namespace adasplats {
 namespace {

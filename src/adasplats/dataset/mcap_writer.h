@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "adasplats/io/mcap_file.h"
+#include "adasplats/io/mcap/mcap_file.h"
 #include "adasplats/simulate/scan.h"
 
 namespace adasplats {

@@ -11,8 +11,8 @@
 #include "adasplats/cloud/temporary_folder_test.h"
 #include "adasplats/dataset/numbered_scan_test.h"
 #include "adasplats/dataset/ros_messages.h"
-#include "adasplats/io/atomic_file.h"
-#include "adasplats/io/mcap_records_test.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/mcap/mcap_records_test.h"
 
 namespace adasplats {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "adasplats/dataset/scan_values.h"
-#include "adasplats/io/npy.h"
-#include "adasplats/io/png.h"
+#include "adasplats/io/arrays/npy.h"
+#include "adasplats/io/arrays/png.h"
 
 namespace adasplats {
 namespace {

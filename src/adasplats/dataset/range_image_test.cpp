@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "adasplats/cloud/temporary_folder_test.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 
 namespace adasplats {
 namespace {

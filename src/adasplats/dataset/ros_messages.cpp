@@ -13,8 +13,8 @@
 #include "adasplats/cloud/rotation.h"
 #include "adasplats/core/error.h"
 #include "adasplats/dataset/scan_values.h"
-#include "adasplats/io/record_writer.h"
-#include "adasplats/io/records.h"
+#include "adasplats/io/base/record_writer.h"
+#include "adasplats/io/base/records.h"
 
 namespace adasplats {
 namespace {

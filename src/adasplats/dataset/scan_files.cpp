@@ -9,11 +9,11 @@
 
 #include "adasplats/cloud/rotation.h"
 #include "adasplats/dataset/scan_values.h"
-#include "adasplats/io/las_writer.h"
-#include "adasplats/io/npy.h"
-#include "adasplats/io/npz.h"
-#include "adasplats/io/pcd_writer.h"
-#include "adasplats/io/ply.h"
+#include "adasplats/io/arrays/npy.h"
+#include "adasplats/io/arrays/npz.h"
+#include "adasplats/io/las/las_writer.h"
+#include "adasplats/io/pcd/pcd_writer.h"
+#include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 

@@ -11,9 +11,9 @@
 #include "adasplats/cloud/temporary_folder_test.h"
 #include "adasplats/dataset/numbered_scan_test.h"
 #include "adasplats/dataset/scan_values.h"
-#include "adasplats/io/atomic_file.h"
-#include "adasplats/io/ply.h"
-#include "adasplats/io/point_files.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/io/table.h"
+#include "adasplats/io/base/table.h"
 #include "adasplats/simulate/scan.h"
 
 namespace adasplats {

@@ -10,8 +10,8 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/dataset/scan_values.h"
-#include "adasplats/io/atomic_file.h"
-#include "adasplats/io/number_text.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
 

@@ -9,7 +9,7 @@
 #include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/cloud/temporary_folder_test.h"
 #include "adasplats/dataset/numbered_scan_test.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 
 namespace adasplats {
 namespace {

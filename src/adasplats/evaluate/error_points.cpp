@@ -14,12 +14,12 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/cloud_metrics.h"
-#include "adasplats/io/input_file.h"
-#include "adasplats/io/line_reader.h"
-#include "adasplats/io/number_text.h"
-#include "adasplats/io/ply.h"
-#include "adasplats/io/ply_header.h"
-#include "adasplats/io/point_files.h"
+#include "adasplats/io/base/input_file.h"
+#include "adasplats/io/base/line_reader.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/ply/ply.h"
+#include "adasplats/io/ply/ply_header.h"
 
 namespace adasplats {
 namespace {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "adasplats/core/recordings_test.h"
-#include "adasplats/io/atomic_file.h"
-#include "adasplats/io/ply.h"
-#include "adasplats/io/point_files.h"
-#include "adasplats/io/test_files.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/ply/ply.h"
 
 // Broken files of every format, the same in each run: nothing but adasplats::Error may escape, no
 // columns of unequal length, no memory beyond what the file's size allows. Worth most under the

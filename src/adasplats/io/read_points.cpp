@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
-#include "adasplats/io/input_file.h"
-#include "adasplats/io/number_text.h"
-#include "adasplats/io/ply.h"
-#include "adasplats/io/point_files.h"
+#include "adasplats/io/base/input_file.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 namespace {

@@ -7,10 +7,10 @@
 #include <locale>
 #include <string>
 
-#include "adasplats/io/npy.h"
-#include "adasplats/io/ply.h"
-#include "adasplats/io/point_files.h"
-#include "adasplats/io/test_files.h"
+#include "adasplats/io/arrays/npy.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 namespace {

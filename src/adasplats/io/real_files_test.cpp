@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "adasplats/core/recordings_test.h"
-#include "adasplats/io/ply.h"
-#include "adasplats/io/point_files.h"
-#include "adasplats/io/test_files.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/base/test_files.h"
+#include "adasplats/io/ply/ply.h"
 
 // Small files of other projects' tests, with a catalogue of what they hold that was made with other
 // readers (LASzip, the headers' text): the oracle of this file.

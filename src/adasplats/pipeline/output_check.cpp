@@ -7,7 +7,7 @@
 #include "adasplats/cloud/cloud_inputs.h"
 #include "adasplats/cloud/file_kind.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/number_text.h"
+#include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
 namespace {

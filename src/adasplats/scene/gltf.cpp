@@ -17,8 +17,8 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/rigid_transform.h"
-#include "adasplats/io/atomic_file.h"
-#include "adasplats/io/input_file.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/input_file.h"
 
 namespace adasplats {
 namespace {

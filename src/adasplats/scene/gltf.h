@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "adasplats/io/table.h"
+#include "adasplats/io/base/table.h"
 
 namespace adasplats {
 

@@ -11,10 +11,10 @@
 
 #include "adasplats/cloud/point_cloud.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
-#include "adasplats/io/input_file.h"
-#include "adasplats/io/obj.h"
-#include "adasplats/io/ply.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/input_file.h"
+#include "adasplats/io/ply/ply.h"
+#include "adasplats/io/text/obj.h"
 #include "adasplats/scene/gltf.h"
 
 namespace adasplats {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "adasplats/cloud/temporary_folder_test.h"
-#include "adasplats/io/ply.h"
+#include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 namespace {

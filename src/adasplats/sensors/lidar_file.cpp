@@ -12,7 +12,7 @@
 #include <string>
 
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/sensors/lidar_files.h"
 
 namespace adasplats {

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <string>
 
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/text_fields.h"
 

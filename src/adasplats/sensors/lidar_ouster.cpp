@@ -12,7 +12,7 @@
 #include <string>
 
 #include "adasplats/core/error.h"
-#include "adasplats/io/number_text.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/sensors/lidar_files.h"
 
 namespace adasplats {

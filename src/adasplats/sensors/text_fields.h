@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/io/number_text.h"
+#include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
 

@@ -14,8 +14,8 @@
 
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
-#include "adasplats/io/number_text.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/simulate/ray_drop.h"
 
 namespace adasplats {

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
-#include "adasplats/io/atomic_file.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/splats/splat_model.h"
 

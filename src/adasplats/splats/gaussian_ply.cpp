@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "adasplats/cloud/rotation.h"
-#include "adasplats/io/number_text.h"
-#include "adasplats/io/ply.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 namespace {

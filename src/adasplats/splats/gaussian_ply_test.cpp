@@ -10,7 +10,7 @@
 #include "adasplats/cloud/temporary_folder_test.h"
 #include "adasplats/core/random.h"
 #include "adasplats/core/rigid_transform.h"
-#include "adasplats/io/ply.h"
+#include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 namespace {

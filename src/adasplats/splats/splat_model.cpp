@@ -11,8 +11,8 @@
 
 #include "adasplats/cloud/point_cloud.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/number_text.h"
-#include "adasplats/io/ply.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
 namespace {

@@ -8,7 +8,7 @@
 #include "adasplats/cloud/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/dataset/semantickitti_writer.h"
-#include "adasplats/io/ply.h"
+#include "adasplats/io/ply/ply.h"
 #include "adasplats/synth/street.h"
 
 namespace adasplats {

@@ -9,7 +9,7 @@
 
 #include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/ply.h"
+#include "adasplats/io/ply/ply.h"
 #include "adasplats/synth/street.h"
 
 namespace adasplats {

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/base/records.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kKittiFloats = 4;
+constexpr std::size_t kNuScenesFloats = 5;
+// Sensors and file formats tell intensities as shares of 1, in bytes or in 16 bits.
+constexpr float kMostIntensity = 65535;
+// No sensor has more beams; the whole numbers of a column of rings lie below it.
+constexpr float kMostRings = 256;
+
+Table read_floats(InputFile& file, std::initializer_list<const char*> names) {
+  std::vector<RecordField> fields;
+  for (const char* name : names)
+    fields.push_back({name, ColumnType::f32, fields.size() * sizeof(float)});
+  const std::size_t record_bytes = names.size() * sizeof(float);
+  Table table;
+  table.rows = static_cast<std::size_t>(file.size_bytes() / record_bytes);
+  table.columns = read_records(file, table.rows, record_bytes, fields, false);
+  return table;
+}
+
+const std::vector<float>& floats(const Table& table, std::size_t column) {
+  return std::get<std::vector<float>>(table.columns[column].values);
+}
+
+/// All floats of a table as they lie in its file.
+std::vector<float> flat(const Table& table) {
+  std::vector<float> values;
+  values.reserve(table.columns.size() * table.rows);
+  for (std::size_t row = 0; row < table.rows; ++row)
+    for (std::size_t column = 0; column < table.columns.size(); ++column)
+      values.push_back(floats(table, column)[row]);
+  return values;
+}
+
+/// Intensities that are not finite are not known.
+bool can_be_intensity(float value) {
+  return !std::isfinite(value) || (value >= 0 && value <= kMostIntensity);
+}
+
+/// Whether of every five floats the fourth can be an intensity and the fifth a ring.
+bool has_rings(const Table& table) {
+  const std::vector<float> values = flat(table);
+  for (std::size_t i = 0; i + kNuScenesFloats <= values.size(); i += kNuScenesFloats) {
+    const float intensity = values[i + 3];
+    const float ring = values[i + 4];
+    if (!can_be_intensity(intensity)) return false;
+    if (!(ring >= 0 && ring < kMostRings) || ring != std::trunc(ring)) return false;
+  }
+  return true;
+}
+
+/// Whether the file holds five floats a point: every fifth is a ring, though the coordinates that
+/// it would be among as a file of four are no whole numbers.
+bool looks_like_five(const Table& four) {
+  if (four.rows % kNuScenesFloats != 0 || four.rows == 0) return false;
+  const auto is_whole = [](float value) { return value == std::trunc(value); };
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (std::ranges::all_of(floats(four, axis), is_whole)) return false;
+  return has_rings(four);
+}
+
+constexpr const char* kFiveFloats =
+    "has 5 floats a point (x, y, z, intensity, ring), as nuScenes has them";
+
+// What to do with five floats: a file on its own can be read by its name, a sequence's cannot.
+constexpr const char* kNameIt = "; name it *.pcd.bin to have it read so";
+constexpr const char* kConvertIt =
+    "; a sequence has scans of 4 (float32 x, y, z, intensity): leave the ring out";
+
+/// A file of four floats a point says nothing of itself: its values must be possible.
+void require_kitti_values(const std::filesystem::path& path, const Table& table,
+                          const char* cure_of_five) {
+  if (looks_like_five(table))
+    throw data_error({path, {}, {}}, std::string(kFiveFloats) + cure_of_five);
+  const std::vector<float>& intensities = floats(table, 3);
+  const auto wrong = std::ranges::find_if_not(intensities, can_be_intensity);
+  if (wrong == intensities.end()) return;
+  const auto row = static_cast<std::size_t>(wrong - intensities.begin());
+  throw data_error({path, row * kKittiFloats * sizeof(float) + 3 * sizeof(float), {}},
+                   "the intensity of point " + std::to_string(row) + " (from 0) would be " +
+                       exact_text(static_cast<double>(*wrong)) +
+                       ", expected 0 to 65535: not a KITTI scan (float32 x, y, z, intensity); "
+                       "convert it to one, or to PLY, PCD or LAS");
+}
+
+bool is_nuscenes_name(const std::filesystem::path& path) {
+  return lower_case(path.filename().string()).ends_with(".pcd.bin");
+}
+
+/// CloudCompare's own files have the same extension.
+void refuse_cloud_compare(InputFile& file) {
+  constexpr std::string_view kSignature = "CCB";
+  if (file.size_bytes() < kSignature.size()) return;
+  if (std::memcmp(file.peek(kSignature.size()).data(), kSignature.data(), kSignature.size()) == 0)
+    throw data_error({file.path(), 0, {}},
+                     "is a file of CloudCompare's own format; save it as PLY or LAS there");
+}
+
+void require_whole_points(const InputFile& file, std::size_t floats_a_point,
+                          const std::string& what) {
+  const std::size_t record_bytes = floats_a_point * sizeof(float);
+  const std::uint64_t left = file.size_bytes() % record_bytes;
+  if (left == 0) return;
+  throw data_error({file.path(), file.size_bytes(), {}},
+                   what + ", found " + std::to_string(left) + " bytes after the last whole point");
+}
+
+Table read_four_floats(const std::filesystem::path& path, const char* cure_of_five) {
+  InputFile file(path);
+  refuse_cloud_compare(file);
+  const bool five = file.size_bytes() % (kNuScenesFloats * sizeof(float)) == 0;
+  require_whole_points(
+      file, kKittiFloats,
+      "a KITTI scan has 16 bytes a point (float32 x, y, z, intensity)" +
+          (five ? std::string("; this one may be of nuScenes, which has 20") + cure_of_five : ""));
+  Table table = read_floats(file, {"x", "y", "z", "intensity"});
+  require_kitti_values(path, table, cure_of_five);
+  return table;
+}
+
+}  // namespace
+
+Table read_kitti_bin(const std::filesystem::path& path) {
+  if (is_nuscenes_name(path))
+    throw data_error({path, {}, {}}, "is named as a nuScenes sweep, which has 5 floats a point" +
+                                         std::string(kConvertIt));
+  return read_four_floats(path, kConvertIt);
+}
+
+Table read_bin(const std::filesystem::path& path) {
+  if (!is_nuscenes_name(path)) return read_four_floats(path, kNameIt);
+  InputFile file(path);
+  refuse_cloud_compare(file);
+  require_whole_points(file, kNuScenesFloats,
+                       "a nuScenes sweep (*.pcd.bin) has 20 bytes a point (float32 x, y, z, "
+                       "intensity, ring)");
+  Table table = read_floats(file, {"x", "y", "z", "intensity", "ring"});
+  if (!has_rings(table))
+    throw data_error({path, {}, {}},
+                     "is named as a nuScenes sweep (float32 x, y, z, intensity, ring), but its "
+                     "fifth column holds no rings (whole numbers from 0 to 255) or its fourth no "
+                     "intensities");
+  return table;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/io/arrays/png.h"
+
+#include <png.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/atomic_file.h"
+
+namespace adasplats {
+namespace {
+
+std::size_t values_of(int width, int height, std::size_t channels) {
+  if (width <= 0 || height <= 0) return 0;
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * channels;
+}
+
+/// `bytes`: of all pixels, in `format`.
+void write_image(const std::filesystem::path& path, int width, int height, png_uint_32 format,
+                 std::size_t bytes, const void* pixels) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(width);
+  image.height = static_cast<png_uint_32>(height);
+  image.format = format;
+  // What deflate adds to noise (5 bytes each 16 KiB) and the chunk frames (12 bytes each 8 KiB)
+  // are below 1/64; libpng fails cleanly where that should ever not be enough.
+  const std::size_t raw_bytes = bytes + static_cast<std::size_t>(height);
+  std::string encoded(raw_bytes + raw_bytes / 64 + 4096, '\0');
+  png_alloc_size_t encoded_bytes = encoded.size();
+  // libpng's simplified interface catches its own errors, so no longjmp crosses our frames.
+  if (png_image_write_to_memory(&image, encoded.data(), &encoded_bytes, 0, pixels, 0, nullptr) == 0)
+    throw Error(ErrorKind::software,
+                path.string() + ": the image cannot be encoded: " + std::string(image.message));
+  encoded.resize(encoded_bytes);
+  write_file(path, encoded);
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& path, int width, int height,
+               std::span<const std::uint8_t> pixels) {
+  if (pixels.empty() || pixels.size() != values_of(width, height, 3))
+    throw std::logic_error("write_png: pixels.size() is not width * height * 3");
+  write_image(path, width, height, PNG_FORMAT_RGB, pixels.size_bytes(), pixels.data());
+}
+
+void write_png16(const std::filesystem::path& path, int width, int height,
+                 std::span<const std::uint16_t> levels) {
+  if (levels.empty() || levels.size() != values_of(width, height, 1))
+    throw std::logic_error("write_png16: levels.size() is not width * height");
+  // libpng's "linear" format is 16 bits a channel, stored as they are.
+  write_image(path, width, height, PNG_FORMAT_LINEAR_Y, levels.size_bytes(), levels.data());
+}
+
+}  // namespace adasplats

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/io/base/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <stdexcept>
+#include <utility>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/input_file.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kWriteBytes = std::size_t{64} << 10;
+// One system call moves at most about 2 GiB; see write(2).
+constexpr std::size_t kLargestCallBytes = std::size_t{1} << 30;
+
+/// Where the bytes go in the end: a symbolic link stays one, its target is replaced.
+std::filesystem::path target_of(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_symlink(path, error)) return path;
+  std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
+  if (error) throw system_error(ErrorKind::cannot_create, path, "broken link", error.value());
+  return target;
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
+void flush_folder(const std::filesystem::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  // A folder that may be written but not read cannot be opened for fsync; the file itself is safe.
+  if (descriptor < 0) return;
+  const bool failed = ::fsync(descriptor) != 0;
+  const int error = errno;
+  ::close(descriptor);
+  // EINVAL: the file system has nothing to flush for folders.
+  if (failed && error != EINVAL)
+    throw system_error(ErrorKind::io, folder, "the folder cannot be flushed to disk", error);
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(target_of(path)) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path_, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    // rename() over /dev/null, say, would replace the device.
+    throw Error(ErrorKind::cannot_create, path_.string() + ": exists and is not a regular file");
+  }
+  for (int attempt = 0; descriptor_ < 0; ++attempt) {
+    temporary_ = folder_of(path_) / (".adasplats-" + std::to_string(::getpid()) + "-" +
+                                     std::to_string(attempt) + ".tmp");
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && errno != EEXIST && errno != EINTR)
+      throw system_error(ErrorKind::cannot_create, path_, "cannot be created", errno);
+  }
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::write(const void* data, std::size_t bytes) {
+  const char* text = static_cast<const char*>(data);
+  if (buffer_.size() + bytes > kWriteBytes) {
+    write_through(buffer_.data(), buffer_.size());
+    buffer_.clear();
+  }
+  if (bytes > kWriteBytes / 2) {
+    write_through(buffer_.data(), buffer_.size());
+    buffer_.clear();
+    write_through(text, bytes);
+  } else if (bytes > 0) {
+    buffer_.append(text, bytes);
+  }
+}
+
+void AtomicFile::write_through(const char* data, std::size_t bytes) {
+  if (descriptor_ < 0) throw std::logic_error("AtomicFile: used after commit()");
+  while (bytes > 0) {
+    const ssize_t put = ::write(descriptor_, data, std::min(bytes, kLargestCallBytes));
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) throw system_error(ErrorKind::io, path_, "cannot be written", errno);
+    data += put;
+    bytes -= static_cast<std::size_t>(put);
+  }
+}
+
+void AtomicFile::commit() {
+  write_through(buffer_.data(), buffer_.size());
+  buffer_.clear();
+  if (::fsync(descriptor_) != 0)
+    throw system_error(ErrorKind::io, path_, "cannot be flushed to disk", errno);
+  // Some network file systems report a full disk only here.
+  if (::close(std::exchange(descriptor_, -1)) != 0)
+    throw system_error(ErrorKind::io, path_, "cannot be closed", errno);
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0)
+    throw system_error(ErrorKind::cannot_create, path_, "cannot be put in place", errno);
+  temporary_.clear();
+  flush_folder(folder_of(path_));
+}
+
+void write_file(const std::filesystem::path& path, std::string_view content) {
+  AtomicFile file(path);
+  file.write(content);
+  file.commit();
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  const InputDescriptor file(path);
+  // One byte more than the size, so that a file that did not grow ends in one more call.
+  std::string content(static_cast<std::size_t>(file.size_bytes()) + 1, '\0');
+  std::size_t used = 0;
+  while (true) {
+    const ssize_t got = ::read(file.get(), content.data() + used,
+                               std::min(content.size() - used, kLargestCallBytes));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw system_error(ErrorKind::io, path, "cannot be read", errno);
+    if (got == 0) break;
+    used += static_cast<std::size_t>(got);
+    if (used == content.size()) content.resize(content.size() * 2);
+  }
+  content.resize(used);
+  return content;
+}
+
+}  // namespace adasplats

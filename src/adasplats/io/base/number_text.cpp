@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/io/base/number_text.h"
+
+#include <algorithm>
+#include <array>
+
+namespace adasplats {
+namespace {
+
+/// Whether a number that is out of double's range is too small rather than too large.
+bool is_underflow(std::string_view digits) {
+  const std::size_t exponent = digits.find_first_of("eE");
+  if (exponent != std::string_view::npos) return digits.substr(exponent + 1).starts_with('-');
+  return digits.starts_with('0') || digits.starts_with('.');
+}
+
+}  // namespace
+
+std::optional<double> parse_unusual_double(std::string_view token) {
+  if (token.starts_with('+')) {
+    token.remove_prefix(1);
+    if (token.starts_with('-')) return std::nullopt;
+  }
+  double value = 0.0;
+  const char* const end = token.data() + token.size();
+  const auto [stop, error] = std::from_chars(token.data(), end, value);
+  if (error == std::errc() && stop == end) return value;
+  const bool negative = token.starts_with('-');
+  const std::string_view digits = token.substr(negative ? 1 : 0);
+  const double sign = negative ? -1.0 : 1.0;
+  if (error == std::errc::result_out_of_range && stop == end && is_underflow(digits))
+    return sign * 0.0;
+  if (digits.starts_with("1.#INF")) return sign * std::numeric_limits<double>::infinity();
+  if (digits.starts_with("1.#")) return std::numeric_limits<double>::quiet_NaN();
+  return std::nullopt;
+}
+
+std::string shown(std::string_view token) {
+  constexpr std::size_t kLongest = 40;
+  std::string text = "'";
+  for (const char c : token.substr(0, kLongest)) text += (c >= ' ' && c <= '~') ? c : '?';
+  return text + (token.size() > kLongest ? "...'" : "'");
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](char c) {
+    return (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return lower;
+}
+
+std::string exact_text(double value) {
+  std::array<char, 32> buffer;
+  // Adding zero makes a 0 of -0.
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0).ptr;
+  return {buffer.data(), end};
+}
+
+}  // namespace adasplats

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "adasplats/io/base/table.h"
+
+namespace adasplats {
+
+/// PCD 0.5-0.7: ascii, binary, binary_compressed. COUNT > 1 gives columns name_0, name_1, ...;
+/// padding fields `_` are skipped. NaN points are kept (the caller drops and counts them). The
+/// comments hold the `#` lines and "VIEWPOINT ...". Memory: 1x the unpacked size; packed twice
+/// that, and a packed byte unpacks to at most 88.
+Table read_pcd(const std::filesystem::path& path);
+
+struct LasReadOptions {
+  /// Read the whole records of a truncated file instead of failing; the table's comments say
+  /// "salvaged N of M records".
+  bool salvage = false;
+};
+
+/// LAS 1.0-1.4, point formats 0-10, with scale and offset applied: x, y, z (f64), intensity (u16),
+/// classification (u8), return_number, number_of_returns (u8), and where the format has them
+/// gps_time (f64), red, green, blue (u16), point_source_id (u16), user_data (u8), and of LAS (not
+/// LAZ) the attributes in extra bytes that the file describes, in their types (scaled ones f64).
+/// Comments: "geographic: WHAT SAYS SO" where x and y are longitude and latitude, "not metres: X IN
+/// UNIT, WHAT SAYS SO" where coordinates are in feet, say, "not read: NAME" of an attribute of LAZ,
+/// "withheld: N of M points": points that are flagged as withheld are deleted, and left out. LAZ
+/// through LASzip where it was found at build time, else an error that says what to install.
+/// Memory: at most 2x the file's size (LAS), what the points take (LAZ). Errors: no_input, io,
+/// data.
+Table read_las(const std::filesystem::path& path, const LasReadOptions& options = {});
+
+/// Text: XYZ, PTS (a line with a count of points alone), CSV (comma, semicolon, tab or blank; a
+/// header line of names is understood, also as a comment; names are in lower case; an empty cell is
+/// NaN; `#` and `//` start comments). Without names: x y z; a 4th of 4 or 5 columns is intensity; 7
+/// columns are x y z intensity red green blue; 6 of PTS x y z red green blue; others are column_4,
+/// ... (from 1). Fewer points than a count says are an error, more are kept with a comment.
+/// PTX (by its extension): several scans, brought into world coordinates, with the further columns
+/// sensor_x, sensor_y, sensor_z, the scanner's position in the world; points 0 0 0 (no return) are
+/// left out, a comment says how many. All columns are f64. Locale-independent.
+Table read_text_points(const std::filesystem::path& path);
+
+/// KITTI / SemanticKITTI scan of a sequence: float32 x, y, z, intensity ("remission"),
+/// little-endian. The file does not say what it holds, so its values must be possible. Errors: data
+/// for an intensity below 0 or above 65535 (one that is not finite is not known), and for what is
+/// recognised as five floats a point or CloudCompare's own format.
+Table read_kitti_bin(const std::filesystem::path& path);
+
+/// A `.bin` by its name: of nuScenes (`*.pcd.bin`: float32 x, y, z, intensity, ring), else
+/// as read_kitti_bin. Errors: data, likewise for a fifth column that holds no rings (whole numbers
+/// from 0 to 255).
+Table read_bin(const std::filesystem::path& path);
+
+/// Any of the formats above and PLY, by the file's extension (any case) and first bytes, which must
+/// not contradict each other.
+/// Errors: as theirs; an unknown format is ErrorKind::data naming what is understood.
+Table read_points(const std::filesystem::path& path, const LasReadOptions& options = {});
+
+}  // namespace adasplats

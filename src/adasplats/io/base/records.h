@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adasplats/io/base/input_file.h"
+#include "adasplats/io/base/table.h"
+
+namespace adasplats {
+
+std::size_t type_bytes(ColumnType type);
+
+/// A column of `rows` zeros. The caller has checked `rows` against the file's size.
+Column make_column(std::string name, ColumnType type, std::size_t rows);
+
+/// The bytes of a column's values, to be filled by layout.
+std::byte* column_bytes(Column& column);
+
+/// One value of every record of a file: where in the record and of what type.
+struct RecordField {
+  std::string name;
+  ColumnType type;
+  std::size_t offset_bytes;
+};
+
+/// Copies one value each from `rows` places, `stride_bytes` apart, into `to`, densely.
+/// `swap_bytes` turns the byte order of each value round.
+void gather_values(const std::byte* from, std::size_t stride_bytes, std::size_t value_bytes,
+                   bool swap_bytes, std::size_t rows, std::byte* to);
+
+/// Reads `count` records of `record_bytes` from where `file` stands. The count is checked against
+/// the file's size before anything is allocated. Errors: data.
+std::vector<Column> read_records(InputFile& file, std::uint64_t count, std::size_t record_bytes,
+                                 const std::vector<RecordField>& fields, bool swap_bytes);
+
+/// A data error unless `count` records of at least `record_bytes` can follow where `file` stands.
+void check_room(const InputFile& file, std::uint64_t count, std::uint64_t record_bytes,
+                std::string_view what);
+
+/// Stores values written as text into a column.
+class TextColumn {
+ public:
+  TextColumn(Column& column, ColumnType type);
+  /// Whether the token is a number of the column's type; then it is the value of `row`.
+  bool store(std::size_t row, std::string_view token) const { return store_(data_, row, token); }
+
+ private:
+  std::byte* data_;
+  bool (*store_)(std::byte* data, std::size_t row, std::string_view token);
+};
+
+/// "f32" and so on, for messages.
+std::string_view type_name(ColumnType type);
+
+}  // namespace adasplats

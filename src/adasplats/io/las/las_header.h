@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "adasplats/core/vec3.h"
+#include "adasplats/io/base/input_file.h"
+
+namespace adasplats {
+
+/// Bytes of a variable length record before its content.
+inline constexpr std::size_t kVlrHeaderBytes = 54;
+
+/// The public header block of a LAS or LAZ file (ASPRS, "LAS specification 1.4 - R15", table 3).
+struct LasHeader {
+  std::size_t format = 0;  ///< point data record format, 0-10
+  bool is_compressed = false;
+  std::size_t record_bytes = 0;
+  std::size_t header_bytes = 0;
+  std::uint64_t vlr_count = 0;  ///< variable length records between the header and the points
+  std::uint64_t points_offset_bytes = 0;
+  std::uint64_t points = 0;
+  Vec3d scale;
+  Vec3d offset;
+  Vec3d box_min;
+  Vec3d box_max;
+
+  Vec3d position(std::int32_t x, std::int32_t y, std::int32_t z) const {
+    return {x * scale.x + offset.x, y * scale.y + offset.y, z * scale.z + offset.z};
+  }
+};
+
+/// Reads the header at the file's start and checks all that the reader relies on but the number of
+/// points. Errors: data with the byte offset.
+LasHeader read_las_header(InputFile& file);
+
+}  // namespace adasplats

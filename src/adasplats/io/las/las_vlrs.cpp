@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/io/las/las_vlrs.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string_view>
+
+#include "adasplats/io/base/records.h"
+#include "adasplats/io/las/las_records.h"
+#include "adasplats/io/las/wkt_units.h"
+
+namespace adasplats {
+namespace {
+
+// Record numbers of the specification, and of GeoTIFF 1.0 (keys and their values).
+constexpr std::uint16_t kExtraBytesRecord = 4;
+constexpr std::uint16_t kWktRecord = 2112;
+constexpr std::uint16_t kGeoKeysRecord = 34735;
+constexpr std::uint16_t kModelTypeKey = 1024;
+constexpr std::uint16_t kModelTypeGeographic = 2;
+constexpr std::uint16_t kLinearUnitsKey = 3076;
+constexpr std::uint16_t kVerticalUnitsKey = 4099;
+constexpr std::uint16_t kMetre = 9001;
+
+template <class T>
+T value_at(std::string_view bytes, std::size_t offset) {
+  T value;
+  std::memcpy(&value, bytes.substr(offset, sizeof(T)).data(), sizeof(T));
+  return value;
+}
+
+/// A text that ends at the first zero or with its field.
+std::string text_at(std::string_view bytes, std::size_t offset, std::size_t length) {
+  const std::string_view field = bytes.substr(offset, length);
+  return std::string(field.substr(0, field.find('\0')));
+}
+
+/// Bytes of a type of table 24, 1 to 30: scalars, and the old arrays of two and of three.
+constexpr std::array<ColumnType, 10> kExtraTypes = {
+    ColumnType::u8,  ColumnType::i8,  ColumnType::u16, ColumnType::i16, ColumnType::u32,
+    ColumnType::i32, ColumnType::u64, ColumnType::i64, ColumnType::f32, ColumnType::f64};
+
+/// The attributes that a record of table 24 describes.
+std::vector<LasExtraField> extra_fields_of(std::string_view record, const LasHeader& header) {
+  constexpr std::size_t kDescriptorBytes = 192;
+  constexpr std::uint8_t kHasScale = 1 << 3, kHasOffset = 1 << 4;
+  std::vector<LasExtraField> fields;
+  std::size_t place = las_format(header.format).least_bytes;
+  for (; record.size() >= kDescriptorBytes; record.remove_prefix(kDescriptorBytes)) {
+    const auto type = value_at<std::uint8_t>(record, 2);
+    const auto options = value_at<std::uint8_t>(record, 3);
+    if (type > 3 * kExtraTypes.size()) break;
+    if (type == 0) {  // bytes without a meaning; the options are their number
+      place += options;
+      continue;
+    }
+    const ColumnType scalar = kExtraTypes.at((type - 1U) % kExtraTypes.size());
+    const std::size_t items = 1 + (type - 1U) / kExtraTypes.size();
+    LasExtraField field{text_at(record, 4, 32), scalar, place, false, 1, 0};
+    place += items * type_bytes(scalar);
+    if (place > header.record_bytes) break;
+    if (items > 1 || field.name.empty()) continue;
+    field.is_scaled = (options & (kHasScale | kHasOffset)) != 0;
+    if ((options & kHasScale) != 0) field.scale = value_at<double>(record, 112);
+    if ((options & kHasOffset) != 0) field.offset = value_at<double>(record, 136);
+    fields.push_back(std::move(field));
+  }
+  return fields;
+}
+
+/// Whether a GeoTIFF key directory says that coordinates are angles.
+bool is_geographic_directory(std::string_view record) {
+  constexpr std::size_t kKeyBytes = 8;
+  for (; record.size() >= kKeyBytes; record.remove_prefix(kKeyBytes))
+    if (value_at<std::uint16_t>(record, 0) == kModelTypeKey &&
+        value_at<std::uint16_t>(record, 6) == kModelTypeGeographic)
+      return true;
+  return false;
+}
+
+/// A unit of GeoTIFF that is no metre; nothing for metres and what the file defines itself.
+std::optional<std::string> foreign_unit(std::uint16_t unit) {
+  constexpr std::uint16_t kFirst = 9000, kLast = 9099;  // lengths
+  if (unit == kMetre || unit < kFirst || unit > kLast) return std::nullopt;
+  switch (unit) {
+    case 9002: return "feet (0.3048 m)";
+    case 9003: return "US survey feet (1200/3937 m)";
+    case 9036: return "kilometres";
+    default: return "the unit EPSG " + std::to_string(unit);
+  }
+}
+
+/// Which coordinates a GeoTIFF key directory has in another unit than metres.
+std::optional<std::string> foreign_units_of_directory(std::string_view record) {
+  constexpr std::size_t kKeyBytes = 8;
+  for (; record.size() >= kKeyBytes; record.remove_prefix(kKeyBytes)) {
+    const auto key = value_at<std::uint16_t>(record, 0);
+    if (key != kLinearUnitsKey && key != kVerticalUnitsKey) continue;
+    const auto value = value_at<std::uint16_t>(record, 6);
+    if (const auto unit = foreign_unit(value))
+      return std::string(key == kLinearUnitsKey ? "x and y" : "z") + " in " + *unit +
+             ", by GeoTIFF key " + std::to_string(key) + " = " + std::to_string(value);
+  }
+  return std::nullopt;
+}
+
+/// Whether a coordinate system in words is one of angles: a projected one names its base, too.
+bool is_geographic_text(std::string_view text) {
+  const auto has = [text](std::string_view word) {
+    return text.find(word) != std::string_view::npos;
+  };
+  if (has("PROJCS") || has("PROJCRS") || has("PROJECTEDCRS") || has("GEOCCS") || has("Cartesian"))
+    return false;
+  return has("GEOGCS[") || has("GEOGCRS[") || has("GEOGRAPHICCRS[") || has("GEODCRS[");
+}
+
+void take_projection(std::uint16_t number, std::string_view record, LasDescription& description) {
+  if (number == kGeoKeysRecord) {
+    if (is_geographic_directory(record)) description.geographic = "GTModelType 2, geographic";
+    if (const auto units = foreign_units_of_directory(record)) description.not_metres = units;
+  }
+  if (number == kWktRecord) {
+    if (is_geographic_text(record))
+      description.geographic = std::string(record.substr(0, record.find(',')));
+    if (const auto units = foreign_units_of_wkt(record)) description.not_metres = units;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> LasDescription::comments() const {
+  std::vector<std::string> comments;
+  if (geographic) comments.push_back("geographic: " + *geographic);
+  if (not_metres) comments.push_back("not metres: " + *not_metres);
+  return comments;
+}
+
+LasDescription read_las_description(const std::filesystem::path& path, const LasHeader& header) {
+  LasDescription description;
+  InputFile file(path);
+  file.skip(header.header_bytes);
+  for (std::uint64_t k = 0; k < header.vlr_count; ++k) {
+    if (file.offset() + kVlrHeaderBytes > header.points_offset_bytes) break;
+    const std::string_view start(reinterpret_cast<const char*>(file.peek(kVlrHeaderBytes).data()),
+                                 kVlrHeaderBytes);
+    const std::string user = text_at(start, 2, 16);
+    const auto number = value_at<std::uint16_t>(start, 18);
+    const std::size_t length = value_at<std::uint16_t>(start, 20);
+    file.skip(kVlrHeaderBytes);
+    if (file.offset() + length > header.points_offset_bytes) break;
+    if (length == 0) continue;
+    const std::string_view record(reinterpret_cast<const char*>(file.peek(length).data()), length);
+    if (user == "LASF_Spec" && number == kExtraBytesRecord)
+      description.extra_fields = extra_fields_of(record, header);
+    if (user == "LASF_Projection") take_projection(number, record, description);
+    file.skip(length);
+  }
+  return description;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/io/las/las_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/record_writer.h"
+#include "adasplats/io/las/las_header.h"
+#include "adasplats/io/las/las_records.h"
+
+namespace adasplats {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "LAS files are little-endian");
+
+constexpr std::size_t kPointFormat = 6;
+constexpr std::size_t kHeaderBytes = 375;       // table 3
+constexpr std::size_t kExtraRecordBytes = 192;  // table 24
+constexpr std::uint16_t kExtraRecordId = 4;
+constexpr std::size_t kMostReturns = 15;
+// Point formats 6 to 10 must set it (table 4): a coordinate system, if any, is told as WKT.
+constexpr std::uint16_t kWktBit = 1 << 4;
+
+template <class T>
+void put(char* record, std::size_t offset, T value) {
+  std::memcpy(record + offset, &value, sizeof(T));
+}
+
+/// Text without a terminator; the rest of its field is zero already.
+void put_text(char* record, std::size_t offset, std::string_view text) {
+  std::ranges::copy(text, record + offset);
+}
+
+/// A field of point format 6 that is copied as it is (table 16).
+struct CopiedField {
+  std::string_view name;
+  ColumnType type;
+  std::size_t offset;
+};
+constexpr std::array<CopiedField, 5> kCopiedFields = {{{"intensity", ColumnType::u16, 12},
+                                                       {"classification", ColumnType::u8, 16},
+                                                       {"user_data", ColumnType::u8, 17},
+                                                       {"point_source_id", ColumnType::u16, 20},
+                                                       {"gps_time", ColumnType::f64, 22}}};
+constexpr std::size_t kReturnsOffset = 14;
+
+/// The columns by what becomes of them.
+class PointColumns {
+ public:
+  explicit PointColumns(std::span<const ColumnView> columns) {
+    for (const ColumnView& column : columns) take(column);
+    for (const ColumnView& axis : axes_)
+      if (axis.name.empty()) throw std::logic_error("write_las: x, y or z is missing");
+  }
+
+  std::span<const ColumnView> extras() const { return extras_; }
+
+  Vec3d position(std::size_t row) const {
+    return {coordinate(axes_[0], row), coordinate(axes_[1], row), coordinate(axes_[2], row)};
+  }
+  std::uint8_t return_number(std::size_t row) const { return byte_of(return_number_, row); }
+  std::uint8_t number_of_returns(std::size_t row) const { return byte_of(returns_, row); }
+
+  void copy_fields(std::size_t row, char* record) const {
+    for (std::size_t k = 0; k < kCopiedFields.size(); ++k) {
+      if (copied_[k].name.empty()) continue;
+      spread_column(copied_[k], row, 1, 0, record + kCopiedFields[k].offset);
+    }
+  }
+
+ private:
+  void take(const ColumnView& column) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (column.name == std::string_view("xyz").substr(axis, 1)) return take_axis(axis, column);
+    for (std::size_t k = 0; k < kCopiedFields.size(); ++k) {
+      if (column.name != kCopiedFields[k].name) continue;
+      check_type(column, kCopiedFields[k].type);
+      copied_[k] = column;
+      return;
+    }
+    if (column.name == "return_number" || column.name == "number_of_returns") {
+      check_type(column, ColumnType::u8);
+      (column.name == "return_number" ? return_number_ : returns_) = column;
+      return;
+    }
+    if (column.name.empty() || column.name.size() > 31)
+      throw std::logic_error("write_las: the name of an attribute is empty or above 31 bytes");
+    extras_.push_back(column);
+  }
+  void take_axis(std::size_t axis, const ColumnView& column) {
+    if (column.type != ColumnType::f32) check_type(column, ColumnType::f64);
+    axes_[axis] = column;
+  }
+  static void check_type(const ColumnView& column, ColumnType expected) {
+    if (column.type != expected)
+      throw std::logic_error("write_las: a column is not of its type: " + std::string(column.name));
+  }
+  static const char* place(const ColumnView& column, std::size_t row) {
+    return static_cast<const char*>(column.data) + row * column.stride_bytes;
+  }
+  static double coordinate(const ColumnView& column, std::size_t row) {
+    double wide = 0;
+    float narrow = 0;
+    if (column.type == ColumnType::f64) {
+      std::memcpy(&wide, place(column, row), sizeof(wide));
+      return wide;
+    }
+    std::memcpy(&narrow, place(column, row), sizeof(narrow));
+    return narrow;
+  }
+  static std::uint8_t byte_of(const ColumnView& column, std::size_t row) {
+    return column.name.empty() ? std::uint8_t{1} : static_cast<std::uint8_t>(*place(column, row));
+  }
+
+  std::array<ColumnView, 3> axes_ = {};
+  std::array<ColumnView, kCopiedFields.size()> copied_ = {};  ///< nameless: not there
+  ColumnView return_number_ = {};
+  ColumnView returns_ = {};
+  std::vector<ColumnView> extras_;
+};
+
+/// What the header tells of all points.
+struct Summary {
+  std::array<std::int32_t, 3> low, high;
+  std::array<std::uint64_t, kMostReturns> by_return = {};
+};
+
+/// Coordinates as they are stored.
+class Grid {
+ public:
+  Grid(const std::filesystem::path& path, const LasWriteOptions& options)
+      : path_(path), options_(options) {}
+
+  std::array<std::int32_t, 3> steps(Vec3d position, std::size_t row) const {
+    std::array<std::int32_t, 3> steps;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double step =
+          std::nearbyint((position[axis] - options_.offset_m[axis]) / options_.scale_m);
+      // Fails for NaN, too.
+      if (!(std::fabs(step) <= std::numeric_limits<std::int32_t>::max()))
+        throw Error(ErrorKind::data, path_.string() + ": point " + std::to_string(row) + ": " +
+                                         "xyz"[axis] + " = " + exact_text(position[axis]) +
+                                         " does not fit into LAS with the offset " +
+                                         exact_text(options_.offset_m[axis]) + " and the scale " +
+                                         exact_text(options_.scale_m));
+      steps[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(step);
+    }
+    return steps;
+  }
+  double coordinate(std::size_t axis, std::int32_t step) const {
+    return step * options_.scale_m + options_.offset_m[static_cast<int>(axis)];
+  }
+  double scale() const { return options_.scale_m; }
+  Vec3d offset() const { return options_.offset_m; }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  const std::filesystem::path& path_;
+  LasWriteOptions options_;
+};
+
+Summary summary_of(const PointColumns& columns, std::size_t rows, const Grid& grid) {
+  Summary summary;
+  summary.low.fill(std::numeric_limits<std::int32_t>::max());
+  summary.high.fill(std::numeric_limits<std::int32_t>::min());
+  for (std::size_t row = 0; row < rows; ++row) {
+    const auto steps = grid.steps(columns.position(row), row);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      summary.low[axis] = std::min(summary.low[axis], steps[axis]);
+      summary.high[axis] = std::max(summary.high[axis], steps[axis]);
+    }
+    const std::size_t number = columns.return_number(row);
+    const std::size_t of = columns.number_of_returns(row);
+    if (number < 1 || number > of || of > kMostReturns)
+      throw Error(ErrorKind::data, grid.path().string() + ": point " + std::to_string(row) +
+                                       ": return " + std::to_string(number) + " of " +
+                                       std::to_string(of) + ", LAS has 1 to 15");
+    ++summary.by_return[number - 1];
+  }
+  if (rows == 0) summary.low = summary.high = {};
+  return summary;
+}
+
+/// Table 25.
+std::uint8_t extra_type(ColumnType type) {
+  switch (type) {
+    case ColumnType::u8: return 1;
+    case ColumnType::i8: return 2;
+    case ColumnType::u16: return 3;
+    case ColumnType::i16: return 4;
+    case ColumnType::u32: return 5;
+    case ColumnType::i32: return 6;
+    case ColumnType::u64: return 7;
+    case ColumnType::i64: return 8;
+    case ColumnType::f32: return 9;
+    case ColumnType::f64: return 10;
+  }
+  throw std::logic_error("write_las: no such type");
+}
+
+/// The variable length record that describes the extra bytes; nothing where there are none.
+std::string extra_record(std::span<const ColumnView> extras) {
+  if (extras.empty()) return "";
+  std::string record(kVlrHeaderBytes + extras.size() * kExtraRecordBytes, '\0');
+  put_text(record.data(), 2, "LASF_Spec");
+  put(record.data(), 18, kExtraRecordId);
+  put(record.data(), 20, static_cast<std::uint16_t>(extras.size() * kExtraRecordBytes));
+  for (std::size_t k = 0; k < extras.size(); ++k) {
+    char* const entry = record.data() + kVlrHeaderBytes + k * kExtraRecordBytes;
+    put(entry, 2, extra_type(extras[k].type));
+    put_text(entry, 4, extras[k].name);
+  }
+  return record;
+}
+
+std::string header_of(std::size_t rows, const Summary& summary, const Grid& grid,
+                      std::size_t record_bytes, std::size_t vlr_bytes) {
+  std::string header(kHeaderBytes, '\0');
+  char* const bytes = header.data();
+  put_text(bytes, 0, "LASF");
+  put(bytes, 6, kWktBit);
+  put(bytes, 24, std::uint8_t{1});
+  put(bytes, 25, std::uint8_t{4});
+  put_text(bytes, 26, "OTHER");  // System Identifier, table 5: neither sensor nor merge
+  put_text(bytes, 58, "adasplats");
+  put(bytes, 94, static_cast<std::uint16_t>(kHeaderBytes));
+  put(bytes, 96, static_cast<std::uint32_t>(kHeaderBytes + vlr_bytes));
+  put(bytes, 100, static_cast<std::uint32_t>(vlr_bytes > 0 ? 1 : 0));
+  put(bytes, 104, static_cast<std::uint8_t>(kPointFormat));
+  put(bytes, 105, static_cast<std::uint16_t>(record_bytes));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    put(bytes, 131 + 8 * axis, grid.scale());
+    put(bytes, 155 + 8 * axis, grid.offset()[static_cast<int>(axis)]);
+    put(bytes, 179 + 16 * axis, grid.coordinate(axis, summary.high[axis]));
+    put(bytes, 187 + 16 * axis, grid.coordinate(axis, summary.low[axis]));
+  }
+  put(bytes, 247, static_cast<std::uint64_t>(rows));
+  for (std::size_t k = 0; k < kMostReturns; ++k) put(bytes, 255 + 8 * k, summary.by_return[k]);
+  return header;
+}
+
+}  // namespace
+
+void write_las(const std::filesystem::path& path, std::size_t rows,
+               std::span<const ColumnView> columns, const LasWriteOptions& options) {
+  const PointColumns points(columns);
+  const Grid grid(path, options);
+  const Summary summary = summary_of(points, rows, grid);
+  const std::size_t fixed_bytes = las_format(kPointFormat).least_bytes;
+  std::size_t record_bytes = fixed_bytes;
+  for (const ColumnView& extra : points.extras()) record_bytes += type_bytes(extra.type);
+  const std::string extras = extra_record(points.extras());
+  AtomicFile file(path);
+  file.write(header_of(rows, summary, grid, record_bytes, extras.size()));
+  file.write(extras);
+  write_records(file, rows, points.extras(), fixed_bytes, [&](std::size_t row, char* record) {
+    std::memset(record, 0, fixed_bytes);
+    const auto steps = grid.steps(points.position(row), row);
+    std::memcpy(record, steps.data(), sizeof(steps));
+    const auto returns = points.return_number(row) | points.number_of_returns(row) << 4;
+    put(record, kReturnsOffset, static_cast<std::uint8_t>(returns));
+    points.copy_fields(row, record);
+  });
+  file.commit();
+}
+
+}  // namespace adasplats

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+#include "adasplats/core/vec3.h"
+#include "adasplats/io/base/table.h"
+
+namespace adasplats {
+
+struct LasWriteOptions {
+  double scale_m = 0.001;  ///< of the whole numbers that coordinates are stored as
+  Vec3d offset_m;          ///< coordinates within 2^31 * scale of it can be stored
+};
+
+/// Writes LAS 1.4, point format 6 (ASPRS, "LAS specification 1.4 - R15"). Columns by name:
+/// - x, y, z (f32 or f64, must be there), rounded to the scale;
+/// - intensity, point_source_id (u16), return_number, number_of_returns (u8, 1 to 15; 1 where the
+///   column is not there), classification, user_data (u8), gps_time (f64), as far as they are
+///   there;
+/// - any other is an attribute of its own in "extra bytes", in its type, with a record that
+///   describes it (table 24); names of at most 31 bytes.
+/// The same columns give the same bytes: no date is written. Atomic. Throws std::logic_error for a
+/// column of a wrong type or name. Errors: data (a coordinate that is not finite or out of reach, a
+/// return number out of range, with the point's number).
+void write_las(const std::filesystem::path& path, std::size_t rows,
+               std::span<const ColumnView> columns, const LasWriteOptions& options = {});
+
+}  // namespace adasplats

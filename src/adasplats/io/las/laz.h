@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "adasplats/io/base/point_files.h"
+
+namespace adasplats {
+
+/// Reads a LAZ file through LASzip; without LASzip an error that says what to install.
+Table read_laz(const std::filesystem::path& path, const LasReadOptions& options);
+
+}  // namespace adasplats

@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "adasplats/io/base/line_reader.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/text/ptx.h"
+
+namespace adasplats {
+namespace {
+
+// A file of empty comments would otherwise take 16 times its size.
+constexpr std::size_t kMostComments = 1000;
+
+/// Splits a line into cells at a separator; at runs of blanks and tabs where that is ' '.
+class Cells {
+ public:
+  Cells(std::string_view line, char separator)
+      : blanks_(line), text_(line), separator_(separator), is_at_end_(line.empty()) {}
+
+  /// The next cell without blanks and quotes around it; nothing at the end.
+  std::optional<std::string_view> next() {
+    if (separator_ == ' ') {
+      const std::string_view token = blanks_.next();
+      if (token.empty()) return std::nullopt;
+      return unquoted(token);
+    }
+    if (is_at_end_) return std::nullopt;
+    const std::size_t end = text_.find(separator_);
+    const std::string_view cell = text_.substr(0, end);
+    is_at_end_ = end == std::string_view::npos;
+    text_.remove_prefix(is_at_end_ ? text_.size() : end + 1);
+    return unquoted(BlankTokens(cell).rest());
+  }
+
+ private:
+  static std::string_view unquoted(std::string_view cell) {
+    const bool has_quotes = cell.size() >= 2 && cell.front() == '"' && cell.back() == '"';
+    return has_quotes ? cell.substr(1, cell.size() - 2) : cell;
+  }
+
+  BlankTokens blanks_;
+  std::string_view text_;
+  char separator_;
+  bool is_at_end_;
+};
+
+char separator_of(std::string_view line) {
+  if (line.find(';') != std::string_view::npos) return ';';
+  return line.find(',') != std::string_view::npos ? ',' : ' ';
+}
+
+std::vector<std::string> split_names(std::string_view line, char separator) {
+  std::vector<std::string> names;
+  Cells cells(line, separator);
+  while (const std::optional<std::string_view> cell = cells.next())
+    names.push_back(lower_case(*cell));
+  // A separator at the line's end begins no column.
+  if (!names.empty() && names.back().empty()) names.pop_back();
+  return names;
+}
+
+bool has_coordinates(const std::vector<std::string>& names) {
+  const std::array<std::string_view, 3> coordinates = {"x", "y", "z"};
+  return std::all_of(coordinates.begin(), coordinates.end(), [&](std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  });
+}
+
+/// What columns without names hold: see read_text_points().
+std::vector<std::string> usual_names(std::size_t columns, bool is_pts) {
+  if (columns == 7) return {"x", "y", "z", "intensity", "red", "green", "blue"};
+  if (columns == 6 && is_pts) return {"x", "y", "z", "red", "green", "blue"};
+  std::vector<std::string> names = {"x", "y", "z"};
+  if (columns == 4 || columns == 5) names.emplace_back("intensity");
+  while (names.size() < columns) names.push_back("column_" + std::to_string(names.size() + 1));
+  return names;
+}
+
+class TextReader {
+ public:
+  explicit TextReader(const std::filesystem::path& path) : file_(path), lines_(file_) {}
+
+  Table read() {
+    while (const std::optional<std::string_view> line = lines_.next_filled()) take(*line);
+    if (values_.empty() && names_.empty() && !expected_rows_)
+      throw lines_.error_here("the file has no points");
+    if (values_.empty()) begin_columns(names_.empty() ? 3 : names_.size());
+    return finish();
+  }
+
+ private:
+  void take(std::string_view line) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (lines_.line() == 1 && line.starts_with(kByteOrderMark))
+      line.remove_prefix(kByteOrderMark.size());
+    line = BlankTokens(line).rest();
+    if (line.empty()) return;
+    if (line.starts_with('#') || line.starts_with("//")) return take_comment(line);
+    if (take_count(line)) return;
+    if (values_.empty()) {
+      separator_ = separator_of(line);
+      const std::string_view first = Cells(line, separator_).next().value_or("");
+      if (names_.empty() && !first.empty() && !parse_number<double>(first)) {
+        names_ = split_names(line, separator_);
+        return;
+      }
+      begin_columns(line);
+    }
+    take_row(line);
+  }
+
+  void take_comment(std::string_view line) {
+    line.remove_prefix(line.starts_with('#') ? 1 : 2);
+    const std::string_view text = BlankTokens(line).rest();
+    if (values_.empty()) last_comment_ = text;
+    if (table_.comments.size() < kMostComments) table_.comments.emplace_back(text);
+  }
+
+  /// A whole number alone on its line says how many points follow (PTS); a PTS file may hold
+  /// several scans. In a file of more than one column it can mean nothing else.
+  bool take_count(std::string_view line) {
+    BlankTokens tokens(line);
+    const std::optional<std::uint64_t> count = parse_number<std::uint64_t>(tokens.next());
+    if (!count || !tokens.rest().empty()) return false;
+    if (!values_.empty() && !expected_rows_) return false;
+    std::uint64_t total = 0;
+    if (__builtin_add_overflow(expected_rows_.value_or(0), *count, &total))
+      throw lines_.error_here("the counts of points add up to more than 2^64");
+    expected_rows_ = total;
+    return true;
+  }
+
+  void begin_columns(std::string_view first_row) {
+    std::size_t count = 0;
+    std::size_t filled = 0;
+    Cells cells(first_row, separator_);
+    while (const std::optional<std::string_view> cell = cells.next()) {
+      ++count;
+      if (!cell->empty()) filled = count;
+    }
+    if (names_.empty()) {
+      std::vector<std::string> names = split_names(last_comment_, separator_of(last_comment_));
+      if (names.size() == filled && has_coordinates(names)) names_ = std::move(names);
+    }
+    begin_columns(names_.empty() ? filled : names_.size());
+    // Rows of about the first one's length fill the rest; a row of n values has 2 n bytes or more.
+    const std::uint64_t rows = file_.remaining() / (first_row.size() + 1) + 1;
+    for (std::vector<double>& column : values_) column.reserve(static_cast<std::size_t>(rows));
+  }
+
+  void begin_columns(std::size_t count) {
+    if (count < 3) {
+      throw lines_.error_here("found " + std::to_string(count) +
+                              " columns, a point has at least x, y and z");
+    }
+    if (names_.empty()) names_ = usual_names(count, expected_rows_.has_value());
+    values_.resize(count);
+  }
+
+  void take_row(std::string_view line) {
+    Cells cells(line, separator_);
+    for (std::size_t k = 0; k < values_.size(); ++k) {
+      const std::optional<std::string_view> cell = cells.next();
+      if (!cell) {
+        throw lines_.error_here("found " + std::to_string(k) + " columns, expected " +
+                                std::to_string(values_.size()));
+      }
+      // An empty cell is a missing value.
+      const std::optional<double> value =
+          cell->empty() ? std::numeric_limits<double>::quiet_NaN() : parse_number<double>(*cell);
+      if (!value) {
+        throw lines_.error_here("column " + std::to_string(k + 1) + " (" + names_[k] + "): found " +
+                                shown(*cell) + ", expected a number");
+      }
+      values_[k].push_back(*value);
+    }
+    while (const std::optional<std::string_view> extra = cells.next()) {
+      if (extra->empty()) continue;
+      throw lines_.error_here("found " + shown(*extra) + " after the last of " +
+                              std::to_string(values_.size()) + " columns");
+    }
+  }
+
+  Table finish() {
+    table_.rows = values_.front().size();
+    if (expected_rows_ && table_.rows < *expected_rows_) {
+      throw lines_.error_here("the file ends after " + std::to_string(table_.rows) +
+                              " points, its count says " + std::to_string(*expected_rows_));
+    }
+    // Scanners' software is known to write counts that are too small; the points are there.
+    if (expected_rows_ && table_.rows > *expected_rows_) {
+      table_.comments.push_back("the file says " + std::to_string(*expected_rows_) +
+                                " points and has " + std::to_string(table_.rows));
+    }
+    for (std::size_t k = 0; k < values_.size(); ++k)
+      table_.columns.push_back(Column{std::move(names_[k]), std::move(values_[k])});
+    return std::move(table_);
+  }
+
+  InputFile file_;
+  LineReader lines_;
+  Table table_;
+  char separator_ = ' ';
+  std::vector<std::string> names_;
+  std::string last_comment_;
+  std::vector<std::vector<double>> values_;
+  std::optional<std::uint64_t> expected_rows_;
+};
+
+}  // namespace
+
+Table read_text_points(const std::filesystem::path& path) {
+  if (lower_case(path.extension().string()) == ".ptx") return read_ptx(path);
+  return TextReader(path).read();
+}
+
+}  // namespace adasplats
