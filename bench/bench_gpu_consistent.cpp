@@ -15,8 +15,8 @@
 #include "adasplats/cloud/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/consistent_cuda.h"
-#include "adasplats/splats/consistent_steps.h"
-#include "adasplats/splats/splat_model.h"
+#include "adasplats/splats/consistent/consistent_steps.h"
+#include "adasplats/splats/model/splat_model.h"
 
 namespace {
 

@@ -20,7 +20,7 @@
 #include "adasplats/gpu/gpu_scene.h"
 #include "adasplats/pipeline/provenance.h"
 #include "adasplats/simulate/scan.h"
-#include "adasplats/splats/splat_model.h"
+#include "adasplats/splats/model/splat_model.h"
 #include "adasplats/trace/tracer.h"
 
 namespace {

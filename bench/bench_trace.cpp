@@ -25,7 +25,7 @@
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/provenance.h"
 #include "adasplats/sensors/lidar_model.h"
-#include "adasplats/splats/splat_model.h"
+#include "adasplats/splats/model/splat_model.h"
 #include "adasplats/trace/embree.h"
 #include "adasplats/trace/tracer.h"
 

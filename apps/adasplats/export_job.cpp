@@ -20,8 +20,8 @@
 #include "adasplats/pipeline/scan_range.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/simulate/point_colors.h"
-#include "adasplats/splats/gaussian_ply.h"
-#include "adasplats/splats/splat_model.h"
+#include "adasplats/splats/model/gaussian_ply.h"
+#include "adasplats/splats/model/splat_model.h"
 #include "output_path.h"
 
 namespace adasplats::app {

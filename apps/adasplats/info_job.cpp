@@ -16,7 +16,7 @@
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/scan_range.h"
 #include "adasplats/scene/mesh_model.h"
-#include "adasplats/splats/splat_model.h"
+#include "adasplats/splats/model/splat_model.h"
 #include "text_table.h"
 
 namespace adasplats::app {

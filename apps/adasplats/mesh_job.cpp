@@ -15,7 +15,7 @@
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/label_use.h"
 #include "adasplats/scene/mesh_model.h"
-#include "adasplats/splats/canonical_order.h"
+#include "adasplats/splats/model/canonical_order.h"
 #include "output_path.h"
 
 namespace adasplats::app {

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "adasplats/scene/mesh_model.h"
-#include "adasplats/splats/splat_model.h"
+#include "adasplats/splats/model/splat_model.h"
 #include "bindings.h"
 
 namespace adasplats::python {

@@ -7,7 +7,7 @@
 
 #include "adasplats/gpu/device_memory.h"
 #include "adasplats/gpu/neighborhoods.h"
-#include "adasplats/splats/seed_growth.h"
+#include "adasplats/splats/consistent/seed_growth.h"
 
 namespace adasplats::gpu {
 

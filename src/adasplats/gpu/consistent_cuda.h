@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "adasplats/core/executor.h"
-#include "adasplats/splats/consistent_steps.h"
+#include "adasplats/splats/consistent/consistent_steps.h"
 
 namespace adasplats::gpu {
 

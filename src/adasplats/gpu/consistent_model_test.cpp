@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/splats/consistent_model.h"
+#include "adasplats/splats/consistent/consistent_model.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@
 #include "adasplats/core/random.h"
 #include "adasplats/gpu/consistent_cuda.h"
 #include "adasplats/gpu/device.h"
-#include "adasplats/splats/consistent_state.h"
-#include "adasplats/splats/scanned_room_test.h"
+#include "adasplats/splats/consistent/consistent_state.h"
+#include "adasplats/splats/consistent/scanned_room_test.h"
 
 // The oracle of all tests here is the CPU's steps on the same cloud.
 namespace adasplats {

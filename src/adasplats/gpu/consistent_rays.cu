@@ -8,8 +8,8 @@
 #include "adasplats/gpu/launch.cuh"
 #include "adasplats/gpu/sort_keys.h"
 #include "adasplats/gpu/wide_traversal.cuh"
-#include "adasplats/splats/measured_ray.h"
-#include "adasplats/splats/present_disks.h"
+#include "adasplats/splats/rays/measured_ray.h"
+#include "adasplats/splats/rays/present_disks.h"
 #include "adasplats/trace/castable.h"
 
 namespace adasplats::gpu {

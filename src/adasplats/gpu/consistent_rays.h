@@ -7,10 +7,10 @@
 
 #include "adasplats/core/host_device.h"
 #include "adasplats/gpu/device_memory.h"
-#include "adasplats/splats/disk_evidence.h"
-#include "adasplats/splats/disk_shift.h"
-#include "adasplats/splats/measured_rays.h"
-#include "adasplats/splats/seed_disk.h"
+#include "adasplats/splats/consistent/seed_disk.h"
+#include "adasplats/splats/rays/disk_evidence.h"
+#include "adasplats/splats/rays/disk_shift.h"
+#include "adasplats/splats/rays/measured_rays.h"
 
 namespace adasplats::gpu {
 

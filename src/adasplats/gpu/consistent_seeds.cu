@@ -5,7 +5,7 @@
 #include "adasplats/gpu/consistent_seeds.h"
 #include "adasplats/gpu/launch.cuh"
 #include "adasplats/gpu/sort_keys.h"
-#include "adasplats/splats/cell_attributes.h"
+#include "adasplats/splats/consistent/cell_attributes.h"
 
 namespace adasplats::gpu {
 namespace {

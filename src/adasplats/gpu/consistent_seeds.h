@@ -5,9 +5,9 @@
 #include "adasplats/gpu/cloud_on_device.h"
 #include "adasplats/gpu/consistent_cells.h"
 #include "adasplats/gpu/device_memory.h"
-#include "adasplats/splats/consistent_model.h"
-#include "adasplats/splats/consistent_steps.h"
-#include "adasplats/splats/seed_disk.h"
+#include "adasplats/splats/consistent/consistent_model.h"
+#include "adasplats/splats/consistent/consistent_steps.h"
+#include "adasplats/splats/consistent/seed_disk.h"
 
 namespace adasplats::gpu {
 

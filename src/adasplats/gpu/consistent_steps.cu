@@ -13,7 +13,7 @@
 #include "adasplats/gpu/consistent_seeds.h"
 #include "adasplats/gpu/launch.cuh"
 #include "adasplats/gpu/neighborhoods.h"
-#include "adasplats/splats/consistent_state.h"
+#include "adasplats/splats/consistent/consistent_state.h"
 
 namespace adasplats::gpu {
 namespace {

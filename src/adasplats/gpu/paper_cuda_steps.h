@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "adasplats/splats/paper_steps.h"
+#include "adasplats/splats/paper/paper_steps.h"
 
 namespace adasplats::gpu {
 

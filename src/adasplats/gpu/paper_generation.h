@@ -6,7 +6,7 @@
 
 #include "adasplats/gpu/cloud_on_device.h"
 #include "adasplats/gpu/device_memory.h"
-#include "adasplats/splats/generation.h"
+#include "adasplats/splats/paper/generation.h"
 
 namespace adasplats::gpu {
 

@@ -26,10 +26,10 @@
 #include "adasplats/neighbors/hilbert.h"
 #include "adasplats/neighbors/point_index.h"
 #include "adasplats/splats/build_model.h"
-#include "adasplats/splats/canonical_order.h"
+#include "adasplats/splats/consistent/scanned_room_test.h"
+#include "adasplats/splats/model/canonical_order.h"
 #include "adasplats/splats/model_engine.h"
-#include "adasplats/splats/scanned_room_test.h"
-#include "adasplats/splats/select.h"
+#include "adasplats/splats/paper/select.h"
 
 namespace adasplats::gpu {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "adasplats/gpu/neighborhoods_lists.cuh"
 #include "adasplats/gpu/paper_resample.h"
-#include "adasplats/splats/resample.h"
+#include "adasplats/splats/paper/resample.h"
 
 namespace adasplats::gpu {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "adasplats/gpu/device_memory.h"
 #include "adasplats/gpu/neighborhoods_lists.h"
-#include "adasplats/splats/select.h"
+#include "adasplats/splats/paper/select.h"
 
 namespace adasplats::gpu {
 

@@ -11,7 +11,7 @@
 #include "adasplats/gpu/gpu_model.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/label_use.h"
-#include "adasplats/splats/reflectance.h"
+#include "adasplats/splats/reflectance/reflectance.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {

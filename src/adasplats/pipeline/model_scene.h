@@ -16,7 +16,7 @@
 #include "adasplats/simulate/scan_caster.h"
 #include "adasplats/simulate/world.h"
 #include "adasplats/simulate/world_file.h"
-#include "adasplats/splats/splat_model.h"
+#include "adasplats/splats/model/splat_model.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {

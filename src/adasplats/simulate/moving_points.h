@@ -8,8 +8,8 @@
 #include "adasplats/cloud/kitti_sequence.h"
 #include "adasplats/cloud/label_scheme.h"
 #include "adasplats/core/executor.h"
-#include "adasplats/splats/reflectance.h"
-#include "adasplats/splats/splat_model.h"
+#include "adasplats/splats/model/splat_model.h"
+#include "adasplats/splats/reflectance/reflectance.h"
 
 namespace adasplats {
 

@@ -11,7 +11,7 @@
 #include "adasplats/simulate/ray_drop.h"
 #include "adasplats/simulate/returns.h"
 #include "adasplats/simulate/scan_motion.h"
-#include "adasplats/splats/reflectance.h"
+#include "adasplats/splats/reflectance/reflectance.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {

@@ -16,7 +16,7 @@
 #include "adasplats/simulate/scan.h"
 #include "adasplats/simulate/scan_caster.h"
 #include "adasplats/simulate/scan_motion.h"
-#include "adasplats/splats/splat_model.h"
+#include "adasplats/splats/model/splat_model.h"
 
 namespace adasplats {
 

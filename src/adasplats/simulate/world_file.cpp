@@ -16,7 +16,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/scene/mesh_model.h"
-#include "adasplats/splats/splat_model.h"
+#include "adasplats/splats/model/splat_model.h"
 
 namespace adasplats {
 namespace {

@@ -14,9 +14,9 @@
 #include "adasplats/cloud/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
-#include "adasplats/splats/consistent_model.h"
-#include "adasplats/splats/select.h"
-#include "adasplats/splats/splat_model.h"
+#include "adasplats/splats/consistent/consistent_model.h"
+#include "adasplats/splats/model/splat_model.h"
+#include "adasplats/splats/paper/select.h"
 
 namespace adasplats {
 

@@ -14,7 +14,7 @@
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/random.h"
 #include "adasplats/core/recorded_progress_test.h"
-#include "adasplats/splats/grow.h"
+#include "adasplats/splats/paper/grow.h"
 
 namespace adasplats {
 namespace {

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "adasplats/core/executor.h"
-#include "adasplats/splats/consistent_steps.h"
-#include "adasplats/splats/paper_steps.h"
+#include "adasplats/splats/consistent/consistent_steps.h"
+#include "adasplats/splats/paper/paper_steps.h"
 
 namespace adasplats {
 

@@ -15,7 +15,7 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/pipeline/model_scene.h"
 #include "adasplats/serve/http_server.h"
-#include "adasplats/splats/splat_model.h"
+#include "adasplats/splats/model/splat_model.h"
 #include "adasplats/view/level_tree.h"
 
 namespace adasplats {

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/splats/consistent/consistent_model.h"
+
+#include <algorithm>
+
+#include "adasplats/splats/consistent/consistent_steps.h"
+
+namespace adasplats {
+
+AdaptivePlaneOptions ConsistentOptions::planes_for_splitting() const {
+  AdaptivePlaneOptions few = planes;
+  const std::size_t decides = std::min<std::size_t>(split_scale + 1U, few.scales.size() - 1);
+  std::fill(few.scales.begin() + decides, few.scales.end(), few.scales[decides]);
+  return few;
+}
+
+EvidenceOptions ConsistentOptions::evidence_of_round(int round, std::size_t rays) const {
+  EvidenceOptions chosen = evidence;
+  const std::size_t stride = std::clamp<std::size_t>(rays / evidence_rays, 1, chosen.stride);
+  chosen.stride = static_cast<std::uint32_t>(stride);
+  chosen.phase = static_cast<std::uint32_t>(round) % chosen.stride;
+  return chosen;
+}
+
+CoverOptions ConsistentOptions::cover_options(bool checked) const {
+  CoverOptions chosen = cover;
+  if (!checked) chosen.sectors = chosen.unchecked_sectors;
+  return chosen;
+}
+
+ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
+                                  const ConsistentOptions& options,
+                                  const std::function<void(std::string_view, int)>& begin_step) {
+  const bool checked = has_rays && options.balance_rounds > 0;
+  ConsistentReport report;
+  report.checked = checked;
+  begin_step("fusion", 0);
+  steps.fuse(options);
+  begin_step("planes", 2);
+  steps.fit_seeds(options);
+  report.cells = steps.counts().cells;
+  report.seeds = steps.counts().seeds;
+  if (checked) {
+    begin_step("ray check of seeds", options.balance_rounds);
+    steps.order_rays(options);
+    for (int i = 0; i < options.balance_rounds; ++i) steps.balance_seeds(i, options);
+    report.rays = steps.counts().rays;
+    report.seeds_removed = report.seeds - steps.counts().seeds;
+  }
+  begin_step("cover", 1);
+  steps.cover(checked, options);
+  if (checked) {
+    begin_step("ray check of splats", options.strict_rounds);
+    for (int i = 0; i < options.strict_rounds; ++i) steps.limit_overhangs(i, options);
+    steps.limit_unchosen();
+  }
+  steps.choose();
+  if (checked) {
+    begin_step("settling", options.settle_rounds);
+    for (int i = 0; i < options.settle_rounds; ++i) steps.settle(options);
+    if (options.fill) {
+      begin_step("filling", 1);
+      const std::size_t before = steps.counts().disks;
+      steps.fill_gaps(options);
+      report.splats_filled = steps.counts().disks - before;
+    }
+  }
+  return report;
+}
+
+}  // namespace adasplats

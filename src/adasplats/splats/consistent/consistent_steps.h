@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/scene/intersect.h"
+#include "adasplats/splats/consistent/consistent_model.h"
+#include "adasplats/splats/paper/paper_steps.h"
+
+namespace adasplats {
+
+/// What the consistent method made, with the attributes of the points of each disk's cell.
+struct ConsistentSplats {
+  std::vector<Disk> disks;
+  std::vector<std::uint16_t> classes;  ///< that most points of the cell have; empty without
+  std::vector<float> intensities;      ///< mean over the cell's points; empty without
+};
+
+/// How many of each there are so far.
+struct ConsistentCounts {
+  std::size_t cells = 0;
+  std::size_t seeds = 0;  ///< with a radius
+  std::size_t rays = 0;   ///< measured ones; 0 before order_rays()
+  std::size_t disks = 0;  ///< chosen ones
+};
+
+/// The steps of the consistent method on one device; consistent_disks() calls them in their order.
+/// Every implementation gives the same splats to the last bit.
+class ConsistentSteps {
+ public:
+  virtual ~ConsistentSteps() = default;
+
+  /// Takes the cloud, without the points of removed classes, in canonical order (of all points).
+  /// Gives the number of points kept and whether they have sensor positions.
+  virtual std::size_t load(PointCloud cloud, const ClassTables& tables) = 0;
+
+  /// Points in cells.
+  virtual void fuse(const ConsistentOptions& options) = 0;
+  /// Splits cells where nothing is flat, fits planes, turns normals to the sensors, makes seeds.
+  virtual void fit_seeds(const ConsistentOptions& options) = 0;
+  /// Orders the measured rays; needs known beams. Those below come after it.
+  virtual void order_rays(const ConsistentOptions& options) = 0;
+  /// Shrinks and removes seeds that more rays contradict than confirm: one round.
+  virtual void balance_seeds(int round, const ConsistentOptions& options) = 0;
+  /// Grows every seed over its neighbours. `checked`: rays tell where surfaces end.
+  virtual void cover(bool checked, const ConsistentOptions& options) = 0;
+  /// Chooses disks and limits those that hang over edges: one round.
+  virtual void limit_overhangs(int round, const ConsistentOptions& options) = 0;
+  /// Disks that the last round chose not stay at their seed's size.
+  virtual void limit_unchosen() = 0;
+  /// Chooses the disks of the model.
+  virtual void choose() = 0;
+  /// Moves chosen disks to where the rays say the surface is: one round.
+  virtual void settle(const ConsistentOptions& options) = 0;
+  /// Puts seeds back where rays fall between disks.
+  virtual void fill_gaps(const ConsistentOptions& options) = 0;
+
+  virtual ConsistentCounts counts() const = 0;
+
+  /// The chosen disks with a radius, on the host.
+  virtual ConsistentSplats take_splats() = 0;
+};
+
+std::unique_ptr<ConsistentSteps> make_cpu_consistent_steps(const Executor& executor);
+
+}  // namespace adasplats

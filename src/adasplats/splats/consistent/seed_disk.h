@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+#include "adasplats/cloud/origin_kind.h"
+#include "adasplats/core/host_device.h"
+#include "adasplats/core/vec3.h"
+#include "adasplats/splats/consistent/consistent_model.h"
+#include "adasplats/surface/local_shape.h"
+
+namespace adasplats {
+
+/// The positions of points and of the sensor when it measured them; no sensors: null. No kinds:
+/// all sensor positions are measured.
+struct MeasuredPoints {
+  const Vec3f* positions = nullptr;
+  const Vec3f* sensors = nullptr;
+  const OriginKind* kinds = nullptr;
+
+  ADASPLATS_HD OriginKind kind(std::uint32_t i) const {
+    if (sensors == nullptr) return OriginKind::none;
+    return kinds == nullptr ? OriginKind::measured : kinds[i];
+  }
+};
+
+/// Whether rays tell what is free around a cell: the beam of any of its points is known.
+ADASPLATS_HD inline bool has_beam(const MeasuredPoints& points,
+                                  std::span<const std::uint32_t> members) {
+  for (const std::uint32_t i : members) {
+    if (is_beam(points.kind(i))) return true;
+  }
+  return false;
+}
+
+/// Mean distance of a cell's points to their sensors, added in their order, of those with a beam.
+ADASPLATS_HD inline double mean_range_m(const MeasuredPoints& points,
+                                        std::span<const std::uint32_t> members) {
+  double sum = 0;
+  std::uint32_t beams = 0;
+  for (const std::uint32_t i : members) {
+    if (!is_beam(points.kind(i))) continue;
+    sum += static_cast<double>(length(points.positions[i] - points.sensors[i]));
+    ++beams;
+  }
+  return sum / static_cast<double>(beams);
+}
+
+/// What the spacing of a cell is compared with: its distance to the sensor where it has a beam,
+/// else 1 m. 0 for a cell of the other sort than `with_beam`.
+ADASPLATS_HD inline float spacing_unit_m(const MeasuredPoints& points,
+                                         std::span<const std::uint32_t> members, bool with_beam) {
+  if (has_beam(points, members) != with_beam) return 0;
+  return with_beam ? static_cast<float>(mean_range_m(points, members)) : 1.0F;
+}
+
+/// Median spacings of the cells with and without a beam, in their units.
+struct TypicalSpacing {
+  double with_beam = 0;
+  double without = 0;
+
+  ADASPLATS_HD double of(bool beam) const { return beam ? with_beam : without; }
+};
+
+/// Largest radius of the seed of a cell.
+ADASPLATS_HD inline double largest_seed_m(const MeasuredPoints& points,
+                                          std::span<const std::uint32_t> members,
+                                          const TypicalSpacing& typical,
+                                          const ConsistentOptions& options) {
+  const bool beam = has_beam(points, members);
+  // The first cells of their sort, made by splitting cells that were of the other one.
+  if (typical.of(beam) == 0) return options.cell_m;
+  return options.largest_seed(beam) * typical.of(beam) *
+         static_cast<double>(spacing_unit_m(points, members, beam));
+}
+
+/// A cell's normal turned to the sensors, or with a sign that depends on the data alone.
+ADASPLATS_HD inline Vec3f seed_normal(Vec3f normal, const MeasuredPoints& points,
+                                      std::span<const std::uint32_t> members) {
+  Vec3d to_sensors;
+  bool any_known = false;
+  for (const std::uint32_t k : members) {
+    if (!is_known(points.kind(k))) continue;
+    any_known = true;
+    to_sensors = to_sensors + vec_cast<double>(points.sensors[k] - points.positions[k]);
+  }
+  if (!any_known) return with_canonical_sign(normal);
+  return dot(vec_cast<double>(normal), to_sensors) < 0 ? -normal : normal;
+}
+
+/// As large as the cells are apart, but no larger than beams are from one another; 0 for a cell far
+/// from all others.
+ADASPLATS_HD inline float seed_radius(double spacing_m, double largest_m,
+                                      const ConsistentOptions& options) {
+  const double wanted_m = options.seed_spacing * spacing_m;
+  if (!(wanted_m > 0) || wanted_m > options.isolated * largest_m) return 0;
+  return static_cast<float>(
+      std::clamp(wanted_m, options.least_radius_m, std::max(options.least_radius_m, largest_m)));
+}
+
+}  // namespace adasplats

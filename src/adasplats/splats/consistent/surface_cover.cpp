@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/splats/consistent/surface_cover.h"
+
+#include <algorithm>
+
+#include "adasplats/core/progress_meter.h"
+
+namespace adasplats {
+namespace {
+
+/// How far a disk reaches before the surface ends or turns away.
+float radius_grown(std::span<const Disk> seeds, std::uint32_t seed, const NeighborList& neighbors,
+                   int sector_count, const CoverOptions& options) {
+  const Disk& disk = seeds[seed];
+  // Two passes instead of a sort: first where it must end, then how far it reaches before that.
+  auto end_m = static_cast<float>(options.largest_radius_m);
+  for (std::uint32_t k = 0; k < neighbors.size; ++k) {
+    const Disk& other = seeds[neighbors.ranks[k]];
+    if (!(other.radius > 0)) continue;
+    const PlaceAtDisk place = place_at_disk(disk, other.center);
+    if (ends_at(disk, other, place, options)) end_m = std::min(end_m, place.along_m);
+  }
+  float reach_m = disk.radius;
+  SectorReach sectors(disk, sector_count);
+  for (std::uint32_t k = 0; k < neighbors.size; ++k) {
+    const Disk& other = seeds[neighbors.ranks[k]];
+    if (!(other.radius > 0)) continue;
+    const PlaceAtDisk place = place_at_disk(disk, other.center);
+    if (place.along_m < end_m && grows_over(disk, other, place, options)) {
+      reach_m = std::max(reach_m, place.along_m);
+      sectors.add(other.center, place.along_m);
+    }
+  }
+  return grown_radius(disk, reach_m, sectors);
+}
+
+}  // namespace
+
+SurfaceCover::SurfaceCover(std::span<const Disk> seeds, const PointIndex& index,
+                           const CoverOptions& options, const Executor& executor,
+                           std::span<const std::uint8_t> unchecked)
+    : seeds_(seeds.begin(), seeds.end()),
+      radii_m_(seeds.size()),
+      overlap_(options.overlap),
+      lists_((seeds.size() + PointIndex::kQueriesPerTask - 1) / PointIndex::kQueriesPerTask),
+      begins_(seeds.size()),
+      lengths_(seeds.size()) {
+  const ProgressPass pass(executor, seeds.size());
+  index.for_each_neighborhood(
+      executor, [&](std::uint32_t) { return NeighborLimit{options.neighbors}; },
+      [&](std::uint32_t seed, const NeighborList& neighbors) {
+        auto& list = lists_[seed / PointIndex::kQueriesPerTask];
+        begins_[seed] = static_cast<std::uint32_t>(list.size());
+        if (!(seeds_[seed].radius > 0)) return;
+        const bool is_unchecked = !unchecked.empty() && unchecked[seed] != 0;
+        const int sectors = is_unchecked ? options.unchecked_sectors : options.sectors;
+        radii_m_[seed] = radius_grown(seeds_, seed, neighbors, sectors, options);
+        const float covered_m = covered_reach(overlap_, radii_m_[seed]);
+        for (std::uint32_t k = 0; k < neighbors.size; ++k) {
+          const std::uint32_t other = neighbors.ranks[k];
+          if (!(seeds_[other].radius > 0)) continue;
+          const PlaceAtDisk place = place_at_disk(seeds_[seed], seeds_[other].center);
+          if (may_cover(place, covered_m, options)) list.push_back(other);
+        }
+        lengths_[seed] = static_cast<std::uint32_t>(list.size()) - begins_[seed];
+      });
+}
+
+std::span<const std::uint32_t> SurfaceCover::candidates(std::size_t i) const {
+  return std::span(lists_[i / PointIndex::kQueriesPerTask]).subspan(begins_[i], lengths_[i]);
+}
+
+bool SurfaceCover::covers(std::size_t i, std::uint32_t other) const {
+  return seeds_[other].radius > 0 && place_at_disk(seeds_[i], seeds_[other].center).along_m <=
+                                         covered_reach(overlap_, radii_m_[i]);
+}
+
+std::vector<Disk> SurfaceCover::choose(const Executor& executor) const {
+  std::vector<std::uint64_t> keys(seeds_.size());
+  executor.for_chunks(seeds_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::uint64_t count = 0;
+      for (const std::uint32_t other : candidates(i)) count += covers(i, other) ? 1 : 0;
+      keys[i] = ~std::uint64_t{0} - count;
+    }
+  });
+  std::vector<std::uint32_t> order;
+  executor.sort_keys(keys, order);
+
+  std::vector<Disk> chosen(seeds_.size());
+  std::vector<bool> covered(seeds_.size());
+  std::size_t visited = 0;
+  for (const std::uint32_t i : order) {
+    if (++visited % kGrain == 0) executor.check_interruption();
+    if (!(seeds_[i].radius > 0) || covered[i]) continue;
+    chosen[i] = seeds_[i];
+    chosen[i].radius = radii_m_[i];
+    covered[i] = true;
+    for (const std::uint32_t other : candidates(i)) {
+      if (covers(i, other)) covered[other] = true;
+    }
+  }
+  return chosen;
+}
+
+void SurfaceCover::limit(std::size_t i, float radius_m) {
+  radii_m_[i] = std::min(radii_m_[i], radius_m);
+  seeds_[i].radius = std::min(seeds_[i].radius, radius_m);
+}
+
+}  // namespace adasplats

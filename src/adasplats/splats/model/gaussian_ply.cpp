@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/splats/model/gaussian_ply.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adasplats/cloud/rotation.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/ply/ply.h"
+
+namespace adasplats {
+namespace {
+
+/// The constant spherical harmonic, sqrt(1 / (4 pi)).
+constexpr double kHarmonic0 = 0.28209479177387814;
+
+struct Gaussian {
+  Vec3f position, normal;
+  std::array<float, 3> color;
+  float opacity;
+  std::array<float, 3> scales;
+  std::array<float, 4> rotation;
+};
+
+/// The shortest turn from the z axis to a unit normal.
+Quaternion rotation_to(Vec3d n) {
+  const double across = std::hypot(n.x, n.y);
+  if (across == 0.0) return n.z > 0 ? Quaternion{1, 0, 0, 0} : Quaternion{0, 1, 0, 0};
+  // The half angles by atan2: exact near both poles, where 1 + z or 1 - z would cancel.
+  const double half = 0.5 * std::atan2(across, n.z);
+  const double share = std::sin(half) / across;
+  return {std::cos(half), -n.y * share, n.x * share, 0};
+}
+
+Gaussian gaussian_of(const Disk& disk, const std::array<std::uint8_t, 3>& rgb) {
+  const auto coefficient = [](std::uint8_t value) {
+    return static_cast<float>((value / 255.0 - 0.5) / kHarmonic0);
+  };
+  const double log_sigma = std::log(static_cast<double>(disk.radius) * kGaussianSigmaOverRadius);
+  const auto along = static_cast<float>(log_sigma);
+  const Quaternion q = rotation_to(vec_cast<double>(disk.normal));
+  return {disk.center,
+          disk.normal,
+          {coefficient(rgb[0]), coefficient(rgb[1]), coefficient(rgb[2])},
+          static_cast<float>(std::log(kGaussianOpacity / (1 - kGaussianOpacity))),
+          {along, along, static_cast<float>(log_sigma + std::log(kGaussianThickness))},
+          {static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
+           static_cast<float>(q.z)}};
+}
+
+std::vector<ColumnView> columns_of(const Gaussian* first, GaussianKind kind) {
+  std::vector<ColumnView> columns;
+  const auto add = [&](std::string_view name, const float& value) {
+    columns.push_back({name, ColumnType::f32, &value, sizeof(Gaussian)});
+  };
+  const Gaussian& g = *first;
+  add("x", g.position.x);
+  add("y", g.position.y);
+  add("z", g.position.z);
+  add("nx", g.normal.x);
+  add("ny", g.normal.y);
+  add("nz", g.normal.z);
+  add("f_dc_0", g.color[0]);
+  add("f_dc_1", g.color[1]);
+  add("f_dc_2", g.color[2]);
+  add("opacity", g.opacity);
+  add("scale_0", g.scales[0]);
+  add("scale_1", g.scales[1]);
+  if (kind == GaussianKind::volumes) add("scale_2", g.scales[2]);
+  add("rot_0", g.rotation[0]);
+  add("rot_1", g.rotation[1]);
+  add("rot_2", g.rotation[2]);
+  add("rot_3", g.rotation[3]);
+  return columns;
+}
+
+}  // namespace
+
+void write_gaussian_ply(const std::filesystem::path& path, const SplatModel& model,
+                        std::span<const std::array<std::uint8_t, 3>> colors, GaussianKind kind) {
+  if (colors.size() != model.size())
+    throw std::logic_error("write_gaussian_ply: not one colour a disk");
+  std::vector<Gaussian> gaussians;
+  gaussians.reserve(model.size());
+  for (std::size_t i = 0; i < model.size(); ++i)
+    gaussians.push_back(gaussian_of(model.disks[i], colors[i]));
+  const Vec3d o = model.origin;
+  const std::string comment = std::string("adasplats.origin ") + exact_text(o.x) + " " +
+                              exact_text(o.y) + " " + exact_text(o.z);
+  const Gaussian none{};
+  write_ply(path, gaussians.size(), columns_of(gaussians.empty() ? &none : gaussians.data(), kind),
+            std::span(&comment, 1));
+}
+
+}  // namespace adasplats

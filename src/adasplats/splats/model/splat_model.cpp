@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/splats/model/splat_model.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/ply/ply.h"
+
+namespace adasplats {
+namespace {
+
+constexpr const char* kLabelsComment = "adasplats.labels ";
+constexpr const char* kMethodComment = "adasplats.method ";
+/// Of the response's tables, in the order of response_tables().
+constexpr std::array<const char*, 4> kResponseComments = {
+    "adasplats.response_ranges_m ", "adasplats.response_range_gains ",
+    "adasplats.response_cosines ", "adasplats.response_cosine_gains "};
+constexpr const char* kFormatComment = "adasplats.splats 1";
+
+const Column& required(const Table& table, const std::filesystem::path& path,
+                       std::string_view name) {
+  const Column* column = table.find(name);
+  if (column == nullptr)
+    throw data_error({path, {}, {}}, "not a splat model: no vertex property '" + std::string(name) +
+                                         "' (a model has x y z nx ny nz radius)");
+  return *column;
+}
+
+Disk checked_disk(const std::filesystem::path& path, std::size_t row, Vec3d center, Vec3d normal,
+                  double radius) {
+  const auto fail = [&](const std::string& what) {
+    throw data_error({path, {}, {}}, "splat " + std::to_string(row) + ": " + what);
+  };
+  if (!is_finite(center) || !is_finite(normal)) fail("center or normal is not finite");
+  if (!(radius > 0.0) || !std::isfinite(radius))
+    fail("radius is " + std::to_string(radius) + ", expected greater than 0");
+  const double norm = length(normal);
+  if (!(std::fabs(norm - 1.0) <= 1e-3))
+    fail("normal has length " + std::to_string(norm) + ", expected 1");
+  return {vec_cast<float>(center), static_cast<float>(radius), vec_cast<float>(normal)};
+}
+
+std::pair<Vec3d, Vec3d> extent_of(const std::array<const Column*, 3>& columns, std::size_t rows) {
+  Vec3d low, high;
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = rows > 0 ? columns[static_cast<std::size_t>(axis)]->as_double(0) : 0;
+    high[axis] = low[axis];
+    for (std::size_t i = 1; i < rows; ++i) {
+      const double v = columns[static_cast<std::size_t>(axis)]->as_double(i);
+      low[axis] = std::min(low[axis], v);
+      high[axis] = std::max(high[axis], v);
+    }
+  }
+  return {low, high};
+}
+
+std::string comment_value(const Table& table, const std::string& key) {
+  for (const std::string& comment : table.comments)
+    if (comment.rfind(key, 0) == 0) return comment.substr(key.size());
+  return {};
+}
+
+/// The members of `response`, an IntensityResponse, const or not.
+template <class Response>
+auto response_tables(Response& response) {
+  return std::array{&response.ranges_m, &response.range_gains, &response.cos_incidences,
+                    &response.incidence_gains};
+}
+
+/// The shortest text that reads back as the same float.
+std::string float_text(float value) {
+  std::array<char, 32> buffer;
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+void add_response_comments(const IntensityResponse& response, std::vector<std::string>& comments) {
+  if (response.empty()) return;
+  const auto tables = response_tables(response);
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    std::string comment = kResponseComments[k];
+    for (const float value : *tables[k]) comment += float_text(value) + " ";
+    comment.pop_back();
+    comments.push_back(comment);
+  }
+}
+
+std::vector<float> numbers_of(const std::filesystem::path& path, const std::string& text) {
+  std::vector<float> numbers;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::optional<float> value = parse_number<float>(word);
+    if (!value || !std::isfinite(*value) || *value < 0)
+      throw data_error({path, {}, {}}, std::string("the intensity response has ") + shown(word) +
+                                           ", expected a number of 0 or more");
+    numbers.push_back(*value);
+  }
+  return numbers;
+}
+
+IntensityResponse response_of(const Table& table, const std::filesystem::path& path) {
+  IntensityResponse response;
+  const auto tables = response_tables(response);
+  for (std::size_t k = 0; k < tables.size(); ++k)
+    *tables[k] = numbers_of(path, comment_value(table, kResponseComments[k]));
+  const auto is_table = [](const std::vector<float>& nodes, const std::vector<float>& values) {
+    const auto not_after = [](float a, float b) { return a >= b; };
+    return nodes.size() == values.size() && nodes.size() != 1 &&
+           std::adjacent_find(nodes.begin(), nodes.end(), not_after) == nodes.end();
+  };
+  if (!is_table(response.ranges_m, response.range_gains) ||
+      !is_table(response.cos_incidences, response.incidence_gains) ||
+      response.ranges_m.empty() != response.cos_incidences.empty())
+    throw data_error({path, {}, {}},
+                     "the comments of the intensity response are not tables of two "
+                     "or more ascending nodes with a gain each");
+  return response;
+}
+
+}  // namespace
+
+std::pair<Vec3f, Vec3f> bounds(const SplatModel& model) {
+  if (model.disks.empty()) return {};
+  Vec3f low = model.disks[0].center, high = low;
+  for (const Disk& disk : model.disks) {
+    const Vec3f half = disk_half_extent(disk);
+    low = min(low, disk.center - half);
+    high = max(high, disk.center + half);
+  }
+  return {low, high};
+}
+
+void save_model(const std::filesystem::path& path, const SplatModel& model) {
+  const bool far = !(model.origin == Vec3d{});
+  std::vector<Vec3d> centers;
+  if (far)
+    for (const Disk& disk : model.disks)
+      centers.push_back(model.origin + vec_cast<double>(disk.center));
+  std::vector<ColumnView> columns;
+  const Disk* disks = model.disks.data();
+  const auto add_axis = [&](const char* name, const float* local, const double* world) {
+    if (far)
+      columns.push_back({name, ColumnType::f64, world, sizeof(Vec3d)});
+    else
+      columns.push_back({name, ColumnType::f32, local, sizeof(Disk)});
+  };
+  const Disk none{};
+  const Vec3d nowhere{};
+  const Disk* d = model.disks.empty() ? &none : disks;
+  const Vec3d* c = centers.empty() ? &nowhere : centers.data();
+  add_axis("x", &d->center.x, &c->x);
+  add_axis("y", &d->center.y, &c->y);
+  add_axis("z", &d->center.z, &c->z);
+  columns.push_back({"nx", ColumnType::f32, &d->normal.x, sizeof(Disk)});
+  columns.push_back({"ny", ColumnType::f32, &d->normal.y, sizeof(Disk)});
+  columns.push_back({"nz", ColumnType::f32, &d->normal.z, sizeof(Disk)});
+  columns.push_back({"radius", ColumnType::f32, &d->radius, sizeof(Disk)});
+  if (!model.classes.empty())
+    columns.push_back({"class", ColumnType::u16, model.classes.data(), sizeof(std::uint16_t)});
+  if (!model.groups.empty())
+    columns.push_back({"group", ColumnType::u8, model.groups.data(), sizeof(SemanticGroup)});
+  if (!model.intensities.empty())
+    columns.push_back({"intensity", ColumnType::f32, model.intensities.data(), sizeof(float)});
+  std::vector<std::string> comments = {kFormatComment};
+  if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
+  if (!model.label_scheme.empty()) comments.push_back(kLabelsComment + model.label_scheme);
+  add_response_comments(model.response, comments);
+  write_ply(path, model.size(), columns, comments);
+}
+
+SplatModel load_model(const std::filesystem::path& path) {
+  const Table table = read_ply(path);
+  const std::array<const Column*, 3> position = {
+      &required(table, path, "x"), &required(table, path, "y"), &required(table, path, "z")};
+  const std::array<const Column*, 3> normal = {
+      &required(table, path, "nx"), &required(table, path, "ny"), &required(table, path, "nz")};
+  const Column& radius = required(table, path, "radius");
+  SplatModel model;
+  const auto [low, high] = extent_of(position, table.rows);
+  if (!is_finite(low) || !is_finite(high))
+    throw data_error({path, {}, {}}, "a splat's center is not finite");
+  model.origin = choose_origin(low, high);
+  model.disks.reserve(table.rows);
+  const auto vec = [](const std::array<const Column*, 3>& columns, std::size_t i) {
+    return Vec3d{columns[0]->as_double(i), columns[1]->as_double(i), columns[2]->as_double(i)};
+  };
+  for (std::size_t i = 0; i < table.rows; ++i)
+    model.disks.push_back(checked_disk(path, i, vec(position, i) - model.origin, vec(normal, i),
+                                       radius.as_double(i)));
+  if (const Column* classes = table.find("class"))
+    for (std::size_t i = 0; i < table.rows; ++i)
+      model.classes.push_back(static_cast<std::uint16_t>(classes->as_double(i)));
+  if (const Column* groups = table.find("group"))
+    for (std::size_t i = 0; i < table.rows; ++i) {
+      const double group = groups->as_double(i);
+      if (!(group >= 0 && group < kSemanticGroups))
+        throw data_error({path, {}, {}}, "splat " + std::to_string(i) + ": unknown group");
+      model.groups.push_back(static_cast<SemanticGroup>(group));
+    }
+  if (const Column* intensities = table.find("intensity"))
+    for (std::size_t i = 0; i < table.rows; ++i)
+      model.intensities.push_back(static_cast<float>(intensities->as_double(i)));
+  model.method = comment_value(table, kMethodComment);
+  model.label_scheme = comment_value(table, kLabelsComment);
+  model.response = response_of(table, path);
+  return model;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/splats/paper/generation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "adasplats/core/progress_meter.h"
+#include "adasplats/neighbors/point_index.h"
+
+namespace adasplats {
+namespace {
+
+std::uint32_t scaled_count(int neighbors, double scale) {
+  return static_cast<std::uint32_t>(std::max(1.0, std::round(neighbors * scale)));
+}
+
+/// Turns normals to the sensor, or gives them a sign that depends on the data alone.
+void orient_normals(const PointCloud& cloud, std::span<Vec3f> normals, const Executor& executor) {
+  executor.for_chunks(normals.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      normals[i] = !is_known(cloud.origin_kind(i))
+                       ? with_canonical_sign(normals[i])
+                       : oriented(normals[i], cloud.sensor_positions[i] - cloud.positions[i]);
+  });
+}
+
+/// All candidates of a cloud: what would be the splat of each point.
+struct Candidates {
+  std::vector<float> radii;
+  std::vector<float> shifts;
+  DiscardLists discards;
+};
+
+Candidates grow_all(std::span<const SurfacePoint> points, const PointIndex& index,
+                    const std::array<GroupRules, kSemanticGroups>& rules, double alpha,
+                    const Executor& executor) {
+  Candidates candidates;
+  candidates.radii.resize(points.size());
+  candidates.shifts.resize(points.size());
+  candidates.discards.begins.resize(points.size());
+  candidates.discards.chunk_size = kFineGrain;
+  candidates.discards.chunks.resize((points.size() + kFineGrain - 1) / kFineGrain);
+  // A chunk of for_each_neighborhood never spans two of these, and its ranks come in order.
+  static_assert(PointIndex::kQueriesPerTask == kFineGrain);
+  const ProgressPass pass(executor, points.size());
+  index.for_each_neighborhood(
+      executor, [&](std::uint32_t rank) { return rules[points[rank].group].limit; },
+      [&](std::uint32_t rank, const NeighborList& neighbors) {
+        const GrownSplat splat =
+            grow_splat(points[rank], neighbors, points.data(), rules[points[rank].group].grow);
+        candidates.radii[rank] = splat.radius_m;
+        candidates.shifts[rank] = splat.shift_m;
+        std::vector<std::uint32_t>& chunk = candidates.discards.chunks[rank / kFineGrain];
+        candidates.discards.begins[rank] = static_cast<std::uint32_t>(chunk.size());
+        // "All points in the neighbourhood inside the sphere of radius alpha r are discarded."
+        const float reach = static_cast<float>(alpha) * splat.radius_m;
+        for (std::uint32_t k = 0; k < neighbors.size; ++k)
+          if (neighbors.ranks[k] != rank && neighbors.squared_distances[k] < reach * reach)
+            chunk.push_back(neighbors.ranks[k]);
+      });
+  return candidates;
+}
+
+std::vector<SurfacePoint> surface_points(const PointCloud& cloud, std::span<const Vec3f> normals,
+                                         std::span<const SemanticGroup> groups,
+                                         const Executor& executor) {
+  std::vector<SurfacePoint> points(cloud.size());
+  executor.for_chunks(cloud.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      points[i] = {cloud.positions[i], cloud.classes.empty() ? 0U : cloud.classes[i], normals[i],
+                   groups.empty() ? 0U : static_cast<std::uint32_t>(groups[i])};
+  });
+  return points;
+}
+
+}  // namespace
+
+std::array<GroupRules, kSemanticGroups> group_rules(const BuildOptions& options, double radius_m,
+                                                    double error_m, bool is_oriented) {
+  std::array<GroupRules, kSemanticGroups> rules;
+  for (std::size_t g = 0; g < kSemanticGroups; ++g) {
+    GroupScale scale;
+    if (options.method == SplatMethod::semantic) scale = options.semantic_scales[g];
+    if (options.method == SplatMethod::descriptors) {
+      const bool planar = static_cast<SemanticGroup>(g) == SemanticGroup::surface ||
+                          static_cast<SemanticGroup>(g) == SemanticGroup::ground;
+      scale = planar ? options.planar_scale : options.semantic_scales[g];
+    }
+    const float radius = static_cast<float>(radius_m * scale.radius);
+    const bool adaptive = options.method != SplatMethod::basic;
+    rules[g] = {{scaled_count(options.neighbors, scale.neighbors), radius * radius},
+                {static_cast<float>(error_m * scale.error),
+                 // Basic splats stop at the error bound alone.
+                 adaptive ? static_cast<float>(options.smoothness) : -2.0F,
+                 options.method == SplatMethod::semantic, is_oriented},
+                scale.neighbors == 1 && scale.radius == 1};
+  }
+  return rules;
+}
+
+Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGroup> groups,
+                           const BuildOptions& options, const Executor& executor, StepSink step) {
+  step("neighbourhoods", base_passes(options.radius_m));
+  const PointIndex index = PointIndex::from_sorted(cloud.positions, executor);
+  BaseNeighborhoods base = base_neighborhoods(
+      cloud.positions, index, {static_cast<std::uint32_t>(options.neighbors), options.radius_m, 0},
+      executor);
+
+  Generation result;
+  result.radius_m = base.radius_m;
+  result.error_m = options.error_m.value_or(base.error_m);
+  if (options.method != SplatMethod::basic) {
+    result.groups.assign(groups.begin(), groups.end());
+    if (groups.empty())
+      for (const ShapeKind kind : base.kinds) result.groups.push_back(group_of(kind));
+  }
+  const auto rules = group_rules(options, result.radius_m, result.error_m, cloud.has_all_origins());
+
+  const bool refines = options.method != SplatMethod::basic && options.group_normals;
+  step("normals", refines ? 1 : 0);
+  if (refines)
+    refine_normals(
+        cloud.positions, index,
+        [&](std::uint32_t rank) {
+          const GroupRules& group = rules[static_cast<std::size_t>(result.groups[rank])];
+          return group.like_base ? NeighborLimit{0, -1.0F} : group.limit;
+        },
+        base.normals, executor);
+  orient_normals(cloud, base.normals, executor);
+
+  step("growing", 1);
+  const std::vector<SurfacePoint> points =
+      surface_points(cloud, base.normals, result.groups, executor);
+  const Candidates candidates = grow_all(points, index, rules, options.alpha, executor);
+
+  step("selection", 0);
+  result.seeds =
+      select_greedily(candidates.radii, candidates.discards, options.selection, executor);
+  result.disks.resize(result.seeds.size());
+  executor.for_chunks(result.seeds.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const std::uint32_t seed = result.seeds[s];
+      const GrownSplat splat{candidates.radii[seed], candidates.shifts[seed]};
+      result.disks[s] = splat.disk(points[seed]);
+    }
+  });
+  return result;
+}
+
+}  // namespace adasplats

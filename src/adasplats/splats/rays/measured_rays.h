@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/core/ray.h"
+#include "adasplats/scene/intersect.h"
+#include "adasplats/splats/rays/disk_evidence.h"
+
+namespace adasplats {
+
+/// The rays that a LiDAR measured: each says that there is a surface at its range and nothing
+/// before it. In an order in which neighbours start and point alike, which tracers are fast with.
+class MeasuredRays {
+ public:
+  /// Needs sensor positions. Points whose origin nobody measured or stated, and those nearer to
+  /// their sensor than `least_range_m` have no ray.
+  MeasuredRays(const PointCloud& cloud, double least_range_m, const Executor& executor);
+
+  std::size_t size() const { return points_.size(); }
+  bool empty() const { return points_.empty(); }
+  /// Index of ray `i`'s point in the cloud.
+  std::uint32_t point(std::size_t i) const { return points_[i]; }
+  float range_m(std::size_t i) const;
+  /// From the sensor through the point and `beyond_m` farther.
+  Ray ray(std::size_t i, float beyond_m) const;
+
+ private:
+  const PointCloud& cloud_;
+  std::vector<std::uint32_t> points_;
+};
+
+/// How measured rays bear disks out, by how far from a disk's middle they cross it: bin b holds
+/// squared distances from b to b + 1 of kBins parts of the squared radius (rings of equal area).
+struct RayEvidence {
+  static constexpr int kBins = DiskEvidence::kBins;
+  std::vector<std::uint32_t> confirmed;     ///< rays that end at the disk: [disk * kBins + bin]
+  std::vector<std::uint32_t> contradicted;  ///< rays that go on behind it
+};
+
+struct EvidenceOptions {
+  float margin_m = 0.1F;     ///< a ray that ends this near to where it crosses a disk ends at it
+  std::uint32_t stride = 4;  ///< every n-th ray
+  std::uint32_t phase = 0;   ///< begins with this one
+};
+
+DiskEvidence evidence_of(const RayEvidence& evidence, std::size_t disk);
+
+/// Counts, for every disk that `rays` cross, however many they are; disks with no radius are not
+/// there. Whole numbers: the same on any number of threads.
+RayEvidence collect_evidence(std::span<const Disk> disks, const MeasuredRays& rays,
+                             const EvidenceOptions& options, const Executor& executor);
+
+}  // namespace adasplats

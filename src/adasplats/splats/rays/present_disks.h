@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/core/function_ref.h"
+#include "adasplats/scene/intersect.h"
+#include "adasplats/splats/rays/measured_rays.h"
+#include "adasplats/trace/tracer.h"
+
+namespace adasplats {
+
+/// Which of some measured rays are cast, and how.
+struct RayCasting {
+  std::size_t first = 0;
+  std::size_t stride = 1;  ///< every n-th ray
+  float beyond_m = 0;      ///< so much farther than the points
+  enum class Hits : std::uint8_t { nearest, all } hits = Hits::nearest;
+};
+
+/// Those of some disks that have a radius, ready to cast rays at.
+class PresentDisks {
+ public:
+  PresentDisks(std::span<const Disk> disks, const Executor& executor);
+
+  bool empty() const { return disks_.empty(); }
+
+  /// Calls body(i, ray, hits) once for each of the rays, in any order and on any thread: `hits` are
+  /// those of ray i, ascending, their primitives the numbers of the disks. Without disks nothing is
+  /// cast and the body is not called.
+  using Body = FunctionRef<void(std::size_t i, const Ray& ray, std::span<const Hit> hits)>;
+  void cast(const MeasuredRays& rays, const RayCasting& casting, const Executor& executor,
+            Body body) const;
+
+ private:
+  struct Batch;
+  void cast(const Batch& batch, std::size_t depth, bool all, const Executor& executor,
+            Body body) const;
+
+  std::vector<Disk> disks_;
+  std::vector<std::uint32_t> ids_;  ///< numbers of the disks among all
+  std::unique_ptr<Tracer> tracer_;
+};
+
+}  // namespace adasplats

@@ -1,0 +1,246 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/splats/reflectance/reflectance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <numeric>
+#include <sstream>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/random.h"
+#include "adasplats/splats/model/splat_model.h"
+
+namespace adasplats {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// A square of ground, dim for x < 0 and bright for x > 0. Disks do not overlap: of two in one
+/// plane the first alone is met.
+std::vector<Disk> ground() {
+  std::vector<Disk> disks;
+  for (int ix = -12; ix <= 12; ++ix) {
+    for (int iy = -12; iy <= 12; ++iy) {
+      disks.push_back({{0.5F * static_cast<float>(ix), 0.5F * static_cast<float>(iy), 0.0F},
+                       0.25F,
+                       {0.0F, 0.0F, 1.0F}});
+    }
+  }
+  return disks;
+}
+
+float true_reflectance(float x) { return x < 0 ? 0.2F : 0.6F; }
+/// Both linear, so that tables hold them exactly; 1 at 10 m and head on.
+float true_range_gain(float range_m) { return 1.2F - 0.02F * range_m; }
+float true_incidence_gain(float cosine) { return 0.5F + 0.5F * cosine; }
+
+/// What sensors 2 to 20 m above the ground measure there.
+PointCloud measured_ground(std::size_t rays) {
+  PointCloud cloud;
+  for (std::size_t i = 0; i < rays; ++i) {
+    Random random(1, 0, i);
+    const auto draw = [&](double low, double high) {
+      return static_cast<float>(random.uniform(low, high));
+    };
+    const Vec3f sensor = {draw(-8, 8), draw(-8, 8), draw(2, 20)};
+    const Vec3f point = {draw(-6.25, 6.25), draw(-6.25, 6.25), 0.0F};
+    const float range_m = length(point - sensor);
+    cloud.positions.push_back(point);
+    cloud.sensor_positions.push_back(sensor);
+    cloud.intensities.push_back(true_reflectance(point.x) * true_range_gain(range_m) *
+                                true_incidence_gain(sensor.z / range_m));
+  }
+  return cloud;
+}
+
+Reflectances measure(const std::vector<Disk>& disks, const PointCloud& cloud, int threads = 2,
+                     Vec3d model_origin = {}, float fallback = 0.5F) {
+  const Executor executor(threads);
+  const auto tracer = make_wide_tracer({disks, nullptr}, executor);
+  return measure_reflectances(disks, *tracer, cloud, model_origin,
+                              std::vector<float>(disks.size(), fallback), executor);
+}
+
+/// Oracle: the reflectances and gains that the intensities were made with, within 2 %.
+void expect_truth(const std::vector<Disk>& disks, const Reflectances& found) {
+  ASSERT_EQ(found.values.size(), disks.size());
+  for (std::size_t d = 0; d < disks.size(); ++d) {
+    const float x = disks[d].center.x;
+    if (x == 0) continue;  // reaches over the border
+    const float truth = true_reflectance(x);
+    EXPECT_NEAR(found.values[d], truth, 0.02F * truth) << d;
+  }
+  for (const float range_m : {4.0F, 7.0F, 15.0F, 22.0F}) {
+    for (const float cosine : {0.35F, 0.5F, 0.85F, 1.0F}) {
+      const float truth = true_range_gain(range_m) * true_incidence_gain(cosine);
+      EXPECT_NEAR(found.response.gain(range_m, cosine), truth, 0.02F * truth)
+          << range_m << " m, " << cosine;
+    }
+  }
+}
+
+TEST(Reflectance, RecoversReflectancesAndResponseOfAPlane) {
+  const std::vector<Disk> disks = ground();
+  expect_truth(disks, measure(disks, measured_ground(150000)));
+}
+
+TEST(Reflectance, ResponseIsOneAtTenMetresHeadOn) {
+  const Reflectances found = measure(ground(), measured_ground(20000));
+  EXPECT_FLOAT_EQ(found.response.gain(10, 1), 1.0F);
+}
+
+TEST(Reflectance, SameBytesForAnyNumberOfThreads) {
+  const std::vector<Disk> disks = ground();
+  const PointCloud cloud = measured_ground(20000);
+  const Reflectances one = measure(disks, cloud, 1), three = measure(disks, cloud, 3);
+  EXPECT_EQ(one.values, three.values);
+  EXPECT_EQ(one.response.range_gains, three.response.range_gains);
+  EXPECT_EQ(one.response.incidence_gains, three.response.incidence_gains);
+}
+
+TEST(Reflectance, RaysThatEndElsewhereAndIntensitiesNotFiniteDoNotCount) {
+  const std::vector<Disk> disks = ground();
+  PointCloud cloud = measured_ground(150000);
+  const std::size_t count = cloud.size();
+  for (std::size_t i = 0; i < count; i += 3) {
+    cloud.sensor_positions.push_back(cloud.sensor_positions[i]);
+    // Something that is not in the model, 30 % of the way before the ground.
+    cloud.positions.push_back(cloud.sensor_positions[i] +
+                              0.7F * (cloud.positions[i] - cloud.sensor_positions[i]));
+    cloud.intensities.push_back(1.0F);
+    cloud.sensor_positions.push_back(cloud.sensor_positions[i]);
+    cloud.positions.push_back(cloud.positions[i]);
+    cloud.intensities.push_back(kNan);
+  }
+  expect_truth(disks, measure(disks, cloud));
+}
+
+TEST(Reflectance, CloudAndModelMayHaveOriginsOfTheirOwn) {
+  const std::vector<Disk> disks = ground();
+  PointCloud cloud = measured_ground(150000);
+  cloud.origin = {5000, 2000, 0};
+  for (auto* positions : {&cloud.positions, &cloud.sensor_positions}) {
+    for (Vec3f& position : *positions) position = position - Vec3f{1, 2, 0};
+  }
+  expect_truth(disks, measure(disks, cloud, 2, {4999, 1998, 0}));
+}
+
+TEST(Reflectance, DisksThatNoRayIsNearHaveTheFallback) {
+  std::vector<Disk> disks = ground();
+  disks.push_back({{50, 50, 0}, 0.5F, {0, 0, 1}});
+  EXPECT_EQ(measure(disks, measured_ground(20000)).values.back(), 0.5F);
+  // Nothing is known of it: what is usual stands in.
+  const float usual = measure(disks, measured_ground(20000), 2, {}, kNan).values.back();
+  EXPECT_GT(usual, 0.2F);
+  EXPECT_LT(usual, 0.6F);
+}
+
+TEST(Reflectance, TooLittleGivesTheFallbackAndNoResponse) {
+  const std::vector<Disk> disks = ground();
+  const auto expect_fallback = [&](const PointCloud& cloud) {
+    const Reflectances found = measure(disks, cloud);
+    EXPECT_EQ(found.values, std::vector<float>(disks.size(), 0.5F));
+    EXPECT_TRUE(found.response.empty());
+    EXPECT_EQ(found.response.gain(30, 0.1F), 1.0F);
+  };
+  expect_fallback({});
+  PointCloud on_disk = measured_ground(1000);
+  for (std::size_t i = 0; i < on_disk.size(); ++i) on_disk.positions[i] = disks[i % 600].center;
+  EXPECT_FALSE(measure(disks, on_disk).response.empty());
+  on_disk.positions.pop_back();
+  on_disk.sensor_positions.pop_back();
+  on_disk.intensities.pop_back();
+  expect_fallback(on_disk);
+  PointCloud without_sensors = measured_ground(2000);
+  without_sensors.sensor_positions.clear();
+  expect_fallback(without_sensors);
+  PointCloud without_intensities = measured_ground(2000);
+  without_intensities.intensities.clear();
+  expect_fallback(without_intensities);
+}
+
+TEST(Reflectance, BlackWorldIsBlack) {
+  const std::vector<Disk> disks = ground();
+  PointCloud cloud = measured_ground(20000);
+  for (float& intensity : cloud.intensities) intensity = 0;
+  const Reflectances found = measure(disks, cloud, 2, {}, 0.0F);
+  for (const float value : found.values) EXPECT_EQ(value, 0.0F);
+  EXPECT_EQ(found.response.gain(20, 0.5F), 1.0F);
+}
+
+TEST(Reflectance, NoDisksGiveNothing) {
+  EXPECT_TRUE(measure({}, measured_ground(2000)).values.empty());
+}
+
+TEST(IntensityResponse, IsLinearBetweenNodesAndConstantOutside) {
+  const IntensityResponse response{{10, 20}, {1.0F, 0.5F}, {0.0F, 1.0F}, {0.4F, 1.0F}};
+  EXPECT_FLOAT_EQ(response.gain(10, 1), 1.0F);
+  EXPECT_FLOAT_EQ(response.gain(15, 1), 0.75F);
+  EXPECT_FLOAT_EQ(response.gain(0, 1), 1.0F);
+  EXPECT_FLOAT_EQ(response.gain(1000, 1), 0.5F);
+  EXPECT_FLOAT_EQ(response.gain(15, 0.5F), 0.75F * 0.7F);
+  EXPECT_FLOAT_EQ(response.gain(15, -1), 0.75F * 0.4F);
+}
+
+/// A model file in a folder that goes away.
+class ResponseFile : public testing::Test {
+ protected:
+  ResponseFile()
+      : path(std::filesystem::temp_directory_path() /
+             (std::string("adasplats_response_") +
+              testing::UnitTest::GetInstance()->current_test_info()->name() + ".ply")) {
+    model.disks = {{{1, 2, 3}, 0.5F, {0, 0, 1}}};
+    model.intensities = {0.25F};
+  }
+  ~ResponseFile() override { std::filesystem::remove(path); }
+
+  /// Replaces text of the file that save_model wrote.
+  void replace(const std::string& from, const std::string& to) {
+    std::ifstream in(path, std::ios::binary);
+    std::stringstream text;
+    text << in.rdbuf();
+    std::string all = text.str();
+    ASSERT_NE(all.find(from), std::string::npos);
+    all.replace(all.find(from), from.size(), to);
+    std::ofstream(path, std::ios::binary) << all;
+  }
+
+  std::filesystem::path path;
+  SplatModel model;
+};
+
+TEST_F(ResponseFile, ComesBackAsItWas) {
+  model.response = {{2, 10.1F, 80}, {1.1F, 1, 0.3F}, {0, 1}, {0.7F, 1}};
+  save_model(path, model);
+  const IntensityResponse read = load_model(path).response;
+  EXPECT_EQ(read.ranges_m, model.response.ranges_m);
+  EXPECT_EQ(read.range_gains, model.response.range_gains);
+  EXPECT_EQ(read.cos_incidences, model.response.cos_incidences);
+  EXPECT_EQ(read.incidence_gains, model.response.incidence_gains);
+}
+
+TEST_F(ResponseFile, OlderFilesHaveNone) {
+  save_model(path, model);
+  EXPECT_TRUE(load_model(path).response.empty());
+}
+
+TEST_F(ResponseFile, BrokenTablesAreErrors) {
+  model.response = {{2, 10, 80}, {1.25F, 1, 0.5F}, {0, 1}, {0.75F, 1}};
+  const std::vector<std::pair<std::string, std::string>> changes = {
+      {"2 10 80", "2 10"},      {"2 10 80", "10 2 80"},  {"2 10 80", "2 nan 80"},
+      {"1.25 1 0.5", "1 -1 2"}, {"1.25 1 0.5", "1 x 2"}, {"response_cosines 0 1", "response_x 0 1"},
+  };
+  for (const auto& [from, to] : changes) {
+    save_model(path, model);
+    replace(from, to);
+    EXPECT_THROW(load_model(path), Error) << to;
+  }
+}
+
+}  // namespace
+}  // namespace adasplats
