@@ -14,7 +14,7 @@
 
 #include "adasplats/cloud/load_cloud.h"
 #include "adasplats/core/error.h"
-#include "adasplats/gpu/consistent_cuda.h"
+#include "adasplats/gpu/consistent/consistent_cuda.h"
 #include "adasplats/splats/consistent/consistent_steps.h"
 #include "adasplats/splats/model/splat_model.h"
 

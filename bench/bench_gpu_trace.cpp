@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "adasplats/cloud/trajectory.h"
-#include "adasplats/gpu/device.h"
-#include "adasplats/gpu/gpu_scene.h"
+#include "adasplats/gpu/base/device.h"
+#include "adasplats/gpu/simulate/gpu_scene.h"
 #include "adasplats/pipeline/provenance.h"
 #include "adasplats/simulate/scan.h"
 #include "adasplats/splats/model/splat_model.h"

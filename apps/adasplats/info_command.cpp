@@ -4,7 +4,7 @@
 #include <set>
 
 #include "adasplats/core/constants.h"
-#include "adasplats/gpu/device.h"
+#include "adasplats/gpu/base/device.h"
 #include "adasplats/pipeline/inputs.h"
 #include "commands.h"
 #include "info_job.h"

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "adasplats/core/error.h"
-#include "adasplats/gpu/gpu_scene.h"
+#include "adasplats/gpu/simulate/gpu_scene.h"
 #include "dlpack.h"
 #include "scenes.h"
 #include "sensors.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/gpu/device.h"
+#include "adasplats/gpu/base/device.h"
 #include "bindings.h"
 #include "keywords.h"
 

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #if defined(ADASPLATS_HAVE_CUDA)
 #include "adasplats/core/error.h"
-#include "adasplats/gpu/consistent_cuda.h"
-#include "adasplats/gpu/cuda_check.h"
-#include "adasplats/gpu/device.h"
+#include "adasplats/gpu/base/cuda_check.h"
+#include "adasplats/gpu/base/device.h"
+#include "adasplats/gpu/consistent/consistent_cuda.h"
 #include "adasplats/gpu/gpu_model.h"
-#include "adasplats/gpu/paper_cuda_steps.h"
+#include "adasplats/gpu/paper/paper_cuda_steps.h"
 
 namespace adasplats {
 namespace {

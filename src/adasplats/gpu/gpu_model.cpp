@@ -4,7 +4,7 @@
 #include "adasplats/gpu/gpu_model.h"
 
 #include "adasplats/core/error.h"
-#include "adasplats/gpu/device.h"
+#include "adasplats/gpu/base/device.h"
 
 namespace adasplats {
 

@@ -11,7 +11,7 @@
 
 #include "adasplats/core/function_ref.h"
 #include "adasplats/core/progress.h"
-#include "adasplats/gpu/device.h"
+#include "adasplats/gpu/base/device.h"
 
 namespace adasplats {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "adasplats/gpu/gpu_scene.h"
+#include "adasplats/gpu/simulate/gpu_scene.h"
 #include "adasplats/pipeline/session.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/simulate/image.h"

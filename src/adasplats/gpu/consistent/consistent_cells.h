@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "adasplats/core/host_device.h"
+#include "adasplats/core/vec3.h"
+#include "adasplats/gpu/base/device_memory.h"
+#include "adasplats/surface/fused_points.h"
+
+namespace adasplats::gpu {
+
+/// Private to gpu/: what kernels read of DeviceCells.
+struct CellsView {
+  const Vec3f* positions = nullptr;
+  const std::uint32_t* begins = nullptr;
+  const std::uint32_t* members = nullptr;
+  std::uint32_t size = 0;
+
+  ADASPLATS_HD std::span<const std::uint32_t> points_of(std::size_t cell) const {
+    return {members + begins[cell], begins[cell + 1] - begins[cell]};
+  }
+};
+
+/// Private to gpu/: FusedPoints in device memory.
+struct DeviceCells {
+  DeviceBuffer<Vec3f> positions;
+  DeviceBuffer<std::uint32_t> begins;  ///< one more than cells
+  DeviceBuffer<std::uint32_t> members;
+
+  std::size_t size() const { return positions.size(); }
+  CellsView view() const {
+    return {positions.data(), begins.data(), members.data(),
+            static_cast<std::uint32_t>(positions.size())};
+  }
+  FusedPoints download() const;
+};
+
+/// fuse_points() of points in device memory: the same bits.
+DeviceCells fuse_on_device(const Vec3f* points, std::size_t count, double cell_m,
+                           cudaStream_t stream);
+
+/// split_cells() in device memory: the same bits. One flag a cell.
+DeviceCells split_on_device(const Vec3f* points, const DeviceCells& cells,
+                            const std::uint8_t* split, double cell_m, cudaStream_t stream);
+
+}  // namespace adasplats::gpu

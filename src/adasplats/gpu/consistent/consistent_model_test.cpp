@@ -1,0 +1,283 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/splats/consistent/consistent_model.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/random.h"
+#include "adasplats/gpu/base/device.h"
+#include "adasplats/gpu/consistent/consistent_cuda.h"
+#include "adasplats/splats/consistent/consistent_state.h"
+#include "adasplats/splats/consistent/scanned_room_test.h"
+
+// The oracle of all tests here is the CPU's steps on the same cloud.
+namespace adasplats {
+namespace {
+
+class ConsistentOnGpu : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (find_gpus().devices.empty()) GTEST_SKIP() << find_gpus().reason;
+  }
+};
+
+using Steps = std::unique_ptr<ConsistentSteps>;
+
+ConsistentState state_of(const Steps& steps) {
+  return dynamic_cast<const ShowsConsistentState&>(*steps).state();
+}
+
+/// How many bytes of a value are no padding, which may hold anything.
+template <class T>
+constexpr std::size_t kBytesOf = sizeof(T);
+template <>
+constexpr std::size_t kBytesOf<LocalPlane> = offsetof(LocalPlane, scale) + 1;
+
+/// How many values differ in any bit; those that one side has more differ, too.
+template <class T>
+std::size_t count_different(const std::vector<T>& a, const std::vector<T>& b) {
+  const std::size_t common = std::min(a.size(), b.size());
+  std::size_t different = std::max(a.size(), b.size()) - common;
+  for (std::size_t i = 0; i < common; ++i) {
+    different += std::memcmp(&a[i], &b[i], kBytesOf<T>) == 0 ? 0 : 1;
+  }
+  return different;
+}
+
+void expect_same(const ConsistentState& a, const ConsistentState& b) {
+  EXPECT_EQ(count_different(a.fused.positions, b.fused.positions), 0U) << "cells";
+  EXPECT_EQ(count_different(a.fused.begins, b.fused.begins), 0U) << "where cells begin";
+  EXPECT_EQ(count_different(a.fused.members, b.fused.members), 0U) << "points of cells";
+  EXPECT_EQ(count_different(a.planes, b.planes), 0U) << "planes";
+  EXPECT_EQ(count_different(a.seeds, b.seeds), 0U) << "seeds";
+  EXPECT_EQ(count_different(a.rays, b.rays), 0U) << "rays";
+  EXPECT_EQ(count_different(a.radii_m, b.radii_m), 0U) << "radii";
+  EXPECT_EQ(count_different(a.chosen, b.chosen), 0U) << "chosen disks";
+}
+
+void expect_same(const ConsistentSplats& a, const ConsistentSplats& b) {
+  EXPECT_EQ(count_different(a.disks, b.disks), 0U);
+  EXPECT_EQ(count_different(a.classes, b.classes), 0U);
+  EXPECT_EQ(count_different(a.intensities, b.intensities), 0U);
+}
+
+/// CPU and GPU side by side: after every step not one bit may differ.
+class SideBySide {
+ public:
+  explicit SideBySide(const PointCloud& cloud, const ClassTables& tables = {}) {
+    const std::size_t points = cpu_->load(cloud, tables);
+    EXPECT_EQ(gpu_->load(cloud, tables), points);
+  }
+
+  template <class F>
+  void step(const std::string& name, const F& verb) {
+    SCOPED_TRACE("after " + name);
+    verb(*cpu_);
+    verb(*gpu_);
+    expect_same(state_of(cpu_), state_of(gpu_));
+  }
+
+  void evidence(const ConsistentOptions& options) {
+    const std::vector<Disk> seeds = state_of(cpu_).seeds;
+    const auto of = [&](const Steps& steps) {
+      return dynamic_cast<const ShowsConsistentState&>(*steps).evidence(seeds, options.evidence);
+    };
+    const RayEvidence cpu = of(cpu_), gpu = of(gpu_);
+    EXPECT_EQ(count_different(cpu.confirmed, gpu.confirmed), 0U);
+    EXPECT_EQ(count_different(cpu.contradicted, gpu.contradicted), 0U);
+  }
+
+  /// Gives the number of splats.
+  std::size_t finish() {
+    const ConsistentSplats cpu = cpu_->take_splats(), gpu = gpu_->take_splats();
+    expect_same(cpu, gpu);
+    return gpu.disks.size();
+  }
+
+ private:
+  Executor executor_{2};
+  Steps cpu_ = make_cpu_consistent_steps(executor_);
+  Steps gpu_ = gpu::make_cuda_consistent_steps(0, executor_);
+};
+
+/// All steps, compared after each; gives the number of splats.
+std::size_t compare(const PointCloud& cloud, const ConsistentOptions& options,
+                    const ClassTables& tables = {}) {
+  SideBySide both(cloud, tables);
+  const bool checked = !cloud.sensor_positions.empty() && options.balance_rounds > 0;
+  both.step("fuse", [&](auto& steps) { steps.fuse(options); });
+  both.step("fit_seeds", [&](auto& steps) { steps.fit_seeds(options); });
+  if (checked) {
+    both.step("order_rays", [&](auto& steps) { steps.order_rays(options); });
+    both.evidence(options);
+    for (int i = 0; i < options.balance_rounds; ++i) {
+      both.step("balance", [&](auto& steps) { steps.balance_seeds(i, options); });
+    }
+  }
+  both.step("cover", [&](auto& steps) { steps.cover(checked, options); });
+  for (int i = 0; checked && i < options.strict_rounds; ++i) {
+    both.step("limit_overhangs", [&](auto& steps) { steps.limit_overhangs(i, options); });
+  }
+  if (checked) both.step("limit_unchosen", [&](auto& steps) { steps.limit_unchosen(); });
+  both.step("choose", [&](auto& steps) { steps.choose(); });
+  if (checked) {
+    for (int i = 0; i < options.settle_rounds; ++i) {
+      both.step("settle", [&](auto& steps) { steps.settle(options); });
+    }
+    both.step("fill_gaps", [&](auto& steps) { steps.fill_gaps(options); });
+  }
+  return both.finish();
+}
+
+/// Points at random heights on a lattice, as seen from two places above it.
+PointCloud lattice(int n, double step_m, double noise_m) {
+  PointCloud cloud;
+  for (int y = 0; y < n; ++y) {
+    for (int x = 0; x < n; ++x) {
+      Random random(3, static_cast<std::uint64_t>(y), static_cast<std::uint64_t>(x));
+      cloud.positions.push_back(
+          vec_cast<float>(Vec3d{step_m * x + 0.02, step_m * y + 0.02, noise_m * random.normal()}));
+      cloud.sensor_positions.push_back(x % 2 == 0 ? Vec3f{1, 2, 3} : Vec3f{4, 1, 5});
+    }
+  }
+  return cloud;
+}
+
+PointCloud without_sensors(PointCloud cloud) {
+  cloud.sensor_positions.clear();
+  return cloud;
+}
+
+TEST_F(ConsistentOnGpu, ScannedRoomIsTheSameAfterEveryStep) {
+  EXPECT_GT(compare(scanned_room(), {}), 1000U);
+}
+
+TEST_F(ConsistentOnGpu, EveryRayAndAllItsDisksCount) {
+  ConsistentOptions options;
+  options.evidence.stride = 1;
+  options.cover.overlap = 0.95;  // leaves gaps to fill
+  EXPECT_GT(compare(scanned_room(), options), 1000U);
+}
+
+TEST_F(ConsistentOnGpu, DuplicatesAndOtherCellsAreTheSame) {
+  PointCloud cloud = scanned_room();
+  for (std::size_t i = 0; i < 3000; ++i) cloud.positions[i + 1000] = cloud.positions[i % 7];
+  ConsistentOptions options;
+  for (const double small_cell_m : {0.0, 0.01}) {
+    options.small_cell_m = small_cell_m;
+    options.split_scale = 255;  // every cell
+    EXPECT_GT(compare(cloud, options), 1000U);
+  }
+}
+
+TEST_F(ConsistentOnGpu, EqualPrioritiesAreTakenInTheirOrder) {
+  // Nearly all disks of a flat lattice cover the same number: the order decides, one by one.
+  const ConsistentOptions options;
+  EXPECT_GT(compare(lattice(150, 0.05, 0), options), 100U);
+  EXPECT_GT(compare(lattice(150, 0.05, 0.01), options), 100U);
+}
+
+TEST_F(ConsistentOnGpu, CloudsWithoutSensorPositionsAreTheSame) {
+  EXPECT_GT(compare(without_sensors(scanned_room()), {}), 1000U);
+  for (const double noise_m : {0.0, 0.01}) {  // without noise seeds stand on borders of sectors
+    EXPECT_GT(compare(without_sensors(lattice(150, 0.05, noise_m)), {}), 100U);
+  }
+}
+
+TEST_F(ConsistentOnGpu, OriginsOfSeveralKindsAreTheSame) {
+  PointCloud cloud = scanned_room();
+  cloud.origin_kinds.assign(cloud.size(), OriginKind::measured);
+  EXPECT_GT(compare(cloud, {}), 1000U);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (cloud.positions[i].x > 0) cloud.origin_kinds[i] = OriginKind::guessed;
+    if (cloud.positions[i].y > 0) cloud.origin_kinds[i] = OriginKind::stated;
+    if (cloud.positions[i].x > 2) cloud.origin_kinds[i] = OriginKind::none;
+  }
+  EXPECT_GT(compare(cloud, {}), 1000U);
+}
+
+TEST_F(ConsistentOnGpu, WithoutRoundsNoRayIsAsked) {
+  ConsistentOptions options;
+  options.balance_rounds = 0;
+  options.cover.unchecked_sectors = 0;
+  EXPECT_GT(compare(scanned_room(), options), 1000U);
+}
+
+TEST_F(ConsistentOnGpu, RemovedClassesAreLeftOut) {
+  ClassTables tables;
+  tables.removed.resize(1 << 16);
+  tables.removed[kPerson] = 1;
+  EXPECT_GT(compare(scanned_room(), {}, tables), 1000U);
+}
+
+TEST_F(ConsistentOnGpu, SmallAndDegenerateClouds) {
+  const auto cloud_of = [](std::vector<Vec3f> points) {
+    PointCloud cloud;
+    cloud.positions = std::move(points);
+    cloud.sensor_positions.resize(cloud.size(), {0, 0, 1.7F});
+    return cloud;
+  };
+  EXPECT_EQ(compare(cloud_of({{3, 1, 1}}), {}), 0U);
+  EXPECT_EQ(compare(cloud_of(std::vector<Vec3f>(5000, {3, 1, 1})), {}), 0U);
+  EXPECT_EQ(compare(cloud_of(std::vector<Vec3f>(50, {0, 0, 1.7F})), {}), 0U);
+  for (const int n : {2, 7, 9, 31, 32, 33, 159, 160, 161, 1025}) {
+    std::vector<Vec3f> line, plane;
+    for (int i = 0; i < n; ++i) {
+      line.push_back({0.05F * static_cast<float>(i), 0, 0});
+      plane.push_back({0.1F * static_cast<float>(i % 20), 0.1F * static_cast<float>(i / 20), 0});
+    }
+    compare(cloud_of(line), {});
+    compare(cloud_of(plane), {});
+    plane.insert(plane.end(), {{1e12F, 0, 0}, {0, -1e9F, 0}});
+    compare(cloud_of(plane), {});
+    compare(without_sensors(cloud_of(plane)), {});
+  }
+}
+
+ConsistentSplats model_of(const PointCloud& cloud) {
+  const Executor executor(1);
+  const Steps steps = gpu::make_cuda_consistent_steps(0, executor);
+  steps->load(cloud, {});
+  EXPECT_TRUE(consistent_disks(*steps, true, {}, [](std::string_view, int) {}).checked);
+  return steps->take_splats();
+}
+
+TEST_F(ConsistentOnGpu, TwoRunsGiveTheSameBytes) {
+  const PointCloud cloud = scanned_room();
+  const ConsistentSplats one = model_of(cloud);
+  EXPECT_GT(one.disks.size(), 1000U);
+  for (int run = 0; run < 3; ++run) expect_same(one, model_of(cloud));
+}
+
+TEST_F(ConsistentOnGpu, ErrorsSayWhatHelpsAndLeaveTheStepsDestructible) {
+  const Executor executor(1);
+  const auto error_of = [&](const ConsistentOptions& options) -> std::string {
+    try {
+      const Steps steps = gpu::make_cuda_consistent_steps(0, executor);
+      steps->load(lattice(50, 0.05, 0), {});
+      consistent_disks(*steps, true, options, [](std::string_view, int) {});
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  ConsistentOptions options;
+  EXPECT_EQ(error_of(options), "");
+  options.cover.neighbors = 600;
+  EXPECT_NE(error_of(options).find("--device cpu"), std::string::npos);
+  options = {};
+  options.planes.scales.back() = 600;
+  EXPECT_NE(error_of(options).find("--device cpu"), std::string::npos);
+  EXPECT_THROW(gpu::make_cuda_consistent_steps(1000, executor), Error);
+}
+
+}  // namespace
+}  // namespace adasplats

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <memory>
+
+#include "adasplats/gpu/base/launch.cuh"
+#include "adasplats/gpu/base/sort_keys.h"
+#include "adasplats/gpu/consistent/consistent_rays.h"
+#include "adasplats/gpu/trace/cuda_scene.h"
+#include "adasplats/gpu/trace/wide_traversal.cuh"
+#include "adasplats/splats/rays/measured_ray.h"
+#include "adasplats/splats/rays/present_disks.h"
+#include "adasplats/trace/castable.h"
+
+namespace adasplats::gpu {
+namespace {
+
+constexpr std::size_t kMostRays = std::size_t{1} << 22;  // at once
+constexpr int kPostponeInCheck = 10;                     // as for scans, cuda_scene.cu
+
+/// Adds to a number that is not negative, or to one that wraps: the same bits.
+__device__ void add_to(std::int64_t& sum, std::int64_t value) {
+  atomicAdd(reinterpret_cast<unsigned long long*>(&sum), static_cast<unsigned long long>(value));
+}
+
+/// How many rays there are of which every `stride`-th is taken, the first at `first`.
+std::size_t taken_of(std::size_t rays, std::size_t first, std::size_t stride) {
+  return rays > first ? (rays - first + stride - 1) / stride : 0;
+}
+
+/// Calls body(point, ray, hit) on the device for the rays of `casting` with the nearest hit of
+/// each, which may be none.
+template <class Body>
+void cast_nearest(const Disk* disks, std::size_t count, const MeasuredPoints& points,
+                  const DeviceBuffer<std::uint32_t>& numbers, const RayCasting& casting,
+                  cudaStream_t stream, Body body) {
+  const std::size_t wanted = taken_of(numbers.size(), casting.first, casting.stride);
+  if (wanted == 0) return;
+  const std::unique_ptr<DeviceScene> scene = make_cuda_scene_of_device_disks(disks, count, stream);
+  const std::size_t at_once = std::min(wanted, kMostRays);
+  const DeviceBuffer<Ray> rays(at_once, stream);
+  const DeviceBuffer<Hit> hits(at_once, stream);
+  RaySource source;
+  source.rays = rays.data();
+  for (std::size_t done = 0; done < wanted; done += at_once) {
+    const std::size_t batch = std::min(at_once, wanted - done);
+    const std::uint32_t* first = numbers.data() + casting.first + done * casting.stride;
+    for_each(batch, stream, "make rays",
+             [points, first, casting, to = rays.data()] __device__(std::uint64_t k) {
+               const std::uint32_t point = first[k * casting.stride];
+               to[k] =
+                   measured_ray(points.sensors[point], points.positions[point], casting.beyond_m);
+             });
+    scene->cast(source, batch, 1, hits.data(), stream);
+    for_each(batch, stream, "count rays",
+             [first, stride = casting.stride, from = rays.data(), found = hits.data(),
+              body] __device__(std::uint64_t k) { body(first[k * stride], from[k], found[k]); });
+  }
+}
+
+/// Counts every disk that one ray crosses, as a tree offers them.
+struct EvidenceOfRay {
+  const Disk* disks;
+  EvidenceView counts;
+  Ray ray;
+  float free_until;
+
+  /// No hit ends the search.
+  __device__ float reach(float t_max) const { return t_max; }
+  __device__ void offer(float t, std::uint32_t disk) const {
+    auto* const rings = t < free_until ? counts.contradicted : counts.confirmed;
+    atomicAdd(rings + disk * EvidenceView::kBins + evidence_ring(disks[disk], ray, t), 1U);
+  }
+};
+
+/// Whether any disk has a radius. Waits for the stream.
+bool any_present(const Disk* disks, std::size_t count, cudaStream_t stream) {
+  DeviceBuffer<std::uint32_t> found(1, stream);
+  found.fill_bytes(0);
+  for_each(count, stream, "look for disks", [disks, to = found.data()] __device__(std::uint64_t i) {
+    if (disks[i].radius > 0) *to = 1;
+  });
+  return read_value(found.data(), stream) != 0;
+}
+
+DeviceBuffer<std::uint32_t> points_of_rays(const MeasuredPoints& points, std::size_t count,
+                                           double least_range_m, cudaStream_t stream) {
+  DeviceBuffer<std::uint64_t> keys(count, stream);
+  for_each(count, stream, "order rays", [points, to = keys.data()] __device__(std::uint64_t i) {
+    to[i] = measured_ray_key(points.sensors[i], points.positions[i]);
+  });
+  const DeviceBuffer<std::uint32_t> order = sort_order(keys, stream);
+  DeviceBuffer<std::uint8_t> has_ray(count, stream);
+  for_each(count, stream, "order rays",
+           [points, least_range_m, from = order.data(),
+            to = has_ray.data()] __device__(std::uint64_t i) {
+             const std::uint32_t k = from[i];
+             to[i] = is_beam(points.kind(k)) &&
+                     has_measured_ray(points.sensors[k], points.positions[k], least_range_m);
+           });
+  DeviceBuffer<std::uint32_t> numbers = flagged(has_ray.data(), count, stream);
+  for_each(numbers.size(), stream, "order rays",
+           [from = order.data(), to = numbers.data()] __device__(std::uint64_t i) {
+             to[i] = from[to[i]];
+           });
+  return numbers;
+}
+
+}  // namespace
+
+DeviceRays::DeviceRays(const MeasuredPoints& points, std::size_t count, double least_range_m,
+                       cudaStream_t stream)
+    : points_(points),
+      point_count_(count),
+      stream_(stream),
+      numbers_(points_of_rays(points, count, least_range_m, stream)) {}
+
+DeviceEvidence DeviceRays::evidence(const Disk* disks, std::size_t count,
+                                    const EvidenceOptions& options) const {
+  const std::size_t bins = count * EvidenceView::kBins;
+  DeviceEvidence evidence{DeviceBuffer<std::uint32_t>(bins, stream_),
+                          DeviceBuffer<std::uint32_t>(bins, stream_)};
+  evidence.confirmed.fill_bytes(0);
+  evidence.contradicted.fill_bytes(0);
+  const WideTree<LeafDisk> tree = build_tree(disks, count, TreeOptions{}, stream_);
+  for_each(taken_of(numbers_.size(), options.phase, options.stride), stream_, "count rays",
+           [disks, counts = evidence.view(), points = points_, options, tree = tree.view(),
+            numbers = numbers_.data()] __device__(std::uint64_t k) {
+             const std::uint32_t point = numbers[options.phase + k * options.stride];
+             const Ray ray =
+                 measured_ray(points.sensors[point], points.positions[point], options.margin_m);
+             if (!castable(ray)) return;
+             EvidenceOfRay of_ray = {disks, counts, ray, ray.t_max - 2 * options.margin_m};
+             walk<kPostponeInCheck>(tree, ray, box_ray(ray), of_ray);
+           });
+  return evidence;
+}
+
+DeviceBuffer<ShiftSums> DeviceRays::shifts(const Disk* disks, std::size_t count,
+                                           const SettleOptions& options) const {
+  DeviceBuffer<ShiftSums> sums(count, stream_);
+  sums.fill_bytes(0);
+  RayCasting casting;
+  casting.beyond_m = static_cast<float>(options.reach_m);
+  cast_nearest(disks, count, points_, numbers_, casting, stream_,
+               [disks, options, points = points_, to = sums.data()] __device__(
+                   std::uint32_t point, const Ray& ray, Hit hit) {
+                 if (!hit.valid()) return;
+                 const float range_m = length(points.positions[point] - points.sensors[point]);
+                 const std::uint32_t disk = hit.primitive;
+                 const ShiftSums part = shift_of_ray(disks[disk], ray, hit.t, range_m, options);
+                 add_to(to[disk].weight, part.weight);
+                 add_to(to[disk].shift, part.shift);
+                 atomicAdd(&to[disk].rays, part.rays);
+               });
+  return sums;
+}
+
+DeviceBuffer<std::uint8_t> DeviceRays::missed(const Disk* disks, std::size_t count,
+                                              float beyond_m) const {
+  DeviceBuffer<std::uint8_t> missed(point_count_, stream_);
+  missed.fill_bytes(0);
+  if (!any_present(disks, count, stream_)) return missed;
+  RayCasting casting;
+  casting.beyond_m = beyond_m;
+  cast_nearest(disks, count, points_, numbers_, casting, stream_,
+               [to = missed.data()] __device__(std::uint32_t point, const Ray&, Hit hit) {
+                 if (!hit.valid()) to[point] = 1;
+               });
+  return missed;
+}
+
+}  // namespace adasplats::gpu

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "adasplats/core/host_device.h"
+#include "adasplats/gpu/base/device_memory.h"
+#include "adasplats/splats/consistent/seed_disk.h"
+#include "adasplats/splats/rays/disk_evidence.h"
+#include "adasplats/splats/rays/disk_shift.h"
+#include "adasplats/splats/rays/measured_rays.h"
+
+namespace adasplats::gpu {
+
+/// Private to gpu/: what kernels read of DeviceEvidence.
+struct EvidenceView {
+  static constexpr std::size_t kBins = DiskEvidence::kBins;
+  std::uint32_t* confirmed = nullptr;
+  std::uint32_t* contradicted = nullptr;
+
+  ADASPLATS_HD DiskEvidence of(std::size_t disk) const {
+    return {{confirmed + disk * kBins, kBins}, {contradicted + disk * kBins, kBins}};
+  }
+};
+
+/// Private to gpu/: RayEvidence in device memory.
+struct DeviceEvidence {
+  DeviceBuffer<std::uint32_t> confirmed;
+  DeviceBuffer<std::uint32_t> contradicted;
+
+  EvidenceView view() const { return {confirmed.data(), contradicted.data()}; }
+  RayEvidence download() const { return {confirmed.download(), contradicted.download()}; }
+};
+
+/// Private to gpu/: MeasuredRays in device memory, in the same order, and what is counted with them
+/// on disks in device memory: the same whole numbers.
+class DeviceRays {
+ public:
+  /// `points` (device memory, with sensors) must outlive the rays. Points nearer to their sensor
+  /// than `least_range_m` have no ray. Waits for the stream.
+  DeviceRays(const MeasuredPoints& points, std::size_t count, double least_range_m,
+             cudaStream_t stream);
+
+  std::size_t size() const { return numbers_.size(); }
+  /// Of the points, in the order of their rays.
+  const DeviceBuffer<std::uint32_t>& numbers() const { return numbers_; }
+
+  /// collect_evidence() on disks [0, count).
+  DeviceEvidence evidence(const Disk* disks, std::size_t count,
+                          const EvidenceOptions& options) const;
+  /// What every disk's rays say of its place: one sum a disk.
+  DeviceBuffer<ShiftSums> shifts(const Disk* disks, std::size_t count,
+                                 const SettleOptions& options) const;
+  /// One flag a point: whether its ray meets no disk up to `beyond_m` behind it. Where there is no
+  /// disk at all, none is missed. Waits for the stream.
+  DeviceBuffer<std::uint8_t> missed(const Disk* disks, std::size_t count, float beyond_m) const;
+
+ private:
+  MeasuredPoints points_;
+  std::size_t point_count_;
+  cudaStream_t stream_;
+  DeviceBuffer<std::uint32_t> numbers_;
+};
+
+}  // namespace adasplats::gpu

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <vector>
+
+#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/core/error.h"
+#include "adasplats/gpu/base/hilbert_order.h"
+#include "adasplats/gpu/base/launch.cuh"
+#include "adasplats/gpu/base/sort_keys.h"
+#include "adasplats/gpu/neighbors/cloud_on_device.h"
+#include "adasplats/scene/intersect.h"
+
+namespace adasplats::gpu {
+namespace {
+
+template <class T>
+DeviceBuffer<T> copied(const std::vector<T>& values, cudaStream_t stream) {
+  return DeviceBuffer<T>(std::span<const T>(values), stream);
+}
+
+/// One attribute of clouds one after another; those without points do not count.
+template <class T>
+DeviceBuffer<T> concatenated(std::span<const DeviceCloud* const> clouds,
+                             DeviceBuffer<T> DeviceCloud::*attribute, cudaStream_t stream) {
+  std::vector<const DeviceBuffer<T>*> parts;
+  for (const DeviceCloud* cloud : clouds) parts.push_back(&(cloud->*attribute));
+  return concatenate(std::span<const DeviceBuffer<T>* const>(parts), stream);
+}
+
+/// Removes from an order the points whose class has a flag.
+DeviceBuffer<std::uint32_t> without_classes(const DeviceBuffer<std::uint32_t>& order,
+                                            const DeviceBuffer<std::uint16_t>& classes,
+                                            std::span<const std::uint8_t> removed,
+                                            cudaStream_t stream) {
+  const DeviceBuffer<std::uint8_t> table(removed, stream);
+  DeviceBuffer<std::uint8_t> stays(order.size(), stream);
+  for_each(order.size(), stream, "remove points",
+           [order = order.data(), classes = classes.data(), table = table.data(),
+            stays = stays.data()] __device__(std::uint64_t i) {
+             stays[i] = table[classes[order[i]]] == 0;
+           });
+  return gather(order, flagged(stays.data(), stays.size(), stream), stream);
+}
+
+}  // namespace
+
+DeviceCloud copy_to_device(const PointCloud& cloud, cudaStream_t stream) {
+  if (cloud.size() >= std::size_t{1} << 31)
+    throw Error(ErrorKind::unavailable, "2^31 points or more do not fit a GPU; use --device cpu");
+  return {copied(cloud.positions, stream),    copied(cloud.sensor_positions, stream),
+          copied(cloud.origin_kinds, stream), copied(cloud.intensities, stream),
+          copied(cloud.classes, stream),      copied(cloud.instances, stream),
+          copied(cloud.scan_indices, stream)};
+}
+
+template <class T>
+DeviceBuffer<T> gather(const DeviceBuffer<T>& values, const DeviceBuffer<std::uint32_t>& indices,
+                       cudaStream_t stream) {
+  if (values.empty()) return {};
+  DeviceBuffer<T> result(indices.size(), stream);
+  for_each(indices.size(), stream, "gather points",
+           [from = values.data(), at = indices.data(),
+            to = result.data()] __device__(std::uint64_t i) { to[i] = from[at[i]]; });
+  return result;
+}
+
+template DeviceBuffer<SemanticGroup> gather(const DeviceBuffer<SemanticGroup>&,
+                                            const DeviceBuffer<std::uint32_t>&, cudaStream_t);
+template DeviceBuffer<OriginKind> gather(const DeviceBuffer<OriginKind>&,
+                                         const DeviceBuffer<std::uint32_t>&, cudaStream_t);
+template DeviceBuffer<std::uint16_t> gather(const DeviceBuffer<std::uint16_t>&,
+                                            const DeviceBuffer<std::uint32_t>&, cudaStream_t);
+template DeviceBuffer<std::uint32_t> gather(const DeviceBuffer<std::uint32_t>&,
+                                            const DeviceBuffer<std::uint32_t>&, cudaStream_t);
+template DeviceBuffer<float> gather(const DeviceBuffer<float>&, const DeviceBuffer<std::uint32_t>&,
+                                    cudaStream_t);
+template DeviceBuffer<Vec3f> gather(const DeviceBuffer<Vec3f>&, const DeviceBuffer<std::uint32_t>&,
+                                    cudaStream_t);
+template DeviceBuffer<Disk> gather(const DeviceBuffer<Disk>&, const DeviceBuffer<std::uint32_t>&,
+                                   cudaStream_t);
+
+DeviceCloud gather(const DeviceCloud& cloud, const DeviceBuffer<std::uint32_t>& indices,
+                   cudaStream_t stream) {
+  return {
+      gather(cloud.positions, indices, stream),    gather(cloud.sensor_positions, indices, stream),
+      gather(cloud.origin_kinds, indices, stream), gather(cloud.intensities, indices, stream),
+      gather(cloud.classes, indices, stream),      gather(cloud.instances, indices, stream),
+      gather(cloud.scan_indices, indices, stream)};
+}
+
+template <class T>
+DeviceBuffer<T> concatenate(std::span<const DeviceBuffer<T>* const> parts, cudaStream_t stream) {
+  std::size_t size = 0;
+  for (const DeviceBuffer<T>* part : parts) size += part->size();
+  DeviceBuffer<T> whole(size, stream);
+  std::size_t at = 0;
+  for (const DeviceBuffer<T>* part : parts) {
+    if (part->empty()) continue;
+    cuda_check(cudaMemcpyAsync(whole.data() + at, part->data(), part->bytes(),
+                               cudaMemcpyDeviceToDevice, stream),
+               "put points together");
+    at += part->size();
+  }
+  return whole;
+}
+
+template DeviceBuffer<SemanticGroup> concatenate(
+    std::span<const DeviceBuffer<SemanticGroup>* const>, cudaStream_t);
+
+DeviceCloud concatenate(std::span<const DeviceCloud* const> clouds, cudaStream_t stream) {
+  return {concatenated(clouds, &DeviceCloud::positions, stream),
+          concatenated(clouds, &DeviceCloud::sensor_positions, stream),
+          concatenated(clouds, &DeviceCloud::origin_kinds, stream),
+          concatenated(clouds, &DeviceCloud::intensities, stream),
+          concatenated(clouds, &DeviceCloud::classes, stream),
+          concatenated(clouds, &DeviceCloud::instances, stream),
+          concatenated(clouds, &DeviceCloud::scan_indices, stream)};
+}
+
+bool has_all_origins(const DeviceCloud& cloud, cudaStream_t stream) {
+  if (cloud.sensor_positions.empty()) return false;
+  if (cloud.origin_kinds.empty()) return true;
+  DeviceBuffer<std::uint32_t> unknown(1, stream);
+  unknown.fill_bytes(0);
+  for_each(cloud.size(), stream, "look at origins",
+           [kinds = cloud.origin_kinds.data(), to = unknown.data()] __device__(std::uint64_t i) {
+             if (!is_known(kinds[i])) *to = 1;
+           });
+  return read_value(unknown.data(), stream) == 0;
+}
+
+DeviceBuffer<std::uint32_t> canonical_order(const DeviceCloud& cloud, cudaStream_t stream) {
+  std::vector<TieBreaker> more;  // the least important first
+  if (!cloud.origin_kinds.empty()) {
+    more.push_back(
+        TieBreaker::of(reinterpret_cast<const std::uint8_t*>(cloud.origin_kinds.data())));
+  }
+  if (!cloud.sensor_positions.empty())
+    for (int axis = 2; axis >= 0; --axis)
+      more.push_back(TieBreaker::of(cloud.sensor_positions.data(), axis));
+  const auto add = [&](const auto& values) {
+    if (!values.empty()) more.push_back(TieBreaker::of(values.data()));
+  };
+  add(cloud.intensities);
+  add(cloud.scan_indices);
+  add(cloud.instances);
+  add(cloud.classes);
+  return hilbert_order(cloud.positions.data(), cloud.size(), stream, more);
+}
+
+DeviceCloud load_in_order(const PointCloud& cloud, std::span<const std::uint8_t> removed,
+                          cudaStream_t stream) {
+  const DeviceCloud unordered = copy_to_device(cloud, stream);
+  DeviceBuffer<std::uint32_t> order = canonical_order(unordered, stream);
+  if (!removed.empty() && !order.empty())
+    order = without_classes(order, unordered.classes, removed, stream);
+  return gather(unordered, order, stream);
+}
+
+}  // namespace adasplats::gpu

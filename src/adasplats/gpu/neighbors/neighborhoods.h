@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "adasplats/core/vec3.h"
+#include "adasplats/gpu/base/device_memory.h"
+
+namespace adasplats::gpu {
+
+/// Private to gpu/: what kernels read of a DevicePointIndex. Boxes of a level stand in groups of 32
+/// that have the same parent; absent ones are inverted and infinitely far.
+struct PointIndexView {
+  static constexpr std::uint32_t kChildren = 32;  ///< of a node, and points of a leaf
+  static constexpr std::uint32_t kMostLevels = 6;
+
+  const float* coordinates[3] = {};  ///< by rank, padded to whole leaves with infinity
+  const float* low[3] = {};          ///< of the boxes of all levels
+  const float* high[3] = {};
+  std::uint32_t begins[kMostLevels] = {};  ///< where a level's boxes begin; level 0 are the leaves
+  std::uint32_t levels = 0;                ///< the last has one group of boxes
+  std::uint32_t leaves = 0;
+  std::uint32_t size = 0;
+};
+
+/// Private to gpu/: points along a curve (Hilbert order) under an implicit 32-ary tree of bounding
+/// boxes, in device memory: a leaf holds 32 consecutive points, a node 32 consecutive nodes of the
+/// level below, so that a warp tests a node at once. A rank is the index of a point. What
+/// neighborhoods.cuh finds in it are the sets that PointIndex finds. Needs 13 bytes a point.
+class DevicePointIndex {
+ public:
+  /// The longest neighbourhood that can be searched.
+  static constexpr std::uint32_t kMostNeighbors = 512;
+
+  /// `points`: device memory, copied. Errors: unavailable (2^31 points or more).
+  DevicePointIndex(const Vec3f* points, std::size_t count, cudaStream_t stream);
+
+  std::size_t size() const { return view_.size; }
+  const PointIndexView& view() const { return view_; }
+
+ private:
+  PointIndexView view_;
+  DeviceBuffer<float> coordinates_;
+  DeviceBuffer<float> boxes_;
+};
+
+/// Refuses neighbourhoods of more points than DevicePointIndex::kMostNeighbors.
+/// Errors: usage, with what to do.
+void check_neighbors(std::uint64_t neighbors);
+
+/// Number of points within the radius of every point, by rank, itself included: as
+/// PointIndex::count_within.
+DeviceBuffer<std::uint32_t> count_within(const DevicePointIndex& index, float radius,
+                                         cudaStream_t stream);
+
+}  // namespace adasplats::gpu

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "adasplats/gpu/base/launch.cuh"
+#include "adasplats/gpu/base/sort_keys.h"
+#include "adasplats/gpu/base/warp.cuh"
+#include "adasplats/gpu/neighbors/neighborhoods.cuh"
+#include "adasplats/gpu/neighbors/neighborhoods_lists.h"
+
+namespace adasplats::gpu {
+
+template <class F>
+__global__ void __launch_bounds__(kBlockThreads) for_each_warp_kernel(std::uint64_t count, F body) {
+  constexpr std::uint32_t kWarps = kBlockThreads / kWarpLanes;
+  const std::uint64_t i = std::uint64_t{blockIdx.x} * kWarps + threadIdx.x / kWarpLanes;
+  if (i < count) body(static_cast<std::uint32_t>(i));
+}
+
+/// Private to gpu/: calls body(i) for i in [0, count), each with the 32 lanes of a warp.
+template <class F>
+void for_each_warp(std::uint64_t count, cudaStream_t stream, const char* doing, F body) {
+  if (count == 0) return;
+  constexpr std::uint32_t kWarps = kBlockThreads / kWarpLanes;
+  const auto blocks = static_cast<unsigned>((count + kWarps - 1) / kWarps);
+  for_each_warp_kernel<<<blocks, kBlockThreads, 0, stream>>>(count, body);
+  cuda_check(cudaGetLastError(), doing);
+}
+
+/// Leaves the members of a list for which keep(rank) holds, in their order; all lanes of a warp.
+template <class Keep>
+__device__ void keep_in_list(const ListsView& lists, std::uint32_t point, const Keep& keep) {
+  std::uint32_t* ranks = lists.of(point);
+  const std::uint32_t size = lists.sizes[point];
+  std::uint32_t kept = 0;
+  for (std::uint32_t begin = 0; begin < size; begin += kWarpLanes) {
+    const std::uint32_t at = begin + lane_of_thread();
+    const std::uint32_t rank = at < size ? ranks[at] : 0;
+    const bool stays = at < size && keep(rank);
+    const std::uint32_t lanes = __ballot_sync(kAllLanes, stays);
+    // Members move forward only, over ones that were read.
+    if (stays) ranks[kept + lanes_before(lanes)] = rank;
+    kept += __popc(lanes);
+  }
+  if (lane_of_thread() == 0) lists.sizes[point] = kept;
+}
+
+/// The neighbourhoods of all indexed points as lists of ranks in no order. limit(rank) as
+/// for_each_neighborhood takes it, `most` the largest count; the list is empty where nothing is
+/// wanted. also(rank, keys, size) is called for the others by all lanes of a warp.
+/// Errors: usage (`most` is too large).
+template <bool kAscending = false, class Limit, class Also>
+DeviceLists find_lists(const DevicePointIndex& index, std::uint64_t most, cudaStream_t stream,
+                       const char* doing, Limit limit, Also also) {
+  DeviceLists lists;
+  const auto size = static_cast<std::uint32_t>(index.size());
+  lists.sizes = DeviceBuffer<std::uint32_t>(size, stream);
+  for_each(size, stream, doing, [limit, size, to = lists.sizes.data()] __device__(std::uint64_t i) {
+    const NeighborLimit own = limit(static_cast<std::uint32_t>(i));
+    to[i] = own.squared_radius >= 0.0F ? ::min(own.count, size) : 0;
+  });
+  lists.begins = running_sums(lists.sizes.data(), size, stream);
+  lists.ranks = DeviceBuffer<std::uint32_t>(read_value(lists.begins.data() + size, stream), stream);
+  lists.sizes.fill_bytes(0);
+  for_each_neighborhood_of<kAscending>(
+      most, index, stream, doing, limit,
+      [also, view = lists.view()] __device__(std::uint32_t rank, const std::uint64_t* keys,
+                                             std::uint32_t count) {
+        for (std::uint32_t k = lane_of_thread(); k < count; k += kWarpLanes)
+          view.of(rank)[k] = static_cast<std::uint32_t>(keys[k]);
+        if (lane_of_thread() == 0) view.sizes[rank] = count;
+        also(rank, keys, count);
+      });
+  return lists;
+}
+
+}  // namespace adasplats::gpu

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "adasplats/core/ray.h"
+#include "adasplats/gpu/trace/ray_source.h"
+#include "adasplats/scene/intersect.h"
+
+namespace adasplats::gpu {
+
+/// A disk as the intersection program reads it: two loads of 16 bytes.
+struct alignas(16) DiskRecord {
+  Disk disk;
+  float unused = 0;
+};
+static_assert(sizeof(DiskRecord) == 32);
+
+/// A triangle likewise: three loads.
+struct alignas(16) TriangleRecord {
+  Triangle triangle;
+  float unused[3] = {};
+};
+static_assert(sizeof(TriangleRecord) == 48);
+
+/// Private to gpu/: what a launch of the OptiX programs reads. The host fills it; the programs
+/// (optix_programs.cu) are compiled on their own, for the driver.
+struct OptixParams {
+  RaySource source;
+  std::uint64_t first_ray = 0;    ///< of the source, in this launch
+  std::uint64_t first_place = 0;  ///< place_of_ray() of what `hits` begins with
+  Hit* hits = nullptr;            ///< `depth` for each ray
+  std::uint64_t scene = 0;        ///< optix::Traversable
+  const DiskRecord* disks = nullptr;
+  const TriangleRecord* triangles = nullptr;
+  std::uint32_t disk_count = 0;
+  std::uint32_t depth = 1;
+};
+static_assert(std::is_trivially_copyable_v<OptixParams>);
+
+/// Rays of a scene are cast for one of these; the index into hit groups and pipelines.
+enum class OptixQuery : std::uint32_t {
+  nearest,  ///< the nearest hit, kept in two payload registers
+  several,  ///< the nearest `depth` hits, kept in a list in memory
+};
+inline constexpr std::uint32_t kOptixQueries = 2;
+
+}  // namespace adasplats::gpu

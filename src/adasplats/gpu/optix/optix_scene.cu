@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/gpu/base/launch.cuh"
+#include "adasplats/gpu/optix/optix_pipeline.h"
+#include "adasplats/gpu/trace/device_scene.h"
+
+namespace adasplats::gpu {
+namespace {
+
+/// A box for a primitive that has none, which no ray hits either: one point.
+__device__ optix::Box box_of(Vec3f low, Vec3f high) {
+  if (!is_finite(low) || !is_finite(high)) return {{0, 0, 0}, {0, 0, 0}};
+  return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
+}
+
+__device__ optix::Box box_of(const Disk& disk) {
+  const Vec3f half = disk_half_extent(disk);
+  return box_of(disk.center - half, disk.center + half);
+}
+
+__device__ optix::Box box_of(const Triangle& triangle) {
+  const Vec3f low = min(min(triangle.a, triangle.b), triangle.c);
+  const Vec3f high = max(max(triangle.a, triangle.b), triangle.c);
+  const Vec3f reach = max(max(low, -low), max(high, -high));
+  const float margin = box_margin(fmaxf(reach.x, fmaxf(reach.y, reach.z)));
+  return box_of(low - Vec3f{margin, margin, margin}, high + Vec3f{margin, margin, margin});
+}
+
+DeviceBuffer<TriangleRecord> triangle_records(const SceneView& scene, cudaStream_t stream) {
+  std::vector<TriangleRecord> records(scene.triangle_count());
+  for (std::size_t i = 0; i < records.size(); ++i) records[i].triangle = scene.mesh->triangle(i);
+  return {std::span<const TriangleRecord>(records), stream};
+}
+
+__device__ optix::Box box_of(const DiskRecord& record) { return box_of(record.disk); }
+__device__ optix::Box box_of(const TriangleRecord& record) { return box_of(record.triangle); }
+
+template <class Record>
+DeviceBuffer<optix::Box> boxes_of(const DeviceBuffer<Record>& records, cudaStream_t stream) {
+  DeviceBuffer<optix::Box> boxes(records.size(), stream);
+  for_each(records.size(), stream, "make boxes",
+           [from = records.data(), to = boxes.data()] __device__(std::uint64_t i) {
+             to[i] = box_of(from[i]);
+           });
+  return boxes;
+}
+
+DeviceBuffer<DiskRecord> disk_records(std::span<const Disk> disks, cudaStream_t stream) {
+  const DeviceBuffer<Disk> packed(disks, stream);
+  DeviceBuffer<DiskRecord> records(disks.size(), stream);
+  for_each(disks.size(), stream, "copy the disks",
+           [from = packed.data(), to = records.data()] __device__(std::uint64_t i) {
+             to[i] = {from[i], 0.0F};
+           });
+  return records;
+}
+
+optix::DeviceAddress address(const void* memory) {
+  return reinterpret_cast<optix::DeviceAddress>(memory);
+}
+
+/// Disks and triangles are primitives of ours, not OptiX's triangles: so THE intersection functions
+/// decide and hits have the CPU's bits; their boxes carry the margin that keeps any from being lost
+/// by a box test in single precision. How OptiX tests boxes is not documented: the tests allow no
+/// difference, but cards with RT cores have not been measured (docs/performance.md).
+class OptixScene final : public DeviceScene {
+ public:
+  explicit OptixScene(const SceneView& scene)
+      : pipeline_(stream_.get()),
+        disks_(disk_records(scene.disks, stream_.get())),
+        triangles_(triangle_records(scene, stream_.get())) {
+    if (scene.primitive_count() > 0) build();
+    stream_.wait("build a scene for OptiX");
+  }
+
+  std::string_view name() const override { return "optix"; }
+
+  void cast(const RaySource& source, std::uint64_t count, int depth, Hit* hits,
+            cudaStream_t stream) const override {
+    if (count == 0) return;
+    if (depth == 1) {
+      cast_to(source, 0, count, 1, hits, 0, stream);
+    } else if (is_on_device(hits)) {
+      cast_to(source, 0, count, static_cast<std::uint32_t>(depth), hits, 0, stream);
+    } else {
+      cast_to_host(source, count, static_cast<std::uint32_t>(depth), hits, stream);
+    }
+  }
+
+ private:
+  void build() {
+    const auto disks = boxes_of(disks_, stream_.get());
+    const auto triangles = boxes_of(triangles_, stream_.get());
+    const std::array boxes = {address(disks.data()), address(triangles.data())};
+    const std::array counts = {disks.size(), triangles.size()};
+    // One set of flags a record: no program of ours is an any-hit program.
+    constexpr unsigned kNoAnyHit = 1;
+    std::vector<optix::BuildInput> inputs;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (counts[i] == 0) continue;
+      optix::BuildInput& input = inputs.emplace_back();
+      input.primitives.boxes = &boxes[i];
+      input.primitives.count = static_cast<unsigned>(counts[i]);
+      input.primitives.flags = &kNoAnyHit;
+      input.primitives.first_index = i == 0 ? 0 : static_cast<unsigned>(counts[0]);
+    }
+    build(inputs);
+  }
+
+  void build(std::span<const optix::BuildInput> inputs) {
+    const optix::Functions& optix = pipeline_.optix();
+    const OptixLibrary& library = pipeline_.library();
+    const auto input_count = static_cast<unsigned>(inputs.size());
+    const optix::BuildOptions options;
+    optix::BuildSizes sizes;
+    library.check(
+        optix.build_sizes(pipeline_.context(), &options, inputs.data(), input_count, &sizes),
+        "plan a scene");
+    const DeviceBuffer<std::byte> temporary(sizes.temporary, stream_.get());
+    const DeviceBuffer<std::size_t> compacted_size(1, stream_.get());
+    tree_ = {sizes.output, stream_.get()};
+    const optix::EmittedProperty property = {address(compacted_size.data())};
+    library.check(optix.build(pipeline_.context(), stream_.get(), &options, inputs.data(),
+                              input_count, address(temporary.data()), temporary.bytes(),
+                              address(tree_.data()), tree_.bytes(), &traversable_, &property, 1),
+                  "build a scene");
+    compact(compacted_size.download()[0]);
+  }
+
+  void compact(std::size_t bytes) {
+    if (bytes >= tree_.bytes()) return;
+    DeviceBuffer<std::byte> smaller(bytes, stream_.get());
+    pipeline_.library().check(
+        pipeline_.optix().compact(pipeline_.context(), stream_.get(), traversable_,
+                                  address(smaller.data()), smaller.bytes(), &traversable_),
+        "compact a scene");
+    tree_ = std::move(smaller);
+  }
+
+  /// Rays [first, first + count) of the source. `hits` begins with those of place `first_place`.
+  void cast_to(const RaySource& source, std::uint64_t first, std::uint64_t count,
+               std::uint32_t depth, Hit* hits, std::uint64_t first_place,
+               cudaStream_t stream) const {
+    OptixParams parameters;
+    parameters.source = source;
+    parameters.first_place = first_place;
+    parameters.hits = hits;
+    parameters.scene = traversable_;
+    parameters.disks = disks_.data();
+    parameters.triangles = triangles_.data();
+    parameters.disk_count = static_cast<std::uint32_t>(disks_.size());
+    parameters.depth = depth;
+    const OptixQuery query = depth == 1 ? OptixQuery::nearest : OptixQuery::several;
+    for (std::uint64_t done = 0; done < count; done += optix::kMaxLaunch) {
+      parameters.first_ray = first + done;
+      // Memory in the order of the stream: other casts may still be reading theirs.
+      const DeviceBuffer<OptixParams> there({&parameters, 1}, stream);
+      pipeline_.launch(query, !disks_.empty(), there.data(),
+                       std::min<std::uint64_t>(count - done, optix::kMaxLaunch), stream);
+    }
+  }
+
+  static bool is_on_device(const Hit* hits) {
+    cudaPointerAttributes attributes{};
+    cuda_check(cudaPointerGetAttributes(&attributes, hits), "look at the memory for hits");
+    return attributes.type == cudaMemoryTypeDevice;
+  }
+
+  /// Lists are made in device memory, a part of the rays at a time: they are read and written
+  /// often.
+  void cast_to_host(const RaySource& source, std::uint64_t count, std::uint32_t depth, Hit* hits,
+                    cudaStream_t stream) const {
+    constexpr std::uint64_t kMostHits = std::uint64_t{1} << 24U;  // 128 MB
+    // Whole scans: within one, hits may come in another order than rays.
+    const std::uint64_t scan = source.order == nullptr ? 1 : source.firing_count;
+    const std::uint64_t part =
+        std::min(count, std::max<std::uint64_t>(kMostHits / depth / scan, 1) * scan);
+    const DeviceBuffer<Hit> lists(part * depth, stream);
+    for (std::uint64_t done = 0; done < count; done += part) {
+      const std::uint64_t rays = std::min(part, count - done);
+      cast_to(source, done, rays, depth, lists.data(), done, stream);
+      cuda_check(cudaMemcpyAsync(hits + done * depth, lists.data(), rays * depth * sizeof(Hit),
+                                 cudaMemcpyDefault, stream),
+                 "copy hits from the GPU");
+    }
+  }
+
+  Stream stream_;  // of what the scene holds
+  OptixPipeline pipeline_;
+  DeviceBuffer<DiskRecord> disks_;
+  DeviceBuffer<TriangleRecord> triangles_;
+  DeviceBuffer<std::byte> tree_;
+  optix::Traversable traversable_ = 0;  ///< 0, an empty scene: every ray misses
+};
+
+}  // namespace
+
+std::unique_ptr<DeviceScene> make_optix_scene(const SceneView& scene) {
+  if (scene.primitive_count() > optix::kMaxPrimitives) {
+    throw Error(ErrorKind::data, "the scene has " + std::to_string(scene.primitive_count()) +
+                                     " primitives and OptiX takes at most " +
+                                     std::to_string(optix::kMaxPrimitives) + "; use --device cuda");
+  }
+  return std::make_unique<OptixScene>(scene);
+}
+
+}  // namespace adasplats::gpu

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "adasplats/gpu/neighbors/cloud_on_device.h"
+#include "adasplats/gpu/paper/paper_generation.h"
+#include "adasplats/splats/build_model.h"
+
+namespace adasplats::gpu {
+
+/// Private to gpu/: a ResampledCloud in device memory.
+struct DeviceResampled {
+  DeviceCloud cloud;
+  DeviceBuffer<SemanticGroup> groups;
+  std::size_t new_points = 0;
+};
+
+/// What resample() gives, the same bits, but in canonical order.
+/// Errors: usage (splats are too dense for a GPU).
+DeviceResampled resample(const DeviceCloud& cloud, const DeviceGeneration& first,
+                         const BuildOptions& options, cudaStream_t stream);
+
+}  // namespace adasplats::gpu

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#if defined(ADASPLATS_HAVE_CUDA)
+#include "adasplats/gpu/simulate/gpu_scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/gpu/base/device.h"
+#include "adasplats/gpu/simulate/gpu_renderer.h"
+#include "adasplats/gpu/simulate/gpu_scanner.h"
+#include "adasplats/gpu/trace/gpu_tracer.h"
+#include "adasplats/simulate/shading.h"
+
+namespace adasplats {
+
+using gpu::cuda_check;
+using gpu::DeviceGuard;
+using gpu::DevicePart;
+using gpu::SceneParts;
+
+namespace {
+
+bool same_firing(const Firing& a, const Firing& b) {
+  const auto same = [](Vec3f u, Vec3f v) { return u.x == v.x && u.y == v.y && u.z == v.z; };
+  return same(a.direction, b.direction) && same(a.origin, b.origin) && a.ring == b.ring &&
+         a.column == b.column && a.time_s == b.time_s;
+}
+
+/// Keeps the scanner of the sensor that was used last: a sensor that is driven casts scan by scan,
+/// and putting its rays in order and on the GPU takes longer than casting them.
+class SceneScanCaster final : public ScanCaster {
+ public:
+  explicit SceneScanCaster(const SceneParts& parts) : parts_(parts) {}
+
+  CastTimes cast(const LidarModel& sensor, std::span<const Firing> firings,
+                 std::span<const ScanMotion> scans, int depth, Sink sink) const override {
+    if (scans.empty()) return {};
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    // Another thread, or a sink that casts, has the kept one.
+    if (!lock) return cast_with(GpuScanner::Impl(parts_, sensor, firings), scans, depth, sink);
+    if (!kept_ || !is_kept(sensor, firings)) {
+      kept_.reset();  // its memory is free before the next one needs some
+      kept_.emplace(parts_, sensor, firings);
+    }
+    return cast_with(kept_->scanner, scans, depth, sink);
+  }
+
+ private:
+  struct Kept {
+    Kept(const SceneParts& parts, const LidarModel& sensor, std::span<const Firing> firings_in)
+        : scanner(parts, sensor, firings_in),
+          firings(firings_in.begin(), firings_in.end()),
+          min_range_m(sensor.min_range_m),
+          max_range_m(sensor.max_range_m) {}
+    GpuScanner::Impl scanner;
+    std::vector<Firing> firings;
+    double min_range_m, max_range_m;
+  };
+
+  bool is_kept(const LidarModel& sensor, std::span<const Firing> firings) const {
+    return kept_->min_range_m == sensor.min_range_m && kept_->max_range_m == sensor.max_range_m &&
+           std::equal(firings.begin(), firings.end(), kept_->firings.begin(), kept_->firings.end(),
+                      same_firing);
+  }
+
+  static CastTimes cast_with(GpuScanner::Impl&& scanner, std::span<const ScanMotion> scans,
+                             int depth, Sink sink) {
+    return cast_with(scanner, scans, depth, sink);
+  }
+  static CastTimes cast_with(GpuScanner::Impl& scanner, std::span<const ScanMotion> scans,
+                             int depth, Sink sink) {
+    const std::size_t hits = scanner.firings() * static_cast<std::size_t>(depth);
+    return scanner.cast(scans, GpuScanner::Impl::Results::hits, depth,
+                        [&](std::size_t scan, const std::uint8_t* results) {
+                          sink(scan, {reinterpret_cast<const Hit*>(results), hits});
+                        });
+  }
+
+  const SceneParts& parts_;
+  mutable std::mutex mutex_;
+  mutable std::optional<Kept> kept_;
+};
+
+void check_devices(const std::vector<int>& devices) {
+  const GpuSearch search = find_gpus();
+  if (search.devices.empty())
+    throw Error(ErrorKind::unavailable, "cannot trace on a GPU: " + search.reason);
+  if (devices.empty()) throw Error(ErrorKind::usage, "no GPU was named");
+  for (const int device : devices) {
+    bool known = false;
+    for (const GpuDevice& found : search.devices) known = known || found.index == device;
+    if (known) continue;
+    throw Error(ErrorKind::unavailable, "there is no GPU " + std::to_string(device) +
+                                            ": CUDA sees " + std::to_string(search.devices.size()) +
+                                            ", numbered from 0");
+  }
+}
+
+}  // namespace
+
+struct GpuScene::Impl {
+  SceneParts parts;
+  std::unique_ptr<Tracer> tracer;
+  std::unique_ptr<SceneScanCaster> caster;
+  double build_seconds = 0;
+
+  ~Impl() {
+    caster.reset();
+    tracer.reset();
+    for (DevicePart& part : parts.parts) {
+      const DeviceGuard guard(part.device);
+      part.scene.reset();
+    }
+  }
+};
+
+GpuScene::GpuScene(const SceneView& scene, Vec3d origin, GpuBackend backend,
+                   const std::vector<int>& devices)
+    : impl_(std::make_unique<Impl>()) {
+  check_devices(devices);
+  impl_->parts.origin = origin;
+  for (const int device : devices) {
+    const DeviceGuard guard(device);
+    cuda_check(cudaFree(nullptr), "start CUDA");  // its start is not part of the building
+    const auto start = std::chrono::steady_clock::now();
+    impl_->parts.parts.push_back({device, backend == GpuBackend::optix
+                                              ? gpu::make_optix_scene(scene)
+                                              : gpu::make_cuda_scene(scene)});
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    if (impl_->parts.parts.size() == 1) impl_->build_seconds = took.count();
+  }
+  impl_->tracer = gpu::make_gpu_tracer(*impl_->parts.first().scene, impl_->parts.first().device);
+  impl_->caster = std::make_unique<SceneScanCaster>(impl_->parts);
+}
+
+GpuScene::~GpuScene() = default;
+GpuScene::GpuScene(GpuScene&&) noexcept = default;
+GpuScene& GpuScene::operator=(GpuScene&&) noexcept = default;
+
+std::string_view GpuScene::name() const { return impl_->parts.first().scene->name(); }
+double GpuScene::build_seconds() const { return impl_->build_seconds; }
+const Tracer& GpuScene::tracer() const { return *impl_->tracer; }
+const ScanCaster& GpuScene::scan_caster() const { return *impl_->caster; }
+
+std::unique_ptr<GpuScanner> GpuScene::scanner(const LidarModel& sensor,
+                                              std::span<const Firing> firings) const {
+  return std::unique_ptr<GpuScanner>(
+      new GpuScanner(std::make_unique<GpuScanner::Impl>(impl_->parts, sensor, firings)));
+}
+
+std::unique_ptr<GpuRenderer> GpuScene::renderer(const ImageScene& scene,
+                                                const ImageOptions& options) const {
+  return std::unique_ptr<GpuRenderer>(
+      new GpuRenderer(std::make_unique<GpuRenderer::Impl>(impl_->parts, scene, options)));
+}
+
+Image GpuScene::render(const ImageScene& scene, const Camera& camera,
+                       const ImageOptions& options) const {
+  check_image(camera, options);
+  return renderer(scene, options)->render(camera);
+}
+
+}  // namespace adasplats
+#endif
