@@ -16,8 +16,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "adasplats/cloud/kitti_sequence.h"
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/neighbors/point_index.h"
 

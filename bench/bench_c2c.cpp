@@ -17,7 +17,7 @@
 #include <optional>
 #include <string>
 
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/random.h"
 #include "adasplats/evaluate/cloud_metrics.h"

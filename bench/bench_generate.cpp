@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/memory.h"
 #include "adasplats/splats/build_model.h"

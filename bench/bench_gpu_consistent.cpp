@@ -12,7 +12,7 @@
 #include <map>
 #include <string>
 
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/consistent/consistent_cuda.h"
 #include "adasplats/splats/consistent/consistent_steps.h"

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/gpu_model.h"
 #include "adasplats/pipeline/device_choice.h"

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/gpu/simulate/gpu_scene.h"
 #include "adasplats/pipeline/provenance.h"

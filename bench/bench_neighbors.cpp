@@ -11,7 +11,7 @@
 #include <nanoflann.hpp>
 #include <nlohmann/json.hpp>
 
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/neighbors/point_index.h"

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/evaluate/resimulate.h"
 #include "adasplats/pipeline/view_choice.h"
 #include "session.h"

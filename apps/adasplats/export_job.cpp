@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/cloud_glb.h"
-#include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/points/cloud_glb.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/dataset/mcap_writer.h"
 #include "adasplats/io/base/number_text.h"

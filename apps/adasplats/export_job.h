@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/pipeline/session.h"
 
 namespace adasplats::app {

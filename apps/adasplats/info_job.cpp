@@ -9,8 +9,8 @@
 #include <optional>
 #include <unordered_set>
 
-#include "adasplats/cloud/kitti_sequence.h"
-#include "adasplats/cloud/pose_check.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/pipeline/inputs.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "session.h"
 
 namespace adasplats::app {

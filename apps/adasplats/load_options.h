@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "option_set.h"
 
 namespace adasplats::app {

@@ -10,7 +10,7 @@
 #include "adasplats/baselines/imls_field.h"
 #include "adasplats/baselines/oriented_normals.h"
 #include "adasplats/baselines/poisson.h"
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/splats/build_model.h"
 #include "session.h"
 

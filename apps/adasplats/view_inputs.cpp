@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "adasplats/cloud/cloud_inputs.h"
-#include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/load/cloud_inputs.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/error_points.h"
 #include "adasplats/pipeline/inputs.h"

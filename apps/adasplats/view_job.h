@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "session.h"
 
 namespace adasplats::app {

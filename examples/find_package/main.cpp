@@ -10,8 +10,8 @@
 #include <memory>
 #include <utility>
 
-#include "adasplats/cloud/label_scheme.h"
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"

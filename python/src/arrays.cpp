@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "adasplats/cloud/rotation.h"
+#include "adasplats/cloud/poses/rotation.h"
 
 namespace adasplats::python {
 namespace {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "adasplats/cloud/load_cloud.h"
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "arrays.h"
 #include "keywords.h"
 

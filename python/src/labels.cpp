@@ -6,7 +6,7 @@
 #include <array>
 #include <tuple>
 
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "arrays.h"
 #include "bindings.h"
 #include "clouds.h"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/dataset/range_image.h"
 #include "adasplats/simulate/scan.h"
 #include "bindings.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes.h"
 
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "clouds.h"
 #include "models.h"
 

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/inputs.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/dynamic_removal.h"
+#include "adasplats/cloud/labels/dynamic_removal.h"
 #include "adasplats/core/vec3.h"
 #include "compare/comparison_data.h"
 #include "compare/steps.h"

@@ -7,8 +7,8 @@
 #include <cctype>
 #include <map>
 
-#include "adasplats/cloud/kitti_sequence.h"
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/symmetric_eigen.h"
 #include "adasplats/pipeline/inputs.h"

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/dynamic_removal.h"
-#include "adasplats/cloud/point_cloud.h"
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/labels/dynamic_removal.h"
+#include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/vec3.h"
 #include "session.h"
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/simulate/world.h"
 
 namespace adasplats {

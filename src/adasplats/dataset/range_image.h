@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/simulate/scan.h"
 
 namespace adasplats {

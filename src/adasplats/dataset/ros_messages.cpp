@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "adasplats/cloud/rotation.h"
+#include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/error.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/io/base/record_writer.h"

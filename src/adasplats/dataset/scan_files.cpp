@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "adasplats/cloud/rotation.h"
+#include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/io/arrays/npy.h"
 #include "adasplats/io/arrays/npz.h"

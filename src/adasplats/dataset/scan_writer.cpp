@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/dataset/mcap_writer.h"
 #include "adasplats/dataset/scan_files.h"
 #include "adasplats/dataset/scan_values.h"

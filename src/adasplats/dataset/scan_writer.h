@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/dataset/range_image.h"
 #include "adasplats/simulate/scan.h"
 

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "adasplats/cloud/kitti_sequence.h"
-#include "adasplats/cloud/temporary_folder_test.h"
+#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/dataset/numbered_scan_test.h"
 
 namespace adasplats {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/simulate/scan.h"
 
 namespace adasplats {

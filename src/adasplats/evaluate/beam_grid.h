@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {

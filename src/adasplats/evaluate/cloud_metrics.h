@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 
 namespace adasplats {

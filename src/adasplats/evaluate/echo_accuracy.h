@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/sensors/lidar_model.h"

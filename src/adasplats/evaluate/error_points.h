@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/cloud/kitti_sequence.h"
-#include "adasplats/cloud/label_scheme.h"
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/evaluate/resimulate.h"

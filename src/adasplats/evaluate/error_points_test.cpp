@@ -8,8 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "adasplats/cloud/load_cloud.h"
-#include "adasplats/cloud/temporary_folder_test.h"
+#include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/evaluate/cloud_metrics.h"
 
 namespace adasplats {

@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
-#include "adasplats/cloud/kitti_sequence.h"
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/label_scheme.h"
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/evaluate/resimulate.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/simulate/scan_motion.h"
 

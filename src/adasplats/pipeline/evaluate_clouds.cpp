@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/metrics_json.h"

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/label_scheme.h"
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/evaluate/cloud_metrics.h"
 #include "adasplats/pipeline/session.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/evaluate_labels.h"
 
-#include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/pipeline/inputs.h"
 
 namespace adasplats {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/evaluate/presence.h"
 #include "adasplats/pipeline/session.h"
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/evaluate_resimulation.h"
 
-#include "adasplats/cloud/kitti_sequence.h"
-#include "adasplats/cloud/pose_check.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/pipeline/inputs.h"
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/inputs.h"
 
-#include "adasplats/cloud/cloud_inputs.h"
-#include "adasplats/cloud/file_kind.h"
-#include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/load/cloud_inputs.h"
+#include "adasplats/cloud/load/file_kind.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 
 namespace adasplats {

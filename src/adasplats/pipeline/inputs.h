@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/label_scheme.h"
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/poses/trajectory.h"
 
 namespace adasplats {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "adasplats/cloud/dynamic_removal.h"
+#include "adasplats/cloud/labels/dynamic_removal.h"
 #include "adasplats/core/progress.h"
 
 namespace adasplats {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/pipeline/session.h"
 #include "adasplats/splats/build_model.h"
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "adasplats/cloud/cloud_inputs.h"
-#include "adasplats/cloud/file_kind.h"
+#include "adasplats/cloud/load/cloud_inputs.h"
+#include "adasplats/cloud/load/file_kind.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
 

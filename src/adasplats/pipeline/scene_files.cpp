@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/scene/gltf.h"
 #include "adasplats/simulate/world_file.h"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/sensors/camera.h"
 #include "adasplats/simulate/scan.h"

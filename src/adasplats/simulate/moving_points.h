@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "adasplats/cloud/kitti_sequence.h"
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/splats/reflectance/reflectance.h"

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "adasplats/cloud/label_scheme.h"
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/simulate/point_image.h"
 
 namespace adasplats {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/simulate/scan_ray.h"
 
 namespace adasplats {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/core/ray.h"
 #include "adasplats/scene/intersect.h"
 #include "adasplats/simulate/color_map.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/ray.h"
 #include "adasplats/scene/mesh_model.h"

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/dynamic_removal.h"
-#include "adasplats/cloud/label_scheme.h"
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/labels/dynamic_removal.h"
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/splats/consistent/consistent_model.h"

@@ -8,8 +8,8 @@
 #include <functional>
 #include <vector>
 
-#include "adasplats/cloud/point_cloud.h"
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/scene/scene.h"

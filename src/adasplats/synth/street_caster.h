@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/synth/mesh_builder.h"

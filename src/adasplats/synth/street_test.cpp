@@ -9,7 +9,7 @@
 #include <limits>
 #include <set>
 
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/core/error.h"
 #include "adasplats/synth/street_plan.h"
 

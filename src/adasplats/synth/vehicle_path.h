@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/synth/street.h"
 
 // Inside synth/: how the scanning vehicle drives, and what its positioning makes of it.

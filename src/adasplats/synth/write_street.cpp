@@ -5,7 +5,7 @@
 #include <string>
 #include <system_error>
 
-#include "adasplats/cloud/load_cloud.h"
+#include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/dataset/semantickitti_writer.h"
 #include "adasplats/io/ply/ply.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/ply/ply.h"
 #include "adasplats/synth/street.h"

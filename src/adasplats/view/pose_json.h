@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "adasplats/cloud/rotation.h"
+#include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/rigid_transform.h"
 
 namespace adasplats {

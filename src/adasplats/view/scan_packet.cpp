@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "adasplats/cloud/rotation.h"
+#include "adasplats/cloud/poses/rotation.h"
 
 namespace adasplats {
 namespace {

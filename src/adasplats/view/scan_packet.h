@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "adasplats/cloud/kitti_sequence.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/rigid_transform.h"
 #include "adasplats/core/vec3.h"
 #include "adasplats/simulate/scan.h"

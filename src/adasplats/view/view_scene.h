@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/kitti_sequence.h"
-#include "adasplats/cloud/label_scheme.h"
-#include "adasplats/cloud/point_cloud.h"
-#include "adasplats/cloud/trajectory.h"
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/pipeline/model_scene.h"
 #include "adasplats/serve/http_server.h"

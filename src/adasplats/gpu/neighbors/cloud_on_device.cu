@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <vector>
 
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/base/hilbert_order.h"
 #include "adasplats/gpu/base/launch.cuh"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/gpu/base/device_memory.h"
 
 namespace adasplats::gpu {

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/random.h"
 
 namespace adasplats {

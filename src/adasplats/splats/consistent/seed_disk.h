@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "adasplats/cloud/origin_kind.h"
+#include "adasplats/cloud/points/origin_kind.h"
 #include "adasplats/core/host_device.h"
 #include "adasplats/core/vec3.h"
 #include "adasplats/splats/consistent/consistent_model.h"

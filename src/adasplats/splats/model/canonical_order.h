@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 
 namespace adasplats {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "adasplats/cloud/rotation.h"
+#include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/ply/ply.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "adasplats/cloud/temporary_folder_test.h"
+#include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/core/random.h"
 #include "adasplats/core/rigid_transform.h"
 #include "adasplats/io/ply/ply.h"

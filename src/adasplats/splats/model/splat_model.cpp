@@ -9,7 +9,7 @@
 #include <optional>
 #include <sstream>
 
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/ply/ply.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/label_scheme.h"
+#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/core/vec3.h"
 #include "adasplats/scene/scene.h"
 #include "adasplats/splats/reflectance/reflectance.h"

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/cloud/label_scheme.h"
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/scene/intersect.h"
 #include "adasplats/splats/paper/generation.h"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/ray.h"
 #include "adasplats/scene/intersect.h"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/cloud/point_cloud.h"
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/scene/scene.h"
 #include "adasplats/trace/tracer.h"

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/dropped_points.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+
+namespace {
+
+std::string short_text(double value, int digits) {
+  std::array<char, 32> buffer;
+  const int length = std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, value);
+  return {buffer.data(), static_cast<std::size_t>(length)};
+}
+
+std::string percent_text(double share) { return short_text(100 * share, 3) + " %"; }
+
+/// "12 of 40 points (30 %)".
+std::string share_text(std::size_t part, std::size_t all) {
+  return std::to_string(part) + " of " + std::to_string(all) + " points (" +
+         percent_text(static_cast<double>(part) / static_cast<double>(all)) + ")";
+}
+
+}  // namespace
+
+void tell_dropped(const std::string& input, const LoadReport& report, const LoadOptions& options,
+                  ProgressSink& progress) {
+  const std::size_t all = report.points_read;
+  const double most = options.max_dropped * static_cast<double>(all);
+  const auto tell = [&](std::size_t points, const std::string& why, const std::string& cure) {
+    if (points == 0) return;
+    const std::string what = input + ": " + share_text(points, all) + " " + why;
+    if (!cure.empty() && static_cast<double>(points) > most)
+      throw Error(ErrorKind::data, what + ", more than " + percent_text(options.max_dropped) +
+                                       ": " + cure + "--max-dropped SHARE goes on without them");
+    progress.warn(what + ", dropped");
+  };
+  tell(report.no_returns, "are no returns (x, y and z are NaN)", "");
+  tell(report.dropped_not_finite - report.no_returns, "have a position that is not finite",
+       "look into what wrote them; ");
+  tell(report.dropped_far,
+       "are farther than " + short_text(options.max_distance_m, 9) + " m from the median of all",
+       "are these two places, or coordinates of two systems? --max-distance M keeps them, ");
+}
+
+void tell_own_body(const std::string& input, const LoadReport& report, const LoadOptions& options,
+                   ProgressSink& progress) {
+  if (report.own_body == 0) return;
+  progress.warn(input + ": " + share_text(report.own_body, report.points_read) +
+                (options.own_body_m
+                     ? " are nearer to their sensor than " + short_text(*options.own_body_m, 9) +
+                           " m, left out"
+                     : " go along with the sensor: the recording vehicle itself, left out "
+                       "(--own-body 0 keeps them)"));
+}
+
+void require_metres(const std::string& input, Vec3d low, Vec3d high) {
+  constexpr double kMostLongitude = 180, kMostLatitude = 90;
+  constexpr double kLeastSteepness = 1000;
+  const bool in_range = low.x >= -kMostLongitude && high.x <= kMostLongitude &&
+                        low.y >= -kMostLatitude && high.y <= kMostLatitude;
+  const bool holds_zero = low.x <= 0 && high.x >= 0 && low.y <= 0 && high.y >= 0;
+  const double width = std::max(high.x - low.x, high.y - low.y);
+  if (!in_range || holds_zero || !(width > 0)) return;
+  if (!(high.z - low.z > kLeastSteepness * width)) return;
+  throw Error(ErrorKind::data,
+              input + ": the points lie within " + short_text(high.x - low.x, 3) + " by " +
+                  short_text(high.y - low.y, 3) + " around x " + short_text(low.x, 6) + ", y " +
+                  short_text(low.y, 6) + " and differ by " + short_text(high.z - low.z, 3) +
+                  " in height: longitudes and latitudes; project them to metres first (UTM, say, "
+                  "with 'pdal translate IN OUT reprojection --filters.reprojection.out_srs=...')");
+}
+
+}  // namespace adasplats

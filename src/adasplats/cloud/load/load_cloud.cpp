@@ -1,0 +1,397 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/load_cloud.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "adasplats/cloud/load/cloud_inputs.h"
+#include "adasplats/cloud/load/cloud_part.h"
+#include "adasplats/cloud/load/dropped_points.h"
+#include "adasplats/cloud/load/own_body.h"
+#include "adasplats/cloud/load/point_origins.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/number_text.h"
+
+namespace adasplats {
+
+namespace {
+
+using Input = CloudInput;
+
+std::vector<Input> list_inputs(std::span<const std::filesystem::path> paths) {
+  if (paths.empty()) throw Error(ErrorKind::usage, "no inputs to load");
+  std::vector<Input> inputs, sequences;
+  for (const std::filesystem::path& path : paths) {
+    const std::vector<Input> found = cloud_inputs(path);
+    inputs.insert(inputs.end(), found.begin(), found.end());
+  }
+  std::ranges::copy_if(inputs, std::back_inserter(sequences), &Input::is_sequence);
+  if (sequences.size() > 1) require_one_world(sequences);
+  return inputs;
+}
+
+void require_options_that_fit(const LoadOptions& options, std::span<const Input> inputs) {
+  const auto usage = [](const std::string& message) { return Error(ErrorKind::usage, message); };
+  const bool any_sequence = std::ranges::any_of(inputs, &Input::is_sequence);
+  const bool any_file = !std::ranges::all_of(inputs, &Input::is_sequence);
+  const LoadOptions defaults;
+  const bool chooses_scans = options.first_scan != defaults.first_scan ||
+                             options.scan_count != defaults.scan_count ||
+                             options.scan_stride != defaults.scan_stride;
+  if (chooses_scans && !any_sequence)
+    throw usage("scans are chosen, but no input is a sequence folder");
+  if (options.scan_stride == 0) throw usage("a scan stride of 0");
+  if (options.scan_count == 0) throw usage("a scan count of 0");
+  const int sensor_fields = !options.sensor_x_field.empty() + !options.sensor_y_field.empty() +
+                            !options.sensor_z_field.empty();
+  if (sensor_fields != 0 && sensor_fields != 3)
+    throw usage("the columns of the sensor position are three or none");
+  if ((sensor_fields != 0 || !options.label_field.empty()) && !any_file)
+    throw usage("columns are named, but no input is a file of points");
+  if (options.beams_from_poses && !any_sequence)
+    throw usage("beams are to start at poses, but no input is a sequence folder");
+  if (options.viewpoint && !options.trajectory.empty())
+    throw usage("a viewpoint and a trajectory both give the sensor position");
+  if ((options.viewpoint || !options.trajectory.empty()) && !any_file)
+    throw usage("a sensor position is given, but every input has its own");
+  if (options.viewpoint && !is_place(*options.viewpoint))
+    throw usage("the viewpoint is not finite, or beyond 1e12 m");
+  if (!(options.max_distance_m > 0)) throw usage("a largest distance that is not positive");
+  if (!(options.max_dropped >= 0 && options.max_dropped <= 1))
+    throw usage("the largest share of points that may be dropped is 0 to 1");
+  if (options.own_body_m && !(*options.own_body_m >= 0 && std::isfinite(*options.own_body_m)))
+    throw usage("the radius of the recording vehicle's own body is negative or not finite");
+}
+
+std::vector<CloudPart> read_parts(std::span<const Input> inputs, const LoadOptions& options,
+                                  const Executor& executor, ProgressSink& progress) {
+  std::vector<CloudPart> parts;
+  std::size_t points = 0;
+  std::uint32_t scans = 0;
+  for (const Input& input : inputs) {
+    parts.push_back(input.is_sequence
+                        ? read_sequence_part(input.path, options, scans, executor, progress)
+                        : read_file_part(input.path, options, progress));
+    if (input.is_sequence) scans += static_cast<std::uint32_t>(parts.back().runs.size());
+    points += parts.back().size();
+    if (points > std::numeric_limits<std::uint32_t>::max())
+      throw Error(ErrorKind::data,
+                  input.path.string() + ": with it the cloud has more than 4294967295 points");
+  }
+  return parts;
+}
+
+/// Which points of a part stay, 1 or 0 each.
+using Kept = std::vector<std::uint8_t>;
+
+Kept finite_points(const CloudPart& part, const Executor& executor) {
+  Kept kept(part.size());
+  executor.for_chunks(part.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
+    part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
+      const bool finite = is_finite(world);
+      kept[i] = finite ? 1 : 0;
+    });
+  });
+  return kept;
+}
+
+std::size_t count_dropped(const Kept& kept) {
+  return static_cast<std::size_t>(std::ranges::count(kept, std::uint8_t{0}));
+}
+
+void require_all_finite(const CloudPart& part, const Kept& kept) {
+  const auto dropped = std::ranges::find(kept, std::uint8_t{0});
+  if (dropped == kept.end()) return;
+  const auto i = static_cast<std::size_t>(dropped - kept.begin());
+  const auto run = std::ranges::upper_bound(part.runs, i, {}, &PartRun::end);
+  throw Error(ErrorKind::data, run->file.string() + ": point " + std::to_string(i - run->begin) +
+                                   " (from 0) is not finite in position");
+}
+
+/// How many points have NaN in all three coordinates.
+std::size_t count_no_returns(const CloudPart& part, const Kept& kept) {
+  std::size_t count = 0;
+  if (count_dropped(kept) == 0) return count;
+  part.for_each(0, part.size(), [&](std::size_t i, Vec3d, const PartRun&) {
+    const Vec3d p =
+        part.is_sequence ? vec_cast<double>(part.cloud.positions[i]) : part.world_positions[i];
+    if (std::isnan(p.x) && std::isnan(p.y) && std::isnan(p.z)) ++count;
+  });
+  return count;
+}
+
+/// Makes what is not finite NaN: not known. Gives how many of the points that are kept have that.
+std::size_t mark_unknown(std::vector<float>& intensities, const Kept& kept) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < intensities.size(); ++i) {
+    if (std::isfinite(intensities[i])) continue;
+    intensities[i] = std::numeric_limits<float>::quiet_NaN();
+    if (kept[i] != 0) ++count;
+  }
+  return count;
+}
+
+/// What the inputs are called in a message about all of them.
+std::string name_of(std::span<const std::filesystem::path> inputs) {
+  return inputs.front().string() +
+         (inputs.size() == 1 ? "" : " and " + std::to_string(inputs.size() - 1) + " more inputs");
+}
+
+struct Extents {
+  Vec3d low{kNone, kNone, kNone};
+  Vec3d high{-kNone, -kNone, -kNone};
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  Extents& operator+=(const Extents& other) {
+    low = min(low, other.low);
+    high = max(high, other.high);
+    return *this;
+  }
+};
+
+Extents extents_of(const CloudPart& part, const Kept& kept, const Executor& executor) {
+  return executor.sum_chunks(
+      part.size(), kCoarseGrain, Extents{}, [&](std::size_t begin, std::size_t end) {
+        Extents extents;
+        part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
+          if (kept[i] != 0) extents += {world, world};
+        });
+        return extents;
+      });
+}
+
+/// The parts and what is known of their points on the way to one cloud.
+struct Gathered {
+  std::vector<CloudPart> parts;
+  std::vector<Kept> kept;  ///< one a part
+
+  Extents extents(const Executor& executor) const {
+    Extents all;
+    for (std::size_t p = 0; p < parts.size(); ++p) all += extents_of(parts[p], kept[p], executor);
+    return all;
+  }
+};
+
+/// The componentwise (lower) median. One axis at a time bounds the memory to 8 bytes a point.
+Vec3d median_of(const Gathered& gathered) {
+  Vec3d median;
+  std::vector<double> values;
+  for (int axis = 0; axis < 3; ++axis) {
+    values.clear();
+    for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
+      const CloudPart& part = gathered.parts[p];
+      part.for_each(0, part.size(), [&](std::size_t i, Vec3d world, const PartRun&) {
+        if (gathered.kept[p][i] != 0) values.push_back(world[axis]);
+      });
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    median[axis] = *middle;
+  }
+  return median;
+}
+
+/// Drops what is farther from the median than allowed; gives the extents of the rest.
+Extents drop_far(Gathered& gathered, double max_distance_m, const Executor& executor) {
+  const Extents all = gathered.extents(executor);
+  if (!(all.low.x <= all.high.x)) return all;  // no points
+  // Where the whole box is smaller than the distance no point is farther from any other.
+  if (is_place(all.low) && is_place(all.high) && length(all.high - all.low) <= max_distance_m)
+    return all;
+  const Vec3d median = median_of(gathered);
+  for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
+    const CloudPart& part = gathered.parts[p];
+    executor.for_chunks(part.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
+      part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
+        if (!is_place(world) || !(length(world - median) <= max_distance_m))
+          gathered.kept[p][i] = 0;
+      });
+    });
+  }
+  return gathered.extents(executor);
+}
+
+template <class T>
+void keep_only(std::vector<T>& values, const Kept& kept) {
+  if (values.empty()) return;
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (kept[i] != 0) values[end++] = values[i];
+  const bool is_much_smaller = end < values.size() / 4 * 3;
+  values.resize(end);
+  if (is_much_smaller) values.shrink_to_fit();
+}
+
+void keep_only(PointCloud& cloud, const Kept& kept) {
+  keep_only(cloud.positions, kept);
+  keep_only(cloud.sensor_positions, kept);
+  keep_only(cloud.origin_kinds, kept);
+  keep_only(cloud.intensities, kept);
+  keep_only(cloud.classes, kept);
+  keep_only(cloud.instances, kept);
+  keep_only(cloud.scan_indices, kept);
+}
+
+/// Throws data for a sensor position that is no place: a float of it would be infinite.
+void require_sensor_places(const CloudPart& part, const Kept& kept) {
+  for (std::size_t i = 0; i < part.world_sensors.size(); ++i) {
+    if (kept[i] == 0 || !is_finite(part.world_sensors[i]) || is_place(part.world_sensors[i]))
+      continue;
+    throw Error(ErrorKind::data, part.runs.front().file.string() +
+                                     ": the sensor position of point " + std::to_string(i) +
+                                     " (from 0) is beyond 1e12 m; expected metres, or NaN " +
+                                     "where it is not known");
+  }
+}
+
+/// The part's cloud relative to `origin`, without the points that are dropped.
+PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin, const PointOrigins& origins,
+                     const Executor& executor) {
+  const std::size_t points = part.size();
+  const bool has_sensors = origins.has_any(part);
+  const bool has_kinds = has_sensors && !part.is_sequence;
+  PointCloud cloud = std::move(part.cloud);
+  // The part keeps the positions, since for_each() reads them there; those of sequences are
+  // transformed in place, each read once, just before it is written. Likewise the kinds.
+  std::vector<Vec3f>& positions = part.cloud.positions;
+  positions = std::move(cloud.positions);
+  positions.resize(points);
+  part.cloud.origin_kinds = std::exchange(cloud.origin_kinds, {});
+  if (has_sensors) cloud.sensor_positions.resize(points);
+  if (has_kinds) cloud.origin_kinds.resize(points);
+  executor.for_chunks(points, kCoarseGrain, [&](std::size_t begin, std::size_t end) {
+    part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun& run) {
+      if (kept[i] == 0) return;
+      positions[i] = vec_cast<float>(world - origin);
+      if (!has_sensors) return;
+      const PointOrigin from = origins.of(part, i, world, run);
+      cloud.sensor_positions[i] = vec_cast<float>(from.world - origin);
+      if (has_kinds) cloud.origin_kinds[i] = from.kind;
+    });
+  });
+  cloud.origin = origin;
+  cloud.positions = std::move(positions);
+  part = {};
+  if (count_dropped(kept) > 0) keep_only(cloud, kept);
+  return cloud;
+}
+
+/// Gives every cloud sensor positions if any has them: a point without one has that of its own
+/// place and OriginKind::none. Leaves out the kinds where all are measured.
+void unify_origins(std::vector<PointCloud>& clouds) {
+  const auto has_sensors = [](const PointCloud& c) { return !c.sensor_positions.empty(); };
+  const auto all_measured = [](const PointCloud& c) {
+    return c.empty() ||
+           (!c.sensor_positions.empty() && std::ranges::all_of(c.origin_kinds, [](OriginKind kind) {
+             return kind == OriginKind::measured;
+           }));
+  };
+  if (std::ranges::none_of(clouds, has_sensors)) return;
+  const bool needs_kinds = !std::ranges::all_of(clouds, all_measured);
+  for (PointCloud& cloud : clouds) {
+    if (!needs_kinds) {
+      cloud.origin_kinds = {};
+    } else if (cloud.sensor_positions.empty()) {
+      cloud.sensor_positions = cloud.positions;
+      cloud.origin_kinds.assign(cloud.size(), OriginKind::none);
+    } else if (cloud.origin_kinds.empty()) {
+      cloud.origin_kinds.assign(cloud.size(), OriginKind::measured);
+    }
+  }
+}
+
+/// Empties an attribute that some clouds have and others lack.
+template <class T>
+void unify_attribute(std::vector<PointCloud>& clouds, std::vector<T> PointCloud::*attribute,
+                     const std::string& name, ProgressSink& progress) {
+  std::size_t with = 0, filled = 0;
+  for (const PointCloud& cloud : clouds) {
+    if (cloud.empty()) continue;
+    ++filled;
+    if (!(cloud.*attribute).empty()) ++with;
+  }
+  if (with == filled) return;
+  for (PointCloud& cloud : clouds) (cloud.*attribute) = {};
+  if (with != 0)
+    progress.warn(name + " dropped: " + std::to_string(with) + " of " + std::to_string(filled) +
+                  " inputs have them");
+}
+
+PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, ProgressSink& progress) {
+  unify_origins(clouds);
+  unify_attribute(clouds, &PointCloud::intensities, "intensities", progress);
+  unify_attribute(clouds, &PointCloud::classes, "classes", progress);
+  unify_attribute(clouds, &PointCloud::instances, "instances", progress);
+  unify_attribute(clouds, &PointCloud::scan_indices, "scan numbers", progress);
+  PointCloud all;
+  all.origin = origin;
+  for (PointCloud& cloud : clouds)
+    if (!cloud.empty()) append(all, std::move(cloud));
+  return all;
+}
+
+/// Leaves out the points on the vehicle that carried the sensor; gives how many.
+std::size_t drop_own_body(PointCloud& cloud, std::optional<double> radius_m,
+                          const Executor& executor) {
+  if (radius_m && *radius_m == 0) return 0;
+  if (radius_m && !cloud.has_beams()) {
+    throw Error(ErrorKind::usage,
+                "points near their sensor are to be left out, but no point says where it was");
+  }
+  Kept flags =
+      radius_m ? points_within(cloud, *radius_m, executor) : find_own_body(cloud, {}, executor);
+  if (flags.empty()) return 0;
+  for (std::uint8_t& flag : flags) flag = flag == 0 ? 1 : 0;
+  const std::size_t dropped = count_dropped(flags);
+  if (dropped > 0) keep_only(cloud, flags);
+  return dropped;
+}
+
+}  // namespace
+
+std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
+                                             const LoadOptions& options, const Executor& executor,
+                                             ProgressSink& progress) {
+  const std::vector<Input> listed = list_inputs(inputs);
+  require_options_that_fit(options, listed);
+  const PointOrigins origins(options);
+  Gathered gathered{read_parts(listed, options, executor, progress), {}};
+
+  LoadReport report;
+  for (CloudPart& part : gathered.parts) {
+    gathered.kept.push_back(finite_points(part, executor));
+    if (options.strict) require_all_finite(part, gathered.kept.back());
+    report.points_read += part.size();
+    if (part.is_sequence) report.beams.push_back(part.beams.description());
+    report.dropped_not_finite += count_dropped(gathered.kept.back());
+    report.no_returns += count_no_returns(part, gathered.kept.back());
+    report.unknown_intensities += mark_unknown(part.cloud.intensities, gathered.kept.back());
+  }
+  const Extents extents = drop_far(gathered, options.max_distance_m, executor);
+  std::size_t dropped = 0;
+  for (const Kept& kept : gathered.kept) dropped += count_dropped(kept);
+  report.dropped_far = dropped - report.dropped_not_finite;
+  tell_dropped(name_of(inputs), report, options, progress);
+  require_metres(name_of(inputs), extents.low, extents.high);
+  const Vec3d origin = choose_origin(extents.low, extents.high);
+
+  std::vector<PointCloud> clouds;
+  for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
+    require_sensor_places(gathered.parts[p], gathered.kept[p]);
+    clouds.push_back(
+        localized(std::move(gathered.parts[p]), gathered.kept[p], origin, origins, executor));
+    if (!listed[p].is_sequence) check_origins(clouds.back(), listed[p].path, options, executor);
+  }
+  PointCloud cloud = joined(std::move(clouds), origin, progress);
+  report.own_body = drop_own_body(cloud, options.own_body_m, executor);
+  tell_own_body(name_of(inputs), report, options, progress);
+  report.origins = count_origins(cloud);
+  return {std::move(cloud), report};
+}
+
+}  // namespace adasplats

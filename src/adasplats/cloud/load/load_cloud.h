@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/core/progress.h"
+
+namespace adasplats {
+
+/// How files become a point cloud.
+struct LoadOptions {
+  /// Column of the semantic class; empty: the first of label, class, classification, semantic,
+  /// scalar_label, scalar_Classification, sem_class that is there.
+  std::string label_field;
+  /// Columns of the sensor position; empty: the first triple found of x_lidar_position..,
+  /// sensor_x.., x_origin.., scalar_x_lidar_position... (y and z likewise).
+  std::string sensor_x_field, sensor_y_field, sensor_z_field;
+  /// The station that measured every point that has no sensor position, world coordinates. It must
+  /// be possible (station_objection()). OriginKind::stated.
+  std::optional<Vec3d> viewpoint;
+  /// A trajectory whose nearest position (in the plane) becomes the sensor position of points that
+  /// have none. That is a guess, metres off: OriginKind::guessed, which turns normals alone.
+  std::filesystem::path trajectory;
+  /// Of a sequence: `count` scans (or as many as there are) from `first` on, every `stride`-th.
+  std::size_t first_scan = 0;
+  std::size_t scan_count = static_cast<std::size_t>(-1);
+  std::size_t scan_stride = 1;
+  /// Points not finite are an error instead of being dropped and counted.
+  bool strict = false;
+  /// Sensor positions of sequences are their poses' even where beams start beside them (ScanBeams).
+  bool beams_from_poses = false;
+  /// Read whole records of truncated LAS files.
+  bool salvage = false;
+  /// Points farther than this from the median of all points are dropped and counted, m.
+  double max_distance_m = 100e3;
+  /// Where more than this share of all points would be dropped as far or as not finite, that is an
+  /// error: single faults are rarer, and more is a second place or another format. Of 51 small
+  /// real files none has any; no returns of organised clouds (NaN, NaN, NaN) do not count.
+  double max_dropped = 0.01;
+  /// Sensor positions are not judged by what lies behind what as seen from them. For files with
+  /// later returns, which do lie behind earlier ones.
+  bool trust_origins = false;
+  /// Points on the vehicle that carried the sensor are left out: where this is not given those that
+  /// find_own_body() finds, else all that are nearer to their sensor, m; with 0 none.
+  std::optional<double> own_body_m;
+};
+
+/// What was dropped on the way.
+struct LoadReport {
+  std::size_t points_read = 0;
+  /// Where the beams of the sequences started (ScanBeams::description), one each.
+  std::vector<std::string> beams;
+  /// How many points of the cloud have an origin of each kind, by OriginKind.
+  OriginCounts origins{};
+  /// Position not finite.
+  std::size_t dropped_not_finite = 0;
+  /// Of these, points whose three coordinates are NaN.
+  std::size_t no_returns = 0;
+  /// Points kept whose intensity was not finite: NaN in the cloud, not known.
+  std::size_t unknown_intensities = 0;
+  /// Farther than max_distance_m from the componentwise median, or beyond 1e12 m, where doubles no
+  /// longer hold 0.1 mm.
+  std::size_t dropped_far = 0;
+  /// On the vehicle that carried the sensor.
+  std::size_t own_body = 0;
+};
+
+/// Loads and accumulates point files and SemanticKITTI sequence folders (see read_points and
+/// open_kitti_sequence); what a folder means and which files are no points: cloud_inputs,
+/// require_points. World coordinates; the origin depends on the extents alone. Inputs with and
+/// without an attribute together lose it, with a warning; but sensor positions stay, and points
+/// without one (not finite, or of an input that has none) have OriginKind::none. Scans are numbered
+/// from 0 over all sequences, which must not begin at the very same pose (require_one_world). Files
+/// (names in any case): intensity from the first of intensity, reflectance, remission,
+/// reflectivity, luma and their scalar_ twins; classes are the low 16 bits of the label column,
+/// instances its high 16 bits or the column `instance`; `scan_index` as save_cloud_ply writes it.
+/// Memory: sequences 1.1x the cloud; files the reader's plus 24 bytes a point. Whichever scans of a
+/// sequence are chosen, up to five are read to recognise its sensor and up to eight to check its
+/// poses (require_poses_that_fit), without labels; there one that cannot be read is skipped. What
+/// is dropped is told as warnings. Errors: those of the readers; data for sensor positions that are
+/// impossible (usage for options that state one); data for too much dropped (max_dropped) and for
+/// longitudes and latitudes instead of metres (require_metres); usage for options that fit nothing
+/// and for named columns that are not there; data for labels that are no whole numbers from 0 to
+/// 2^32 - 1.
+std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
+                                             const LoadOptions& options, const Executor& executor,
+                                             ProgressSink& progress);
+
+/// Writes a cloud as PLY with the columns x, y, z, x_lidar_position, y_lidar_position,
+/// z_lidar_position, origin_kind (OriginKind; where not all are measured), intensity, label,
+/// instance, scan_index, as far as it has them (the layout of Paris-CARLA-3D). Doubles where the
+/// origin is not zero.
+void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud);
+
+}  // namespace adasplats

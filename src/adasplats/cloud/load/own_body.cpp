@@ -1,0 +1,286 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/own_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace adasplats {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+bool is_measured(const PointCloud& cloud, std::size_t i) {
+  return cloud.origin_kind(i) == OriginKind::measured;
+}
+
+/// What `of_chunk(begin, end)` gives of all chunks of the points, one after the other.
+template <class F>
+auto concatenated(std::size_t count, const Executor& executor, F&& of_chunk) {
+  std::vector<decltype(of_chunk(count, count))> parts((count + kGrain - 1) / kGrain);
+  executor.for_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    parts[begin / kGrain] = of_chunk(begin, end);
+  });
+  decltype(of_chunk(count, count)) all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+void sort_unique(std::vector<std::uint64_t>& keys) {
+  std::ranges::sort(keys);
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+}
+
+/// Up to `most` of the values, evenly chosen.
+template <class T>
+std::vector<T> evenly(std::span<const T> values, std::size_t most) {
+  const std::size_t stride = (values.size() + most - 1) / most;
+  std::vector<T> chosen;
+  for (std::size_t k = 0; k < values.size(); k += stride) chosen.push_back(values[k]);
+  return chosen;
+}
+
+/// The diagonal of the box of all sensor positions.
+double path_m(const PointCloud& cloud) {
+  Vec3f low{kInfinity, kInfinity, kInfinity}, high = -low;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!is_measured(cloud, i)) continue;
+    low = min(low, cloud.sensor_positions[i]);
+    high = max(high, cloud.sensor_positions[i]);
+  }
+  return low.x <= high.x ? static_cast<double>(length(high - low)) : 0;
+}
+
+/// Cells of sensor positions, numbered in the order of their keys.
+class Stations {
+ public:
+  Stations(const PointCloud& cloud, double side_m, const Executor& executor)
+      : cloud_(cloud), side_m_(side_m) {
+    keys_ = concatenated(cloud.size(), executor, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint64_t> keys;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!is_measured(cloud, i)) continue;
+        const std::uint64_t key = key_of(cloud.sensor_positions[i]);
+        if (keys.empty() || keys.back() != key) keys.push_back(key);
+      }
+      sort_unique(keys);
+      return keys;
+    });
+    sort_unique(keys_);
+  }
+  std::size_t size() const { return keys_.size(); }
+  std::uint32_t of(std::size_t point) const {
+    const std::uint64_t key = key_of(cloud_.sensor_positions[point]);
+    return static_cast<std::uint32_t>(std::ranges::lower_bound(keys_, key) - keys_.begin());
+  }
+
+ private:
+  /// Cells of 0.2 m have keys of their own up to 200 km from the cloud's origin.
+  std::uint64_t key_of(Vec3f sensor) const {
+    constexpr double kMiddle = 1 << 20;
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double cell = std::floor(static_cast<double>(sensor[axis]) / side_m_) + kMiddle;
+      key = key << 21U | static_cast<std::uint64_t>(std::clamp(cell, 0.0, 2 * kMiddle - 1));
+    }
+    return key;
+  }
+
+  const PointCloud& cloud_;
+  double side_m_;
+  std::vector<std::uint64_t> keys_;
+};
+
+/// The shortest range that a station measured in each direction, in the cells of a cube's faces
+/// (0.35 degrees in their middle).
+class View {
+ public:
+  void add(Vec3f from_sensor) {
+    const float range_m = length(from_sensor);
+    if (!(range_m > 0)) return;
+    if (ranges_m_.empty()) ranges_m_.resize(6 * kCells * kCells, kInfinity);
+    float& shortest_m = ranges_m_[cell_of(from_sensor)];
+    shortest_m = std::min(shortest_m, range_m);
+  }
+  void add_sensor(Vec3f sensor) {
+    sum_ = sum_ + vec_cast<double>(sensor);
+    ++count_;
+  }
+  Vec3f sensor() const { return vec_cast<float>(sum_ / static_cast<double>(count_)); }
+  /// Infinite where nothing was measured.
+  float range_m(Vec3f direction) const {
+    return ranges_m_.empty() ? kInfinity : ranges_m_[cell_of(direction)];
+  }
+
+ private:
+  static constexpr std::size_t kCells = 256;
+
+  static std::size_t cell_of(Vec3f v) {
+    int axis = 0;
+    for (int k = 1; k < 3; ++k)
+      if (std::fabs(v[k]) > std::fabs(v[axis])) axis = k;
+    const float along = std::fabs(v[axis]);
+    const auto cell = [along](float across) {
+      constexpr auto kHalf = static_cast<float>(kCells) / 2;
+      return std::min(static_cast<std::size_t>((across / along + 1) * kHalf), kCells - 1);
+    };
+    const std::size_t face = 2 * static_cast<std::size_t>(axis) + (v[axis] < 0 ? 1 : 0);
+    return (face * kCells + cell(v[(axis + 1) % 3])) * kCells + cell(v[(axis + 2) % 3]);
+  }
+
+  std::vector<float> ranges_m_;
+  Vec3d sum_;
+  std::size_t count_ = 0;
+};
+
+class Search {
+ public:
+  Search(const PointCloud& cloud, const OwnBodyOptions& options, const Executor& executor)
+      : cloud_(cloud),
+        options_(options),
+        executor_(executor),
+        stations_(cloud, options.station_m, executor) {}
+
+  bool can_tell() const {
+    return stations_.size() >= options_.least_stations && path_m(cloud_) >= options_.least_path_m;
+  }
+
+  std::vector<std::uint8_t> run() const {
+    const std::vector<std::uint32_t> near = near_points();
+    const std::vector<std::vector<std::uint32_t>> kept = rings_that_stay(near);
+    const std::vector<View> views = views_of_stations();
+    std::vector<std::uint8_t> is_body(kept.size());
+    executor_.for_chunks(kept.size(), 1, [&](std::size_t ring, std::size_t) {
+      is_body[ring] = is_seen_through(kept[ring], views) ? 1 : 0;
+    });
+    std::vector<std::uint8_t> flags;
+    for (const std::uint32_t i : near) {
+      if (is_body[ring_of(i)] == 0) continue;
+      flags.resize(cloud_.size());
+      flags[i] = 1;
+    }
+    return flags;
+  }
+
+ private:
+  Vec3f from_sensor(std::size_t i) const {
+    return cloud_.positions[i] - cloud_.sensor_positions[i];
+  }
+  std::size_t rings_outwards() const {
+    return static_cast<std::size_t>(std::ceil(options_.reach_m / options_.ring_m)) + 1;
+  }
+  std::size_t rings() const { return 2 * rings_outwards() * rings_outwards(); }
+  /// The ring around its sensor that a near point lies in.
+  std::size_t ring_of(std::size_t i) const {
+    const Vec3f d = from_sensor(i);
+    const auto number = [&](double m) { return static_cast<std::size_t>(m / options_.ring_m); };
+    return number(static_cast<double>(std::hypot(d.x, d.y))) * 2 * rings_outwards() +
+           number(static_cast<double>(d.z) + options_.reach_m);
+  }
+
+  std::vector<std::uint32_t> near_points() const {
+    return concatenated(cloud_.size(), executor_, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> near;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (is_measured(cloud_, i) &&
+            static_cast<double>(length(from_sensor(i))) < options_.reach_m)
+          near.push_back(static_cast<std::uint32_t>(i));
+      }
+      return near;
+    });
+  }
+
+  /// Of each ring the points to look at; none of a ring that too few stations have points in.
+  std::vector<std::vector<std::uint32_t>> rings_that_stay(
+      const std::vector<std::uint32_t>& near) const {
+    std::vector<std::vector<std::uint32_t>> points(rings());
+    for (const std::uint32_t i : near) points[ring_of(i)].push_back(i);
+    const double least = options_.least_share * static_cast<double>(stations_.size());
+    executor_.for_chunks(points.size(), 1, [&](std::size_t ring, std::size_t) {
+      std::vector<std::uint64_t> stations;
+      for (const std::uint32_t i : points[ring]) stations.push_back(stations_.of(i));
+      sort_unique(stations);
+      if (static_cast<double>(stations.size()) < least) points[ring].clear();
+      points[ring] = evenly<std::uint32_t>(points[ring], options_.looked_at);
+    });
+    return points;
+  }
+
+  /// What the stations that look have measured.
+  std::vector<View> views_of_stations() const {
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    const std::size_t stride = (stations_.size() + options_.looking - 1) / options_.looking;
+    const auto points =
+        concatenated(cloud_.size(), executor_, [&](std::size_t begin, std::size_t end) {
+          std::vector<std::uint64_t> of_stations;  // station, point
+          for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t station = is_measured(cloud_, i) ? stations_.of(i) : kNone;
+            if (station != kNone && station % stride == 0)
+              of_stations.push_back(std::uint64_t{station / stride} << 32U | i);
+          }
+          return of_stations;
+        });
+    std::vector<std::vector<std::uint32_t>> by_station((stations_.size() + stride - 1) / stride);
+    for (const std::uint64_t pair : points)
+      by_station[pair >> 32U].push_back(static_cast<std::uint32_t>(pair));
+    std::vector<View> views(by_station.size());
+    executor_.for_chunks(views.size(), 1, [&](std::size_t station, std::size_t) {
+      for (const std::uint32_t i : by_station[station]) {
+        views[station].add(from_sensor(i));
+        views[station].add_sensor(cloud_.sensor_positions[i]);
+      }
+    });
+    return views;
+  }
+
+  /// Whether beams of the stations go through where these points are, more than end there.
+  bool is_seen_through(const std::vector<std::uint32_t>& points,
+                       const std::vector<View>& views) const {
+    std::size_t through = 0, looked = 0;
+    for (const std::uint32_t i : points) {
+      for (const View& view : views) {
+        const Vec3f to_point = cloud_.positions[i] - view.sensor();
+        const auto distance_m = static_cast<double>(length(to_point));
+        const float measured_m = view.range_m(to_point);
+        if (distance_m < options_.least_view_m || measured_m == kInfinity) continue;
+        const double behind_m = static_cast<double>(measured_m) - distance_m;
+        if (behind_m < -options_.margin_m) continue;  // something is before it
+        ++looked;
+        if (behind_m > options_.margin_m) ++through;
+      }
+    }
+    return looked > 0 &&
+           static_cast<double>(through) > options_.least_through * static_cast<double>(looked);
+  }
+
+  const PointCloud& cloud_;
+  const OwnBodyOptions& options_;
+  const Executor& executor_;
+  Stations stations_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> find_own_body(const PointCloud& cloud, const OwnBodyOptions& options,
+                                        const Executor& executor) {
+  if (!cloud.has_beams()) return {};
+  const Search search(cloud, options, executor);
+  return search.can_tell() ? search.run() : std::vector<std::uint8_t>();
+}
+
+std::vector<std::uint8_t> points_within(const PointCloud& cloud, double radius_m,
+                                        const Executor& executor) {
+  std::vector<std::uint8_t> flags(cloud.size());
+  executor.for_chunks(cloud.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!is_beam(cloud.origin_kind(i))) continue;
+      const float range_m = length(cloud.positions[i] - cloud.sensor_positions[i]);
+      flags[i] = static_cast<double>(range_m) < radius_m ? 1 : 0;
+    }
+  });
+  return flags;
+}
+
+}  // namespace adasplats

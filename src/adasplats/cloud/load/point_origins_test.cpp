@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/point_origins.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "adasplats/cloud/load/station_check.h"
+#include "adasplats/cloud/points/temporary_folder_test.h"
+
+namespace adasplats {
+namespace {
+
+using enum OriginKind;
+
+const std::string kPoseNames = "time,x,y,z,qw,qx,qy,qz\n";
+
+std::pair<PointCloud, LoadReport> load(const std::vector<std::filesystem::path>& inputs,
+                                       const LoadOptions& options = {}) {
+  ProgressSink quiet;
+  return load_cloud(inputs, options, Executor(2), quiet);
+}
+
+/// What a station at `station` sees of a round wall of radius 10 m around the origin, 1 degree by
+/// 1 degree.
+std::vector<Vec3f> wall_seen_from(Vec3f station) {
+  std::vector<Vec3f> points;
+  for (int a = 0; a < 360; ++a) {
+    for (int e = -20; e <= 20; ++e) {
+      const double azimuth = a * std::numbers::pi / 180, elevation = e * std::numbers::pi / 180;
+      const double dx = std::cos(azimuth), dy = std::sin(azimuth);
+      const auto sx = static_cast<double>(station.x), sy = static_cast<double>(station.y);
+      const double b = sx * dx + sy * dy;
+      const double t = -b + std::sqrt(b * b + 100 - sx * sx - sy * sy);
+      points.push_back(
+          {static_cast<float>(sx + t * dx), static_cast<float>(sy + t * dy),
+           static_cast<float>(static_cast<double>(station.z) + t * std::tan(elevation))});
+    }
+  }
+  return points;
+}
+
+std::vector<Vec3f> as_seen_from(const std::vector<Vec3f>& points, Vec3f station) {
+  std::vector<Vec3f> offsets;
+  for (const Vec3f p : points) offsets.push_back(p - station);
+  return offsets;
+}
+
+std::string csv_of(const std::vector<Vec3f>& points, const std::string& sensor = "") {
+  std::string text = sensor.empty() ? "x,y,z\n" : "x,y,z,sensor_x,sensor_y,sensor_z\n";
+  for (const Vec3f p : points) {
+    text += std::to_string(p.x) + "," + std::to_string(p.y) + "," + std::to_string(p.z) +
+            (sensor.empty() ? "" : "," + sensor) + "\n";
+  }
+  return text;
+}
+
+TEST(PointOrigins, KindsByWhereTheyComeFrom) {
+  const TemporaryFolder folder;
+  const auto bare = folder.write("bare.xyz", "1 0 0\n9 5 0\n");
+  const auto own = folder.write("own.csv", "x,y,z,sensor_x,sensor_y,sensor_z\n1,2,3,7,8,9\n");
+  EXPECT_TRUE(load({bare}).first.sensor_positions.empty());
+  EXPECT_TRUE(load({own}).first.origin_kinds.empty());  // all measured
+
+  LoadOptions options;
+  options.viewpoint = Vec3d{1, 2, 30};
+  const auto [stated_cloud, report] = load({bare, own}, options);
+  EXPECT_EQ(stated_cloud.origin_kinds, (std::vector<OriginKind>{stated, stated, measured}));
+  EXPECT_EQ(report.origins, (OriginCounts{0, 0, 2, 1}));
+  EXPECT_TRUE(stated_cloud.has_beams() && stated_cloud.has_all_origins());
+
+  options.viewpoint.reset();
+  options.trajectory = folder.write("t.csv", kPoseNames + "0,0,0,2,1,0,0,0\n1,10,0,3,1,0,0,0\n");
+  const PointCloud driven = load({bare}, options).first;
+  EXPECT_EQ(driven.origin_kinds, (std::vector<OriginKind>{guessed, guessed}));
+  EXPECT_FALSE(driven.has_beams());
+  EXPECT_TRUE(driven.has_all_origins());
+}
+
+TEST(PointOrigins, OnesThatAreNotFiniteAreNotKnownAndLoseNoPoint) {
+  const TemporaryFolder folder;
+  const auto file =
+      folder.write("a.csv", "x,y,z,sensor_x,sensor_y,sensor_z\n1,2,3,7,8,9\n4,5,6,nan,8,9\n");
+  const auto [cloud, report] = load({file});
+  ASSERT_EQ(cloud.size(), 2U);
+  EXPECT_EQ(cloud.origin_kinds, (std::vector<OriginKind>{measured, none}));
+  EXPECT_TRUE(cloud.sensor_positions[1] == cloud.positions[1]);
+  EXPECT_EQ(report.dropped_not_finite, 0U);
+  LoadOptions options;
+  options.viewpoint = Vec3d{0, 0, 1};
+  EXPECT_EQ(load({file}, options).first.origin_kinds, (std::vector<OriginKind>{measured, stated}));
+}
+
+TEST(PointOrigins, KindsSurviveSavingAndAreCheckedWhenRead) {
+  const TemporaryFolder folder;
+  PointCloud cloud;
+  cloud.positions = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  cloud.sensor_positions = {{0, 0, 1}, {0, 0, 2}, {7, 8, 9}};
+  cloud.origin_kinds = {measured, guessed, none};
+  save_cloud_ply(folder.path() / "a.ply", cloud);
+  EXPECT_EQ(load({folder.path() / "a.ply"}).first.origin_kinds, cloud.origin_kinds);
+  const auto wrong =
+      folder.write("b.csv", "x,y,z,sensor_x,sensor_y,sensor_z,origin_kind\n1,2,3,7,8,9,4\n");
+  expect_error(ErrorKind::data, {"b.csv", "'origin_kind'", "3 (measured)"}, [&] { load({wrong}); });
+}
+
+TEST(PointOrigins, FartherThanAnyLidarMeasuresIsAnError) {
+  const TemporaryFolder folder;
+  const auto bare = folder.write("bare.xyz", "1 0 0\n9 5 0\n");
+  LoadOptions options;
+  options.viewpoint = Vec3d{5e6, 0, 0};  // 5,000 km
+  expect_error(ErrorKind::usage, {"viewpoint 5000000.00,0.00,0.00", "bare.xyz", "5000 km"},
+               [&] { load({bare}, options); });
+  options.viewpoint.reset();
+  options.trajectory = folder.write("t.csv", kPoseNames + "0,400000,5500000,2,1,0,0,0\n");
+  expect_error(ErrorKind::usage, {"trajectory", "bare.xyz", "km"}, [&] { load({bare}, options); });
+  const auto own = folder.write("own.csv", "x,y,z,sensor_x,sensor_y,sensor_z\n1,2,3,0,20000,0\n");
+  expect_error(ErrorKind::data, {"own.csv", "point 0", "20 km"}, [&] { load({own}); });
+}
+
+// The file says that it was stated or guessed: --viewpoint and --trajectory were never given.
+TEST(PointOrigins, ImpossibleOnesOfAFileAreTheFiles) {
+  const TemporaryFolder folder;
+  for (const char* kind : {"1", "2", "3"}) {
+    const auto file = folder.write(
+        "a.csv", std::string("x,y,z,sensor_x,sensor_y,sensor_z,origin_kind\n1,2,3,0,20000,0,") +
+                     kind + "\n");
+    expect_error(ErrorKind::data, {"a.csv", "point 0", "20 km"}, [&] { load({file}); });
+  }
+}
+
+TEST(PointOrigins, BeyondEveryPlaceIsAnErrorOfItsOwn) {
+  const TemporaryFolder folder;
+  const std::string names = "x,y,z,sensor_x,sensor_y,sensor_z\n1,2,3,0,0,0\n";
+  for (const char* sensor : {"0,1e13,0", "0,0,-1e300"}) {
+    const auto file = folder.write("a.csv", names + "1,2,3," + sensor + "\n");
+    expect_error(ErrorKind::data, {"a.csv", "point 1", "beyond 1e12 m"}, [&] { load({file}); });
+  }
+  LoadOptions options;
+  options.viewpoint = Vec3d{0, 0, 1e300};
+  const auto bare = folder.write("bare.xyz", "1 0 0\n");
+  expect_error(ErrorKind::usage, {"viewpoint", "1e12"}, [&] { load({bare}, options); });
+  options.viewpoint.reset();
+  options.trajectory = folder.write("t.csv", kPoseNames + "0,0,0,1e300,1,0,0,0\n");
+  expect_error(ErrorKind::data, {"t.csv", "1e12"}, [&] { load({bare}, options); });
+}
+
+TEST(PointOrigins, AStationMustSeeItsPoints) {
+  const Executor executor(2);
+  const Vec3f here = {3, 0, 0};
+  const std::vector<Vec3f> wall = wall_seen_from(here);
+  EXPECT_LT(view_from_station(as_seen_from(wall, here), executor).share_behind, 0.01);
+  // From outside, the far half of the wall is behind the near one.
+  const Vec3f outside = {40, 0, 0};
+  const StationView view = view_from_station(as_seen_from(wall, outside), executor);
+  EXPECT_GT(view.share_behind, 0.2);
+  EXPECT_NE(station_objection(view), "");
+
+  const TemporaryFolder folder;
+  const auto file = folder.write("wall.csv", csv_of(wall));
+  LoadOptions options;
+  options.viewpoint = Vec3d{3, 0, 0};
+  EXPECT_EQ(load({file}, options).first.origin_kinds.at(0), stated);
+  options.viewpoint = Vec3d{40, 0, 0};
+  expect_error(ErrorKind::usage, {"viewpoint 40.00,0.00,0.00", "wall.csv", "%", "trajectory"},
+               [&] { load({file}, options); });
+  const auto wrong = folder.write("wrong.csv", csv_of(wall, "40,0,0"));
+  expect_error(ErrorKind::data, {"wrong.csv", "40.00,0.00,0.00"}, [&] { load({wrong}); });
+  EXPECT_EQ(load({folder.write("right.csv", csv_of(wall, "3,0,0"))}).second.origins[3],
+            wall.size());
+}
+
+TEST(PointOrigins, SmallViewsAreNotJudged) {
+  const Executor executor(1);
+  EXPECT_EQ(station_objection(view_from_station({}, executor)), "");
+  const std::vector<Vec3f> one = {{1, 0, 0}};
+  EXPECT_EQ(station_objection(view_from_station(one, executor)), "");
+  const std::vector<Vec3f> behind = {{5, 0, 0}, {10, 0, 0}};  // half of them
+  EXPECT_EQ(station_objection(view_from_station(behind, executor)), "");
+  const std::vector<Vec3f> same(100, Vec3f{0, 0, 0});
+  EXPECT_EQ(station_objection(view_from_station(same, executor)), "");
+}
+
+}  // namespace
+}  // namespace adasplats

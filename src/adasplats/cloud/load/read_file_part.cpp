@@ -1,0 +1,249 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <string>
+#include <type_traits>
+#include <variant>
+
+#include "adasplats/cloud/load/cloud_inputs.h"
+#include "adasplats/cloud/load/cloud_part.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/point_files.h"
+
+namespace adasplats {
+
+namespace {
+
+using Triple = std::array<std::string, 3>;
+
+// Names, in lower case, that programs and data sets give to what we read; the commonest first.
+// CloudCompare puts scalar_ before the names of what it writes.
+const Triple kPositionNames = {"x", "y", "z"};
+const std::array<Triple, 6> kSensorNames = {
+    {{"x_lidar_position", "y_lidar_position", "z_lidar_position"},
+     {"sensor_x", "sensor_y", "sensor_z"},
+     {"x_origin", "y_origin", "z_origin"},
+     {"scalar_x_lidar_position", "scalar_y_lidar_position", "scalar_z_lidar_position"},
+     {"scalar_sensor_x", "scalar_sensor_y", "scalar_sensor_z"},
+     {"scalar_x_origin", "scalar_y_origin", "scalar_z_origin"}}};
+const std::initializer_list<std::string_view> kClassNames = {
+    "label",    "class", "classification", "semantic", "scalar_label", "scalar_classification",
+    "sem_class"};
+const std::initializer_list<std::string_view> kIntensityNames = {"intensity",
+                                                                 "reflectance",
+                                                                 "remission",
+                                                                 "reflectivity",
+                                                                 "luma",
+                                                                 "scalar_intensity",
+                                                                 "scalar_reflectance",
+                                                                 "scalar_remission",
+                                                                 "scalar_reflectivity",
+                                                                 "scalar_luma"};
+const std::initializer_list<std::string_view> kInstanceNames = {"instance", "scalar_instance"};
+const std::initializer_list<std::string_view> kScanNames = {"scan_index", "scalar_scan_index"};
+
+/// A table and the file it is from, for messages.
+struct PointFile {
+  const std::filesystem::path& path;
+  const Table& table;
+
+  std::string column_list() const {
+    std::string list;
+    for (const Column& column : table.columns) list += (list.empty() ? "" : ", ") + column.name;
+    return list.empty() ? "no columns" : list;
+  }
+
+  /// A column by its name in lower case.
+  const Column* find(std::string_view lower_name) const {
+    for (const Column& column : table.columns)
+      if (lower_case(column.name) == lower_name) return &column;
+    return nullptr;
+  }
+
+  const Column* first_of(std::initializer_list<std::string_view> names) const {
+    for (const std::string_view name : names)
+      if (const Column* column = find(name)) return column;
+    return nullptr;
+  }
+
+  bool has_all(const Triple& names) const {
+    return std::ranges::all_of(names,
+                               [this](const std::string& name) { return find(name) != nullptr; });
+  }
+
+  /// A column that the user named.
+  const Column& named(const std::string& name) const {
+    if (const Column* column = table.find(name)) return *column;
+    std::vector<std::string> names;
+    for (const Column& column : table.columns) names.push_back(column.name);
+    const auto nearest = nearest_word(name, names);
+    throw Error(ErrorKind::usage,
+                path.string() + ": has no column '" + name + "'" +
+                    (nearest ? ", did you mean '" + *nearest + "'?" : std::string()) + " (it has " +
+                    column_list() + ")");
+  }
+
+  Error value_error(const Column& column, std::size_t row, const std::string& expected) const {
+    const std::string value = std::to_string(column.as_double(row));
+    return Error(ErrorKind::data, path.string() + ": column '" + column.name + "' of point " +
+                                      std::to_string(row) + " is " + value + ", expected " +
+                                      expected);
+  }
+};
+
+/// Calls visit(row, value) with the values in the column's own type.
+template <class Visit>
+void for_each_value(const Column& column, Visit&& visit) {
+  std::visit(
+      [&visit](const auto& values) {
+        for (std::size_t i = 0; i < values.size(); ++i) visit(i, values[i]);
+      },
+      column.values);
+}
+
+std::vector<Vec3d> read_vectors(const PointFile& file,
+                                const std::array<const Column*, 3>& columns) {
+  std::vector<Vec3d> vectors(file.table.rows);
+  for (int axis = 0; axis < 3; ++axis)
+    for_each_value(*columns[static_cast<std::size_t>(axis)], [&](std::size_t i, auto value) {
+      vectors[i][axis] = static_cast<double>(value);
+    });
+  return vectors;
+}
+
+/// Whole numbers from 0 to 2^32 - 1, in whatever type the file has them.
+std::vector<std::uint32_t> read_whole_numbers(const PointFile& file, const Column& column) {
+  std::vector<std::uint32_t> numbers(file.table.rows);
+  for_each_value(column, [&](std::size_t i, auto value) {
+    bool fits = value >= decltype(value){0};
+    if constexpr (std::is_floating_point_v<decltype(value)>)
+      fits = fits && std::trunc(value) == value && static_cast<double>(value) < 0x1p32;
+    else if constexpr (sizeof(value) > sizeof(std::uint32_t))
+      fits = fits && value <= decltype(value){0xffffffff};
+    if (!fits) throw file.value_error(column, i, "a whole number from 0 to 4294967295");
+    // By way of 64 bits: a signed char is not negative here, but the checker cannot know.
+    numbers[i] = static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
+  });
+  return numbers;
+}
+
+/// Classes from the low 16 bits, as SemanticKITTI packs them; instances from the high 16 bits
+/// where any are set and from their own column where there is one.
+void read_labels(const PointFile& file, const Column& column, PointCloud& cloud) {
+  const std::vector<std::uint32_t> labels = read_whole_numbers(file, column);
+  const bool has_instances =
+      std::ranges::any_of(labels, [](std::uint32_t label) { return label > 0xffff; });
+  cloud.classes.reserve(labels.size());
+  for (const std::uint32_t label : labels)
+    cloud.classes.push_back(static_cast<std::uint16_t>(label & 0xffff));
+  if (!has_instances) return;
+  cloud.instances.reserve(labels.size());
+  for (const std::uint32_t label : labels)
+    cloud.instances.push_back(static_cast<std::uint16_t>(label >> 16));
+}
+
+void read_instances(const PointFile& file, const Column& column, PointCloud& cloud) {
+  cloud.instances.assign(file.table.rows, 0);
+  const std::vector<std::uint32_t> numbers = read_whole_numbers(file, column);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (numbers[i] > 0xffff) throw file.value_error(column, i, "a whole number from 0 to 65535");
+    cloud.instances[i] = static_cast<std::uint16_t>(numbers[i]);
+  }
+}
+
+/// As save_cloud_ply() writes them.
+void read_origin_kinds(const PointFile& file, const Column& column, PointCloud& cloud) {
+  const std::vector<std::uint32_t> numbers = read_whole_numbers(file, column);
+  cloud.origin_kinds.resize(file.table.rows);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (numbers[i] > static_cast<std::uint32_t>(OriginKind::measured))
+      throw file.value_error(column, i, "0 (not known), 1 (guessed), 2 (stated) or 3 (measured)");
+    cloud.origin_kinds[i] = static_cast<OriginKind>(numbers[i]);
+  }
+}
+
+std::vector<Vec3d> read_positions(const PointFile& file) {
+  const auto& [x, y, z] = kPositionNames;
+  if (!file.has_all(kPositionNames))
+    throw Error(ErrorKind::data, file.path.string() + ": has no columns x, y and z (it has " +
+                                     file.column_list() + ")");
+  return read_vectors(file, {file.find(x), file.find(y), file.find(z)});
+}
+
+std::vector<Vec3d> read_sensor_positions(const PointFile& file, const LoadOptions& options) {
+  if (!options.sensor_x_field.empty())
+    return read_vectors(file,
+                        {&file.named(options.sensor_x_field), &file.named(options.sensor_y_field),
+                         &file.named(options.sensor_z_field)});
+  for (const auto& [x, y, z] : kSensorNames)
+    if (file.has_all({x, y, z}))
+      return read_vectors(file, {file.find(x), file.find(y), file.find(z)});
+  return {};
+}
+
+/// What a reader says beside the columns.
+void take_comment(const PointFile& file, const std::string& comment, ProgressSink& progress) {
+  constexpr std::string_view kNotRead = "not read: ", kNotMetres = "not metres: ",
+                             kWithheld = "withheld: ";
+  if (comment.starts_with(kWithheld))
+    progress.warn(file.path.string() + ": " + comment.substr(kWithheld.size()) +
+                  " are flagged as withheld (deleted), left out");
+  if (comment.starts_with("salvaged")) progress.warn(file.path.string() + ": " + comment);
+  if (comment.starts_with("geographic: ") && file.table.rows > 0)
+    throw Error(ErrorKind::data,
+                file.path.string() + ": its coordinates are longitudes and latitudes (" + comment +
+                    "), not metres; project them first (UTM, say, with 'pdal translate IN OUT "
+                    "reprojection --filters.reprojection.out_srs=...')");
+  if (comment.starts_with(kNotMetres) && file.table.rows > 0)
+    throw Error(ErrorKind::data,
+                file.path.string() + ": its coordinates are not in metres (" +
+                    comment.substr(kNotMetres.size()) +
+                    "); bring them to a system that is, heights included (UTM zone 18 and NAVD88, "
+                    "say, with 'pdal translate IN OUT reprojection "
+                    "--filters.reprojection.out_srs=EPSG:32618+5703')");
+  if (!comment.starts_with(kNotRead)) return;
+  const std::string name = lower_case(comment.substr(kNotRead.size()));
+  const auto is_class = [&](std::string_view known) { return known == name; };
+  if (std::ranges::any_of(kClassNames, is_class))
+    progress.warn(file.path.string() + ": its attribute '" + comment.substr(kNotRead.size()) +
+                  "' is not read from LAZ, the classes are those of the column "
+                  "'classification'; convert it to LAS to have it");
+}
+
+}  // namespace
+
+CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
+                         ProgressSink& progress) {
+  require_points(path);
+  const Table table = read_points(path, {.salvage = options.salvage});
+  const PointFile file{path, table};
+  for (const std::string& comment : table.comments) take_comment(file, comment, progress);
+
+  CloudPart part;
+  part.runs.push_back({0, table.rows, path, {}});
+  part.world_positions = read_positions(file);
+  part.world_sensors = read_sensor_positions(file, options);
+  PointCloud& cloud = part.cloud;
+  if (const Column* column = file.find("origin_kind"); column && !part.world_sensors.empty())
+    read_origin_kinds(file, *column, cloud);
+  if (!options.label_field.empty())
+    read_labels(file, file.named(options.label_field), cloud);
+  else if (const Column* column = file.first_of(kClassNames))
+    read_labels(file, *column, cloud);
+  if (const Column* column = file.first_of(kInstanceNames)) read_instances(file, *column, cloud);
+  if (const Column* column = file.first_of(kScanNames))
+    cloud.scan_indices = read_whole_numbers(file, *column);
+  if (const Column* column = file.first_of(kIntensityNames)) {
+    cloud.intensities.resize(table.rows);
+    for_each_value(*column, [&cloud](std::size_t i, auto value) {
+      cloud.intensities[i] = static_cast<float>(value);
+    });
+  }
+  return part;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/station_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kMostSampled = std::size_t{1} << 20;
+constexpr double kPointsACell = 3;
+constexpr double kFinest_rad = 0.05 * std::numbers::pi / 180;
+constexpr double kCoarsest_rad = 3.2 * std::numbers::pi / 180;
+constexpr float kNearerShare = 0.8F;   // 1 / 1.25
+constexpr float kNearerLess_m = 0.5F;  // noise and slant of near surfaces
+
+struct Direction {
+  float azimuth_rad, elevation_rad, range_m;
+};
+
+std::vector<Direction> directions_of(std::span<const Vec3f> points, const Executor& executor) {
+  const std::size_t stride = (points.size() + kMostSampled - 1) / kMostSampled;
+  std::vector<Direction> directions(points.empty() ? 0 : (points.size() + stride - 1) / stride);
+  executor.for_chunks(directions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3f p = points[i * stride];
+      directions[i] = {std::atan2(p.y, p.x), std::atan2(p.z, std::hypot(p.x, p.y)), length(p)};
+    }
+  });
+  return directions;
+}
+
+/// Cells of directions in their order, and the directions of each from near to far.
+class DirectionCells {
+ public:
+  DirectionCells(std::span<const Direction> directions, double cell_rad, const Executor& executor)
+      : directions_(directions), keys_(directions.size()) {
+    const auto cell = [cell_rad](float angle_rad) {
+      return static_cast<std::uint64_t>((static_cast<double>(angle_rad) + 2 * std::numbers::pi) /
+                                        cell_rad);
+    };
+    executor.for_chunks(keys_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Direction& d = directions_[i];
+        keys_[i] = cell(d.azimuth_rad) << 32 | cell(d.elevation_rad);
+      }
+    });
+    executor.sort_keys(keys_, order_);
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      if (i == 0 || keys_[i] != keys_[i - 1]) begins_.push_back(i);
+    }
+    begins_.push_back(keys_.size());
+  }
+
+  std::size_t count() const { return begins_.size() - 1; }
+  /// How many points lie behind the nearest one of their cell.
+  std::size_t behind() const {
+    std::size_t behind = 0;
+    for (std::size_t c = 0; c < count(); ++c) {
+      float nearest_m = std::numeric_limits<float>::infinity();
+      for (std::size_t i = begins_[c]; i < begins_[c + 1]; ++i) {
+        nearest_m = std::min(nearest_m, directions_[order_[i]].range_m);
+      }
+      for (std::size_t i = begins_[c]; i < begins_[c + 1]; ++i) {
+        const float range_m = directions_[order_[i]].range_m;
+        if (range_m * kNearerShare - kNearerLess_m > nearest_m) ++behind;
+      }
+    }
+    return behind;
+  }
+
+ private:
+  std::span<const Direction> directions_;
+  std::vector<std::uint64_t> keys_;
+  std::vector<std::uint32_t> order_;
+  std::vector<std::size_t> begins_;
+};
+
+std::string in_percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
+
+}  // namespace
+
+StationView view_from_station(std::span<const Vec3f> from_station, const Executor& executor) {
+  StationView view;
+  const std::vector<Direction> directions = directions_of(from_station, executor);
+  view.points = directions.size();
+  if (directions.empty()) return view;
+  view.nearest_m =
+      static_cast<double>(std::ranges::min_element(directions, {}, &Direction::range_m)->range_m);
+  const auto points = static_cast<double>(directions.size());
+  for (view.cell_rad = kFinest_rad;; view.cell_rad *= std::numbers::sqrt2) {
+    const DirectionCells cells(directions, view.cell_rad, executor);
+    if (points < kPointsACell * static_cast<double>(cells.count()) && view.cell_rad < kCoarsest_rad)
+      continue;
+    view.share_behind = static_cast<double>(cells.behind()) / points;
+    return view;
+  }
+}
+
+std::string station_objection(const StationView& view) {
+  if (view.nearest_m > kFarthestOriginM) {
+    return "the nearest point is " + std::to_string(std::lround(view.nearest_m / 1000)) +
+           " km away, farther than LiDARs measure";
+  }
+  if (view.points >= kLeastView && view.share_behind > kMostBehind) {
+    return in_percent(view.share_behind) +
+           " of the points lie behind others as seen from there; of what one station measured, at "
+           "most " +
+           in_percent(kMostBehind) + " do (but for later returns: --trust-origins)";
+  }
+  return {};
+}
+
+}  // namespace adasplats

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <utility>
+#include <variant>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/point_files.h"
+
+namespace adasplats {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "KITTI files are little-endian");
+
+/// Files of a folder with an extension, by name; none where there is no such folder.
+std::vector<std::filesystem::path> files_by_name(const std::filesystem::path& folder,
+                                                 const std::string& extension) {
+  std::vector<std::filesystem::path> files;
+  std::error_code problem;
+  if (!std::filesystem::is_directory(folder, problem)) return files;
+  std::filesystem::directory_iterator entry(folder, problem);
+  for (; !problem && entry != std::filesystem::directory_iterator(); entry.increment(problem)) {
+    const std::filesystem::path& path = entry->path();
+    // A leading dot marks files that are being written or belong to some tool.
+    if (path.extension() == extension && path.filename().string().front() != '.')
+      files.push_back(path);
+  }
+  if (problem) throw system_error(ErrorKind::no_input, folder, "cannot be listed", problem.value());
+  std::ranges::sort(files);
+  return files;
+}
+
+/// The number that a name such as 000123 is; nothing for other names.
+std::optional<std::size_t> number_in_name(const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
+  constexpr std::size_t kMostDigits = 18;  // fits 64 bits
+  if (stem.empty() || stem.size() > kMostDigits) return std::nullopt;
+  std::size_t number = 0;
+  for (const char c : stem) {
+    if (c < '0' || c > '9') return std::nullopt;
+    number = 10 * number + static_cast<std::size_t>(c - '0');
+  }
+  return number;
+}
+
+/// The pose of each scan: by the number in its name where every name is one that has a pose, else
+/// one by one.
+Trajectory poses_of_scans(const std::filesystem::path& poses_file, Trajectory poses,
+                          const std::vector<std::filesystem::path>& scans) {
+  Trajectory matched;
+  for (const std::filesystem::path& scan : scans) {
+    const auto number = number_in_name(scan);
+    if (!number || *number >= poses.size()) break;
+    matched.push_back(poses[*number]);
+  }
+  if (matched.size() == scans.size()) return matched;
+  if (poses.size() == scans.size()) return poses;
+  throw Error(ErrorKind::data, poses_file.string() + ": " + std::to_string(poses.size()) +
+                                   " poses, " + std::to_string(scans.size()) + " scans");
+}
+
+void require_labels_of_scans(const KittiSequence& sequence) {
+  const std::filesystem::path folder = sequence.folder / "labels";
+  if (sequence.labels.size() != sequence.scans.size())
+    throw Error(ErrorKind::data, folder.string() + ": " + std::to_string(sequence.labels.size()) +
+                                     " label files, " + std::to_string(sequence.scans.size()) +
+                                     " scans");
+  for (std::size_t i = 0; i < sequence.scans.size(); ++i) {
+    const std::filesystem::path expected = sequence.scans[i].stem();
+    if (sequence.labels[i].stem() != expected)
+      throw Error(ErrorKind::data, sequence.labels[i].string() + ": belongs to no scan, expected " +
+                                       expected.string() + ".label");
+  }
+}
+
+const std::vector<float>& float_column(const Table& table, std::string_view name) {
+  return std::get<std::vector<float>>(table.find(name)->values);
+}
+
+void read_labels(const std::filesystem::path& path, KittiScan& scan) {
+  const std::string bytes = read_file(path);
+  const std::size_t points = scan.positions.size();
+  if (bytes.size() != points * sizeof(std::uint32_t))
+    throw Error(ErrorKind::data, path.string() + ": " +
+                                     std::to_string(bytes.size() / sizeof(std::uint32_t)) +
+                                     " labels (" + std::to_string(bytes.size()) + " bytes), " +
+                                     std::to_string(points) + " points");
+  scan.classes.resize(points);
+  scan.instances.resize(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    std::uint32_t label = 0;
+    std::memcpy(&label, bytes.data() + i * sizeof(label), sizeof(label));
+    scan.classes[i] = static_cast<std::uint16_t>(label & 0xffff);
+    scan.instances[i] = static_cast<std::uint16_t>(label >> 16);
+  }
+}
+
+}  // namespace
+
+bool is_kitti_sequence(const std::filesystem::path& folder) {
+  std::error_code ignored;  // what cannot be looked into is no sequence
+  return std::filesystem::is_directory(folder / "velodyne", ignored);
+}
+
+KittiSequence open_kitti_sequence(const std::filesystem::path& folder) {
+  if (!is_kitti_sequence(folder))
+    throw Error(ErrorKind::no_input, folder.string() + ": has no folder 'velodyne'");
+  KittiSequence sequence;
+  sequence.folder = folder;
+  sequence.scans = files_by_name(folder / "velodyne", ".bin");
+  if (sequence.scans.empty())
+    throw Error(ErrorKind::no_input, (folder / "velodyne").string() + ": holds no .bin files");
+  sequence.labels = files_by_name(folder / "labels", ".label");
+  if (!sequence.labels.empty()) require_labels_of_scans(sequence);
+  const std::filesystem::path poses_file = folder / "poses.txt";
+  sequence.trajectory = poses_of_scans(poses_file, read_trajectory(poses_file), sequence.scans);
+  return sequence;
+}
+
+KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index) {
+  const std::filesystem::path& path = sequence.scans.at(index);
+  KittiScan scan;
+  // A scan in which nothing returned is an empty file.
+  std::error_code problem;
+  if (std::filesystem::file_size(path, problem) != 0 || problem) {
+    Table table = read_kitti_bin(path);
+    const auto& x = float_column(table, "x");
+    const auto& y = float_column(table, "y");
+    const auto& z = float_column(table, "z");
+    scan.positions.resize(table.rows);
+    for (std::size_t i = 0; i < table.rows; ++i) scan.positions[i] = {x[i], y[i], z[i]};
+    scan.intensities = float_column(table, "intensity");
+  }
+  return scan;
+}
+
+std::optional<KittiScan> try_kitti_points(const KittiSequence& sequence, std::size_t index) {
+  try {
+    return read_kitti_points(sequence, index);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+KittiScan read_kitti_scan(const KittiSequence& sequence, std::size_t index) {
+  KittiScan scan = read_kitti_points(sequence, index);
+  if (!sequence.labels.empty()) read_labels(sequence.labels.at(index), scan);
+  return scan;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/cloud/sequence/scan_beams.h"
+
+namespace adasplats {
+
+/// A SemanticKITTI sequence folder: velodyne/NNNNNN.bin, labels/NNNNNN.label (optional),
+/// poses.txt, calib.txt, times.txt (optional).
+struct KittiSequence {
+  std::filesystem::path folder;
+  std::vector<std::filesystem::path> scans;   ///< by name
+  std::vector<std::filesystem::path> labels;  ///< empty, or one a scan
+  Trajectory trajectory;                      ///< world_from_velodyne, one a scan
+  ScanBeams beams;  ///< unless recognize_beams says more: from the frame's origin
+};
+
+/// True for a folder with a `velodyne` folder in it.
+bool is_kitti_sequence(const std::filesystem::path& folder);
+
+/// Lists a sequence and reads its poses; scans are not read. Errors: no_input, data (poses of
+/// another count than scans, labels of another count).
+KittiSequence open_kitti_sequence(const std::filesystem::path& folder);
+
+/// One scan in the sensor frame.
+struct KittiScan {
+  std::vector<Vec3f> positions;  ///< sensor frame, m
+  std::vector<float> intensities;
+  std::vector<std::uint16_t> classes;    ///< low 16 bits of the label; empty without labels
+  std::vector<std::uint16_t> instances;  ///< high 16 bits
+};
+
+/// Reads scan number `index`. Points that are not finite are kept here (the caller counts them).
+/// Errors: data where the label file has another number of entries ("n labels, m points").
+KittiScan read_kitti_scan(const KittiSequence& sequence, std::size_t index);
+
+/// The same without labels.
+KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index);
+
+/// The same; nothing where the scan cannot be read. For what looks into scans that nobody chose:
+/// whoever reads one that was chosen says what is wrong with it.
+std::optional<KittiScan> try_kitti_points(const KittiSequence& sequence, std::size_t index);
+
+}  // namespace adasplats

@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/sequence/pose_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+
+namespace {
+
+constexpr std::size_t kPairs = 4;
+constexpr double kLeastApart_m = 3, kMostApart_m = 15;
+constexpr double kSourceReach_m = 20;                             // of the points that are moved
+constexpr double kTargetReach_m = kSourceReach_m + kMostApart_m;  // where they can come to
+constexpr double kColumn_m = 1, kUpright_m = 1;
+// Beams of 2 degrees are 0.7 m apart at 20 m: finer cells would tell the pattern of the beams.
+constexpr double kVoxel_m = 0.5;
+constexpr std::size_t kMostPoints = 1000, kLeastPoints = 200;  // of a pair
+
+constexpr std::size_t kWithoutMotion = 1;
+
+// LiDAR axes (x forward, y left, z up) to camera axes (x right, y down, z forward).
+constexpr RigidTransform kCameraFromLidar = {{{{0, -1, 0}, {0, 0, -1}, {1, 0, 0}}}, {}};
+
+constexpr std::array<std::string_view, PoseEvidence::kWays> kWayNames = {
+    "with the poses as given", "without any motion (are the points in world coordinates already?)",
+    "with the poses taken as the camera's (is the 'Tr:' of calib.txt missing or the identity?)",
+    "with the poses taken as the LiDAR's (is the 'Tr:' of calib.txt one too many?)",
+    "with the poses inverted (are they sensor_from_world?)"};
+
+/// A cube of cells around a point.
+class Grid {
+ public:
+  Grid(Vec3d middle, double reach_m, double cell_m)
+      : low_(middle - Vec3d{reach_m, reach_m, reach_m}),
+        cell_m_(cell_m),
+        size_(static_cast<std::size_t>(std::ceil(2 * reach_m / cell_m))) {}
+
+  std::size_t size() const { return size_; }
+  /// The number of the cell along one axis; nothing outside.
+  std::optional<std::size_t> along(int axis, Vec3d p) const {
+    const double cell = std::floor((p[axis] - low_[axis]) / cell_m_);
+    if (!(cell >= 0 && cell < static_cast<double>(size_))) return std::nullopt;
+    return static_cast<std::size_t>(cell);
+  }
+
+ private:
+  Vec3d low_;
+  double cell_m_;
+  std::size_t size_;
+};
+
+/// The finite points of a scan that are near its middle.
+struct NearPoints {
+  Vec3d middle;  ///< componentwise median: not the frame's origin where that is far away
+  std::vector<Vec3d> points;
+};
+
+NearPoints near_points(const KittiScan& scan, double reach_m) {
+  NearPoints near;
+  for (const Vec3f p : scan.positions)
+    if (is_finite(p)) near.points.push_back(vec_cast<double>(p));
+  if (near.points.empty()) return near;
+  std::vector<double> values(near.points.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = near.points[i][axis];
+    const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), half, values.end());
+    near.middle[axis] = *half;
+  }
+  std::erase_if(near.points, [&](Vec3d p) { return !(length(p - near.middle) < reach_m); });
+  return near;
+}
+
+/// Points of columns that something fills upright; at most kMostPoints, evenly taken.
+std::vector<Vec3d> upright_points(const NearPoints& near) {
+  const Grid columns(near.middle, kSourceReach_m, kColumn_m);
+  struct Heights {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -std::numeric_limits<double>::infinity();
+  };
+  std::vector<Heights> heights(columns.size() * columns.size());
+  const auto heights_at = [&](Vec3d p) -> Heights& {
+    return heights[columns.along(0, p).value_or(0) * columns.size() +
+                   columns.along(1, p).value_or(0)];
+  };
+  for (const Vec3d p : near.points) {
+    Heights& column = heights_at(p);
+    column.low = std::min(column.low, p.z);
+    column.high = std::max(column.high, p.z);
+  }
+  std::vector<Vec3d> upright;
+  for (const Vec3d p : near.points)
+    if (heights_at(p).high - heights_at(p).low >= kUpright_m) upright.push_back(p);
+  if (upright.size() <= kMostPoints) return upright;
+  std::vector<Vec3d> taken;
+  for (std::size_t k = 0; k < kMostPoints; ++k)
+    taken.push_back(upright[k * upright.size() / kMostPoints]);
+  return taken;
+}
+
+/// Which cells of space a scan has points in.
+class Occupied {
+ public:
+  explicit Occupied(const NearPoints& near)
+      : grid_(near.middle, kTargetReach_m + kVoxel_m, kVoxel_m),
+        cells_(grid_.size() * grid_.size() * grid_.size()) {
+    for (const Vec3d p : near.points)
+      if (const auto cell = cell_of(p)) cells_[*cell] = true;
+  }
+
+  /// Whether a point has others within about half a cell.
+  bool meets(Vec3d p) const {
+    for (int corner = 0; corner < 8; ++corner) {
+      const auto side = [corner](int axis) {
+        return (corner >> axis & 1) != 0 ? 0.5 * kVoxel_m : -0.5 * kVoxel_m;
+      };
+      const auto cell = cell_of(p + Vec3d{side(0), side(1), side(2)});
+      if (cell && cells_[*cell]) return true;
+    }
+    return false;
+  }
+
+ private:
+  std::optional<std::size_t> cell_of(Vec3d p) const {
+    const auto x = grid_.along(0, p), y = grid_.along(1, p), z = grid_.along(2, p);
+    if (!x || !y || !z) return std::nullopt;
+    return (*x * grid_.size() + *y) * grid_.size() + *z;
+  }
+
+  Grid grid_;
+  std::vector<bool> cells_;
+};
+
+/// Where each way has the later scan's points in the earlier scan's frame.
+std::array<RigidTransform, PoseEvidence::kWays> motions(const RigidTransform& earlier,
+                                                        const RigidTransform& later) {
+  const RigidTransform& c = kCameraFromLidar;
+  const RigidTransform given = earlier.inverse() * later;
+  return {given, RigidTransform{}, c.inverse() * given * c, c * given * c.inverse(),
+          earlier * later.inverse()};
+}
+
+void add_pair(const KittiSequence& sequence, std::size_t earlier, std::size_t later,
+              PoseEvidence& evidence) {
+  const auto later_scan = try_kitti_points(sequence, later);
+  if (!later_scan) return;
+  const NearPoints source = near_points(*later_scan, kSourceReach_m);
+  const std::vector<Vec3d> moved = upright_points(source);
+  if (moved.size() < kLeastPoints) return;
+  const auto earlier_scan = try_kitti_points(sequence, earlier);
+  if (!earlier_scan) return;
+  const NearPoints target = near_points(*earlier_scan, kTargetReach_m);
+  const Occupied occupied(target);
+  const auto ways = motions(sequence.trajectory[earlier].world_from_sensor,
+                            sequence.trajectory[later].world_from_sensor);
+  // Traffic at one's own speed does not move either; points of a sensor that moves are always
+  // around their frame's origin, those in world coordinates come along.
+  const bool frame_stands =
+      length(source.middle - target.middle) >= 0.5 * length(ways[0].translation);
+  ++evidence.pairs;
+  evidence.points += moved.size();
+  for (std::size_t way = 0; way < ways.size(); ++way)
+    if (way != kWithoutMotion || frame_stands)
+      evidence.met[way] += static_cast<std::size_t>(
+          std::ranges::count_if(moved, [&](Vec3d p) { return occupied.meets(ways[way] * p); }));
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> pairs_of(const Trajectory& trajectory) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  const auto place = [&](std::size_t i) { return trajectory[i].world_from_sensor.translation; };
+  for (std::size_t k = 0; k < kPairs; ++k) {
+    const std::size_t earlier = k * trajectory.size() / kPairs;
+    if (!pairs.empty() && pairs.back().first == earlier) continue;
+    for (std::size_t later = earlier + 1; later < trajectory.size(); ++later) {
+      const double apart_m = length(place(later) - place(earlier));
+      if (!(apart_m >= kLeastApart_m)) continue;
+      if (apart_m <= kMostApart_m) pairs.emplace_back(earlier, later);
+      break;
+    }
+  }
+  return pairs;
+}
+
+std::string percent_text(double share) {
+  return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
+}
+
+}  // namespace
+
+double PoseEvidence::share(std::size_t way) const {
+  return points == 0 ? 0 : static_cast<double>(met.at(way)) / static_cast<double>(points);
+}
+
+std::size_t PoseEvidence::best_other() const {
+  return static_cast<std::size_t>(std::max_element(met.begin() + 1, met.end()) - met.begin());
+}
+
+bool PoseEvidence::contradicts() const {
+  // On sequences 00, 01, 02, 03 and 05 of SemanticKITTI the true motion has shares of 0.95 and more
+  // and the best other way at most 0.66 of the given one's; where poses are wrong in one of these
+  // ways, the best other way is the true one and has at least 1.36 of the given one's.
+  constexpr double kLeastShare = 0.8, kLeastGain = 1.2;
+  const double other = share(best_other());
+  return other >= kLeastShare && other >= kLeastGain * share(0);
+}
+
+PoseEvidence weigh_poses(const KittiSequence& sequence) {
+  PoseEvidence evidence;
+  for (const auto& [earlier, later] : pairs_of(sequence.trajectory))
+    add_pair(sequence, earlier, later, evidence);
+  return evidence;
+}
+
+void require_poses_that_fit(const KittiSequence& sequence) {
+  const PoseEvidence evidence = weigh_poses(sequence);
+  if (!evidence.contradicts()) return;
+  const std::size_t other = evidence.best_other();
+  throw Error(ErrorKind::data,
+              sequence.folder.string() + ": the poses and the points contradict each other: of " +
+                  std::to_string(evidence.points) + " points on upright things in " +
+                  std::to_string(evidence.pairs) + " pairs of scans " +
+                  percent_text(evidence.share(0)) + " meet the other scan " +
+                  std::string(kWayNames.front()) + ", " + percent_text(evidence.share(other)) +
+                  " " + std::string(kWayNames.at(other)));
+}
+
+}  // namespace adasplats

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+
+namespace adasplats {
+
+/// How the scans of a sequence lie on each other: with the poses as they are, and as faults that
+/// poses commonly have would have it.
+struct PoseEvidence {
+  /// As given, without motion (points that are in world coordinates already), poses of the camera
+  /// taken for the LiDAR's, the LiDAR's taken for the camera's, inverse poses.
+  static constexpr std::size_t kWays = 5;
+
+  std::size_t pairs = 0;                 ///< of scans that could be judged
+  std::size_t points = 0;                ///< on upright things in the later scans of the pairs
+  std::array<std::size_t, kWays> met{};  ///< of these, how many meet the earlier scan
+
+  /// Share of the points that meet, 0 to 1; 0 without points.
+  double share(std::size_t way) const;
+  /// The way other than the given one that most points meet in.
+  std::size_t best_other() const;
+  /// Whether the poses cannot be those of the scans.
+  bool contradicts() const;
+};
+
+/// Judges up to four pairs of scans that are 3 to 15 m apart by their poses. Ground looks the same
+/// from everywhere, so only points in columns of 1 m that something of at least 1 m fills count. A
+/// vehicle that stands, scans farther apart and places without upright things give no pairs,
+/// nor do scans that cannot be read.
+PoseEvidence weigh_poses(const KittiSequence& sequence);
+
+/// Throws data with the figures where weigh_poses(sequence) contradicts.
+void require_poses_that_fit(const KittiSequence& sequence);
+
+}  // namespace adasplats

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/sequence/pose_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/random.h"
+
+namespace adasplats {
+namespace {
+
+constexpr RigidTransform kCamera = {{{{0, -1, 0}, {0, 0, -1}, {1, 0, 0}}}, {}};
+
+/// Points of a street of 120 m: ground, and things of 3 m that stand at random places, not alike.
+std::vector<Vec3d> street() {
+  std::vector<Vec3d> points;
+  auto draw = [n = std::uint64_t{0}](double low, double high) mutable {
+    return Random(7, 0, n++).uniform(low, high);
+  };
+  for (int i = 0; i < 30'000; ++i) points.push_back({draw(-60, 60), draw(-15, 15), -1.7});
+  for (int thing = 0; thing < 90; ++thing) {
+    const Vec3d foot = {draw(-60, 60), draw(-15, 15), -1.7};
+    for (int i = 0; i < 200; ++i)
+      points.push_back(foot + Vec3d{draw(0, 0.6), draw(0, 0.6), draw(0, 3)});
+  }
+  return points;
+}
+
+/// A tunnel: walls, ground and ceiling, the same all along.
+std::vector<Vec3d> tunnel() {
+  std::vector<Vec3d> points;
+  for (int i = -400; i < 400; ++i)
+    for (int k = 0; k < 40; ++k) {
+      const double z = -1.7 + 0.1 * k;
+      points.push_back({0.1 * i, -4, z});
+      points.push_back({0.1 * i, 4, z});
+    }
+  return points;
+}
+
+using Way = std::function<RigidTransform(const RigidTransform&)>;
+
+/// Writes `scans` scans of a world, 1 m apart along x; the poses are as `written` has them, and the
+/// points are in the sensor's frame, or with `in_world` in the world's.
+KittiSequence drive(const TemporaryFolder& folder, const std::vector<Vec3d>& world, int scans,
+                    const Way& written, double apart_m = 1, bool in_world = false) {
+  KittiSequence sequence;
+  sequence.folder = folder.path();
+  for (int k = 0; k < scans; ++k) {
+    const RigidTransform pose = {rotation_from_yaw_pitch_roll(0.01 * k, 0, 0),
+                                 {apart_m * k, 0, 0.01 * k}};
+    std::vector<float> values;
+    for (const Vec3d p : world) {
+      const Vec3d seen = pose.inverse() * p;
+      if (!(length(seen) < 35)) continue;
+      const Vec3d told = in_world ? p : seen;
+      values.insert(values.end(), {static_cast<float>(told.x), static_cast<float>(told.y),
+                                   static_cast<float>(told.z), 0.5F});
+    }
+    sequence.scans.push_back(folder.write("velodyne/" + std::to_string(k) + ".bin", values));
+    sequence.trajectory.push_back({0.1 * k, written(pose)});
+  }
+  return sequence;
+}
+
+const Way kHonest = [](const RigidTransform& pose) { return pose; };
+
+TEST(PoseCheck, TrueMotionIsBelieved) {
+  const TemporaryFolder folder;
+  const KittiSequence sequence = drive(folder, street(), 12, kHonest);
+  const PoseEvidence evidence = weigh_poses(sequence);
+  EXPECT_EQ(evidence.pairs, 3U);  // none 3 m ahead of scan 9
+  EXPECT_GT(evidence.share(0), 0.95);
+  EXPECT_FALSE(evidence.contradicts());
+  require_poses_that_fit(sequence);
+}
+
+TEST(PoseCheck, FaultsAreNamedWithFigures) {
+  const TemporaryFolder folder;
+  const auto refuse = [&](const Way& written, const std::string& what, bool in_world = false) {
+    const KittiSequence wrong = drive(folder, street(), 12, written, 1, in_world);
+    expect_error(ErrorKind::data, {folder.path().string(), "contradict", " % meet", what},
+                 [&] { require_poses_that_fit(wrong); });
+  };
+  refuse([](const RigidTransform& p) { return kCamera * p * kCamera.inverse(); }, "the camera's");
+  refuse([](const RigidTransform& p) { return kCamera.inverse() * p * kCamera; }, "the LiDAR's");
+  refuse([](const RigidTransform& p) { return p.inverse(); }, "inverted");
+  refuse(kHonest, "in world coordinates already", true);
+}
+
+TEST(PoseCheck, WhatTellsNothingIsBelieved) {
+  const TemporaryFolder folder;
+  EXPECT_FALSE(weigh_poses(drive(folder, tunnel(), 12, kHonest)).contradicts());
+  EXPECT_EQ(weigh_poses(drive(folder, street(), 12, kHonest, 0)).pairs, 0U);  // it stands
+  EXPECT_EQ(weigh_poses(drive(folder, street(), 4, kHonest, 50)).pairs, 0U);  // far apart
+  EXPECT_FALSE(weigh_poses(drive(folder, street(), 2, kHonest, 5)).contradicts());
+  EXPECT_EQ(weigh_poses(drive(folder, street(), 2, kHonest, 5)).pairs, 1U);
+  EXPECT_EQ(weigh_poses(drive(folder, {}, 12, kHonest)).pairs, 0U);  // empty scans
+  EXPECT_EQ(weigh_poses(drive(folder, {{1, 2, 3}}, 1, kHonest)).pairs, 0U);
+  EXPECT_EQ(weigh_poses(KittiSequence{}).pairs, 0U);
+}
+
+// A scan that nobody chose must not stop what reads others; labels tell nothing of poses.
+TEST(PoseCheck, ScansThatCannotBeReadAreSkipped) {
+  const TemporaryFolder folder;
+  KittiSequence sequence = drive(folder, street(), 12, kHonest);
+  for (std::size_t k = 0; k < sequence.scans.size(); ++k)
+    sequence.labels.push_back(folder.path() / "labels/none.label");
+  EXPECT_EQ(weigh_poses(sequence).pairs, 3U);
+  folder.write("velodyne/0.bin", std::string(17, 'x'));  // earlier of the first pair
+  EXPECT_EQ(weigh_poses(sequence).pairs, 2U);
+  std::filesystem::remove(sequence.scans[9]);  // later of the last one
+  EXPECT_EQ(weigh_poses(sequence).pairs, 1U);
+}
+
+// Cars around drive as fast: they stand still for the sensor, and are most of what it sees.
+TEST(PoseCheck, TrafficAtOnesOwnSpeedIsNoContradiction) {
+  const TemporaryFolder folder;
+  KittiSequence sequence = drive(folder, street(), 12, kHonest);
+  for (std::size_t k = 0; k < sequence.trajectory.size(); ++k)
+    sequence.scans[k] = sequence.scans.front();
+  const PoseEvidence evidence = weigh_poses(sequence);
+  EXPECT_GT(evidence.pairs, 0U);
+  EXPECT_FALSE(evidence.contradicts());
+}
+
+}  // namespace
+}  // namespace adasplats

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/sequence/scan_beams.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+
+namespace adasplats {
+namespace {
+
+/// Elevations of the beams of KITTI's Velodyne HDL-64E, top to bottom. These and the heights below
+/// were fitted to the measurements of KITTI raw drive 2011_09_26_0005 (z = tan(e) * rho + h, which
+/// holds to 0.3 mm); drives of other days agree.
+constexpr std::array<double, 64> kElevations_deg = {
+    1.9367,   1.5740,   1.3048,   0.8716,   0.5788,   0.1806,   -0.0888,  -0.4518,
+    -0.8031,  -1.2012,  -1.4939,  -1.8332,  -2.2076,  -2.5466,  -2.8738,  -3.2359,
+    -3.5393,  -3.9359,  -4.2155,  -4.5881,  -4.9138,  -5.2508,  -5.6106,  -5.9584,
+    -6.3289,  -6.6757,  -6.9990,  -7.2873,  -7.6788,  -8.0580,  -8.3105,  -8.7114,
+    -9.0260,  -9.5735,  -10.0625, -10.4708, -10.9570, -11.5989, -12.1150, -12.5621,
+    -13.0410, -13.4848, -14.0484, -14.5981, -15.1888, -15.6568, -16.1767, -16.5538,
+    -17.1869, -17.7304, -18.3234, -18.7974, -19.3203, -19.7364, -20.2224, -20.7877,
+    -21.3169, -21.9356, -22.4376, -22.8566, -23.3224, -23.9711, -24.5068, -24.9993};
+constexpr double kBlocksMeet_deg = -8.87;
+constexpr double kRevolution_s = 0.1033;  // KITTI's sensor turns 9.68 times a second
+constexpr double kRadians = std::numbers::pi / 180;
+
+/// Of the beam's origin above the frame's.
+double block_height_m(double elevation_deg) {
+  return elevation_deg > kBlocksMeet_deg ? 0.2065 + 0.00106 * elevation_deg
+                                         : 0.1309 + 0.00061 * elevation_deg;
+}
+
+/// Share of the revolution from its middle, -0.5 to 0.5, at which the sensor looked there.
+double sweep_phase(Vec3d point) { return -std::atan2(point.y, point.x) / (2 * std::numbers::pi); }
+
+/// Displacement over one revolution, in each scan's frame, from the poses before and after.
+std::vector<Vec3d> sweeps_of(const Trajectory& trajectory) {
+  std::vector<Vec3d> sweeps_m(trajectory.size());
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const TimedPose& before = trajectory[i == 0 ? 0 : i - 1];
+    const TimedPose& after = trajectory[std::min(i + 1, trajectory.size() - 1)];
+    const double seconds = after.time_s - before.time_s;
+    if (!(seconds > 0)) continue;
+    const Vec3d moved_m =
+        after.world_from_sensor.translation - before.world_from_sensor.translation;
+    sweeps_m[i] = trajectory[i].world_from_sensor.rotation.transposed() *
+                  ((kRevolution_s / seconds) * moved_m);
+  }
+  return sweeps_m;
+}
+
+/// Distance of a point from the nearest of the beams' cones, m.
+double distance_from_fan(Vec3d point) {
+  const double rho_m = std::hypot(point.x, point.y);
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const double elevation_deg : kElevations_deg) {
+    const double above_m =
+        point.z - block_height_m(elevation_deg) - std::tan(elevation_deg * kRadians) * rho_m;
+    nearest_m = std::min(nearest_m, std::fabs(above_m) * std::cos(elevation_deg * kRadians));
+  }
+  return nearest_m;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+MeasuredBeam ScanBeams::beam_of(std::size_t scan, Vec3d point) const {
+  MeasuredBeam beam{{}, point};
+  if (from_hdl64) {
+    // From the middle between the blocks the two parts of the fan are told apart well enough.
+    constexpr double kBetween_m = 0.165;
+    const double elevation_deg =
+        std::atan2(point.z - kBetween_m, std::hypot(point.x, point.y)) / kRadians;
+    beam.origin.z = block_height_m(elevation_deg);
+  }
+  const double phase = sweep_phase(point);
+  if (scan < sweeps_m.size()) beam.origin = beam.origin + phase * sweeps_m[scan];
+  if (scan < raw_motions.size()) {
+    const SweepMotion& motion = raw_motions[scan];
+    const Trajectory sweep = {
+        {-0.5, motion.frame_from_begin}, {0, {}}, {0.5, motion.frame_from_end}};
+    const RigidTransform frame_from_sensor = interpolate(sweep, phase);
+    beam = {frame_from_sensor * beam.origin, frame_from_sensor * beam.end};
+  }
+  return beam;
+}
+
+std::string ScanBeams::description() const {
+  const std::string origin = from_hdl64 ? "HDL-64E blocks" : "frame origin";
+  if (!raw_motions.empty()) return origin + ", rolling";
+  return from_hdl64 && !sweeps_m.empty() ? origin + ", moving" : origin;
+}
+
+void set_raw_motions(ScanBeams& beams, const Trajectory& poses, const Trajectory& motion,
+                     double revolution_s) {
+  beams.raw_motions.clear();
+  for (const TimedPose& pose : poses) {
+    const RigidTransform frame_from_world = interpolate(motion, pose.time_s).inverse();
+    const auto moved = [&](double after_s) {
+      return frame_from_world * interpolate(motion, pose.time_s + after_s);
+    };
+    beams.raw_motions.push_back({moved(-0.5 * revolution_s), moved(0.5 * revolution_s)});
+  }
+}
+
+ScanBeams recognize_beams(const KittiSequence& sequence) {
+  constexpr std::size_t kScans = 5;
+  constexpr std::size_t kEvery = 11;                      // points
+  constexpr double kLeastRange_m = 8, kMostRange_m = 40;  // cones are apart there, beams accurate
+  constexpr std::size_t kLeastPoints = 500;
+  constexpr double kMostDistance_m = 0.01;
+
+  ScanBeams moving{true, sweeps_of(sequence.trajectory), {}};
+  std::vector<double> as_measured_m, compensated_m;
+  const std::size_t scans = std::min(kScans, sequence.scans.size());
+  for (std::size_t k = 0; k < scans; ++k) {
+    // Not the first and the last one: their speeds are less sure.
+    const std::size_t index = (2 * k + 1) * sequence.scans.size() / (2 * scans);
+    const auto scan = try_kitti_points(sequence, index);
+    for (std::size_t i = 0; scan && i < scan->positions.size(); i += kEvery) {
+      const Vec3d point = vec_cast<double>(scan->positions[i]);
+      const double range_m = length(point);
+      if (!(range_m >= kLeastRange_m && range_m <= kMostRange_m)) continue;
+      as_measured_m.push_back(distance_from_fan(point));
+      compensated_m.push_back(
+          distance_from_fan(point - sweep_phase(point) * moving.sweeps_m[index]));
+    }
+  }
+  if (as_measured_m.size() < kLeastPoints) return {};
+  const double as_measured = median(std::move(as_measured_m));
+  const double compensated = median(std::move(compensated_m));
+  if (!(std::min(as_measured, compensated) < kMostDistance_m)) return {};
+  if (as_measured <= compensated) moving.sweeps_m.clear();
+  return moving;
+}
+
+}  // namespace adasplats
