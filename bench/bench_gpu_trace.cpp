@@ -19,7 +19,7 @@
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/gpu/simulate/gpu_scene.h"
 #include "adasplats/pipeline/provenance.h"
-#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/scan/scan.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/trace/tracer.h"
 

@@ -19,7 +19,7 @@
 #include "adasplats/core/random.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/provenance.h"
-#include "adasplats/simulate/world.h"
+#include "adasplats/simulate/world/world.h"
 
 namespace adasplats {
 

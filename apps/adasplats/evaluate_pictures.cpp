@@ -7,8 +7,8 @@
 
 #include "adasplats/evaluate/cloud_metrics.h"
 #include "adasplats/io/arrays/png.h"
-#include "adasplats/simulate/color_bar.h"
-#include "adasplats/simulate/point_image.h"
+#include "adasplats/simulate/image/color_bar.h"
+#include "adasplats/simulate/image/point_image.h"
 
 namespace adasplats::app {
 namespace {

@@ -19,7 +19,7 @@
 #include "adasplats/pipeline/output_check.h"
 #include "adasplats/pipeline/scan_range.h"
 #include "adasplats/scene/mesh_model.h"
-#include "adasplats/simulate/point_colors.h"
+#include "adasplats/simulate/image/point_colors.h"
 #include "adasplats/splats/model/gaussian_ply.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "output_path.h"

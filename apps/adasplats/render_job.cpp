@@ -15,7 +15,7 @@
 #include "adasplats/io/arrays/png.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/pipeline/model_scene.h"
-#include "adasplats/simulate/point_colors.h"
+#include "adasplats/simulate/image/point_colors.h"
 #include "output_path.h"
 
 namespace adasplats::app {

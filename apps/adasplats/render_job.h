@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "adasplats/pipeline/view_choice.h"
-#include "adasplats/simulate/image.h"
+#include "adasplats/simulate/image/image.h"
 #include "session.h"
 
 namespace adasplats::app {

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "adasplats/core/words.h"
-#include "adasplats/simulate/color_bar.h"
-#include "adasplats/simulate/color_map.h"
+#include "adasplats/simulate/image/color_bar.h"
+#include "adasplats/simulate/image/color_map.h"
 #include "text_table.h"
 
 namespace adasplats::app {

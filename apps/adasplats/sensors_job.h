@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "adasplats/sensors/lidar_model.h"
-#include "adasplats/simulate/image.h"
+#include "adasplats/simulate/image/image.h"
 #include "session.h"
 
 namespace adasplats::app {

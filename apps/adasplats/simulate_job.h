@@ -9,8 +9,8 @@
 
 #include "adasplats/dataset/scan_writer.h"
 #include "adasplats/pipeline/drive.h"
-#include "adasplats/simulate/scan.h"
-#include "adasplats/simulate/weather.h"
+#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/weather.h"
 #include "session.h"
 
 namespace adasplats::app {

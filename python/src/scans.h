@@ -7,7 +7,7 @@
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/dataset/range_image.h"
-#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/scan/scan.h"
 #include "bindings.h"
 
 namespace adasplats::python {

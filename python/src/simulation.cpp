@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <deque>
 
-#include "adasplats/simulate/scan_motion.h"
+#include "adasplats/simulate/scan/scan_motion.h"
 #include "clouds.h"
 #include "scans.h"
 #include "scenes.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adasplats/cloud/labels/label_scheme.h"
-#include "adasplats/simulate/world.h"
+#include "adasplats/simulate/world/world.h"
 
 namespace adasplats {
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "adasplats/io/mcap/mcap_file.h"
-#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
 

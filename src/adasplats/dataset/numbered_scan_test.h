@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "adasplats/core/random.h"
-#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
 

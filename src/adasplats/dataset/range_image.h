@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adasplats/cloud/labels/label_scheme.h"
-#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
 

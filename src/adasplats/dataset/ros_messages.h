@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "adasplats/core/rigid_transform.h"
-#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
 

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
 

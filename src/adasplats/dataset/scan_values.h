@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adasplats/io/base/table.h"
-#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "adasplats/cloud/poses/trajectory.h"
-#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
 

@@ -11,9 +11,9 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/sensors/lidar_model.h"
-#include "adasplats/simulate/ray_drop.h"
-#include "adasplats/simulate/scan.h"
-#include "adasplats/simulate/scan_motion.h"
+#include "adasplats/simulate/scan/ray_drop.h"
+#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/scan_motion.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {

@@ -14,7 +14,7 @@
 #include "adasplats/evaluate/beam_accuracy_internal.h"
 #include "adasplats/evaluate/beam_neighbors.h"
 #include "adasplats/evaluate/share.h"
-#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/scan/scan.h"
 #include "adasplats/trace/closest_point.h"
 
 namespace adasplats {

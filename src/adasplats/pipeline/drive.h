@@ -8,7 +8,7 @@
 
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/sensors/lidar_model.h"
-#include "adasplats/simulate/scan_motion.h"
+#include "adasplats/simulate/scan/scan_motion.h"
 
 namespace adasplats {
 

@@ -12,9 +12,9 @@
 #include "adasplats/core/function_ref.h"
 #include "adasplats/pipeline/model_scene.h"
 #include "adasplats/sensors/lidar_model.h"
-#include "adasplats/simulate/ray_drop.h"
-#include "adasplats/simulate/scan.h"
-#include "adasplats/simulate/weather.h"
+#include "adasplats/simulate/scan/ray_drop.h"
+#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/weather.h"
 
 namespace adasplats {
 

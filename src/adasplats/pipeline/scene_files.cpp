@@ -7,7 +7,7 @@
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/pipeline/inputs.h"
 #include "adasplats/scene/gltf.h"
-#include "adasplats/simulate/world_file.h"
+#include "adasplats/simulate/world/world_file.h"
 
 namespace adasplats {
 

@@ -13,7 +13,7 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/scene/scene.h"
-#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
 

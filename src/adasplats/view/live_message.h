@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adasplats/pipeline/scan_simulator.h"
-#include "adasplats/simulate/scan_motion.h"
+#include "adasplats/simulate/scan/scan_motion.h"
 
 namespace adasplats {
 

@@ -10,7 +10,7 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/rigid_transform.h"
 #include "adasplats/core/vec3.h"
-#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
 

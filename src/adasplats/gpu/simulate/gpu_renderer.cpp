@@ -7,7 +7,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/simulate/gpu_shading.h"
-#include "adasplats/simulate/shading.h"
+#include "adasplats/simulate/image/shading.h"
 
 namespace adasplats {
 

@@ -9,7 +9,7 @@
 
 #include "adasplats/gpu/simulate/gpu_scene.h"
 #include "adasplats/gpu/trace/scene_parts.h"
-#include "adasplats/simulate/shading_maths.h"
+#include "adasplats/simulate/image/shading_maths.h"
 
 namespace adasplats {
 

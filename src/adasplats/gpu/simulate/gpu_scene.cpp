@@ -15,7 +15,7 @@
 #include "adasplats/gpu/simulate/gpu_renderer.h"
 #include "adasplats/gpu/simulate/gpu_scanner.h"
 #include "adasplats/gpu/trace/gpu_tracer.h"
-#include "adasplats/simulate/shading.h"
+#include "adasplats/simulate/image/shading.h"
 
 namespace adasplats {
 

@@ -11,8 +11,8 @@
 
 #include "adasplats/scene/scene.h"
 #include "adasplats/sensors/camera.h"
-#include "adasplats/simulate/image.h"
-#include "adasplats/simulate/scan_caster.h"
+#include "adasplats/simulate/image/image.h"
+#include "adasplats/simulate/scan/scan_caster.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {

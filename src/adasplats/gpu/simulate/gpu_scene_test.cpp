@@ -14,7 +14,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/random.h"
 #include "adasplats/gpu/base/device.h"
-#include "adasplats/simulate/scan.h"
+#include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
 namespace {

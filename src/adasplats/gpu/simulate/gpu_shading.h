@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "adasplats/gpu/trace/ray_source.h"
-#include "adasplats/simulate/shading_maths.h"
+#include "adasplats/simulate/image/shading_maths.h"
 
 namespace adasplats::gpu {
 

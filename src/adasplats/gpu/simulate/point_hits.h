@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "adasplats/gpu/simulate/gpu_scene.h"
-#include "adasplats/simulate/scan_ray.h"
+#include "adasplats/simulate/scan/scan_ray.h"
 
 namespace adasplats::gpu {
 

@@ -7,7 +7,7 @@
 #include "adasplats/core/ray.h"
 #include "adasplats/core/rigid_transform.h"
 #include "adasplats/sensors/camera.h"
-#include "adasplats/simulate/scan_ray.h"
+#include "adasplats/simulate/scan/scan_ray.h"
 
 namespace adasplats::gpu {
 

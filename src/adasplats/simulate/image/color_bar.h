@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/simulate/image/point_image.h"
+
+namespace adasplats {
+
+/// Colours along a scale: evenly spaced places, straight between them.
+struct ColorScale {
+  std::vector<Rgb> places;  ///< two or more
+  /// `share` is clamped to 0..1; NaN gives the first colour.
+  Rgb at(double share) const;
+};
+
+/// Dark blue over light blue and yellow to red: distances that should be small.
+const ColorScale& distance_scale();
+/// Blue over white to red: errors with a sign.
+const ColorScale& signed_scale();
+
+/// What is written on a colour bar: texts under places (0..1), and further colours beside it.
+struct ColorBarText {
+  std::vector<std::pair<double, std::string>> marks;
+  std::vector<std::pair<Rgb, std::string>> keys;
+};
+
+/// Draws a colour bar into the lower left corner of a picture, on a light plate. Texts hold digits,
+/// lower-case letters and "+-.>< ", anything else is left blank.
+void draw_color_bar(Image& image, const ColorScale& scale, const ColorBarText& text);
+
+}  // namespace adasplats

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/simulate/image/image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
+#include "adasplats/simulate/image/shading.h"
+
+namespace adasplats {
+
+namespace {
+
+// A packet of 16 rays is a block of 4 x 4 samples: its rays meet nearly the same boxes.
+constexpr int kBlock = 4;
+// A tile is what one task renders; its rays are cast in one call.
+constexpr int kTile = 64;
+
+struct Sample {
+  int x, y;  ///< in samples from the image's top left corner
+};
+
+/// The samples of one tile, block by block.
+std::vector<Sample> samples_of_tile(Sample first, int columns, int rows) {
+  std::vector<Sample> samples;
+  samples.reserve(static_cast<std::size_t>(kTile) * kTile);
+  const int right = std::min(first.x + kTile, columns);
+  const int bottom = std::min(first.y + kTile, rows);
+  for (int y = first.y; y < bottom; y += kBlock)
+    for (int x = first.x; x < right; x += kBlock)
+      for (int v = y; v < std::min(y + kBlock, bottom); ++v)
+        for (int u = x; u < std::min(x + kBlock, right); ++u) samples.push_back({u, v});
+  return samples;
+}
+
+/// Renders tiles into the image's pixels; one object serves all threads.
+class Renderer {
+ public:
+  Renderer(const Tracer& tracer, const ImageScene& scene, const Camera& camera,
+           const ImageOptions& options, const Executor& executor)
+      : tracer_(tracer),
+        camera_(camera),
+        camera_rays_(camera.rays(scene.origin)),
+        options_(options),
+        executor_(executor),
+        shading_(scene, options) {}
+
+  Image render() const {
+    Image image{camera_.width, camera_.height, {}};
+    image.pixels.resize(static_cast<std::size_t>(image.width) *
+                        static_cast<std::size_t>(image.height) * 3);
+    const int tile_pixels = kTile / options_.samples_per_axis;
+    const int tile_columns = (image.width + tile_pixels - 1) / tile_pixels;
+    const int tile_rows = (image.height + tile_pixels - 1) / tile_pixels;
+    const auto tiles = static_cast<std::size_t>(tile_columns) * static_cast<std::size_t>(tile_rows);
+    const ProgressPass pass(executor_, tiles);
+    executor_.for_chunks(tiles, 1, [&](std::size_t tile, std::size_t) {
+      const auto index = static_cast<int>(tile);
+      render_tile({index % tile_columns * tile_pixels, index / tile_columns * tile_pixels},
+                  tile_pixels, image);
+    });
+    return image;
+  }
+
+ private:
+  void render_tile(Sample corner, int tile_pixels, Image& image) const {
+    const int axis = options_.samples_per_axis;
+    const int right = std::min(corner.x + tile_pixels, image.width);
+    const int bottom = std::min(corner.y + tile_pixels, image.height);
+    const std::vector<Sample> samples =
+        samples_of_tile({corner.x * axis, corner.y * axis}, right * axis, bottom * axis);
+    std::vector<Ray> rays;
+    rays.reserve(samples.size());
+    for (const Sample& sample : samples)
+      rays.push_back(camera_rays_.ray((sample.x + 0.5) / axis, (sample.y + 0.5) / axis));
+    std::vector<Hit> hits(rays.size());
+    tracer_.nearest(rays, hits, executor_);
+
+    const int width = (right - corner.x) * axis;
+    std::vector<Vec3f> colors(samples.size());  // row by row
+    const auto place = [width](int x, int y) {
+      return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+             static_cast<std::size_t>(x);
+    };
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const int x = samples[i].x - corner.x * axis, y = samples[i].y - corner.y * axis;
+      colors[place(x, y)] = shade(shading_.tables(), rays[i], hits[i]);
+    }
+    for (int y = corner.y; y < bottom; ++y)
+      for (int x = corner.x; x < right; ++x)
+        store(
+            &colors[place((x - corner.x) * axis, (y - corner.y) * axis)], width,
+            &image.pixels[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                               static_cast<std::size_t>(x))]);
+  }
+
+  /// The mean of a pixel's samples, added row by row as on a GPU.
+  void store(const Vec3f* first, int width, std::uint8_t* pixel) const {
+    const int axis = options_.samples_per_axis;
+    Vec3f sum;
+    for (int v = 0; v < axis; ++v)
+      for (int u = 0; u < axis; ++u) sum = sum + first[v * width + u];
+    const float weight = 1.0F / static_cast<float>(axis * axis);
+    for (int channel = 0; channel < 3; ++channel) pixel[channel] = to_byte(weight * sum[channel]);
+  }
+
+  const Tracer& tracer_;
+  const Camera& camera_;
+  CameraRays camera_rays_;
+  const ImageOptions& options_;
+  const Executor& executor_;
+  Shading shading_;
+};
+
+}  // namespace
+
+void check_image(const Camera& camera, const ImageOptions& options) {
+  constexpr int kMost = 1 << 15;
+  const auto outside = [](int value) { return value < 1 || value > kMost; };
+  if (outside(camera.width) || outside(camera.height))
+    throw Error(ErrorKind::usage, "an image of " + std::to_string(camera.width) + " x " +
+                                      std::to_string(camera.height) +
+                                      " pixels; expected 1 to 32768 each");
+  if (options.samples_per_axis < 1 || options.samples_per_axis > 16)
+    throw Error(ErrorKind::usage, std::to_string(options.samples_per_axis) +
+                                      " samples per axis of a pixel; expected 1 to 16");
+  const bool parallel = camera.orthographic_width_m > 0;
+  if (!parallel && !(camera.horizontal_fov_rad > 0 && camera.horizontal_fov_rad < std::numbers::pi))
+    throw Error(ErrorKind::usage, "a camera's field of view must be above 0 and below 180 degrees");
+}
+
+Image render_image(const Tracer& tracer, const ImageScene& scene, const Camera& camera,
+                   const ImageOptions& options, const Executor& executor) {
+  check_image(camera, options);
+  return Renderer(tracer, scene, camera, options, executor).render();
+}
+
+}  // namespace adasplats

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/sensors/camera.h"
+#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/trace/tracer.h"
+
+namespace adasplats {
+
+/// What colours a picture shows.
+enum class ImageColor : std::uint8_t {
+  shading,    ///< grey by the angle between view and surface
+  semantic,   ///< colour of the class, where it has none (or black) of the group, else grey; shaded
+  normal,     ///< surface normal turned to the camera as RGB
+  intensity,  ///< measured intensity, 2nd to 98th percentile; grey where there is none
+  range,      ///< distance, on a logarithmic scale from 1 m to 100 m
+};
+
+/// 8-bit RGB, rows from the top.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> pixels;
+};
+
+struct ImageOptions {
+  ImageColor color = ImageColor::semantic;
+  int samples_per_axis = 1;  ///< rays a pixel: the square of this
+  std::array<std::uint8_t, 3> background = {255, 255, 255};
+  bool sky = true;  ///< above the horizon the background turns into a light blue
+
+  friend bool operator==(const ImageOptions&, const ImageOptions&) = default;
+};
+
+/// What a picture needs to know of the scene besides the tracer.
+struct ImageScene {
+  SceneView view;
+  PrimitiveAttributes attributes;
+  std::span<const SemanticGroup> groups;  ///< one a primitive, or empty
+  const LabelScheme* labels = nullptr;
+  Vec3d origin;
+};
+
+/// Casts rays through every pixel. Both sides of a surface are lit. The same bytes for any number
+/// of threads. Errors: usage (width, height or samples below 1, a field of view outside (0, pi)).
+Image render_image(const Tracer& tracer, const ImageScene& scene, const Camera& camera,
+                   const ImageOptions& options, const Executor& executor);
+
+}  // namespace adasplats

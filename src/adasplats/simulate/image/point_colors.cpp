@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/simulate/image/point_colors.h"
+
+#include <cmath>
+
+#include "adasplats/core/error.h"
+#include "adasplats/simulate/image/color_map.h"
+
+namespace adasplats {
+namespace {
+
+constexpr Rgb kNeutral = {184, 184, 184};
+constexpr Rgb kBlack = {0, 0, 0};  // label schemes give it to what has no class
+
+Rgb viridis_rgb(float share) {
+  const Vec3f color = viridis(share);
+  Rgb rgb{};
+  for (int channel = 0; channel < 3; ++channel)
+    rgb[static_cast<std::size_t>(channel)] =
+        static_cast<std::uint8_t>(std::lround(255.0F * color[channel]));
+  return rgb;
+}
+
+std::vector<Rgb> by_class(const PointCloud& cloud, const LabelScheme& labels) {
+  std::vector<Rgb> of_class;
+  for (const SemanticClass& known : labels.classes()) {
+    if (known.id >= of_class.size()) of_class.resize(known.id + std::size_t{1}, kNeutral);
+    if (known.rgb != kBlack) of_class[known.id] = known.rgb;
+  }
+  std::vector<Rgb> colors(cloud.size(), kNeutral);
+  for (std::size_t i = 0; i < cloud.classes.size(); ++i)
+    if (cloud.classes[i] < of_class.size()) colors[i] = of_class[cloud.classes[i]];
+  return colors;
+}
+
+/// By one value a point, from the 2nd to the 98th percentile of those that are finite.
+std::vector<Rgb> by_value(const std::vector<float>& values) {
+  const ValueRange range = quantile_range(values, 0.02, 0.98);
+  std::vector<Rgb> colors;
+  colors.reserve(values.size());
+  for (const float value : values)
+    colors.push_back(std::isfinite(value)
+                         ? viridis_rgb((value - range.low) / (range.high - range.low))
+                         : kNeutral);
+  return colors;
+}
+
+std::vector<Rgb> by_intensity(const PointCloud& cloud) {
+  if (cloud.intensities.empty()) return std::vector<Rgb>(cloud.size(), kNeutral);
+  return by_value(cloud.intensities);
+}
+
+std::vector<Rgb> by_height(const PointCloud& cloud) {
+  std::vector<float> heights;
+  heights.reserve(cloud.size());
+  for (const Vec3f p : cloud.positions) heights.push_back(p.z);
+  return by_value(heights);
+}
+
+std::vector<Rgb> by_range(const PointCloud& cloud, Vec3d eye) {
+  std::vector<Rgb> colors;
+  colors.reserve(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const auto range_m = static_cast<float>(length(cloud.world(i) - eye));
+    colors.push_back(viridis_rgb(1.0F - 0.5F * std::log10(range_m)));
+  }
+  return colors;
+}
+
+}  // namespace
+
+std::vector<Rgb> point_colors(const PointCloud& cloud, const LabelScheme* labels,
+                              std::optional<ImageColor> color, Vec3d eye) {
+  if (!color) {
+    if (labels != nullptr && !cloud.classes.empty()) return by_class(cloud, *labels);
+    return cloud.intensities.empty() ? by_height(cloud) : by_intensity(cloud);
+  }
+  switch (*color) {
+    case ImageColor::shading: return std::vector<Rgb>(cloud.size(), kNeutral);
+    case ImageColor::semantic:
+      if (labels == nullptr || cloud.classes.empty())
+        throw Error(ErrorKind::usage,
+                    "points can be coloured by class only with classes and a label scheme");
+      return by_class(cloud, *labels);
+    case ImageColor::normal: throw Error(ErrorKind::usage, "a point cloud has no normals to show");
+    case ImageColor::intensity: return by_intensity(cloud);
+    case ImageColor::range: return by_range(cloud, eye);
+  }
+  return {};
+}
+
+}  // namespace adasplats

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/simulate/image/point_image.h"
+
+namespace adasplats {
+
+/// A colour for each point of a cloud, to be drawn by draw_points. Without `color`: by class where
+/// the cloud has classes and `labels` knows them, else by intensity, else by height.
+/// - semantic: the class's colour, grey where it has none or black.
+/// - intensity: 2nd to 98th percentile; grey where the cloud has none.
+/// - range: distance from `eye` (world), on a logarithmic scale from 1 m to 100 m.
+/// - shading: one grey, for the relief of draw_points.
+/// Errors: usage (normal: points have none; semantic without labels).
+std::vector<Rgb> point_colors(const PointCloud& cloud, const LabelScheme* labels,
+                              std::optional<ImageColor> color, Vec3d eye);
+
+}  // namespace adasplats

@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/simulate/image/point_image.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/random.h"
+#include "adasplats/simulate/image/color_bar.h"
+#include "adasplats/simulate/image/point_colors.h"
+
+namespace adasplats {
+namespace {
+
+constexpr Rgb kWhite = {255, 255, 255}, kRed = {255, 0, 0}, kGreen = {0, 255, 0};
+constexpr Vec3d kOrigin = {7000, -300, 50};
+
+Rgb pixel(const Image& image, int x, int y) {
+  const auto at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                       static_cast<std::size_t>(x));
+  return {image.pixels[at], image.pixels[at + 1], image.pixels[at + 2]};
+}
+
+std::size_t count(const Image& image, Rgb rgb) {
+  std::size_t found = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) found += pixel(image, x, y) == rgb ? 1 : 0;
+  return found;
+}
+
+/// Every point is one pixel, without relief: what is where can be said exactly.
+PointImageOptions single_pixels() {
+  PointImageOptions options;
+  options.least_px = options.most_px = 1;
+  options.relief = false;
+  return options;
+}
+
+Camera camera_of(int width, int height) {
+  Camera camera = look_at(kOrigin + Vec3d{3, -5, 4}, kOrigin + Vec3d{20, 9, 1});
+  camera.width = width;
+  camera.height = height;
+  return camera;
+}
+
+Image draw(const std::vector<Vec3f>& points, const std::vector<Rgb>& colors, const Camera& camera,
+           const PointImageOptions& options, int threads = 1) {
+  return draw_points(points, kOrigin, colors, camera, options, Executor(threads));
+}
+
+// Oracle: Camera::ray, which goes the other way.
+TEST(DrawPoints, PointsOnTheRaysOfPixelsAreDrawnThere) {
+  for (const bool parallel : {false, true}) {
+    Camera camera = camera_of(40, 30);
+    if (parallel) camera.orthographic_width_m = 12;
+    for (int y = 0; y < camera.height; y += 7) {
+      for (int x = 0; x < camera.width; x += 3) {
+        const Ray ray = camera.ray(x + 0.5, y + 0.5, kOrigin);
+        const Image image =
+            draw({ray.origin + 8.0F * ray.direction}, {kRed}, camera, single_pixels());
+        EXPECT_EQ(pixel(image, x, y), kRed);
+        EXPECT_EQ(count(image, kWhite), 40U * 30U - 1);
+      }
+    }
+  }
+}
+
+TEST(DrawPoints, TheNearestWinsAndThenTheFirst) {
+  const Camera camera = camera_of(20, 20);
+  const Ray ray = camera.ray(10.5, 10.5, kOrigin);
+  const Vec3f near = ray.origin + 5.0F * ray.direction;
+  const Vec3f far = ray.origin + 5.01F * ray.direction;
+  EXPECT_EQ(pixel(draw({far, near}, {kRed, kGreen}, camera, single_pixels()), 10, 10), kGreen);
+  EXPECT_EQ(pixel(draw({near, far}, {kRed, kGreen}, camera, single_pixels()), 10, 10), kRed);
+  EXPECT_EQ(pixel(draw({near, near}, {kRed, kGreen}, camera, single_pixels()), 10, 10), kRed);
+}
+
+// Analytic: 10 cm at 4 m are 10 pixels where 100 pixels are 4 m wide there (tan of half the angle
+// is 0.5), and 5 pixels at twice the distance.
+TEST(DrawPoints, SquaresShrinkWithDistanceWithinTheirBounds) {
+  Camera camera = look_at(kOrigin, kOrigin + Vec3d{1, 0, 0});
+  camera.width = camera.height = 100;
+  camera.horizontal_fov_rad = 2 * std::atan(0.5);
+  PointImageOptions options;
+  options.relief = false;
+  options.point_size_m = 0.4;
+  options.most_px = 1000;
+  const auto pixels_at = [&](float distance_m) {
+    return count(draw({{distance_m, 0, 0}}, {kRed}, camera, options), kRed);
+  };
+  EXPECT_EQ(pixels_at(4), 100U);
+  EXPECT_EQ(pixels_at(8), 25U);
+  EXPECT_EQ(pixels_at(4000), 4U);  // 2 x 2 at least
+  options.most_px = 3;
+  EXPECT_EQ(pixels_at(4), 9U);
+}
+
+TEST(DrawPoints, WhatIsBehindOrNotFiniteOrFarOutsideIsNotDrawn) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  Camera camera = look_at(kOrigin, kOrigin + Vec3d{1, 0, 0});
+  camera.width = camera.height = 50;
+  const std::vector<Vec3f> points = {{-5, 0, 0},    {0, 0, 0},        {nan, 0, 0},
+                                     {5, 0, nan},   {infinity, 0, 0}, {5, -infinity, 0},
+                                     {1, 1e30F, 0}, {1, 0, -100},     {1e-20F, 1e20F, 1e20F}};
+  const std::vector<Rgb> colors(points.size(), kRed);
+  EXPECT_EQ(count(draw(points, colors, camera, {}), kWhite), 2500U);
+  EXPECT_EQ(count(draw({}, {}, camera, {}), kWhite), 2500U);
+}
+
+TEST(DrawPoints, SameBytesForAnyThreads) {
+  std::vector<Vec3f> points;
+  std::vector<Rgb> colors;
+  for (std::uint64_t i = 0; i < 100'000; ++i) {
+    Random random(1, 0, i);
+    points.push_back(vec_cast<float>(
+        Vec3d{random.uniform(0, 40), random.uniform(-20, 20), std::floor(random.uniform(0, 3))}));
+    colors.push_back({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i >> 8), 7});
+  }
+  const Camera camera = camera_of(160, 90);
+  const Image one = draw(points, colors, camera, {}, 1);
+  EXPECT_LT(count(one, kWhite), 160U * 90U / 2);
+  for (const int threads : {2, 3})
+    EXPECT_EQ(one.pixels, draw(points, colors, camera, {}, threads).pixels);
+}
+
+// Analytic: far pixels beside near ones are darker, near ones and flat parts are not.
+TEST(DrawPoints, ReliefDarkensWhatLiesBehind) {
+  Camera camera = look_at(kOrigin, kOrigin + Vec3d{1, 0, 0});
+  camera.width = camera.height = 60;
+  PointImageOptions options;
+  options.least_px = options.most_px = 60;
+  const Rgb grey = {200, 200, 200};
+  EXPECT_EQ(count(draw({{10, 0, 0}}, {grey}, camera, options), grey), 3600U);
+  options.least_px = 20;
+  options.point_size_m = 1e3;
+  const Image image = draw({{1000, 0, 0}, {5, 0, 4}}, {grey, kRed}, camera, options);
+  EXPECT_EQ(pixel(image, 30, 50), grey);
+  EXPECT_GT(count(image, kRed), 0U);
+  EXPECT_LT(count(image, grey) + count(image, kRed), 3600U);
+}
+
+TEST(DrawPoints, Errors) {
+  EXPECT_THROW(draw({{1, 0, 0}}, {}, camera_of(10, 10), {}), std::logic_error);
+  EXPECT_THROW(draw({}, {}, camera_of(0, 10), {}), Error);
+  EXPECT_THROW(draw({}, {}, camera_of(10, 1 << 16), {}), Error);
+}
+
+/// Five points at different heights, classes and intensities.
+PointCloud tiny_cloud() {
+  PointCloud cloud;
+  for (int i = 0; i < 5; ++i) cloud.positions.push_back({0, 0, static_cast<float>(i)});
+  cloud.intensities = {4, 3, 2, 1, std::numeric_limits<float>::quiet_NaN()};
+  cloud.classes = {40, 50, 0, 12345, 40};  // road, building, unlabelled (black), unknown, road
+  return cloud;
+}
+
+constexpr Rgb kGrey = {184, 184, 184}, kDarkest = {68, 1, 84}, kBrightest = {253, 231, 37};
+
+TEST(PointColors, ByClassThenIntensityThenHeight) {
+  PointCloud cloud = tiny_cloud();
+  const LabelScheme& labels = semantickitti_labels();
+  const Rgb road = labels.find(std::string_view("road"))->rgb;
+  const Rgb building = labels.find(std::string_view("building"))->rgb;
+  EXPECT_EQ(point_colors(cloud, &labels, {}, {}),
+            (std::vector<Rgb>{road, building, kGrey, kGrey, road}));
+  const std::vector<Rgb> by_intensity = point_colors(cloud, nullptr, {}, {});
+  EXPECT_EQ(by_intensity[0], kBrightest);
+  EXPECT_EQ(by_intensity[3], kDarkest);
+  EXPECT_EQ(by_intensity[4], kGrey);
+  cloud.intensities.clear();
+  const std::vector<Rgb> by_height = point_colors(cloud, nullptr, {}, {});
+  EXPECT_EQ(by_height[0], kDarkest);
+  EXPECT_EQ(by_height[4], kBrightest);
+}
+
+TEST(PointColors, AsTold) {
+  const PointCloud cloud = tiny_cloud();
+  const std::vector<Rgb> by_range = point_colors(cloud, nullptr, ImageColor::range, {0, 0, -100});
+  EXPECT_EQ(by_range[0], kDarkest);
+  EXPECT_EQ(point_colors(cloud, nullptr, ImageColor::range, {0, 0, 1})[0], kBrightest);
+  EXPECT_EQ(point_colors(cloud, nullptr, ImageColor::shading, {})[3], kGrey);
+  EXPECT_TRUE(point_colors({}, nullptr, {}, {}).empty());
+  EXPECT_THROW(point_colors(cloud, nullptr, ImageColor::normal, {}), Error);
+  EXPECT_THROW(point_colors(cloud, nullptr, ImageColor::semantic, {}), Error);
+}
+
+TEST(ColorScale, PlacesMiddlesAndBounds) {
+  const ColorScale scale = {{{0, 0, 0}, {100, 50, 0}, {200, 0, 250}}};
+  EXPECT_EQ(scale.at(0), (Rgb{0, 0, 0}));
+  EXPECT_EQ(scale.at(0.25), (Rgb{50, 25, 0}));
+  EXPECT_EQ(scale.at(0.5), (Rgb{100, 50, 0}));
+  EXPECT_EQ(scale.at(1), (Rgb{200, 0, 250}));
+  EXPECT_EQ(scale.at(7), scale.at(1));
+  EXPECT_EQ(scale.at(-7), scale.at(0));
+  EXPECT_EQ(scale.at(std::numeric_limits<double>::quiet_NaN()), scale.at(0));
+}
+
+TEST(ColorBar, ShowsTheScaleAndStaysInThePicture) {
+  const ColorBarText text = {{{0, "0"}, {1, "20 cm"}}, {{kGreen, "no hit"}}};
+  for (const auto& [width, height] : {std::pair{1, 1}, {30, 500}, {1280, 720}, {400, 20}}) {
+    Image image{width, height,
+                std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * height), 77)};
+    draw_color_bar(image, distance_scale(), text);
+    if (width < 1000) continue;
+    EXPECT_GT(count(image, distance_scale().at(0)), 5U);
+    EXPECT_GT(count(image, distance_scale().at(1)), 5U);
+    EXPECT_GT(count(image, kGreen), 30U);
+    EXPECT_EQ(pixel(image, 0, 0), (Rgb{77, 77, 77}));
+  }
+}
+
+}  // namespace
+}  // namespace adasplats

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "adasplats/simulate/image/image.h"
+#include "adasplats/simulate/image/shading_maths.h"
+
+namespace adasplats {
+
+/// What shade() reads, for a scene and options, in host memory.
+class Shading {
+ public:
+  /// Views of the scene, which must outlive it.
+  /// Throws std::logic_error where an attribute has another size than the scene.
+  Shading(const ImageScene& scene, const ImageOptions& options);
+
+  const ShadingTables& tables() const { return tables_; }
+
+ private:
+  ShadingTables tables_;
+  std::vector<Vec3f> class_colors_;  ///< by class id; negative: none
+};
+
+/// Checks what render_image() is asked for. Errors: usage.
+void check_image(const Camera& camera, const ImageOptions& options);
+
+}  // namespace adasplats

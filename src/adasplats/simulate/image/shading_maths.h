@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/core/ray.h"
+#include "adasplats/scene/intersect.h"
+#include "adasplats/simulate/image/color_map.h"
+#include "adasplats/simulate/image/image.h"
+
+namespace adasplats {
+
+/// What colouring a hit reads, in the memory of the device that does it. Pointers may be null where
+/// the scene has no such values.
+struct ShadingTables {
+  const Disk* disks = nullptr;
+  std::uint32_t disk_count = 0;
+  const Vec3f* vertices = nullptr;
+  const std::array<std::uint32_t, 3>* triangles = nullptr;
+  const std::uint16_t* classes = nullptr;
+  const SemanticGroup* groups = nullptr;
+  const float* intensities = nullptr;
+  const Vec3f* class_colors = nullptr;  ///< by class id; negative: none
+  std::uint32_t class_color_count = 0;
+  ImageColor color = ImageColor::semantic;
+  ValueRange intensity_range;
+  Vec3f background;
+  bool sky = true;
+};
+
+namespace shading {
+
+inline constexpr Vec3f kNeutral = {0.72F, 0.72F, 0.72F};
+
+/// Muted colours that stay apart in greyscale.
+ADASPLATS_HD inline Vec3f color_of(SemanticGroup group) {
+  switch (group) {
+    case SemanticGroup::ground: return {0.62F, 0.60F, 0.64F};
+    case SemanticGroup::surface: return {0.90F, 0.76F, 0.55F};
+    case SemanticGroup::linear: return {0.85F, 0.35F, 0.30F};
+    case SemanticGroup::non_surface: return {0.42F, 0.66F, 0.36F};
+  }
+  return {0.72F, 0.72F, 0.72F};
+}
+
+/// Share of the light that a surface sends back. A lamp at the camera shows the shape; the sky from
+/// above and a low sun tell ground, facades and the two sides of a street apart. Normals of clouds
+/// have no reliable sign, so every term takes both sides.
+ADASPLATS_HD inline float light(Vec3f normal, Vec3f view) {
+  constexpr Vec3f kSun = {0.36F, 0.80F, 0.48F};
+  constexpr float kAmbient = 0.22F, kHeadlight = 0.38F, kSkylight = 0.26F, kSunlight = 0.14F;
+  const float sum = kAmbient + kHeadlight * std::fabs(dot(normal, view)) +
+                    kSkylight * std::fabs(normal.z) + kSunlight * std::fabs(dot(normal, kSun));
+  // To the power of 3/4, as screens show it: shadows stay readable. Square roots are exact
+  // anywhere.
+  return std::sqrt(sum * std::sqrt(sum));
+}
+
+ADASPLATS_HD inline Vec3f normal_towards(const ShadingTables& tables, const Ray& ray,
+                                         std::uint32_t primitive) {
+  Vec3f normal;
+  if (primitive < tables.disk_count) {
+    normal = tables.disks[primitive].normal;
+  } else {
+    const std::uint32_t* corner = &tables.triangles[primitive - tables.disk_count][0];
+    const Vec3f a = tables.vertices[corner[0]];
+    normal = cross(tables.vertices[corner[1]] - a, tables.vertices[corner[2]] - a);
+    const float doubled_area = length(normal);
+    // A sliver may have no area left in float and be hit all the same.
+    normal = doubled_area > 0.0F ? normal / doubled_area : -ray.direction;
+  }
+  return dot(normal, ray.direction) > 0.0F ? -normal : normal;
+}
+
+ADASPLATS_HD inline Vec3f semantic_color(const ShadingTables& tables, std::uint32_t primitive) {
+  if (tables.classes != nullptr) {
+    const std::uint16_t id = tables.classes[primitive];
+    if (id < tables.class_color_count && tables.class_colors[id].x >= 0.0F)
+      return tables.class_colors[id];
+  }
+  return tables.groups == nullptr ? kNeutral : color_of(tables.groups[primitive]);
+}
+
+ADASPLATS_HD inline Vec3f intensity_color(const ShadingTables& tables, std::uint32_t primitive) {
+  if (tables.intensities == nullptr) return kNeutral;
+  const float intensity = tables.intensities[primitive];
+  if (!(intensity - intensity == 0.0F)) return kNeutral;  // not finite
+  return viridis((intensity - tables.intensity_range.low) /
+                 (tables.intensity_range.high - tables.intensity_range.low));
+}
+
+/// log10(x) of a normal number above 0, to a few units in the last place of a float. The library's
+/// has other last bits on a GPU. x = m * 2^k with m around 1, and with s = (m - 1) / (m + 1)
+/// ln(m) = 2 (s + s^3 / 3 + s^5 / 5 + ...).
+ADASPLATS_HD inline float log10_anywhere(float x) {
+  constexpr std::uint32_t kRootOfHalf = 0x3f3504f3U;  // as a float: m from here to the root of 2
+  constexpr double kLn2 = 0.6931471805599453, kLn10 = 2.302585092994046;
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  const std::int32_t k = static_cast<std::int32_t>(bits - kRootOfHalf) >> 23;
+  const auto m =
+      static_cast<double>(std::bit_cast<float>(bits - (static_cast<std::uint32_t>(k) << 23)));
+  const double s = (m - 1) / (m + 1), s2 = s * s;
+  const double ln_m = 2 * s * (1 + s2 * (1.0 / 3 + s2 * (1.0 / 5 + s2 * (1.0 / 7 + s2 / 9))));
+  return static_cast<float>((k * kLn2 + ln_m) / kLn10);
+}
+
+ADASPLATS_HD inline Vec3f background_color(const ShadingTables& tables, Vec3f direction) {
+  if (!tables.sky || !(direction.z > 0.0F)) return tables.background;
+  constexpr Vec3f kZenith = {0.52F, 0.71F, 0.91F};
+  const float share = std::sqrt(direction.z);  // most of the change is near the horizon
+  return (1.0F - share) * tables.background + share * kZenith;
+}
+
+}  // namespace shading
+
+/// THE colour that a ray sees, for every backend: 0..1, or above.
+ADASPLATS_HD inline Vec3f shade(const ShadingTables& tables, const Ray& ray, const Hit& hit) {
+  if (!hit.valid()) return shading::background_color(tables, ray.direction);
+  const Vec3f normal = shading::normal_towards(tables, ray, hit.primitive);
+  switch (tables.color) {
+    case ImageColor::shading:
+      return shading::light(normal, ray.direction) * Vec3f{0.92F, 0.92F, 0.92F};
+    case ImageColor::semantic:
+      return shading::light(normal, ray.direction) * shading::semantic_color(tables, hit.primitive);
+    case ImageColor::normal: return 0.5F * (normal + Vec3f{1, 1, 1});
+    case ImageColor::intensity:
+      // The colour itself is the message: only a hint of the shape.
+      return (0.5F + 0.5F * shading::light(normal, ray.direction)) *
+             shading::intensity_color(tables, hit.primitive);
+    case ImageColor::range: return viridis(1.0F - 0.5F * shading::log10_anywhere(hit.t));
+  }
+  return shading::kNeutral;
+}
+
+/// A channel of a pixel: 0..1 to 0..255, to the nearest.
+ADASPLATS_HD inline std::uint8_t to_byte(float value) {
+  const float clamped = value > 0.0F ? (value < 1.0F ? value : 1.0F) : 0.0F;
+  return static_cast<std::uint8_t>(std::lround(255.0F * clamped));
+}
+
+}  // namespace adasplats

@@ -1,0 +1,244 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/simulate/scan/ray_drop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "adasplats/core/constants.h"
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+namespace {
+
+constexpr auto kHalfTurn = static_cast<float>(std::numbers::pi);
+constexpr std::size_t kN = RayDropModel::kFeatures;
+using Row = std::array<double, kN>;
+
+double logistic(double x) { return 1 / (1 + std::exp(-x)); }
+
+double product(const Row& a, const Row& b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < kN; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/// Gradient and Hessian of the penalised negative log-likelihood.
+struct Likelihood {
+  Row gradient = {};
+  std::array<Row, kN> hessian = {};
+
+  /// A weak pull to zero: where a feature does not vary (one reflectance), its weight is not free.
+  void add_penalty(const Row& weights) {
+    constexpr double kPenalty = 1e-3;
+    for (std::size_t k = 0; k < kN; ++k) {
+      gradient[k] += kPenalty * weights[k];
+      hessian[k][k] += kPenalty;
+    }
+  }
+  void add(const Row& features, double expected, double found) {
+    const double spread = expected * (1 - expected);
+    for (std::size_t k = 0; k < kN; ++k) {
+      gradient[k] += (expected - found) * features[k];
+      for (std::size_t j = 0; j <= k; ++j) hessian[k][j] += spread * features[k] * features[j];
+    }
+  }
+  double value = 0;
+};
+
+/// x of hessian * x = gradient by Cholesky's decomposition of the lower half.
+Row newton_step(const Likelihood& at) {
+  std::array<Row, kN> root = at.hessian;
+  Row x = at.gradient;
+  for (std::size_t k = 0; k < kN; ++k) {
+    for (std::size_t j = 0; j <= k; ++j) {
+      double sum = root[k][j];
+      for (std::size_t i = 0; i < j; ++i) sum -= root[k][i] * root[j][i];
+      root[k][j] = k == j ? std::sqrt(std::max(sum, 1e-12)) : sum / root[j][j];
+    }
+    for (std::size_t j = 0; j < k; ++j) x[k] -= root[k][j] * x[j];
+    x[k] /= root[k][k];
+  }
+  for (std::size_t k = kN; k-- > 0;) {
+    for (std::size_t j = k + 1; j < kN; ++j) x[k] -= root[j][k] * x[j];
+    x[k] /= root[k][k];
+  }
+  return x;
+}
+
+double usual_reflectance_of(std::span<const EchoConditions> echoes, double otherwise) {
+  std::vector<float> known;
+  for (const EchoConditions& echo : echoes) {
+    if (std::isfinite(echo.reflectance)) known.push_back(echo.reflectance);
+  }
+  if (known.empty()) return otherwise;
+  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+  std::nth_element(known.begin(), middle, known.end());
+  return static_cast<double>(*middle);
+}
+
+void check_sizes(std::size_t echoes, std::size_t others) {
+  if (echoes != others) throw std::logic_error("ray drop: not one value an echo");
+}
+
+/// -log of the likelihood of what was found, and its derivatives.
+Likelihood likelihood_of(std::span<const Row> rows, std::span<const std::uint8_t> dropped,
+                         const Row& weights) {
+  Likelihood sum;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double x = product(weights, rows[i]);
+    sum.add(rows[i], logistic(x), dropped[i] != 0 ? 1.0 : 0.0);
+    // log(1 + exp(x)) without overflow
+    sum.value += std::max(x, 0.0) + std::log1p(std::exp(-std::fabs(x))) - (dropped[i] != 0 ? x : 0);
+  }
+  sum.add_penalty(weights);
+  return sum;
+}
+
+double elevation_rad(Vec3f direction) {
+  return std::atan2(static_cast<double>(direction.z),
+                    std::hypot(static_cast<double>(direction.x), static_cast<double>(direction.y)));
+}
+
+double azimuth_rad(Vec3f direction) {
+  return std::atan2(static_cast<double>(direction.y), static_cast<double>(direction.x));
+}
+
+bool is_known(Vec3f direction) { return !(direction == Vec3f{}); }
+
+constexpr int kSectors = 360;
+
+/// What one scan says of one sector.
+struct SectorCount {
+  std::uint32_t echoes = 0;
+  std::uint32_t dropped = 0;
+};
+
+/// The sectors of one elevation, scan by scan.
+using SectorScans = std::array<std::map<std::uint32_t, SectorCount>, kSectors>;
+
+bool is_blocked(const std::map<std::uint32_t, SectorCount>& scans) {
+  constexpr std::size_t kLeastScans = 3;
+  std::size_t blocked = 0;
+  for (const auto& [scan, count] : scans) blocked += 2 * count.dropped > count.echoes ? 1 : 0;
+  return blocked >= kLeastScans && 4 * blocked >= 3 * scans.size();
+}
+
+}  // namespace
+
+std::array<double, RayDropModel::kFeatures> RayDropModel::features(
+    const EchoConditions& echo) const {
+  constexpr double kLeastRange = 0.01, kLeastReflectance = 0.005;  // logarithms are finite
+  const double range = std::max(static_cast<double>(echo.range_m) / 10, kLeastRange);
+  const double slant = 1 - std::clamp(static_cast<double>(echo.cos_incidence), 0.0, 1.0);
+  const double reflectance =
+      std::isfinite(echo.reflectance) ? static_cast<double>(echo.reflectance) : usual_reflectance;
+  const double dim = std::log(std::max(reflectance, kLeastReflectance));
+  return {1, range, range * range, std::log(range), slant, slant * slant, dim, range * dim};
+}
+
+double RayDropModel::probability(const EchoConditions& echo) const {
+  if (blocks(echo.direction)) return 1;
+  return logistic(product(weights, features(echo)));
+}
+
+bool RayDropModel::blocks(Vec3f direction) const {
+  if (blocked.empty() || !is_known(direction)) return false;
+  constexpr double kMostApart_rad = 0.3 * kDegree;  // beams of an HDL-64E are farther apart
+  const auto elevation = static_cast<float>(elevation_rad(direction));
+  const auto below = [](const BlockedSector& sector, float value) {
+    return sector.elevation_rad < value;
+  };
+  auto first = std::lower_bound(blocked.begin(), blocked.end(), elevation, below);
+  if (first == blocked.end() ||
+      (first != blocked.begin() &&
+       elevation - std::prev(first)->elevation_rad < first->elevation_rad - elevation)) {
+    first = std::lower_bound(blocked.begin(), first, std::prev(first)->elevation_rad, below);
+  }
+  const float nearest = first->elevation_rad;
+  if (std::fabs(static_cast<double>(nearest - elevation)) > kMostApart_rad) return false;
+  const auto azimuth = static_cast<float>(azimuth_rad(direction));
+  for (; first != blocked.end() && first->elevation_rad == nearest; ++first) {
+    // Half a turn itself belongs to the sector that ends there.
+    const bool before_end = azimuth < first->azimuth_end_rad || first->azimuth_end_rad >= kHalfTurn;
+    if (azimuth >= first->azimuth_begin_rad && before_end) return true;
+  }
+  return false;
+}
+
+RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
+                          std::span<const std::uint8_t> dropped) {
+  constexpr std::ptrdiff_t kLeast = 100;
+  check_sizes(echoes.size(), dropped.size());
+  const std::ptrdiff_t told = std::count(dropped.begin(), dropped.end(), std::uint8_t{0});
+  const std::ptrdiff_t lost = static_cast<std::ptrdiff_t>(dropped.size()) - told;
+  if (told < kLeast || lost < kLeast) {
+    throw Error(ErrorKind::data, std::to_string(told) + " beams came back and " +
+                                     std::to_string(lost) + " did not, expected at least " +
+                                     std::to_string(kLeast) + " of each to fit a ray drop");
+  }
+  RayDropModel model;
+  model.usual_reflectance = usual_reflectance_of(echoes, model.usual_reflectance);
+  std::vector<Row> rows;
+  rows.reserve(echoes.size());
+  for (const EchoConditions& echo : echoes) rows.push_back(model.features(echo));
+  // From the share alone, which is near enough for Newton's method; halved where it overshoots.
+  model.weights[0] = std::log(static_cast<double>(lost) / static_cast<double>(told));
+  Likelihood at = likelihood_of(rows, dropped, model.weights);
+  constexpr int kMostSteps = 50, kMostHalvings = 20;
+  for (int step = 0; step < kMostSteps; ++step) {
+    Row change = newton_step(at);
+    const Row from = model.weights;
+    const double before = at.value;
+    for (int halving = 0; halving < kMostHalvings; ++halving) {
+      for (std::size_t k = 0; k < kN; ++k) model.weights[k] = from[k] - change[k];
+      at = likelihood_of(rows, dropped, model.weights);
+      if (at.value <= before) break;
+      for (double& part : change) part /= 2;
+    }
+    if (before - at.value < 1e-9 * before) break;
+  }
+  return model;
+}
+
+std::vector<BlockedSector> find_blocked_sectors(std::span<const EchoConditions> echoes,
+                                                std::span<const std::uint8_t> dropped,
+                                                std::span<const std::uint32_t> scans) {
+  check_sizes(echoes.size(), dropped.size());
+  check_sizes(echoes.size(), scans.size());
+  std::map<std::int64_t, SectorScans> by_elevation;  // in hundredths of a degree
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    const Vec3f direction = echoes[i].direction;
+    if (!is_known(direction) || !is_finite(direction)) continue;
+    const auto elevation = std::llround(elevation_rad(direction) / kDegree * 100);
+    const double turn = azimuth_rad(direction) / (2 * std::numbers::pi) + 0.5;
+    const auto sector = std::min(static_cast<int>(turn * kSectors), kSectors - 1);
+    SectorCount& count = by_elevation[elevation][static_cast<std::size_t>(sector)][scans[i]];
+    ++count.echoes;
+    count.dropped += dropped[i] != 0 ? 1 : 0;
+  }
+  std::vector<BlockedSector> blocked;
+  for (const auto& [elevation, sectors] : by_elevation) {
+    bool goes_on = false;
+    for (int sector = 0; sector < kSectors; ++sector) {
+      const bool found = is_blocked(sectors[static_cast<std::size_t>(sector)]);
+      const auto edge_rad = [](int k) {
+        return static_cast<float>((2.0 * k / kSectors - 1) * std::numbers::pi);
+      };
+      if (found && !goes_on) {
+        blocked.push_back({static_cast<float>(static_cast<double>(elevation) / 100 * kDegree),
+                           edge_rad(sector), edge_rad(sector + 1)});
+      } else if (found) {
+        blocked.back().azimuth_end_rad = edge_rad(sector + 1);
+      }
+      goes_on = found;
+    }
+  }
+  return blocked;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/sensors/lidar_model.h"
+#include "adasplats/simulate/scan/ray_drop.h"
+#include "adasplats/simulate/scan/returns.h"
+#include "adasplats/simulate/scan/scan_motion.h"
+#include "adasplats/splats/reflectance/reflectance.h"
+#include "adasplats/trace/tracer.h"
+
+namespace adasplats {
+
+/// What primitives carry besides their geometry; each is empty or has one value a primitive.
+struct PrimitiveAttributes {
+  std::span<const std::uint16_t> classes;
+  std::span<const std::uint16_t> instances;
+  std::span<const float> intensities;  ///< reflectances where there is a `response`
+  /// For incidence; primitives beyond it are met head on.
+  SceneView view;
+  const IntensityResponse* response = nullptr;
+};
+
+/// One revolution of one LiDAR: the returns, by firing in the order of `firings_of`, those of one
+/// firing in the order in which the sensor tells them.
+struct Scan {
+  RigidTransform world_from_sensor;
+  double time_s = 0;
+  std::size_t rays = 0;          ///< firings; size() of them returned, where each returns once
+  std::vector<Vec3f> positions;  ///< sensor frame, m
+  std::vector<float> ranges_m;
+  std::vector<float> intensities;        ///< empty where the scene has none
+  std::vector<std::uint16_t> classes;    ///< empty where the scene has none
+  std::vector<std::uint16_t> instances;  ///< empty where the scene has none
+  std::vector<std::uint16_t> rings;
+  std::vector<std::uint32_t> columns;
+  std::vector<float> times_s;  ///< since the start of the revolution
+  /// 0 for the first that the sensor tells of a firing; empty where no firing can return twice.
+  std::vector<std::uint8_t> return_indices;
+
+  std::size_t size() const { return positions.size(); }
+};
+
+/// The points that keep[i] says, of every attribute.
+Scan kept_points(const Scan& scan, std::span<const std::uint8_t> keep);
+
+/// Which frame the points of a scan are in, where the sensor moves during it.
+enum class PointFrame : std::uint8_t {
+  raw,       ///< the sensor's when each was measured, as sensors tell them
+  deskewed,  ///< the sensor's at the scan's reference pose, the motion taken out
+};
+inline constexpr std::pair<std::string_view, PointFrame> kPointFrames[] = {
+    {"raw", PointFrame::raw}, {"deskewed", PointFrame::deskewed}};
+
+struct SimulateOptions {
+  std::uint64_t seed = 0;  ///< of noise and drop; drawn by (seed, scan index, ray index)
+  bool noise = true;       ///< apply the sensor's range and angular noise
+  BeamOptions beam;
+  const RayDropModel* ray_drop = nullptr;  ///< none: every echo is told
+  PointFrame frame = PointFrame::raw;
+};
+
+/// Where rays of a sensor start and end as floats, one a firing, and when.
+std::vector<FiringRay> firing_rays(const LidarModel& sensor, std::span<const Firing> firings);
+
+/// The rays of one revolution in the frame of a scene whose local origin is `scene_origin`, one a
+/// firing, between the sensor's least and greatest range.
+std::vector<Ray> scan_rays(const LidarModel& sensor, std::span<const Firing> firings,
+                           const ScanMotion& motion, Vec3d scene_origin, const Executor& executor);
+
+/// What the sensor measures where its rays met the scene: hits[(i * sub_rays + s) * depth + k] of
+/// firings[i], in the sensor's range (BeamOptions; the rays are those of sub_firings()). Finds the
+/// returns, drops some, adds noise, and gathers what the primitives carry. `scan_index` names the
+/// noise. Throws std::logic_error where there are not that many hits a firing, or an attribute has
+/// fewer values than the scene has primitives.
+Scan scan_of_hits(std::span<const Hit> hits, const PrimitiveAttributes& attributes,
+                  const LidarModel& sensor, std::span<const Firing> firings,
+                  const ScanMotion& motion, std::uint64_t scan_index,
+                  const SimulateOptions& options, const Executor& executor);
+
+/// Casts one revolution in a scene whose local origin is `scene_origin`. Paper section "Firing
+/// Sequence Simulation". For many scans see scan_caster.h.
+Scan simulate_scan(const Tracer& tracer, const PrimitiveAttributes& attributes, Vec3d scene_origin,
+                   const LidarModel& sensor, std::span<const Firing> firings,
+                   const ScanMotion& motion, std::uint64_t scan_index,
+                   const SimulateOptions& options, const Executor& executor);
+
+}  // namespace adasplats

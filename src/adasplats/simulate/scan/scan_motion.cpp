@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/simulate/scan/scan_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kMostKnots = 64;
+constexpr double kMostTurn_rad = 0.5 * std::numbers::pi / 180;
+
+/// Angle between two rotations; the cosine is (trace - 1) / 2.
+/// Knots that a scan needs: as many segments as half degrees, and as poses of the motion.
+std::size_t knots_needed(const Trajectory& motion, double begin_s, double end_s) {
+  const auto by_time = [](const TimedPose& pose, double time_s) { return pose.time_s < time_s; };
+  const auto first = std::lower_bound(motion.begin(), motion.end(), begin_s, by_time);
+  const auto last = std::lower_bound(first, motion.end(), end_s, by_time);
+  double turn_rad = 0;
+  Mat3d before = interpolate(motion, begin_s).rotation;
+  for (auto pose = first; pose != last; ++pose) {
+    turn_rad += angle_between(before, pose->world_from_sensor.rotation);
+    before = pose->world_from_sensor.rotation;
+  }
+  turn_rad += angle_between(before, interpolate(motion, end_s).rotation);
+  const auto poses_inside = static_cast<std::size_t>(last - first);
+  const double turns = std::ceil(turn_rad / kMostTurn_rad);
+  const auto segments = std::max<std::size_t>(poses_inside + 1, static_cast<std::size_t>(turns));
+  return std::min(segments + 1, kMostKnots);
+}
+
+}  // namespace
+
+std::vector<ScanMotion> still_scans(std::span<const TimedPose> poses) {
+  std::vector<ScanMotion> scans;
+  scans.reserve(poses.size());
+  for (const TimedPose& pose : poses) scans.push_back({pose, {}});
+  return scans;
+}
+
+std::vector<ScanMotion> moving_scans(std::span<const TimedPose> poses, const Trajectory& motion,
+                                     double duration_s) {
+  if (!(duration_s > 0)) throw Error(ErrorKind::usage, "a scan that takes no time cannot move");
+  if (motion.empty()) throw Error(ErrorKind::usage, "a motion without a single pose");
+  std::vector<ScanMotion> scans;
+  scans.reserve(poses.size());
+  for (const TimedPose& pose : poses) {
+    ScanMotion scan{pose, {}};
+    const double begin_s = pose.time_s - 0.5 * duration_s;
+    const RigidTransform from_motion =
+        pose.world_from_sensor * interpolate(motion, pose.time_s).inverse();
+    const std::size_t knots = knots_needed(motion, begin_s, begin_s + duration_s);
+    for (std::size_t k = 0; k < knots; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(knots - 1);
+      scan.knots.push_back(from_motion * interpolate(motion, begin_s + share * duration_s));
+    }
+    scans.push_back(std::move(scan));
+  }
+  return scans;
+}
+
+RigidTransform pose_at(const ScanMotion& motion, double share) {
+  if (motion.knots.size() < 2)
+    return motion.knots.empty() ? motion.reference.world_from_sensor : motion.knots.front();
+  const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(motion.knots.size() - 1);
+  const std::size_t segment = std::min(static_cast<std::size_t>(place), motion.knots.size() - 2);
+  const Trajectory ends = {{0.0, motion.knots[segment]}, {1.0, motion.knots[segment + 1]}};
+  return interpolate(ends, place - static_cast<double>(segment));
+}
+
+std::vector<ScanPose> scan_poses(const ScanMotion& motion, Vec3d scene_origin) {
+  if (motion.knots.empty()) return {scan_pose(motion.reference.world_from_sensor, scene_origin)};
+  std::vector<ScanPose> poses;
+  poses.reserve(motion.knots.size());
+  for (const RigidTransform& knot : motion.knots) poses.push_back(scan_pose(knot, scene_origin));
+  return poses;
+}
+
+}  // namespace adasplats

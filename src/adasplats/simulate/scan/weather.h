@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "adasplats/sensors/lidar_model.h"
+#include "adasplats/simulate/scan/returns.h"
+#include "adasplats/simulate/scan/scan.h"
+
+namespace adasplats {
+
+/// What hangs and falls in the air. Formulas, constants and their sources: docs/noise.md.
+struct Weather {
+  double rain_mm_h = 0;
+  /// Meteorological visibility (2 % contrast); 0 or infinite: no fog.
+  double fog_visibility_m = std::numeric_limits<double>::infinity();
+  double snow_mm_h = 0;  ///< of melted water
+  /// Intensity of a white wall (reflectance 1) in the unit of the scan's intensities.
+  double white_intensity = 1;
+
+  bool is_clear() const;
+};
+
+/// Extinction coefficient of the air, 1/m: the sum of the three.
+double extinction_per_m(const Weather& weather);
+
+/// How likely a return that was told in clear air is told. A sensor needs the reflectance n(r) =
+/// max(0.8 (r / max_range)^2, 0.005); in clear air m = reflectance / n(r) times what it needs comes
+/// back, in weather exp(-2 alpha r) of that, and it fluctuates exponentially (speckle): exp(-(exp(2
+/// alpha r) - 1) / m). Reflectances below 0.01 count as 0.01, NaN as 0.3.
+double told_share(const Weather& weather, const LidarModel& sensor, double range_m,
+                  double reflectance);
+
+/// How likely a drop, a flake or fog nearer than `range_m` sends back enough to be told.
+double clutter_share(const Weather& weather, const LidarModel& sensor, double range_m);
+
+/// Errors: usage (rates or visibility negative or not a number, a white_intensity that is not
+/// positive, no greatest range).
+void check_weather(const Weather& weather, const LidarModel& sensor);
+
+/// The scan as it is in such weather. Intensities fall by exp(-2 alpha r); returns get lost
+/// (told_share); the sensor's range noise grows by exp(alpha r); particles in the air answer nearer
+/// than the farthest return of their firing (clutter_share): class and instance 0. Which of them
+/// and of the returns are told is up to `beam` (told_returns). What attributes `clear` has none of
+/// are not there either. Without weather the scan itself.
+///
+/// `firings`: those of the scan, in the frame of its points (for de-skewed scans moved like these).
+/// Drawn by (seed, scan_index, firing). Where beam.returns > 1, return_indices are there.
+/// Errors: usage (rates or visibility negative or not a number, a white_intensity that is not
+/// positive, no greatest range). Throws std::logic_error where a return has no firing.
+Scan in_weather(const Scan& clear, std::span<const Firing> firings, const LidarModel& sensor,
+                const BeamOptions& beam, const Weather& weather, std::uint64_t seed,
+                std::uint64_t scan_index);
+
+}  // namespace adasplats

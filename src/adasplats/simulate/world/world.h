@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/core/ray.h"
+#include "adasplats/scene/mesh_model.h"
+#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/scan_caster.h"
+#include "adasplats/simulate/scan/scan_motion.h"
+#include "adasplats/splats/model/splat_model.h"
+
+namespace adasplats {
+
+/// Something that stands or moves in the place, in a frame of its own.
+struct WorldObject {
+  std::string name;
+  /// Which of the world's geometries it is.
+  std::size_t geometry = 0;
+  /// world_from_object over time; one pose: it stands there. Between poses it moves evenly, before
+  /// the first and after the last it stands, or is not there (`only_during`). Objects move during a
+  /// scan where the scan does (ScanMotion::knots); a scan that stands still is a snapshot.
+  Trajectory trajectory;
+  bool only_during = false;
+  /// There in this scan alone: the paper's frame number (section "SimKITTI32").
+  std::optional<std::uint64_t> only_scan;
+  double scale = 1;
+  std::optional<std::uint16_t> class_id;  ///< instead of the geometry's classes
+  std::uint16_t instance = 0;             ///< 0: the geometry's instances, if it has any
+};
+
+/// A box around an object, as data sets of objects have it.
+struct ObjectBox {
+  std::uint16_t class_id = 0;
+  std::uint16_t instance = 0;
+  RigidTransform world_from_box;  ///< the box's centre and axes: x along its length
+  Vec3d size_m;                   ///< length, width, height
+};
+
+/// What moves in a place and what was put there: cast apart from the place itself, object by
+/// object, so that its cost is up to the objects that a scan can see, not to those of all other
+/// scans.
+class World {
+ public:
+  /// `first_primitive`: of the first object, which is the number of primitives of the place.
+  /// `scene_origin`: world coordinates of the place's local origin. Tracers are built on
+  /// `executor`, which must outlive the adding of geometries.
+  World(std::uint32_t first_primitive, Vec3d scene_origin, const Executor& executor);
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  /// Geometries are numbered in the order in which they come. `instances`: one a splat, or empty;
+  /// with them a geometry is the points of many objects, which has no box.
+  std::size_t add_geometry(SplatModel splats, std::vector<std::uint16_t> instances = {});
+  std::size_t add_geometry(MeshModel mesh);
+  /// Errors: usage (no poses, times that do not ascend, a scale that is not positive); data (more
+  /// primitives than have numbers); std::logic_error (no such geometry).
+  void add_object(WorldObject object);
+
+  bool empty() const;
+  std::size_t object_count() const;
+
+  /// Merges hits of the objects that are there in scan `scan_index` into hits[i * depth + k] of
+  /// firing i, ascending, for the poses in which sensor and objects are when it fires. Primitives
+  /// of objects have numbers from `first_primitive` on, object after object. `scan_duration_s`: of
+  /// a revolution, whose middle is motion.reference. The same bytes for any number of threads.
+  /// Throws std::logic_error where there are not `depth` hits a firing.
+  void add_hits(std::uint64_t scan_index, const LidarModel& sensor, std::span<const Firing> firings,
+                const ScanMotion& motion, double scan_duration_s, int depth, std::span<Hit> hits,
+                const Executor& executor) const;
+
+  /// What primitives of the place and of the objects carry: `place` continued; views of this world.
+  /// What some objects or the place lack is 0 for them (intensities: NaN).
+  /// They end with the next call, and with an object that is added. Throws std::logic_error where
+  /// the place has values, but not one a primitive.
+  PrimitiveAttributes attributes(const PrimitiveAttributes& place);
+
+  /// Boxes around the objects that are there at `time_s` in scan `scan_index`, in the order in
+  /// which they were added. An object without a class of its own has the one that most of its
+  /// primitives have.
+  std::vector<ObjectBox> boxes(std::uint64_t scan_index, double time_s) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Casts as `place` does and adds what is in `world`; scan i of a call is scan `first_scan` + i of
+/// the world. Place, world and executor must outlive it.
+std::unique_ptr<ScanCaster> make_world_caster(const ScanCaster& place, const World& world,
+                                              const Executor& executor,
+                                              std::uint64_t first_scan = 0);
+
+}  // namespace adasplats

@@ -1,0 +1,266 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/simulate/world/world_file.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <limits>
+#include <locale>
+#include <map>
+#include <numbers>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/scene/mesh_model.h"
+#include "adasplats/splats/model/splat_model.h"
+
+namespace adasplats {
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr double kFarthest_m = 1e9;
+constexpr double kMostScale = 1e6;
+constexpr double kMostAngle_deg = 360;
+
+Error line_error(const std::filesystem::path& path, std::uint64_t line, const std::string& message,
+                 ErrorKind kind = ErrorKind::config) {
+  return Error(kind, path.string() + ":" + std::to_string(line) + ": " + message);
+}
+
+std::string suggestion(const std::string& word, const Words& known) {
+  const std::optional<std::string> nearest = nearest_word(word, known);
+  return nearest ? ", did you mean '" + *nearest + "'?" : std::string();
+}
+
+/// One table of the file; every error has the line of what is wrong.
+class WorldTable {
+ public:
+  WorldTable(const std::filesystem::path& path, const toml::table& table, const Words& known)
+      : path_(path), table_(table) {
+    for (const auto& [key, value] : table) {
+      const std::string word(key.str());
+      if (std::ranges::find(known, word) == known.end())
+        throw line_error(path_, key.source().begin.line,
+                         "unknown key '" + word + "'" + suggestion(word, known));
+    }
+  }
+
+  std::uint64_t line() const { return table_.source().begin.line; }
+  const toml::node* find(std::string_view key) const { return table_.get(key); }
+
+  Error error(std::string_view key, const std::string& message,
+              ErrorKind kind = ErrorKind::config) const {
+    const toml::node* const node = find(key);
+    return line_error(path_, node == nullptr ? line() : node->source().begin.line,
+                      std::string(key) + " " + message, kind);
+  }
+
+  std::string text(std::string_view key) const {
+    const toml::node* const node = find(key);
+    if (node == nullptr) return {};
+    const auto value = node->value_exact<std::string>();
+    if (!value || value->empty()) throw error(key, "is not a text in quotes");
+    return *value;
+  }
+
+  double number(std::string_view key, double otherwise, double low, double high) const {
+    const toml::node* const node = find(key);
+    return node == nullptr ? otherwise : number_of(*node, key, low, high);
+  }
+
+  Vec3d point(std::string_view key) const {
+    const toml::node* const node = find(key);
+    if (node == nullptr) return {};
+    const toml::array* const values = node->as_array();
+    if (values == nullptr || values->size() != 3)
+      throw error(key, "is not a list of three numbers, [x, y, z] in metres");
+    Vec3d p;
+    for (int axis = 0; axis < 3; ++axis)
+      p[axis] =
+          number_of((*values)[static_cast<std::size_t>(axis)], key, -kFarthest_m, kFarthest_m);
+    return p;
+  }
+
+  std::optional<std::uint64_t> whole_number(std::string_view key, std::int64_t high) const {
+    const toml::node* const node = find(key);
+    if (node == nullptr) return std::nullopt;
+    const auto value = node->value_exact<std::int64_t>();
+    if (!value || *value < 0 || *value > high)
+      throw error(key, "is not a whole number from 0 to " + std::to_string(high));
+    return static_cast<std::uint64_t>(*value);
+  }
+
+  /// A file that is there, relative to this one; empty where the key is not.
+  std::filesystem::path file(std::string_view key) const {
+    const std::string name = text(key);
+    if (name.empty()) return {};
+    std::filesystem::path file = (path_.parent_path() / name).lexically_normal();
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored))
+      throw error(key, "is " + file.string() + ", which is not there", ErrorKind::no_input);
+    return file;
+  }
+
+ private:
+  double number_of(const toml::node& node, std::string_view key, double low, double high) const {
+    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+    if (value && *value >= low && *value <= high) return *value;
+    std::ostringstream message;
+    message.imbue(std::locale::classic());
+    message << "is not a number from " << low << " to " << high;
+    throw error(key, message.str());
+  }
+
+  const std::filesystem::path& path_;
+  const toml::table& table_;
+};
+
+/// The parser recurses over dotted keys without a limit of its own (over brackets it has one).
+void refuse_deep_keys(const std::filesystem::path& path, std::string_view text) {
+  constexpr int kMostDots = 64;
+  std::uint64_t line = 1;
+  int dots = 0;
+  for (const char c : text) {
+    if (c == '.' && ++dots > kMostDots)
+      throw line_error(path, line, "more than " + std::to_string(kMostDots) + " dots in a line");
+    if (c != '\n') continue;
+    ++line;
+    dots = 0;
+  }
+}
+
+toml::table parse(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  refuse_deep_keys(path, text);
+  try {
+    return toml::parse(std::string_view(text));
+  } catch (const toml::parse_error& problem) {
+    throw line_error(path, problem.source().begin.line, std::string(problem.description()));
+  }
+}
+
+RigidTransform read_placement(const WorldTable& table) {
+  const auto angle_rad = [&](const char* key) {
+    return table.number(key, 0, -kMostAngle_deg, kMostAngle_deg) * std::numbers::pi / 180;
+  };
+  return {rotation_from_yaw_pitch_roll(angle_rad("yaw_deg"), angle_rad("pitch_deg"),
+                                       angle_rad("roll_deg")),
+          table.point("position")};
+}
+
+std::optional<std::variant<std::uint16_t, std::string>> read_class(const WorldTable& table) {
+  const toml::node* const node = table.find("class");
+  if (node == nullptr) return std::nullopt;
+  if (node->is_string()) return table.text("class");
+  if (!node->is_integer()) throw table.error("class", "is neither a name in quotes nor a number");
+  return static_cast<std::uint16_t>(*table.whole_number("class", 0xffff));
+}
+
+bool read_only_during(const WorldTable& table) {
+  static const Words choices = {"always", "during"};
+  const std::string word = table.text("present");
+  if (word.empty() || word == "always") return false;
+  if (word == "during") return true;
+  const std::string nearest = suggestion(word, choices);
+  throw table.error("present", "is '" + word + "'" +
+                                   (nearest.empty() ? ", expected 'always' or 'during'" : nearest));
+}
+
+WorldFileObject read_object(const WorldTable& table, std::size_t number) {
+  WorldFileObject object;
+  object.line = table.line();
+  object.geometry = table.file("geometry");
+  if (object.geometry.empty()) throw table.error("geometry", "is missing: an object needs a file");
+  object.name = table.text("name");
+  if (object.name.empty()) object.name = object.geometry.filename().string();
+  object.class_id = read_class(table);
+  const std::optional<std::uint64_t> instance = table.whole_number("instance", 0xffff);
+  if (!instance && number > 0xffff)
+    throw table.error("instance", "is missing: it is the object's number, but this is object " +
+                                      std::to_string(number) + " and instances end at 65535");
+  object.instance = static_cast<std::uint16_t>(instance.value_or(number));
+  object.placement = read_placement(table);
+  object.trajectory = table.file("trajectory");
+  object.only_during = read_only_during(table);
+  if (object.only_during && object.trajectory.empty())
+    throw table.error("present", "is 'during', which needs a trajectory");
+  object.only_scan = table.whole_number("scan", std::numeric_limits<std::int64_t>::max());
+  object.scale = table.number("scale", 1, 1 / kMostScale, kMostScale);
+  return object;
+}
+
+std::uint16_t class_number(const WorldFile& file, const WorldFileObject& object,
+                           const LabelScheme& scheme) {
+  if (const auto* const number = std::get_if<std::uint16_t>(&*object.class_id)) return *number;
+  const std::string& name = std::get<std::string>(*object.class_id);
+  if (const SemanticClass* const found = scheme.find(name)) return found->id;
+  Words names;
+  for (const SemanticClass& one : scheme.classes()) names.push_back(one.name);
+  throw line_error(
+      file.path, object.line,
+      "the labels '" + scheme.name() + "' have no class '" + name + "'" + suggestion(name, names));
+}
+
+Trajectory trajectory_of(const WorldFile& file, const WorldFileObject& object) {
+  if (object.trajectory.empty()) return {{0.0, object.placement}};
+  Trajectory trajectory = read_trajectory(object.trajectory);
+  if (object.only_during && trajectory.size() < 2)
+    throw line_error(file.path, object.line,
+                     "present is 'during', but " + object.trajectory.string() + " has one pose");
+  for (TimedPose& pose : trajectory)
+    pose.world_from_sensor = pose.world_from_sensor * object.placement;
+  return trajectory;
+}
+
+}  // namespace
+
+WorldFile read_world_file(const std::filesystem::path& path) {
+  static const Words file_keys = {"model", "object"};
+  static const Words object_keys = {"geometry", "class",     "instance",   "position",
+                                    "yaw_deg",  "pitch_deg", "roll_deg",   "scale",
+                                    "name",     "present",   "trajectory", "scan"};
+  const toml::table content = parse(path);
+  const WorldTable table(path, content, file_keys);
+  WorldFile file;
+  file.path = path;
+  file.model = table.file("model");
+  const toml::node* const objects = table.find("object");
+  if (objects == nullptr) return file;
+  if (!objects->is_array_of_tables())
+    throw table.error("object", "is not a list of tables, each headed [[object]]");
+  for (const toml::node& object : *objects->as_array())
+    file.objects.push_back(
+        read_object(WorldTable(path, *object.as_table(), object_keys), file.objects.size() + 1));
+  return file;
+}
+
+void add_objects(World& world, const WorldFile& file, const LabelScheme& scheme) {
+  std::map<std::filesystem::path, std::size_t> geometries;
+  for (const WorldFileObject& object : file.objects) {
+    WorldObject added;
+    added.name = object.name;
+    if (object.class_id) added.class_id = class_number(file, object, scheme);
+    added.instance = object.instance;
+    added.trajectory = trajectory_of(file, object);
+    added.only_during = object.only_during;
+    added.only_scan = object.only_scan;
+    added.scale = object.scale;
+    const auto known = geometries.find(object.geometry);
+    if (known != geometries.end()) {
+      added.geometry = known->second;
+    } else {
+      added.geometry = is_mesh_file(object.geometry)
+                           ? world.add_geometry(load_mesh(object.geometry))
+                           : world.add_geometry(load_model(object.geometry));
+      geometries.emplace(object.geometry, added.geometry);
+    }
+    world.add_object(std::move(added));
+  }
+}
+
+}  // namespace adasplats

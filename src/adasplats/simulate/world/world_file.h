@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/simulate/world/world.h"
+
+namespace adasplats {
+
+/// One [[object]] of a world file.
+struct WorldFileObject {
+  std::uint64_t line = 0;  ///< of the file, for messages
+  std::string name;        ///< the geometry's file name where none is given
+  std::filesystem::path geometry;
+  /// A number, or a name of the label scheme.
+  std::optional<std::variant<std::uint16_t, std::string>> class_id;
+  std::uint16_t instance = 0;
+  /// Where the geometry stands in the world, or in the frame that `trajectory` moves.
+  RigidTransform placement;
+  std::filesystem::path trajectory;  ///< empty: it stands
+  bool only_during = false;
+  std::optional<std::uint64_t> only_scan;
+  double scale = 1;
+};
+
+/// What stands and moves in a place, as a TOML file (docs/worlds.md):
+///     model = "street.ply"        # the place: splats or a mesh; optional
+///     [[object]]
+///     geometry = "car.glb"        # splats (PLY) or a mesh (PLY, OBJ, glTF)
+///     class = "car"               # or a number; default: the geometry's classes
+///     instance = 7                # default: 1 for the first object, 2 for the second, ...
+///     position = [12.0, -3.5, 0]  # m, world coordinates
+///     yaw_deg = 90                # also pitch_deg, roll_deg
+///     scale = 1.0
+///     trajectory = "car.csv"      # world_from_object (read_trajectory); position and angles are
+///                                 # then those of the geometry in the frame that it moves
+///     present = "always"          # or "during": between the first and the last pose only
+///     scan = 12                   # there in this scan alone
+///     name = "taxi"
+/// Paths are relative to the file.
+struct WorldFile {
+  std::filesystem::path path;
+  std::filesystem::path model;  ///< empty: the file names none
+  std::vector<WorldFileObject> objects;
+};
+
+/// Reads the file itself; the files that it names are only looked for. Errors: config with the line
+/// (an unknown key, with the nearest known; a value of another kind or out of range), no_input (a
+/// named file is not there, with the line).
+WorldFile read_world_file(const std::filesystem::path& path);
+
+/// Loads what the objects are made of, each file once, and puts the objects into `world`. Classes
+/// by name are those of `scheme`. Errors: config with the line (an unknown class, with the nearest
+/// known; "during" without a second pose), those of load_mesh, load_model and read_trajectory.
+void add_objects(World& world, const WorldFile& file, const LabelScheme& scheme);
+
+}  // namespace adasplats
