@@ -23,7 +23,7 @@
 #include "adasplats/evaluate/cloud_metrics.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/neighbors/hilbert.h"
-#include "adasplats/pipeline/provenance.h"
+#include "adasplats/pipeline/provenance/provenance.h"
 
 namespace {
 

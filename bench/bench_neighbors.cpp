@@ -15,7 +15,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/neighbors/point_index.h"
-#include "adasplats/pipeline/provenance.h"
+#include "adasplats/pipeline/provenance/provenance.h"
 
 namespace {
 

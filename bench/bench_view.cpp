@@ -21,7 +21,7 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/random.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/provenance.h"
+#include "adasplats/pipeline/provenance/provenance.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/view/level_tree.h"
 #include "adasplats/view/scan_packet.h"

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "adasplats/pipeline/metrics_json.h"
+#include "adasplats/pipeline/provenance/metrics_json.h"
 #include "build_options.h"
 #include "output_path.h"
 #include "render_job.h"

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "adasplats/pipeline/device_choice.h"
+#include "adasplats/pipeline/session/device_choice.h"
 #include "option_set.h"
 
 namespace adasplats::app {

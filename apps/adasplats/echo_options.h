@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "adasplats/pipeline/evaluate_echoes.h"
+#include "adasplats/pipeline/evaluate/evaluate_echoes.h"
 #include "option_set.h"
 #include "text_table.h"
 

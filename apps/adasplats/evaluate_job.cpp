@@ -6,7 +6,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/error_points.h"
-#include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/session/inputs.h"
 #include "evaluate_pictures.h"
 #include "output_path.h"
 

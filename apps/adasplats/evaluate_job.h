@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string>
 
-#include "adasplats/pipeline/evaluate_clouds.h"
-#include "adasplats/pipeline/evaluate_resimulation.h"
-#include "adasplats/pipeline/view_choice.h"
+#include "adasplats/pipeline/evaluate/evaluate_clouds.h"
+#include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
+#include "adasplats/pipeline/scene/view_choice.h"
 #include "session.h"
 
 namespace adasplats::app {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/pipeline/evaluate_labels.h"
-#include "adasplats/pipeline/metrics_json.h"
+#include "adasplats/pipeline/evaluate/evaluate_labels.h"
+#include "adasplats/pipeline/provenance/metrics_json.h"
 #include "commands.h"
 #include "option_types.h"
 #include "terminal.h"

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/pipeline/metrics_json.h"
+#include "adasplats/pipeline/provenance/metrics_json.h"
 #include "commands.h"
 #include "evaluate_job.h"
 #include "option_types.h"

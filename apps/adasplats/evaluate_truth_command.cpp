@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/pipeline/evaluate_truth.h"
-#include "adasplats/pipeline/metrics_json.h"
+#include "adasplats/pipeline/evaluate/evaluate_truth.h"
+#include "adasplats/pipeline/provenance/metrics_json.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "commands.h"
 #include "option_types.h"

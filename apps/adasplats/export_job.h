@@ -9,7 +9,7 @@
 #include <string>
 
 #include "adasplats/cloud/load/load_cloud.h"
-#include "adasplats/pipeline/session.h"
+#include "adasplats/pipeline/session/session.h"
 
 namespace adasplats::app {
 

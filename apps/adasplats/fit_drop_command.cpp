@@ -4,7 +4,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/pipeline/evaluate_echoes.h"
+#include "adasplats/pipeline/evaluate/evaluate_echoes.h"
 #include "commands.h"
 #include "echo_options.h"
 #include "option_types.h"

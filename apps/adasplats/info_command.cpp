@@ -5,7 +5,7 @@
 
 #include "adasplats/core/constants.h"
 #include "adasplats/gpu/base/device.h"
-#include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/session/inputs.h"
 #include "commands.h"
 #include "info_job.h"
 #include "load_options.h"

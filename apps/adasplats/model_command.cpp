@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
-#include "adasplats/pipeline/unused_options.h"
+#include "adasplats/pipeline/model/unused_options.h"
 #include "build_options.h"
 #include "commands.h"
 #include "load_options.h"

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "adasplats/pipeline/make_model.h"
+#include "adasplats/pipeline/model/make_model.h"
 #include "session.h"
 
 namespace adasplats::app {

@@ -12,7 +12,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/vec3.h"
 #include "adasplats/core/words.h"
-#include "adasplats/pipeline/scan_range.h"
+#include "adasplats/pipeline/session/scan_range.h"
 #include "adasplats/splats/build_model.h"
 #include "option_set.h"
 

@@ -13,8 +13,8 @@
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/arrays/png.h"
-#include "adasplats/pipeline/inputs.h"
-#include "adasplats/pipeline/model_scene.h"
+#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/simulate/image/point_colors.h"
 #include "output_path.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/pipeline/view_choice.h"
+#include "adasplats/pipeline/scene/view_choice.h"
 #include "adasplats/simulate/image/image.h"
 #include "session.h"
 

@@ -7,8 +7,8 @@
 
 #include "adasplats/core/memory.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/machine.h"
-#include "adasplats/pipeline/provenance.h"
+#include "adasplats/pipeline/provenance/machine.h"
+#include "adasplats/pipeline/provenance/provenance.h"
 
 namespace adasplats::app {
 namespace {

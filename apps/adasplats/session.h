@@ -4,7 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "adasplats/pipeline/session.h"
+#include "adasplats/pipeline/session/session.h"
 #include "progress_bar.h"
 
 namespace adasplats::app {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
-#include "adasplats/pipeline/inputs.h"
+#include "adasplats/pipeline/session/inputs.h"
 #include "build_options.h"
 #include "commands.h"
 #include "option_types.h"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "adasplats/dataset/scan_writer.h"
-#include "adasplats/pipeline/drive.h"
+#include "adasplats/pipeline/scene/drive.h"
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/simulate/scan/weather.h"
 #include "session.h"

@@ -6,8 +6,8 @@
 
 #include "adasplats/core/words.h"
 #include "adasplats/io/base/sha256.h"
-#include "adasplats/pipeline/inputs.h"
-#include "adasplats/pipeline/scene_files.h"
+#include "adasplats/pipeline/scene/scene_files.h"
+#include "adasplats/pipeline/session/inputs.h"
 
 namespace adasplats::app {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 
-#include "adasplats/pipeline/model_scene.h"
-#include "adasplats/pipeline/scan_simulator.h"
+#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/pipeline/scene/scan_simulator.h"
 #include "simulate_job.h"
 
 namespace adasplats::app {

@@ -9,8 +9,8 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/error_points.h"
-#include "adasplats/pipeline/inputs.h"
-#include "adasplats/pipeline/view_choice.h"
+#include "adasplats/pipeline/scene/view_choice.h"
+#include "adasplats/pipeline/session/inputs.h"
 
 namespace adasplats::app {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "adasplats/pipeline/model_scene.h"
+#include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/view/view_scene.h"
 #include "view_job.h"
 

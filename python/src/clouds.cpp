@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "adasplats/pipeline/output_check.h"
+#include "adasplats/pipeline/provenance/output_check.h"
 #include "bindings.h"
 #include "pickles.h"
 #include "work.h"

@@ -4,14 +4,14 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "adasplats/pipeline/evaluate_clouds.h"
-#include "adasplats/pipeline/evaluate_echoes.h"
-#include "adasplats/pipeline/evaluate_labels.h"
-#include "adasplats/pipeline/evaluate_presence.h"
-#include "adasplats/pipeline/evaluate_resimulation.h"
-#include "adasplats/pipeline/evaluate_truth.h"
-#include "adasplats/pipeline/inputs.h"
-#include "adasplats/pipeline/metrics_json.h"
+#include "adasplats/pipeline/evaluate/evaluate_clouds.h"
+#include "adasplats/pipeline/evaluate/evaluate_echoes.h"
+#include "adasplats/pipeline/evaluate/evaluate_labels.h"
+#include "adasplats/pipeline/evaluate/evaluate_presence.h"
+#include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
+#include "adasplats/pipeline/evaluate/evaluate_truth.h"
+#include "adasplats/pipeline/provenance/metrics_json.h"
+#include "adasplats/pipeline/session/inputs.h"
 #include "clouds.h"
 #include "json.h"
 #include "scenes.h"

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "adasplats/pipeline/make_model.h"
-#include "adasplats/pipeline/output_check.h"
-#include "adasplats/pipeline/unused_options.h"
+#include "adasplats/pipeline/model/make_model.h"
+#include "adasplats/pipeline/model/unused_options.h"
+#include "adasplats/pipeline/provenance/output_check.h"
 #include "clouds.h"
 #include "json.h"
 #include "pickles.h"

@@ -5,8 +5,8 @@
 #include <memory>
 #include <mutex>
 
-#include "adasplats/pipeline/model_scene.h"
-#include "adasplats/pipeline/scan_simulator.h"
+#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/pipeline/scene/scan_simulator.h"
 #include "bindings.h"
 #include "work.h"
 

@@ -4,8 +4,8 @@
 
 #include <pybind11/stl.h>
 
-#include "adasplats/pipeline/inputs.h"
-#include "adasplats/pipeline/output_check.h"
+#include "adasplats/pipeline/provenance/output_check.h"
+#include "adasplats/pipeline/session/inputs.h"
 #include "bindings.h"
 #include "clouds.h"
 #include "pickles.h"

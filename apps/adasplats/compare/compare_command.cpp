@@ -7,7 +7,7 @@
 
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/machine.h"
+#include "adasplats/pipeline/provenance/machine.h"
 #include "commands.h"
 #include "compare/compare_job.h"
 #include "compare/steps.h"

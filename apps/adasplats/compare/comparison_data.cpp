@@ -11,8 +11,8 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/symmetric_eigen.h"
-#include "adasplats/pipeline/inputs.h"
-#include "adasplats/pipeline/label_use.h"
+#include "adasplats/pipeline/model/label_use.h"
+#include "adasplats/pipeline/session/inputs.h"
 #include "compare/work_folder.h"
 #include "option_types.h"
 

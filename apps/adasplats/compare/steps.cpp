@@ -9,7 +9,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/provenance.h"
+#include "adasplats/pipeline/provenance/provenance.h"
 
 namespace adasplats::app {
 namespace {

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "adasplats/pipeline/scan_simulator.h"
+#include "adasplats/pipeline/scene/scan_simulator.h"
 #include "adasplats/simulate/scan/scan_motion.h"
 
 namespace adasplats {

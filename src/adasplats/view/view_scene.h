@@ -13,7 +13,7 @@
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
-#include "adasplats/pipeline/model_scene.h"
+#include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/serve/http_server.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/view/level_tree.h"

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/pipeline/evaluate/evaluate_clouds.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/core/progress_meter.h"
+#include "adasplats/pipeline/provenance/metrics_json.h"
+#include "adasplats/pipeline/session/inputs.h"
+
+namespace adasplats {
+namespace {
+
+std::string class_name(const LabelScheme* scheme, std::uint16_t id) {
+  const SemanticClass* found = scheme != nullptr ? scheme->find(id) : nullptr;
+  return found == nullptr ? "class " + std::to_string(id) : found->name;
+}
+
+}  // namespace
+
+CloudPair load_clouds(const CloudFiles& files, Session& session) {
+  const std::array<std::filesystem::path, 2> inputs = {resolve_cloud_input(files.simulated),
+                                                       resolve_cloud_input(files.original)};
+  const auto load = [&](std::size_t k) {
+    return load_cloud(std::span(inputs).subspan(k, 1), {}, session.executor, session.progress)
+        .first;
+  };
+  CloudPair pair;
+  pair.labels = label_scheme_for(files.labels, inputs);
+  pair.simulated = load(0);
+  pair.original = load(1);
+  return pair;
+}
+
+CloudComparison evaluate_clouds(const PointCloud& simulated, const PointCloud& original,
+                                bool by_class, const LabelScheme* labels, Session& session) {
+  CloudComparison comparison;
+  session.progress.begin_step("compare", kPassUnits);
+  comparison.distance = cloud_distance(simulated, original, session.executor);
+  if (by_class) {
+    session.progress.begin_step("compare classes", kPassUnits);
+    for (const ClassDistance& c : cloud_distance_by_class(simulated, original, session.executor))
+      comparison.by_class.emplace_back(class_name(labels, c.class_id), c);
+  }
+  session.progress.end_step();
+  return comparison;
+}
+
+double c2c_of_classes(const CloudComparison& comparison, const std::vector<std::string>& names) {
+  double sum_m = 0;
+  double points = 0;
+  for (const auto& [name, distance] : comparison.by_class) {
+    const bool wanted = std::find(names.begin(), names.end(), name) != names.end();
+    if (!wanted || std::isnan(distance.c2c_m)) continue;
+    sum_m += distance.c2c_m * static_cast<double>(distance.simulated_points);
+    points += static_cast<double>(distance.simulated_points);
+  }
+  return points > 0 ? sum_m / points : std::numeric_limits<double>::quiet_NaN();
+}
+
+nlohmann::ordered_json to_json(const CloudComparison& comparison) {
+  nlohmann::ordered_json json = to_json(comparison.distance);
+  json["simulated_points"] = comparison.distance.simulated_points;
+  json["original_points"] = comparison.distance.original_points;
+  json["by_class"] = nlohmann::ordered_json::object();
+  for (const auto& [name, distance] : comparison.by_class) {
+    json["by_class"][name] = {{"c2c_m", distance.c2c_m},
+                              {"c2c_to_all_m", distance.c2c_to_all_m},
+                              {"points", distance.simulated_points},
+                              {"original_points", distance.original_points}};
+  }
+  return json;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/pipeline/evaluate/evaluate_presence.h"
+
+#include <span>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
+#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/pipeline/session/inputs.h"
+
+namespace adasplats {
+
+PresenceResult evaluate_presence(const PresenceJob& job, Session& session) {
+  require_input(job.model);
+  const auto inputs = std::span(&job.points, 1);
+  const auto scheme = label_scheme_for(job.labels, inputs);
+  const PointCloud cloud = load_cloud(inputs, job.load, session.executor, session.progress).first;
+  if (cloud.classes.empty() && !job.labels.empty()) {
+    throw Error(ErrorKind::usage, "--labels has no effect: the points have no labels");
+  }
+  const ModelScene scene(job.model, "", session);
+  session.progress.begin_step("cast", kPassUnits);
+  PresenceResult result = presence(scene.tracer(), scene.origin(), cloud,
+                                   scheme ? &*scheme : nullptr, job.options, session.executor);
+  session.progress.end_step();
+  return result;
+}
+
+}  // namespace adasplats

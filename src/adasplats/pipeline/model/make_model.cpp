@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/pipeline/model/make_model.h"
+
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
+#include "adasplats/core/stopwatch.h"
+#include "adasplats/gpu/gpu_model.h"
+#include "adasplats/pipeline/model/label_use.h"
+#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/splats/reflectance/reflectance.h"
+#include "adasplats/trace/tracer.h"
+
+namespace adasplats {
+namespace {
+
+using Built = std::pair<SplatModel, BuildReport>;
+
+/// Throws data, with what became of the points, where nothing was made of them.
+void require_splats(const SplatModel& model, const BuildReport& built) {
+  if (model.size() != 0) return;
+  throw Error(ErrorKind::data,
+              "no splats: of " + std::to_string(built.points_in) + " points " +
+                  std::to_string(built.points_dynamic) + " were removed as dynamic and " +
+                  std::to_string(built.points_noise) +
+                  " as noise, and no surface was found in the rest; it takes several points of "
+                  "each surface (see --cell, --neighbors, --denoise and --remove)");
+}
+
+/// Makes one model; the points come from `load_points`, as often as they are asked for: building
+/// takes the memory that they stand in, so that they are loaded again rather than kept.
+class Making {
+ public:
+  using LoadPoints = std::function<PointCloud()>;
+
+  Making(const ModelOptions& options, std::optional<LabelScheme> scheme, LoadPoints load_points,
+         Session& session)
+      : options_(options),
+        scheme_(std::move(scheme)),
+        load_points_(std::move(load_points)),
+        session_(session) {
+    if (!scheme_ && options_.build.method == SplatMethod::semantic) {
+      throw Error(ErrorKind::usage,
+                  "--method semantic needs --labels (semantickitti, paris-carla-3d or a file)");
+    }
+  }
+
+  SplatModel run(ModelResult& result) {
+    PointCloud cloud = load(result);
+    check_label_use({options_.labels, options_.build.remove, options_.removal_is_asked}, cloud,
+                    scheme_ ? &*scheme_ : nullptr, session_.progress);
+    const bool tells_reflectance = cloud.has_beams() && !cloud.intensities.empty();
+    auto [model, built] = build_on_device(std::move(cloud), result);
+    require_splats(model, built);
+    if (scheme_) model.label_scheme = scheme_reference(options_.labels, *scheme_);
+    result.steps.insert(result.steps.end(), built.steps.begin(), built.steps.end());
+    result.built = std::move(built);
+    if (options_.reflectance && tells_reflectance && !model.intensities.empty())
+      result.reflectance_measured = add_reflectances(model, result);
+    return std::move(model);
+  }
+
+ private:
+  PointCloud load(ModelResult& result) {
+    const Stopwatch watch;
+    PointCloud cloud = load_points_();
+    result.steps.push_back({"load", watch.seconds()});
+    return cloud;
+  }
+
+  /// `engine`: nothing for the CPU.
+  Built build(PointCloud cloud, const ModelEngine* engine) {
+    return build_model(std::move(cloud), scheme_ ? &*scheme_ : nullptr, options_.build,
+                       session_.executor, session_.progress, engine);
+  }
+
+  Built build_on_device(PointCloud cloud, ModelResult& result) {
+    const bool tries_gpu = session_.device.on_gpu();
+    Built built;
+    const bool on_gpu = try_on_gpu(session_.device, session_.progress, [&] {
+      const auto engine =
+          make_cuda_model_engine(session_.device.gpus.front().index, session_.executor);
+      built = build(std::move(cloud), engine.get());
+    });
+    if (on_gpu) return built;
+    if (tries_gpu) cloud = load(result);
+    return build(std::move(cloud), nullptr);
+  }
+
+  /// Makes reflectances of the model's intensities; false: too few points tell them.
+  bool add_reflectances(SplatModel& model, ModelResult& result) {
+    const PointCloud cloud = load(result);
+    const Stopwatch watch;
+    session_.progress.begin_step("measure reflectances", 2 * kPassUnits);
+    const auto tracer = make_cpu_tracer(model.view(), session_.executor);
+    Reflectances measured = measure_reflectances(model.disks, *tracer, cloud, model.origin,
+                                                 model.intensities, session_.executor);
+    model.intensities = std::move(measured.values);
+    model.response = std::move(measured.response);
+    session_.progress.end_step();
+    result.steps.push_back({"reflectances", watch.seconds()});
+    return !model.response.empty();
+  }
+
+  const ModelOptions& options_;
+  std::optional<LabelScheme> scheme_;
+  LoadPoints load_points_;
+  Session& session_;
+};
+
+}  // namespace
+
+std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& session) {
+  for (const auto& input : job.inputs) require_input(input);
+  const Stopwatch total;
+  ModelResult result;
+  const auto load_points = [&] {
+    auto [cloud, loaded] = load_cloud(job.inputs, job.load, session.executor, session.progress);
+    result.loaded = loaded;
+    return std::move(cloud);
+  };
+  Making making(job, label_scheme_for(job.labels, job.inputs), load_points, session);
+  SplatModel model = making.run(result);
+  result.seconds = total.seconds();
+  return {std::move(model), std::move(result)};
+}
+
+std::pair<SplatModel, ModelResult> make_model(const PointCloud& cloud, const ModelOptions& options,
+                                              Session& session) {
+  const Stopwatch total;
+  ModelResult result;
+  result.loaded.points_read = cloud.size();
+  Making making(
+      options, label_scheme_for(options.labels, {}), [&cloud] { return cloud; }, session);
+  SplatModel model = making.run(result);
+  result.seconds = total.seconds();
+  return {std::move(model), std::move(result)};
+}
+
+nlohmann::ordered_json to_json(const ModelResult& result) {
+  nlohmann::ordered_json json;
+  const BuildReport& built = result.built;
+  json["points_read"] = result.loaded.points_read;
+  json["points_not_finite"] = result.loaded.dropped_not_finite;
+  json["points_no_return"] = result.loaded.no_returns;
+  json["points_far"] = result.loaded.dropped_far;
+  json["points_own_body"] = result.loaded.own_body;
+  json["points_intensity_unknown"] = result.loaded.unknown_intensities;
+  json["beams"] = result.loaded.beams;
+  json["points_in"] = built.points_in;
+  json["points_dynamic"] = built.points_dynamic;
+  json["points_removed"] = nlohmann::ordered_json::object();
+  for (const auto& part : built.removed_classes) json["points_removed"][part.name] = part.points;
+  if (!built.consistent) {
+    json["points_noise"] = built.points_noise;
+    json["points_resampled"] = built.points_resampled;
+  }
+  json["points_used"] = built.points_used;
+  json["primitives"] = built.primitives;
+  if (built.consistent) {
+    json["cells"] = built.consistent->cells;
+    json["seeds"] = built.consistent->seeds;
+    json["rays"] = built.consistent->rays;
+    json["seeds_removed"] = built.consistent->seeds_removed;
+    json["splats_filled"] = built.consistent->splats_filled;
+  } else {
+    json["radius_m"] = built.radius_m;
+    json["error_m"] = built.error_m;
+  }
+  json["origins"] = {{"none", built.origins[0]},
+                     {"guessed", built.origins[1]},
+                     {"stated", built.origins[2]},
+                     {"measured", built.origins[3]}};
+  json["oriented"] = built.oriented;
+  json["ray_checked"] = built.ray_checked;
+  json["reflectance_measured"] = result.reflectance_measured;
+  json["seconds"]["total"] = result.seconds;
+  for (const StepTime& step : result.steps) {
+    // The second generation has the same steps: their times add up.
+    auto& seconds = json["seconds"][step.name];
+    seconds = (seconds.is_number() ? seconds.get<double>() : 0.0) + step.seconds;
+  }
+  return json;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/pipeline/model/make_model.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+namespace {
+
+/// A plane of 40 x 40 points with sensor positions and intensities.
+PointCloud plane() {
+  PointCloud cloud;
+  for (int i = 0; i < 1600; ++i) {
+    const float x = 0.1F * static_cast<float>(i % 40);
+    const float y = 0.1F * static_cast<float>(i / 40);
+    cloud.positions.push_back({x, y, 0.001F * static_cast<float>(i % 7)});
+    cloud.sensor_positions.push_back({2, 2, 2});
+    cloud.intensities.push_back(0.25F);
+    cloud.classes.push_back(40);
+  }
+  return cloud;
+}
+
+class MakeModelTest : public testing::Test {
+ protected:
+  Executor executor_{2};
+  ProgressSink progress_;
+  DeviceChoice device_;
+  Session session_{executor_, progress_, 1, device_};
+};
+
+// Oracle: build_model.
+TEST_F(MakeModelTest, PointsInMemoryGiveTheModelOfTheStageBelow) {
+  for (const SplatMethod method : {SplatMethod::basic, SplatMethod::consistent}) {
+    ModelOptions options;
+    options.build.method = method;
+    options.build.remove = DynamicRemoval::none;
+    options.reflectance = false;
+    const PointCloud cloud = plane();
+    const auto [model, result] = make_model(cloud, options, session_);
+    const auto [expected, report] =
+        build_model(cloud, nullptr, options.build, executor_, progress_, nullptr);
+    ASSERT_EQ(model.size(), expected.size());
+    ASSERT_GT(model.size(), 0U);
+    for (std::size_t i = 0; i < model.size(); ++i)
+      EXPECT_EQ(model.disks[i].center.x, expected.disks[i].center.x);
+    EXPECT_EQ(result.built.primitives, report.primitives);
+    EXPECT_EQ(result.loaded.points_read, cloud.size());
+  }
+}
+
+TEST_F(MakeModelTest, LabelsAreNamedInTheModel) {
+  ModelOptions options;
+  options.labels = "semantickitti";
+  options.build.method = SplatMethod::semantic;
+  const auto made = make_model(plane(), options, session_);
+  EXPECT_EQ(made.first.label_scheme, "semantickitti");
+  EXPECT_EQ(to_json(made.second)["primitives"], made.first.size());
+  options.labels.clear();
+  EXPECT_THROW(make_model(plane(), options, session_), Error);
+}
+
+TEST_F(MakeModelTest, NoPointsAreAnError) {
+  EXPECT_THROW(make_model(PointCloud(), ModelOptions(), session_), Error);
+}
+
+}  // namespace
+}  // namespace adasplats

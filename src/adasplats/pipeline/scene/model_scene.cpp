@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/pipeline/scene/model_scene.h"
+
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/pipeline/scene/view_choice.h"
+#include "adasplats/pipeline/session/inputs.h"
+
+namespace adasplats {
+
+namespace {
+
+/// A world file that stands in a model's place.
+WorldFile place_with_objects(const std::filesystem::path& file, WorldFiles world_files) {
+  if (world_files == WorldFiles::refused)
+    throw Error(ErrorKind::usage, file.string() +
+                                      ": a world file is for 'adasplats simulate' alone; name the "
+                                      "model that it names");
+  WorldFile world = read_world_file(file);
+  if (world.model.empty())
+    throw Error(ErrorKind::config, file.string() + ": names no model (model = \"street.ply\")");
+  return world;
+}
+
+}  // namespace
+
+ModelScene::ModelScene(const std::filesystem::path& file, const std::string& labels,
+                       Session& session, WorldFiles world_files)
+    : executor_(session.executor) {
+  require_input(file);
+  std::optional<WorldFile> world_file;
+  if (file.extension() == ".toml") world_file = place_with_objects(file, world_files);
+  if (!labels.empty()) labels_ = load_label_scheme(labels);
+  session.progress.begin_step("load " + file.filename().string(), 0);
+  load(world_file ? world_file->model : file);
+  prepare(file.string(), session);
+  if (world_file) make_world(*world_file);
+  session.progress.end_step();
+}
+
+ModelScene::ModelScene(SplatModel splats, std::optional<LabelScheme> labels, Session& session)
+    : executor_(session.executor), splats_(std::move(splats)), labels_(std::move(labels)) {
+  prepare("the model", session);
+  session.progress.end_step();
+}
+
+ModelScene::ModelScene(MeshModel mesh, std::optional<LabelScheme> labels, Session& session)
+    : executor_(session.executor),
+      is_mesh_(true),
+      mesh_(std::move(mesh)),
+      labels_(std::move(labels)) {
+  prepare("the mesh", session);
+  session.progress.end_step();
+}
+
+/// What every scene needs once its geometry is there.
+void ModelScene::prepare(const std::string& name, Session& session) {
+  if (view().primitive_count() == 0)
+    throw Error(ErrorKind::data, name + (is_mesh_ ? ": no triangles" : ": no splats"));
+  const std::string& known = is_mesh_ ? mesh_.label_scheme : splats_.label_scheme;
+  if (!labels_ && !known.empty()) {
+    try {
+      labels_ = load_label_scheme(known);
+    } catch (const Error& error) {
+      // The scheme only names and colours; geometry and class numbers are in the model.
+      session.progress.warn(std::string("labels of the model: ") + error.what());
+    }
+  }
+  session.progress.begin_step("build the ray index", 0);
+  make_tracers(session);
+  attributes_ = place_attributes();
+}
+
+void ModelScene::make_world(const WorldFile& file) {
+  world_.emplace(static_cast<std::uint32_t>(view().primitive_count()), origin(), executor_);
+  add_objects(*world_, file, labels_ ? *labels_ : LabelScheme("", {}));
+  attributes_ = world_->attributes(place_attributes());
+}
+
+void ModelScene::make_tracers(Session& session) {
+  const bool on_gpu = try_on_gpu(session.device, session.progress, [&] {
+    const bool use_optix = session.device.kind == DeviceKind::optix;
+    gpu_.emplace(view(), origin(), use_optix ? GpuBackend::optix : GpuBackend::cuda,
+                 session.device.gpu_numbers());
+  });
+  if (on_gpu) return;
+  tracer_ = make_cpu_tracer(view(), executor_);
+  caster_ = make_cpu_scan_caster(*tracer_, origin(), executor_);
+}
+
+void ModelScene::load(const std::filesystem::path& file) {
+  is_mesh_ = is_mesh_file(file);
+  if (is_mesh_) {
+    mesh_ = load_mesh(file);
+  } else {
+    splats_ = load_model(file);
+  }
+}
+
+SceneView ModelScene::view() const { return is_mesh_ ? mesh_.view() : splats_.view(); }
+
+PrimitiveAttributes ModelScene::place_attributes() const {
+  PrimitiveAttributes attributes;
+  attributes.classes = is_mesh_ ? mesh_.mesh.classes : splats_.classes;
+  attributes.intensities = splats_.intensities;
+  attributes.view = view();
+  if (!splats_.response.empty()) attributes.response = &splats_.response;
+  return attributes;
+}
+
+ImageScene ModelScene::image_scene() const {
+  ImageScene scene;
+  scene.view = view();
+  scene.attributes = place_attributes();
+  scene.groups = splats_.groups;
+  scene.labels = labels_ ? &*labels_ : nullptr;
+  scene.origin = origin();
+  return scene;
+}
+
+ImageColor ModelScene::default_color() const {
+  const bool bare = place_attributes().classes.empty() && splats_.groups.empty();
+  return bare ? ImageColor::shading : ImageColor::semantic;
+}
+
+Image ModelScene::render(const Camera& camera, const ImageOptions& options) const {
+  if (!gpu_) return render_image(*tracer_, image_scene(), camera, options, executor_);
+  // The colours of the scene go to the GPU once for all pictures.
+  const std::lock_guard lock(renderer_mutex_);
+  if (!renderer_ || !(renderer_options_ == options)) {
+    renderer_ = gpu_->renderer(image_scene(), options);
+    renderer_options_ = options;
+  }
+  return renderer_->render(camera);
+}
+
+std::pair<Vec3d, Vec3d> ModelScene::middle_box() const {
+  if (is_mesh_) return adasplats::middle_box(mesh_.mesh.vertices, mesh_.origin);
+  std::vector<Vec3f> centers;
+  centers.reserve(splats_.size());
+  for (const Disk& disk : splats_.disks) centers.push_back(disk.center);
+  return adasplats::middle_box(centers, splats_.origin);
+}
+
+}  // namespace adasplats

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "adasplats/gpu/simulate/gpu_scene.h"
+#include "adasplats/pipeline/session/session.h"
+#include "adasplats/scene/mesh_model.h"
+#include "adasplats/simulate/image/image.h"
+#include "adasplats/simulate/scan/scan_caster.h"
+#include "adasplats/simulate/world/world.h"
+#include "adasplats/simulate/world/world_file.h"
+#include "adasplats/splats/model/splat_model.h"
+#include "adasplats/trace/tracer.h"
+
+namespace adasplats {
+
+/// Whether a world file (simulate/world_file.h) may stand in a model's place.
+enum class WorldFiles : std::uint8_t { refused, taken };
+
+/// A splat model or a triangle mesh from a file with what is needed to cast rays into it, on
+/// the session's device. A world file: its place, and what was put there as `world`.
+class ModelScene {
+ public:
+  /// `labels` as load_label_scheme takes it names the classes; empty: what the model's file says.
+  /// Errors: usage (a world file where they are refused, or that names no model).
+  ModelScene(const std::filesystem::path& file, const std::string& labels, Session& session,
+             WorldFiles world_files = WorldFiles::refused);
+  /// A model in memory; `labels`: what its classes mean.
+  ModelScene(SplatModel splats, std::optional<LabelScheme> labels, Session& session);
+  ModelScene(MeshModel mesh, std::optional<LabelScheme> labels, Session& session);
+  ModelScene(const ModelScene&) = delete;  // the tracer and the views look into it
+  ModelScene& operator=(const ModelScene&) = delete;
+
+  /// Splats or triangles.
+  SceneView view() const;
+  /// World coordinates of the view's local origin, m.
+  Vec3d origin() const { return is_mesh_ ? mesh_.origin : splats_.origin; }
+  const Tracer& tracer() const { return gpu_ ? gpu_->tracer() : *tracer_; }
+  /// Of the place without its objects.
+  const ScanCaster& scan_caster() const { return gpu_ ? gpu_->scan_caster() : *caster_; }
+  /// Of the place and, behind it, its objects.
+  const PrimitiveAttributes& attributes() const { return attributes_; }
+  /// What was put into the place; null where nothing was.
+  const World* world() const { return world_ ? &*world_ : nullptr; }
+  /// Null where it is a mesh.
+  const SplatModel* splats() const { return is_mesh_ ? nullptr : &splats_; }
+  bool on_gpu() const { return gpu_.has_value(); }
+  /// Null where it is on the CPU.
+  const GpuScene* gpu() const { return gpu_ ? &*gpu_ : nullptr; }
+  /// What the classes mean; null where that is not known.
+  const LabelScheme* labels() const { return labels_ ? &*labels_ : nullptr; }
+  /// For pictures: geometry, attributes and the colours of the classes.
+  ImageScene image_scene() const;
+  /// By class where the model has classes or groups, else by shape.
+  ImageColor default_color() const;
+  /// A picture of image_scene().
+  Image render(const Camera& camera, const ImageOptions& options) const;
+  /// World box of the middle 98 % of the splats or vertices along each axis: far outliers must not
+  /// decide what a picture shows.
+  std::pair<Vec3d, Vec3d> middle_box() const;
+
+ private:
+  void load(const std::filesystem::path& file);
+  void prepare(const std::string& name, Session& session);
+  void make_tracers(Session& session);
+  void make_world(const WorldFile& file);
+  PrimitiveAttributes place_attributes() const;
+
+  const Executor& executor_;
+  bool is_mesh_ = false;
+  SplatModel splats_;
+  MeshModel mesh_;
+  std::optional<LabelScheme> labels_;
+  std::optional<GpuScene> gpu_;
+  mutable std::unique_ptr<GpuRenderer> renderer_;  ///< of the last options on a GPU
+  mutable ImageOptions renderer_options_;
+  std::unique_ptr<Tracer> tracer_;      ///< where there is no `gpu_`
+  std::unique_ptr<ScanCaster> caster_;  ///< likewise
+  std::optional<World> world_;
+  PrimitiveAttributes attributes_;
+  mutable std::mutex renderer_mutex_;  ///< of `renderer_` and its options
+};
+
+}  // namespace adasplats

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/pipeline/scene/scene_files.h"
+
+#include <algorithm>
+
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/scene/gltf.h"
+#include "adasplats/simulate/world/world_file.h"
+
+namespace adasplats {
+
+std::vector<std::filesystem::path> files_of_scene(const std::filesystem::path& model) {
+  std::vector<std::filesystem::path> files;
+  const auto add = [&files](const std::filesystem::path& file) {
+    if (!file.empty() && std::ranges::find(files, file) == files.end()) files.push_back(file);
+  };
+  const auto add_geometry = [&](const std::filesystem::path& file) {
+    add(file);
+    if (!file.empty() && is_gltf(file))
+      for (const std::filesystem::path& buffer : gltf_buffer_files(file)) add(buffer);
+  };
+  require_input(model);
+  if (model.extension() != ".toml") {
+    add_geometry(model);
+    return files;
+  }
+  const WorldFile world = read_world_file(model);
+  add(model);
+  add_geometry(world.model);
+  for (const WorldFileObject& object : world.objects) {
+    add_geometry(object.geometry);
+    if (object.trajectory.empty()) continue;
+    for (const std::filesystem::path& file : trajectory_files(object.trajectory)) add(file);
+  }
+  return files;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/pipeline/session/inputs.h"
+
+#include "adasplats/cloud/load/cloud_inputs.h"
+#include "adasplats/cloud/load/file_kind.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+
+namespace fs = std::filesystem;
+
+void require_input(const fs::path& path) {
+  std::error_code failure;
+  if (!fs::exists(path, failure)) {
+    throw Error(ErrorKind::no_input, path.string() + ": no such file or folder");
+  }
+}
+
+std::optional<LabelScheme> label_scheme_for(const std::string& labels,
+                                            std::span<const fs::path> inputs) {
+  if (!labels.empty()) return load_label_scheme(labels);
+  for (const fs::path& input : inputs) {
+    for (const CloudInput& one : cloud_inputs(input)) {
+      if (one.is_sequence && fs::is_directory(one.path / "labels")) return semantickitti_labels();
+    }
+  }
+  return std::nullopt;
+}
+
+std::string scheme_reference(const std::string& labels, const LabelScheme& scheme) {
+  std::error_code failure;
+  return fs::is_regular_file(labels, failure) ? fs::absolute(labels).string() : scheme.name();
+}
+
+std::vector<fs::path> resolve_cloud_inputs(const fs::path& input) {
+  require_input(input);
+  const std::vector<CloudInput> inputs = cloud_inputs(input);
+  if (inputs.size() > 1 && !inputs.front().is_sequence) return {input};
+  std::vector<fs::path> paths;
+  paths.reserve(inputs.size());
+  for (const CloudInput& one : inputs) paths.push_back(one.path);
+  return paths;
+}
+
+fs::path resolve_cloud_input(const fs::path& input) {
+  const std::vector<fs::path> inputs = resolve_cloud_inputs(input);
+  if (inputs.size() == 1) return inputs.front();
+  throw Error(ErrorKind::usage, input.string() + ": holds " + std::to_string(inputs.size()) +
+                                    " sequences; name one of them, " + inputs.front().string() +
+                                    " say");
+}
+
+bool is_splat_model(const fs::path& file) {
+  std::error_code failure;
+  return fs::is_regular_file(file, failure) && kind_of_file(file) == FileKind::splat_model;
+}
+
+Trajectory load_trajectory(const fs::path& path) {
+  require_input(path);
+  if (!fs::is_directory(path)) return read_trajectory(path);
+  return open_kitti_sequence(resolve_cloud_input(path)).trajectory;
+}
+
+Trajectory poses_along(const fs::path& path, Vec3d offset_m, std::size_t every) {
+  if (every == 0) throw Error(ErrorKind::usage, "--every must be at least 1");
+  const Trajectory all = shifted(load_trajectory(path), offset_m);
+  Trajectory taken;
+  for (std::size_t i = 0; i < all.size(); i += every) taken.push_back(all[i]);
+  if (taken.empty()) throw Error(ErrorKind::data, path.string() + ": no poses");
+  return taken;
+}
+
+}  // namespace adasplats
