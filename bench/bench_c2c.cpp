@@ -19,7 +19,7 @@
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/evaluate/cloud_metrics.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/neighbors/hilbert.h"

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/provenance/provenance.h"
 #include "adasplats/sensors/lidar_model.h"

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/provenance/provenance.h"
 #include "adasplats/simulate/world/world.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/words.h"
 #include "adasplats/pipeline/session/scan_range.h"
 #include "adasplats/splats/build_model.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "model_job.h"
 #include "option_types.h"
 #include "session.h"

@@ -14,8 +14,8 @@
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/executor.h"
+#include "adasplats/core/maths/ray.h"
 #include "adasplats/core/progress.h"
-#include "adasplats/core/ray.h"
 #include "adasplats/splats/build_model.h"
 #include "adasplats/trace/tracer.h"
 

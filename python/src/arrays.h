@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/core/rigid_transform.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/core/maths/vec3.h"
 
 namespace adasplats::python {
 

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/words.h"
 
 namespace adasplats::python {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adasplats/cloud/labels/dynamic_removal.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "compare/comparison_data.h"
 #include "compare/steps.h"
 #include "session.h"

@@ -10,7 +10,7 @@
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
-#include "adasplats/core/symmetric_eigen.h"
+#include "adasplats/core/maths/symmetric_eigen.h"
 #include "adasplats/pipeline/model/label_use.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "compare/work_folder.h"

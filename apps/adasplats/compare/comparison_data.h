@@ -11,7 +11,7 @@
 #include "adasplats/cloud/labels/dynamic_removal.h"
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/cloud/poses/trajectory.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "session.h"
 
 namespace adasplats::app {

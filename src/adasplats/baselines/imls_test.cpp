@@ -8,7 +8,7 @@
 
 #include "adasplats/baselines/shapes_test.h"
 #include "adasplats/core/error.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {

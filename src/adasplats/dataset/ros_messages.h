@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {

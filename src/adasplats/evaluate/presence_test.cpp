@@ -10,7 +10,7 @@
 #include <string>
 
 #include "adasplats/core/error.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/function_ref.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/neighbors/hilbert.h"
 
 namespace adasplats {

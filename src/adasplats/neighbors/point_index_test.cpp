@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/neighbors/group_search.h"
 
 namespace adasplats {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/input_file.h"
 

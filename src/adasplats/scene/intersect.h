@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 
 namespace adasplats {
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/scene/scene.h"
 
 namespace adasplats {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/scene/intersect.h"
 
 namespace adasplats {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "adasplats/core/ray.h"
-#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/maths/ray.h"
+#include "adasplats/core/maths/rigid_transform.h"
 
 namespace adasplats {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/sensors/divergence.h"
 
 namespace adasplats {

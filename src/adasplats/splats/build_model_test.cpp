@@ -11,8 +11,8 @@
 #include <numeric>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/core/progress_meter.h"
-#include "adasplats/core/random.h"
 #include "adasplats/core/recorded_progress_test.h"
 #include "adasplats/splats/paper/grow.h"
 

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/surface/local_shape.h"
 
 namespace adasplats {

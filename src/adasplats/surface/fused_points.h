@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
 

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <utility>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/neighbors/hilbert.h"
 
 namespace adasplats {

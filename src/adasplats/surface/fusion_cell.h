@@ -8,7 +8,7 @@
 #include <span>
 
 #include "adasplats/core/host_device.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
 

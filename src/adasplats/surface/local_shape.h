@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "adasplats/core/exact_sum.h"
-#include "adasplats/core/symmetric_eigen.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/exact_sum.h"
+#include "adasplats/core/maths/symmetric_eigen.h"
+#include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
 

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <vector>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/synth/street_parts.h"
 
 // Inside synth/: walls with openings, shared by apartment buildings and houses.

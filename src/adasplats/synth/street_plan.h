@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "adasplats/core/random.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/random.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/synth/street.h"
 
 // Inside synth/: what stands where, before anything is built. Every number of the geometry that

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/synth/street_parts.h"
 
 namespace adasplats {

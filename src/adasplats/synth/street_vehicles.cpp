@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/synth/street_parts.h"
 
 namespace adasplats {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/synth/street_plan.h"
 
 namespace adasplats {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 
 namespace adasplats {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 
 namespace adasplats {
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 
 namespace adasplats {
 

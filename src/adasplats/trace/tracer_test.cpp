@@ -11,7 +11,7 @@
 #include <limits>
 #include <string>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/trace/wide_kernel.h"
 
 namespace adasplats {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 #include "adasplats/trace/tracer.h"
 #include "adasplats/trace/wide_bvh.h"
 

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

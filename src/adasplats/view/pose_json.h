@@ -5,7 +5,7 @@
 #include <array>
 
 #include "adasplats/cloud/poses/rotation.h"
-#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/maths/rigid_transform.h"
 
 namespace adasplats {
 

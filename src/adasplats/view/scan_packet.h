@@ -8,8 +8,8 @@
 #include <string>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
-#include "adasplats/core/rigid_transform.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {

@@ -11,7 +11,7 @@
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/cloud/sequence/scan_beams.h"
-#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/maths/rigid_transform.h"
 
 namespace adasplats {
 

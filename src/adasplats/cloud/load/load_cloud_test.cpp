@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "adasplats/cloud/points/temporary_folder_test.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/core/recordings_test.h"
 #include "adasplats/io/las/las_writer.h"
 

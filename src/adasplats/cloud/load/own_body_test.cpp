@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

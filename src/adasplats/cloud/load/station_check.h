@@ -6,7 +6,7 @@
 #include <string>
 
 #include "adasplats/core/executor.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
 

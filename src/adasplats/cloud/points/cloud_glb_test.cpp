@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/cloud/points/temporary_folder_test.h"
-#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/io/base/atomic_file.h"
 
 namespace adasplats {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adasplats/cloud/points/origin_kind.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
 

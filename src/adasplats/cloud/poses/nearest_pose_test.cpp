@@ -6,7 +6,7 @@
 
 #include <stdexcept>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/maths/rigid_transform.h"
 
 namespace adasplats {
 

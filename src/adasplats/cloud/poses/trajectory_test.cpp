@@ -11,7 +11,7 @@
 
 #include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/cloud/poses/rotation.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

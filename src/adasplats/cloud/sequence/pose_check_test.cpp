@@ -9,7 +9,7 @@
 #include <string>
 
 #include "adasplats/cloud/points/temporary_folder_test.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

@@ -11,7 +11,7 @@
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/gpu/base/device_memory.h"
 
 namespace adasplats::gpu {

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "adasplats/core/host_device.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/gpu/base/device_memory.h"
 #include "adasplats/surface/fused_points.h"
 

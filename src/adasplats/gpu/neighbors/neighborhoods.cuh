@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/gpu/base/cuda_check.h"
 #include "adasplats/gpu/base/warp.cuh"
 #include "adasplats/gpu/neighbors/neighborhoods.h"

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 
 /// Private to the OptiX programs: the functions that the driver offers to them. They are no
 /// functions of a library: the driver's compiler knows them by name, so a call in PTX is all that

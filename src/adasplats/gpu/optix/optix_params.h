@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 #include "adasplats/gpu/trace/ray_source.h"
 #include "adasplats/scene/intersect.h"
 

@@ -16,7 +16,7 @@
 #include <string>
 
 #include "adasplats/core/error.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/gpu/base/hilbert_order.h"
 #include "adasplats/gpu/base/sort_keys.h"
 #include "adasplats/gpu/gpu_model.h"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/simulate/scan/scan.h"
 

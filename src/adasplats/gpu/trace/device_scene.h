@@ -8,7 +8,7 @@
 #include <memory>
 #include <string_view>
 
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 #include "adasplats/gpu/trace/ray_source.h"
 #include "adasplats/scene/scene.h"
 

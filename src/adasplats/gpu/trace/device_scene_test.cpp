@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/gpu/optix/optix_library.h"
 #include "adasplats/trace/tracer.h"

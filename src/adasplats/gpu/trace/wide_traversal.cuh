@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 #include "adasplats/gpu/trace/wide_tree.h"
 #include "adasplats/scene/intersect.h"
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/io/base/input_file.h"
 
 namespace adasplats {

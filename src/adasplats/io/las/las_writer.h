@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <span>
 
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/io/base/line_reader.h"
 #include "adasplats/io/base/number_text.h"
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "adasplats/core/error.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/simulate/image/color_map.h"
 #include "adasplats/simulate/image/shading.h"
 

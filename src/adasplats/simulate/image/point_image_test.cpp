@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "adasplats/core/error.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/simulate/image/color_bar.h"
 #include "adasplats/simulate/image/point_colors.h"
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "adasplats/cloud/labels/label_scheme.h"
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 #include "adasplats/scene/intersect.h"
 #include "adasplats/simulate/image/color_map.h"
 #include "adasplats/simulate/image/image.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 #include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {

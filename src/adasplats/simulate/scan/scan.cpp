@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/scene/scene.h"
 
 namespace adasplats {

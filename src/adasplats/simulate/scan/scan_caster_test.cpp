@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {

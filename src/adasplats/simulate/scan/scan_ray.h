@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "adasplats/core/ray.h"
-#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/maths/ray.h"
+#include "adasplats/core/maths/rigid_transform.h"
 
 namespace adasplats {
 

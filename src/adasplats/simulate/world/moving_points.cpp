@@ -10,7 +10,7 @@
 #include <string>
 
 #include "adasplats/core/error.h"
-#include "adasplats/core/symmetric_eigen.h"
+#include "adasplats/core/maths/symmetric_eigen.h"
 #include "adasplats/neighbors/point_index.h"
 #include "adasplats/surface/local_shape.h"
 

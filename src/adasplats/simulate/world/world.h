@@ -11,7 +11,7 @@
 
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/executor.h"
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/simulate/scan/scan_caster.h"

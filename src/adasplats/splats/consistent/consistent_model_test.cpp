@@ -13,7 +13,7 @@
 #include <string>
 
 #include "adasplats/core/error.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/splats/build_model.h"
 #include "adasplats/splats/consistent/consistent_state.h"
 #include "adasplats/splats/consistent/consistent_steps.h"

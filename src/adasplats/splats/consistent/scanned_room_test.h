@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "adasplats/cloud/points/point_cloud.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 

@@ -8,7 +8,7 @@
 
 #include "adasplats/cloud/points/origin_kind.h"
 #include "adasplats/core/host_device.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/splats/consistent/consistent_model.h"
 #include "adasplats/surface/local_shape.h"
 

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "adasplats/cloud/points/temporary_folder_test.h"
-#include "adasplats/core/random.h"
-#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/maths/random.h"
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/io/ply/ply.h"
 
 namespace adasplats {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adasplats/cloud/labels/label_scheme.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/scene/scene.h"
 #include "adasplats/splats/reflectance/reflectance.h"
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <span>
 
-#include "adasplats/core/exact_sum.h"
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/exact_sum.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/neighbors/point_index.h"
 #include "adasplats/scene/intersect.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "adasplats/core/host_device.h"
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 
 namespace adasplats {
 

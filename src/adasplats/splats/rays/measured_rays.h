@@ -8,7 +8,7 @@
 
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
-#include "adasplats/core/ray.h"
+#include "adasplats/core/maths/ray.h"
 #include "adasplats/scene/intersect.h"
 #include "adasplats/splats/rays/disk_evidence.h"
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "adasplats/core/error.h"
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/splats/model/splat_model.h"
 
 namespace adasplats {

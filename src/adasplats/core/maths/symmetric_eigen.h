@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
 

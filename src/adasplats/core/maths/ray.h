@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
 

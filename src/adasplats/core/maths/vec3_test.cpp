@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/core/vec3.h"
+#include "adasplats/core/maths/vec3.h"
 
 #include <gtest/gtest.h>
 

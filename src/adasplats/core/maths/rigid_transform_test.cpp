@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/core/rigid_transform.h"
+#include "adasplats/core/maths/rigid_transform.h"
 
 #include <gtest/gtest.h>
 
 #include <eigen3/Eigen/Dense>
 #include <numbers>
 
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {

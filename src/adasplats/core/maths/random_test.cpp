@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/core/random.h"
+#include "adasplats/core/maths/random.h"
 
 #include <gtest/gtest.h>
 
