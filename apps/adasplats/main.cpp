@@ -12,14 +12,14 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
-#include "commands.h"
-#include "config_file.h"
-#include "help_text.h"
-#include "interrupt.h"
-#include "option_types.h"
-#include "output_path.h"
-#include "report.h"
-#include "terminal.h"
+#include "cli/commands.h"
+#include "cli/help_text.h"
+#include "cli/interrupt.h"
+#include "cli/options/config_file.h"
+#include "cli/options/option_types.h"
+#include "cli/output_path.h"
+#include "cli/report.h"
+#include "cli/terminal.h"
 
 namespace adasplats::app {
 namespace {

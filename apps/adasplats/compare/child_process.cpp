@@ -23,7 +23,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "interrupt.h"
+#include "cli/interrupt.h"
 
 namespace adasplats::app {
 namespace {

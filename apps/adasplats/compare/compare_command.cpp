@@ -8,12 +8,12 @@
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/pipeline/provenance/machine.h"
-#include "commands.h"
+#include "cli/commands.h"
+#include "cli/options/option_types.h"
+#include "cli/terminal.h"
+#include "cli/text_table.h"
 #include "compare/compare_job.h"
 #include "compare/steps.h"
-#include "option_types.h"
-#include "terminal.h"
-#include "text_table.h"
 
 namespace adasplats::app {
 namespace {

@@ -14,12 +14,12 @@
 #include "adasplats/pipeline/provenance/provenance.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/sensors/lidar_model.h"
+#include "cli/text_table.h"
 #include "compare/competitors.h"
 #include "compare/paper_figures.h"
 #include "compare/steps.h"
 #include "compare/work_folder.h"
 #include "report_page/report_page.h"
-#include "text_table.h"
 
 namespace adasplats::app {
 namespace {

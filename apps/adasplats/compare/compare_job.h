@@ -11,9 +11,9 @@
 
 #include "adasplats/cloud/labels/dynamic_removal.h"
 #include "adasplats/core/maths/vec3.h"
+#include "cli/session.h"
 #include "compare/comparison_data.h"
 #include "compare/steps.h"
-#include "session.h"
 
 namespace adasplats::app {
 

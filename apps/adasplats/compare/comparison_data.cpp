@@ -13,8 +13,8 @@
 #include "adasplats/core/maths/symmetric_eigen.h"
 #include "adasplats/pipeline/model/label_use.h"
 #include "adasplats/pipeline/session/inputs.h"
+#include "cli/options/option_types.h"
 #include "compare/work_folder.h"
-#include "option_types.h"
 
 namespace adasplats::app {
 namespace {

@@ -12,7 +12,7 @@
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/maths/vec3.h"
-#include "session.h"
+#include "cli/session.h"
 
 namespace adasplats::app {
 

@@ -7,8 +7,8 @@
 #include <system_error>
 
 #include "adasplats/core/error.h"
-#include "option_types.h"
-#include "text_table.h"
+#include "cli/options/option_types.h"
+#include "cli/text_table.h"
 
 namespace adasplats::app {
 namespace {

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/command.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "adasplats/core/error.h"
+#include "adasplats/pipeline/provenance/output_check.h"
+
+namespace adasplats::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether values of an option may name files: PATH, NAME|FILE, NAME=FILE, SCHEME.
+bool names_files(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type.find("PATH") != std::string::npos || type.find("FILE") != std::string::npos ||
+         type.find("SCHEME") != std::string::npos;
+}
+
+/// Options of a subcommand and of its groups.
+std::vector<const CLI::Option*> options_of(const CLI::App& app) {
+  std::vector<const CLI::Option*> options;
+  for (const CLI::Option* option : app.get_options()) options.push_back(option);
+  const auto is_group = [](const CLI::App* part) { return part->get_name().empty(); };
+  for (const CLI::App* group : app.get_subcommands(is_group))
+    for (const CLI::Option* option : options_of(*group)) options.push_back(option);
+  return options;
+}
+
+}  // namespace
+
+Command::Command(CLI::App& parent, const std::string& name, const std::string& description,
+                 const std::string& examples)
+    : options_(*parent.add_subcommand(name, description)) {
+  CLI::App& app = options_.parser();
+  app.allow_extras();  // so that the program can name the nearest known option
+  app.footer("Examples:\n" + examples);
+}
+
+std::string Command::full_name() const {
+  const CLI::App* app = &options_.parser();
+  std::string name = app->get_name();
+  for (app = app->get_parent(); app->get_parent() != nullptr; app = app->get_parent()) {
+    name = app->get_name() + " " + name;
+  }
+  return name;
+}
+
+void Command::check_required() const {
+  for (const Option* required : required_) {
+    const CLI::Option& option = required->parser();
+    if (option.count() == 0) {
+      throw Error(ErrorKind::usage,
+                  option.get_name() + " is missing; see adasplats " + full_name() + " --help");
+    }
+  }
+}
+
+void Command::refuse(std::initializer_list<const char*> names, const std::string& why) const {
+  for (const char* name : names) {
+    if (is_given(name)) {
+      throw Error(ErrorKind::usage, std::string(name) + " has no effect " + why);
+    }
+  }
+}
+
+void Command::mark_required() const {
+  for (const Option* option : required_) option->parser().required();
+}
+
+void Command::add_common_options() {
+  app::add_common_options(options_, common_);
+  outputs_.push_back({options_.parser().get_option("--report"), {".json"}});
+}
+
+Option* Command::writes(Option* option, std::vector<std::string> endings) {
+  outputs_.push_back({&option->parser(), std::move(endings)});
+  return option;
+}
+
+Option* Command::writes_folder(Option* option) { return writes(option, {}); }
+
+std::vector<fs::path> Command::inputs() const {
+  std::vector<fs::path> found;
+  for (const CLI::Option* option : options_of(options_.parser())) {
+    const bool is_output = std::ranges::any_of(
+        outputs_, [option](const Output& output) { return output.option == option; });
+    if (is_output || !names_files(*option)) continue;
+    for (const std::string& value : option->results()) {
+      std::error_code ignored;
+      const fs::path path = fs::exists(value, ignored) ? value : value.substr(value.find('=') + 1);
+      if (fs::exists(path, ignored)) found.push_back(path);
+    }
+  }
+  return found;
+}
+
+void Command::check_outputs() const {
+  const std::vector<fs::path> read = inputs();
+  for (const auto& [option, endings] : outputs_) {
+    if (option->count() == 0) continue;
+    const fs::path path = option->as<std::string>();
+    if (endings.empty()) {
+      require_folder_apart(path, read);
+      continue;
+    }
+    std::error_code ignored;
+    const fs::file_status status = fs::status(path, ignored);
+    // What is no file cannot be written whatever its name is: check_output_file says so.
+    if (!fs::exists(status) || fs::is_regular_file(status)) require_ending(path, endings);
+    require_no_input(path, read);
+  }
+}
+
+std::vector<CLI::Option*> settings_of(CLI::App& app) {
+  std::vector<CLI::Option*> settings = app.get_options([](const CLI::Option* option) {
+    const auto& names = option->get_lnames();
+    return std::none_of(names.begin(), names.end(), [](const std::string& name) {
+      return name == "help" || name == "version" || name == "config";
+    });
+  });
+  return settings;
+}
+
+}  // namespace adasplats::app

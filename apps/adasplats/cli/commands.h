@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "cli/command.h"
+
+namespace adasplats::app {
+
+// One file each.
+std::unique_ptr<Command> make_synth_street_command(CLI::App& synth);
+std::unique_ptr<Command> make_info_command(CLI::App& program);
+std::unique_ptr<Command> make_model_command(CLI::App& program);
+std::unique_ptr<Command> make_mesh_command(CLI::App& program);
+std::unique_ptr<Command> make_simulate_command(CLI::App& program);
+std::unique_ptr<Command> make_render_command(CLI::App& program);
+std::unique_ptr<Command> make_evaluate_c2c_command(CLI::App& evaluate);
+std::unique_ptr<Command> make_evaluate_resimulate_command(CLI::App& evaluate);
+std::unique_ptr<Command> make_evaluate_truth_command(CLI::App& evaluate);
+std::unique_ptr<Command> make_evaluate_presence_command(CLI::App& evaluate);
+std::unique_ptr<Command> make_evaluate_echoes_command(CLI::App& evaluate);
+std::unique_ptr<Command> make_evaluate_labels_command(CLI::App& evaluate);
+std::unique_ptr<Command> make_simkitti32_command(CLI::App& program);
+std::unique_ptr<Command> make_fit_drop_command(CLI::App& program);
+std::unique_ptr<Command> make_sensors_command(CLI::App& program);
+std::unique_ptr<Command> make_compare_command(CLI::App& program);
+std::unique_ptr<Command> make_view_command(CLI::App& program);
+std::unique_ptr<Command> make_export_command(CLI::App& program);
+std::unique_ptr<Command> make_demo_command(CLI::App& program);
+
+}  // namespace adasplats::app

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "adasplats/splats/build_model.h"
+#include "cli/options/option_set.h"
+
+namespace adasplats::app {
+
+/// The words of --method.
+const std::vector<std::pair<std::string, SplatMethod>>& method_names();
+
+/// Adds the flags of BuildOptions.
+void add_build_options(OptionSet& app, BuildOptions& options);
+
+/// " (car 1,200, person 30)"; empty where there are none.
+std::string text_of(const std::vector<RemovedPoints::OfClass>& removed);
+
+/// Adds --remove.
+void add_removal_option(OptionSet& app, DynamicRemoval& removal);
+
+}  // namespace adasplats::app

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/options/option_types.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace adasplats::app {
+namespace {
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+template <class T>
+bool parse_whole(const std::string& text, T& number) {
+  const char* end = text.data() + text.size();
+  const auto [stop, failure] = std::from_chars(text.data(), end, number);
+  return failure == std::errc() && stop == end;
+}
+
+std::string short_number(double number) {
+  std::array<char, 32> text{};
+  const auto [end, failure] = std::to_chars(text.data(), text.data() + text.size(), number);
+  return {text.data(), end};
+}
+
+/// "1,2.5,-3": three finite numbers, the value of `option`.
+std::array<double, 3> parse_three(const std::string& option, const std::string& text) {
+  const std::vector<std::string> parts = split(text, ',');
+  std::array<double, 3> numbers{};
+  bool good = parts.size() == numbers.size();
+  for (std::size_t i = 0; good && i < parts.size(); ++i) {
+    good = parse_whole(parts[i], numbers[i]) && std::isfinite(numbers[i]);
+  }
+  if (!good) {
+    refuse_value(option, "expected three numbers with commas between them, found '" + text + "'");
+  }
+  return numbers;
+}
+
+}  // namespace
+
+ScanRange parse_scan_range(const std::string& option, const std::string& text) {
+  const std::vector<std::string> parts = split(text, ':');
+  ScanRange range;
+  bool good = parts.size() == 2 || parts.size() == 3;
+  good = good && parse_whole(parts[0], range.first) && parse_whole(parts[1], range.count);
+  if (good && parts.size() == 3) good = parse_whole(parts[2], range.stride);
+  if (!good || range.count == 0 || range.stride == 0) {
+    refuse_value(option, "expected FIRST:COUNT[:STRIDE], found '" + text + "'");
+  }
+  return range;
+}
+
+Option* add_path(OptionSet& app, const std::string& name, std::filesystem::path& target,
+                 const std::string& help) {
+  return app
+      .add_option_function<std::string>(
+          name, [&target](const std::string& text) { target = text; }, help)
+      ->type_name("PATH")
+      ->default_str(target.string());
+}
+
+Option* add_vector(OptionSet& app, const std::string& name, std::optional<Vec3d>& target,
+                   const std::string& help) {
+  return app
+      .add_option_function<std::string>(
+          name,
+          [&target, name](const std::string& text) {
+            const std::array<double, 3> v = parse_three(name, text);
+            target = Vec3d{v[0], v[1], v[2]};
+          },
+          help)
+      ->type_name("X,Y,Z");
+}
+
+Option* add_scale(OptionSet& app, const std::string& name, GroupScale& target,
+                  const std::string& help) {
+  return app
+      .add_option_function<std::string>(
+          name,
+          [&target, name](const std::string& text) {
+            const std::array<double, 3> v = parse_three(name, text);
+            target = {v[0], v[1], v[2]};
+          },
+          help)
+      ->type_name("K,R,E")
+      ->default_str(short_number(target.neighbors) + "," + short_number(target.radius) + "," +
+                    short_number(target.error));
+}
+
+Option* add_picture_width(OptionSet& app, int& width) {
+  return app.add_option("--picture-width", width, "Pixels; the height is 9/16 of it")
+      ->capture_default_str()
+      ->range(64, 8192)
+      ->type_name("N");
+}
+
+Option* add_switch(OptionSet& app, const std::string& names, bool& target,
+                   const std::string& help) {
+  return app.add_flag(names, target, help)->default_str(target ? "true" : "false");
+}
+
+std::string unknown_word(const std::string& what, const std::string& word,
+                         const std::vector<std::string>& known) {
+  const std::string found = what + " '" + word + "' is not known";
+  if (const std::string meant = did_you_mean(word, known); !meant.empty()) return found + meant;
+  std::string all;
+  for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
+  return found + (known.empty() ? "" : "; known are " + all);
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/maths/vec3.h"
+#include "adasplats/core/words.h"
+#include "adasplats/pipeline/session/scan_range.h"
+#include "adasplats/splats/build_model.h"
+#include "cli/options/option_set.h"
+
+namespace adasplats::app {
+
+/// "FIRST:COUNT[:STRIDE]", the value of `option`. Errors: refuse_value().
+ScanRange parse_scan_range(const std::string& option, const std::string& text);
+
+Option* add_path(OptionSet& app, const std::string& name, std::filesystem::path& target,
+                 const std::string& help);
+Option* add_vector(OptionSet& app, const std::string& name, std::optional<Vec3d>& target,
+                   const std::string& help);
+Option* add_scale(OptionSet& app, const std::string& name, GroupScale& target,
+                  const std::string& help);
+/// --picture-width, pixels of a picture of 16:9.
+Option* add_picture_width(OptionSet& app, int& width);
+/// A flag with its opposite: names as "--denoise,!--no-denoise".
+Option* add_switch(OptionSet& app, const std::string& names, bool& target, const std::string& help);
+
+/// "what 'x' is not known, did you mean 'y'?" or a list of all that are known.
+std::string unknown_word(const std::string& what, const std::string& word,
+                         const std::vector<std::string>& known);
+
+template <class T>
+using Choices = std::vector<std::pair<std::string, T>>;
+
+template <class T>
+Choices<T> choices_of(std::type_identity_t<Words<T>> words) {
+  return {words.begin(), words.end()};
+}
+
+/// One of a few words.
+template <class T>
+Option* add_choice(OptionSet& app, const std::string& name, T& target, Choices<T> choices,
+                   const std::string& help) {
+  std::vector<std::string> words;
+  std::string joined;
+  std::string chosen;
+  for (const auto& [word, value] : choices) {
+    words.push_back(word);
+    joined += (joined.empty() ? "" : "|") + word;
+    if (value == target) chosen = word;
+  }
+  const auto choose = [&target, name, choices = std::move(choices),
+                       words](const std::string& given) {
+    for (const auto& [word, value] : choices) {
+      if (word == given) {
+        target = value;
+        return;
+      }
+    }
+    refuse_value(name, unknown_word("value", given, words));
+  };
+  return app.add_option_function<std::string>(name, choose, help)
+      ->type_name(joined)
+      ->default_str(chosen);
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cli/command.h"
+
+namespace adasplats::app {
+
+/// Writes the --report of a command that has run: program, version, command, provenance (see
+/// pipeline/provenance.h), parameters, what the command itself reported, warnings, threads and peak
+/// memory. Atomic.
+void write_report(Command& command, const Session& session);
+
+}  // namespace adasplats::app

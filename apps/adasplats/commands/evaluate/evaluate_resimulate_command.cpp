@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "adasplats/core/stopwatch.h"
+#include "adasplats/pipeline/provenance/metrics_json.h"
+#include "cli/commands.h"
+#include "cli/options/option_types.h"
+#include "cli/terminal.h"
+#include "cli/text_table.h"
+#include "commands/evaluate/evaluate_job.h"
+
+namespace adasplats::app {
+namespace {
+
+constexpr const char* kEvaluateResimulateExamples =
+    "  adasplats evaluate resimulate place.ply sequences/01\n"
+    "  adasplats evaluate resimulate place.ply sequences/01 --max-range 80 --report "
+    "held-out.json\n";
+
+void add_row(TextTable& table, const std::string& name, const BeamAccuracy& a) {
+  table.add_row({name, grouped(a.rays), percent(a.no_hit), centimetres(a.median_m),
+                 fixed(a.mae_m, 3), fixed(a.rmse_m, 3), percent(a.within.at(0.05)),
+                 percent(a.within.at(0.10)), percent(a.within.at(0.50)), percent(a.early_50cm),
+                 percent(a.late_50cm)});
+}
+
+std::string table_of(const ResimulateResult& result) {
+  TextTable table({"beams", "rays", "no hit", "median", "MAE m", "RMSE m", "<5 cm", "<10 cm",
+                   "<50 cm", "early", "late"});
+  add_row(table, "all", result.all);
+  for (const auto* parts : {&result.by_range, &result.by_incidence, &result.by_class}) {
+    if (!parts->empty()) table.add_row({});
+    for (const auto& [name, accuracy] : *parts) add_row(table, name, accuracy);
+  }
+  const CloudDistance& clouds = result.clouds;
+  return table.text() + "\nBeams from " + result.beams + "; Chamfer " +
+         centimetres(clouds.chamfer_m) + ", " + fixed(clouds.chamfer_m2, 4) +
+         " m2; shares are of all rays, errors of hits\n";
+}
+
+class EvaluateResimulateCommand final : public Command {
+ public:
+  explicit EvaluateResimulateCommand(CLI::App& evaluate)
+      : Command(evaluate, "resimulate", "Cast the beams of held-out scans again",
+                kEvaluateResimulateExamples) {
+    OptionSet& app = options();
+    require(add_path(app, "MODEL", job_.model, "Splat model or mesh"));
+    require(add_path(app, "SEQUENCE", job_.sequence, "SemanticKITTI sequence folder"));
+    app.add_option("--labels", job_.labels, "What labels mean: a name or a TOML file")
+        ->capture_default_str()
+        ->type_name("SCHEME");
+    app.add_option("--min-range", job_.options.min_range_m, "Nearer beams are left out, m")
+        ->capture_default_str();
+    app.add_option("--max-range", job_.options.max_range_m, "Farther beams are left out, m")
+        ->capture_default_str();
+    app.add_flag("--beams-from-poses", job_.beams_from_poses,
+                 "Beams start at the poses, even where the sensor is recognised");
+    add_path(app, "--motion", job_.motion,
+             "How the sensor moved, for scans that are not motion-compensated: poses in the "
+             "sequence's time (CSV, TUM, KITTI poses)");
+    app.add_flag("--keep-moving", keep_moving_, "Count beams on moving objects");
+    app.add_flag("--drop-movable", job_.options.drop_movable,
+                 "Leave out beams on movable objects (parked cars)");
+    writes(add_path(app, "--picture", job_.picture,
+                    "Also draw the middle scan, its points coloured by the range error (PNG)"),
+           {".png"});
+    add_picture_width(app, job_.picture_width);
+    writes(
+        add_path(
+            app, "--errors", job_.errors,
+            "Also write the measured points with their range errors (PLY; 'adasplats view' shows "
+            "them)"),
+        {".ply"});
+    app.add_option_function<std::string>(
+           "--scans",
+           [this](const std::string& text) { job_.scans = parse_scan_range("--scans", text); },
+           "Which scans of the sequence")
+        ->type_name("FIRST:COUNT[:STRIDE]");
+    add_device_options();
+  }
+
+  void run(Session& session) override {
+    const Stopwatch watch;
+    if (job_.picture.empty()) refuse({"--picture-width"}, "without --picture");
+    if (keep_moving_ && job_.options.drop_movable) {
+      throw Error(ErrorKind::usage, "--keep-moving and --drop-movable exclude each other");
+    }
+    job_.options.drop_moving = !keep_moving_;
+    const ResimulateResult result = run_resimulate(job_, session);
+    session.report.update(to_json(result));
+    session.report["seconds"]["total"] = watch.seconds();
+    print(table_of(result));
+  }
+
+ private:
+  ResimulateJob job_;
+  bool keep_moving_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_evaluate_resimulate_command(CLI::App& evaluate) {
+  return std::make_unique<EvaluateResimulateCommand>(evaluate);
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/options/load_options.h"
+#include "cli/options/option_types.h"
+#include "cli/terminal.h"
+#include "cli/text_table.h"
+#include "commands/export_job.h"
+
+namespace adasplats::app {
+namespace {
+
+constexpr const char* kExportExamples =
+    "  adasplats export street.ply -o gaussians.ply --format gaussian-3d\n"
+    "  adasplats export street.ply -o centers.glb --color intensity\n"
+    "  adasplats export sequences/08 -o drive.mcap --scans 0:100\n"
+    "  adasplats export scans -o drive.mcap\n"
+    "  adasplats export cloud.las -o cloud.glb --color height\n";
+
+constexpr double kBytesPerMegabyte = 1e6;
+
+class ExportCommand final : public Command {
+ public:
+  explicit ExportCommand(CLI::App& program)
+      : Command(program, "export",
+                "Write splats as Gaussians or glTF, points as glTF or PLY, scans as MCAP",
+                kExportExamples) {
+    OptionSet& app = options();
+    require(add_path(app, "INPUT", job_.input,
+                     "Splat model, point file, sequence folder or output of 'simulate'"));
+    require(writes(add_path(app, "-o,--output", job_.output, "File to write"),
+                   {".ply", ".glb", ".mcap"}));
+    add_choice<std::optional<ExportFormat>>(app, "--format", job_.format,
+                                            {{"gaussian-3d", ExportFormat::gaussian_3d},
+                                             {"gaussian-2d", ExportFormat::gaussian_2d},
+                                             {"glb", ExportFormat::glb},
+                                             {"ply", ExportFormat::ply},
+                                             {"mcap", ExportFormat::mcap}},
+                                            "Of the file; else what its ending says");
+    app.add_option(
+           "--labels", job_.labels,
+           "What classes mean: semantickitti, paris-carla-3d or a TOML file; the default is "
+           "what the model says")
+        ->type_name("SCHEME");
+    add_choice<std::optional<ExportColor>>(app, "--color", job_.color,
+                                           {{"class", ExportColor::semantic},
+                                            {"intensity", ExportColor::intensity},
+                                            {"height", ExportColor::height}},
+                                           "What colours show; else the first of these there is");
+    add_load_options(app, job_.load);
+  }
+
+  void run(Session& session) override {
+    job_.cloud_option = given_load_option(options());
+    const ExportResult result = run_export(job_, session);
+    session.report[result.unit] = result.count;
+    session.report["points_dropped"] = result.dropped;
+    session.report["bytes"] = result.written_bytes;
+    const double megabytes = static_cast<double>(result.written_bytes) / kBytesPerMegabyte;
+    std::string text = job_.output.string() + ": " + grouped(result.count) + " " + result.unit +
+                       ", " + fixed(megabytes, 1) + " MB";
+    if (result.dropped > 0) {
+      text += ", " + grouped(result.dropped) + " points not finite or too far were dropped";
+    }
+    print(text + "\n");
+  }
+
+ private:
+  ExportJob job_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_export_command(CLI::App& program) {
+  return std::make_unique<ExportCommand>(program);
+}
+
+}  // namespace adasplats::app

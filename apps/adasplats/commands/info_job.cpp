@@ -1,0 +1,226 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/info_job.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <unordered_set>
+
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/cloud/sequence/pose_check.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/pipeline/session/scan_range.h"
+#include "adasplats/scene/mesh_model.h"
+#include "adasplats/splats/model/splat_model.h"
+#include "cli/text_table.h"
+
+namespace adasplats::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Extents, density and labels of positions that come one by one.
+class Survey {
+ public:
+  void add(Vec3d world) {
+    if (!is_finite(world)) {
+      ++not_finite_;
+      return;
+    }
+    ++count_;
+    low_ = min(low_, world);
+    high_ = max(high_, world);
+    // Cells of 1 m; 32 bits of each number are plenty for the earth.
+    const auto cell = [](double v) {
+      return static_cast<std::uint32_t>(
+          static_cast<std::int64_t>(std::clamp(std::floor(v), -2e9, 2e9)));
+    };
+    cells_.insert(std::uint64_t{cell(world.x)} << 32 | cell(world.y));
+  }
+  void add_class(std::uint16_t id) { ++classes_[id]; }
+  std::uint64_t not_finite() const { return not_finite_; }
+
+  void describe(FileFacts& facts, const char* unit) const {
+    facts.rows.emplace_back(unit, grouped(count_));
+    facts.json[unit] = count_;
+    if (not_finite_ > 0) facts.rows.emplace_back("not finite", grouped(not_finite_));
+    if (count_ == 0) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string name(1, "xyz"[axis]);
+      facts.rows.emplace_back(name, fixed(low_[axis], 3) + " .. " + fixed(high_[axis], 3) + " m (" +
+                                        fixed(high_[axis] - low_[axis], 3) + " m)");
+      facts.json["extent_m"][name] = {low_[axis], high_[axis]};
+    }
+    const double density = static_cast<double>(count_) / static_cast<double>(cells_.size());
+    facts.rows.emplace_back("per m2 of occupied ground", fixed(density, 1));
+    facts.json["per_m2"] = density;
+  }
+  void describe_classes(FileFacts& facts, const std::optional<LabelScheme>& scheme) const {
+    for (const auto& [id, count] : classes_) {
+      const SemanticClass* known = scheme ? scheme->find(id) : nullptr;
+      facts.classes.emplace_back(std::to_string(id) + (known == nullptr ? "" : " " + known->name),
+                                 count);
+      facts.json["classes"][std::to_string(id)] = count;
+    }
+  }
+
+ private:
+  std::uint64_t count_ = 0;
+  std::uint64_t not_finite_ = 0;
+  Vec3d low_ = {1e300, 1e300, 1e300};
+  Vec3d high_ = {-1e300, -1e300, -1e300};
+  std::unordered_set<std::uint64_t> cells_;
+  std::map<std::uint16_t, std::uint64_t> classes_;
+};
+
+const char* type_name(const Column& column) {
+  constexpr std::array<const char*, 10> kNames = {"i8",  "u8",  "i16", "u16", "i32",
+                                                  "u32", "i64", "u64", "f32", "f64"};
+  return kNames[column.values.index()];
+}
+
+std::string fields_of(const Table& table) {
+  std::string fields;
+  for (const Column& column : table.columns) {
+    fields += (fields.empty() ? "" : ", ") + column.name + " " + type_name(column);
+  }
+  return fields;
+}
+
+FileFacts cloud_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
+                      const LoadOptions& options, Session& session) {
+  FileFacts facts;
+  facts.kind = "point cloud";
+  if (fs::is_regular_file(input)) {
+    const std::string fields = fields_of(read_points(input, {options.salvage}));
+    facts.rows.emplace_back("fields", fields);
+    facts.json["fields"] = fields;
+  }
+  const auto [cloud, report] =
+      load_cloud(std::span(&input, 1), options, session.executor, session.progress);
+  Survey survey;
+  for (std::size_t i = 0; i < cloud.size(); ++i) survey.add(cloud.world(i));
+  for (const std::uint16_t id : cloud.classes) survey.add_class(id);
+  survey.describe(facts, "points");
+  facts.rows.emplace_back("dropped: not finite", grouped(report.dropped_not_finite));
+  facts.rows.emplace_back("dropped: too far", grouped(report.dropped_far));
+  facts.rows.emplace_back("dropped: the recording vehicle itself", grouped(report.own_body));
+  if (report.unknown_intensities > 0)
+    facts.rows.emplace_back("intensity not known", grouped(report.unknown_intensities));
+  facts.rows.emplace_back("sensor positions", describe_origins(report.origins));
+  facts.rows.emplace_back("intensities", cloud.intensities.empty() ? "no" : "yes");
+  survey.describe_classes(facts, scheme);
+  return facts;
+}
+
+FileFacts model_facts(const fs::path& input, std::optional<LabelScheme> scheme) {
+  const SplatModel model = load_model(input);
+  FileFacts facts;
+  facts.kind = "splat model";
+  if (!model.method.empty()) facts.rows.emplace_back("method", model.method);
+  if (!model.label_scheme.empty()) facts.rows.emplace_back("labels", model.label_scheme);
+  Survey survey;
+  std::vector<float> radii;
+  for (const Disk& disk : model.disks) {
+    survey.add(model.origin + vec_cast<double>(disk.center));
+    radii.push_back(disk.radius);
+  }
+  for (const std::uint16_t id : model.classes) survey.add_class(id);
+  survey.describe(facts, "splats");
+  if (!radii.empty()) {
+    std::sort(radii.begin(), radii.end());
+    const auto at = [&](std::size_t i) { return centimetres(static_cast<double>(radii[i])); };
+    facts.rows.emplace_back("radius: least, median, greatest",
+                            at(0) + ", " + at(radii.size() / 2) + ", " + at(radii.size() - 1));
+  }
+  if (!scheme && !model.label_scheme.empty()) scheme = load_label_scheme(model.label_scheme);
+  survey.describe_classes(facts, scheme);
+  return facts;
+}
+
+FileFacts mesh_facts(const fs::path& input, std::optional<LabelScheme> scheme) {
+  const MeshModel model = load_mesh(input);
+  const TriangleMesh& mesh = model.mesh;
+  FileFacts facts;
+  facts.kind = "mesh";
+  if (!model.method.empty()) facts.rows.emplace_back("method", model.method);
+  if (!model.label_scheme.empty()) facts.rows.emplace_back("labels", model.label_scheme);
+  double area_m2 = 0;
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    const Triangle t = mesh.triangle(i);
+    area_m2 += 0.5 * length(vec_cast<double>(cross(t.b - t.a, t.c - t.a)));
+  }
+  facts.rows.emplace_back("triangles", grouped(model.size()));
+  facts.rows.emplace_back("area", fixed(area_m2, 1) + " m2");
+  facts.json["triangles"] = model.size();
+  facts.json["area_m2"] = area_m2;
+  Survey survey;
+  for (const Vec3f vertex : mesh.vertices) survey.add(model.origin + vec_cast<double>(vertex));
+  for (const std::uint16_t id : mesh.classes) survey.add_class(id);
+  survey.describe(facts, "vertices");
+  if (!scheme && !model.label_scheme.empty()) scheme = load_label_scheme(model.label_scheme);
+  survey.describe_classes(facts, scheme);
+  return facts;
+}
+
+FileFacts sequence_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
+                         const LoadOptions& options, Session& session) {
+  const KittiSequence sequence = open_kitti_sequence(input);
+  require_poses_that_fit(sequence);
+  const std::vector<std::size_t> chosen = chosen_scans(
+      {options.first_scan, options.scan_count, options.scan_stride}, sequence.scans.size(), input);
+  FileFacts facts;
+  facts.kind = "sequence";
+  double driven_m = 0;
+  for (std::size_t i = chosen.front() + 1; i <= chosen.back(); ++i) {
+    driven_m += length(sequence.trajectory[i].world_from_sensor.translation -
+                       sequence.trajectory[i - 1].world_from_sensor.translation);
+  }
+  const bool all = chosen.size() == sequence.scans.size();
+  facts.rows.emplace_back(
+      "scans", grouped(chosen.size()) + (all ? "" : " of " + grouped(sequence.scans.size())));
+  facts.rows.emplace_back("labels", sequence.labels.empty() ? "no" : "yes");
+  facts.rows.emplace_back("trajectory", fixed(driven_m, 1) + " m");
+  facts.json["scans"] = chosen.size();
+  if (!all) facts.json["scans_in_all"] = sequence.scans.size();
+  facts.json["driven_m"] = driven_m;
+  Survey survey;
+  session.progress.begin_step("read " + input.filename().string(), chosen.size());
+  std::size_t done = 0;
+  // One scan at a time: sequences can be larger than memory.
+  for (const std::size_t i : chosen) {
+    const KittiScan scan = read_kitti_scan(sequence, i);
+    const RigidTransform& pose = sequence.trajectory[i].world_from_sensor;
+    for (const Vec3f p : scan.positions) survey.add(pose * vec_cast<double>(p));
+    for (const std::uint16_t id : scan.classes) survey.add_class(id);
+    if (options.strict && survey.not_finite() > 0) {
+      throw Error(ErrorKind::data, sequence.scans[i].string() + ": has points that are not finite");
+    }
+    session.progress.advance(++done);
+  }
+  session.progress.end_step();
+  survey.describe(facts, "points");
+  survey.describe_classes(facts, scheme);
+  return facts;
+}
+
+}  // namespace
+
+FileFacts run_info(const fs::path& input, const std::string& labels, const LoadOptions& options,
+                   Session& session) {
+  const fs::path resolved = resolve_cloud_input(input);
+  const auto scheme = label_scheme_for(labels, std::span(&resolved, 1));
+  if (is_kitti_sequence(resolved)) return sequence_facts(resolved, scheme, options, session);
+  if (fs::is_regular_file(resolved)) {
+    if (is_mesh_file(resolved)) return mesh_facts(resolved, scheme);
+    if (is_splat_model(resolved)) return model_facts(resolved, scheme);
+  }
+  return cloud_facts(resolved, scheme, options, session);
+}
+
+}  // namespace adasplats::app

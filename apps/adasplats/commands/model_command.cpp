@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "adasplats/pipeline/model/unused_options.h"
+#include "cli/commands.h"
+#include "cli/options/build_options.h"
+#include "cli/options/load_options.h"
+#include "cli/options/option_types.h"
+#include "cli/terminal.h"
+#include "cli/text_table.h"
+#include "commands/model_job.h"
+
+namespace adasplats::app {
+namespace {
+
+constexpr const char* kModelExamples =
+    "  adasplats model street/mapping.ply -o street.ply --method semantic --labels semantickitti\n"
+    "  adasplats model sequences/00 -o place.ply --scans 0:100:2 --remove moving\n"
+    "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n";
+
+/// What the method itself counts and measures.
+std::string figures_of(const BuildReport& built) {
+  if (!built.consistent) {
+    return grouped(built.points_noise) + " noisy points removed, " +
+           grouped(built.points_resampled) + " resampled, R " + centimetres(built.radius_m) +
+           ", E " + centimetres(built.error_m);
+  }
+  const ConsistentReport& report = *built.consistent;
+  const std::string seeds = grouped(report.cells) + " cells, " + grouped(report.seeds) + " seeds";
+  if (!report.checked) return seeds + ", not checked against measured rays";
+  return seeds + ", " + grouped(report.seeds_removed) + " of them contradicted by " +
+         grouped(report.rays) + " measured rays and removed, " + grouped(report.splats_filled) +
+         " splats put back where rays fell through";
+}
+
+class ModelCommand final : public Command {
+ public:
+  explicit ModelCommand(CLI::App& program)
+      : Command(program, "model", "Turn point clouds into a splat model", kModelExamples) {
+    OptionSet& app = options();
+    require(app.add_option_function<std::vector<std::string>>(
+                   "INPUT",
+                   [this](const std::vector<std::string>& names) {
+                     job_.inputs.assign(names.begin(), names.end());
+                   },
+                   "Point files (PLY, PCD, LAS, LAZ, text, KITTI bin) and SemanticKITTI sequence "
+                   "folders")
+                ->type_name("PATH"));
+    require(writes(add_path(app, "-o,--output", job_.output, "Model to write, PLY"), {".ply"}));
+    app.add_option("--labels", job_.labels,
+                   "What labels mean: semantickitti, paris-carla-3d or a TOML file; the default is "
+                   "semantickitti for sequence folders, else none")
+        ->type_name("SCHEME");
+    add_build_options(app, job_.build);
+    add_switch(app, "--reflectance,!--no-reflectance", job_.reflectance,
+               "Make reflectances of intensities: without what range and incidence did to them, "
+               "which simulate applies again");
+    add_load_options(app, job_.load);
+    add_device_options();
+  }
+
+  void run(Session& session) override {
+    for (const UnusedOption& option : unused_options(job_.build)) {
+      refuse({("--" + option.name).c_str()}, option.why);
+    }
+    job_.removal_is_asked = is_given("--remove");
+    // OptiX casts rays; models are made with CUDA alone.
+    if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
+    const ModelResult result = run_model(job_, session);
+    session.report.update(to_json(result));
+    TextTable table({"step", "seconds"});
+    for (const StepTime& step : result.steps) table.add_row({step.name, fixed(step.seconds, 2)});
+    table.add_row({"total", fixed(result.seconds, 2)});
+    const BuildReport& built = result.built;
+    print(table.text() + "\n" + job_.output.string() + ": " + grouped(built.primitives) +
+          " splats from " + grouped(built.points_in) + " points, " + grouped(built.points_dynamic) +
+          " of them dynamic and removed" + text_of(built.removed_classes) + "\n" +
+          figures_of(built) + "\n");
+  }
+
+ private:
+  ModelFileJob job_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_model_command(CLI::App& program) {
+  return std::make_unique<ModelCommand>(program);
+}
+
+}  // namespace adasplats::app

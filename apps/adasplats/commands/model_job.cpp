@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/model_job.h"
+
+#include "adasplats/core/stopwatch.h"
+#include "cli/output_path.h"
+
+namespace adasplats::app {
+
+ModelResult run_model(const ModelFileJob& job, Session& session) {
+  check_output_file(job.output);
+  const Stopwatch total;
+  auto [model, result] = make_model(job, session);
+  session.progress.begin_step("save", 0);
+  const Stopwatch step;
+  save_model(job.output, model);
+  session.progress.end_step();
+  result.steps.push_back({"save", step.seconds()});
+  result.seconds = total.seconds();
+  return std::move(result);
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "adasplats/pipeline/model/make_model.h"
+#include "cli/session.h"
+
+namespace adasplats::app {
+
+/// Point files in, model file out.
+struct ModelFileJob : ModelJob {
+  std::filesystem::path output;
+};
+
+/// Loads, builds on the session's device and saves.
+ModelResult run_model(const ModelFileJob& job, Session& session);
+
+}  // namespace adasplats::app

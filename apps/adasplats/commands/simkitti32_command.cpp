@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "adasplats/pipeline/session/inputs.h"
+#include "cli/commands.h"
+#include "cli/options/build_options.h"
+#include "cli/options/option_types.h"
+#include "cli/terminal.h"
+#include "cli/text_table.h"
+#include "commands/simkitti32_job.h"
+
+namespace adasplats::app {
+namespace {
+
+constexpr const char* kSimkitti32Examples =
+    "  adasplats simkitti32 dataset/sequences/08 -o simkitti32\n"
+    "  adasplats simkitti32 sequences/00 -o vlp16 --sensor velodyne-vlp-16 --offset 0,0,0\n"
+    "  adasplats simkitti32 sequences/08 -o part --scans 0:500 --model-every 2\n"
+    "Interrupted (Ctrl-C, kill -9), the same command goes on where it stopped and gives the same\n"
+    "bytes. What the data set is and how it was made is in adasplats.json.\n";
+
+class SimKitti32Command final : public Command {
+ public:
+  explicit SimKitti32Command(CLI::App& program)
+      : Command(program, "simkitti32",
+                "Make a labelled data set of another LiDAR from a SemanticKITTI sequence",
+                kSimkitti32Examples) {
+    OptionSet& app = options();
+    require(add_path(app, "SEQUENCE", job_.sequence, "SemanticKITTI sequence folder with labels"));
+    require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));
+    app.add_option("--sensor", job_.sensor, "Name of a sensor, or a file; see adasplats sensors")
+        ->capture_default_str()
+        ->type_name("NAME|FILE");
+    add_vector(app, "--offset", offset_, "Shift of the sensor in world axes, m")
+        ->default_str("0,0,-0.5");
+    app.add_option("--noise", job_.noise_m, "Standard deviation of the range, m")
+        ->capture_default_str();
+    app.add_option("--depth", job_.depth, "D, hits of a ray that are averaged")
+        ->capture_default_str();
+    app.add_option_function<std::string>(
+           "--scans",
+           [this](const std::string& text) { job_.scans = parse_scan_range("--scans", text); },
+           "Which scans are modelled and simulated")
+        ->type_name("FIRST:COUNT[:STRIDE]");
+    app.add_option("--labels", job_.labels, "What labels mean: semantickitti or a TOML file")
+        ->capture_default_str()
+        ->type_name("SCHEME");
+    add_switch(app, "--moving,!--no-moving", job_.moving, "Simulate what moves, too");
+    app.add_option("--moving-radius", job_.moving_radius_m, "Of the splats of what moves, m")
+        ->capture_default_str();
+    add_model_options(app);
+    app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
+    add_device_options(GpuCount::several);
+  }
+
+  void run(Session& session) override {
+    if (!job_.moving) refuse({"--moving-radius"}, "with --no-moving");
+    if (offset_) job_.offset_m = *offset_;
+    const LabelScheme labels = load_label_scheme(job_.labels);
+    const SimKitti32Result result = run_simkitti32(job_, session);
+    session.report.update(to_json(result, labels));
+    print(table_of(result, labels) + "\n" + job_.output.string() + ": " + grouped(result.scans) +
+          " scans (" + grouped(result.scans_resumed) + " from an interrupted run), " +
+          grouped(result.points) + " points of " + grouped(result.rays) + " rays, in " +
+          fixed(result.seconds, 1) + " s\n");
+  }
+
+ private:
+  void add_model_options(OptionSet& app) {
+    constexpr const char* kGroup = "Static model";
+    add_choice<SplatMethod>(
+        app, "--method", job_.build.method, method_names(),
+        "How it is made; consistent agrees with the measured rays, semantic is the "
+        "paper's")
+        ->group(kGroup);
+    app.add_option("--model-every", job_.model_every,
+                   "Take every n-th of the scans for it, for less memory")
+        ->capture_default_str()
+        ->type_name("N")
+        ->group(kGroup);
+    app.add_flag("--keep-model", job_.keep_model, "Leave it in the output, as model.ply")
+        ->group(kGroup);
+  }
+
+  static std::string table_of(const SimKitti32Result& result, const LabelScheme& labels) {
+    double original = 0;
+    double simulated = 0;
+    for (const auto& [id, count] : result.by_class) {
+      original += static_cast<double>(count.original);
+      simulated += static_cast<double>(count.simulated);
+    }
+    TextTable table({"class", "original", "", "simulated", ""});
+    for (const auto& [id, count] : result.by_class) {
+      const SemanticClass* const known = labels.find(id);
+      table.add_row(
+          {std::to_string(id) + (known != nullptr ? " " + known->name : ""),
+           grouped(count.original), percent(static_cast<double>(count.original) / original),
+           grouped(count.simulated), percent(static_cast<double>(count.simulated) / simulated)});
+    }
+    return table.text();
+  }
+
+  SimKitti32Job job_;
+  std::optional<Vec3d> offset_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_simkitti32_command(CLI::App& program) {
+  return std::make_unique<SimKitti32Command>(program);
+}
+
+}  // namespace adasplats::app

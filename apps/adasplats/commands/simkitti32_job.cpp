@@ -1,0 +1,369 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/simkitti32_job.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/cloud/sequence/pose_check.h"
+#include "adasplats/core/error.h"
+#include "adasplats/core/stopwatch.h"
+#include "adasplats/dataset/scan_values.h"
+#include "adasplats/dataset/semantickitti_writer.h"
+#include "adasplats/io/base/sha256.h"
+#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/world/moving_points.h"
+#include "adasplats/simulate/world/world.h"
+#include "cli/options/build_options.h"
+#include "cli/resumable_folder.h"
+#include "commands/simulate_manifest.h"
+
+namespace adasplats::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+const std::string kModelFile = "model.ply";
+
+/// The part of a sequence that is simulated: scan i of the output is scan numbers[i] of the input.
+struct Source {
+  KittiSequence sequence;
+  std::vector<std::size_t> numbers;
+  std::string name;  ///< of the output's sequence folder
+};
+
+/// "08" for ".../sequences/08"; folders of other names become 00.
+std::string sequence_name(const fs::path& folder) {
+  const fs::path normal = fs::absolute(folder).lexically_normal();
+  const std::string name = (normal.has_filename() ? normal : normal.parent_path()).filename();
+  const bool is_number =
+      name.size() == 2 && name.find_first_not_of("0123456789") == std::string::npos;
+  return is_number ? name : "00";
+}
+
+Source open_source(const SimKitti32Job& job) {
+  require_input(job.sequence);
+  const fs::path folder = resolve_cloud_input(job.sequence);
+  Source source{open_kitti_sequence(folder), {}, sequence_name(folder)};
+  require_poses_that_fit(source.sequence);
+  if (source.sequence.labels.empty())
+    throw Error(ErrorKind::data, folder.string() +
+                                     ": has no labels/, which say what moves and what simulated "
+                                     "points are");
+  const std::size_t all = source.sequence.scans.size();
+  for (std::size_t i = job.scans.first; i < all; i += job.scans.stride) {
+    if (source.numbers.size() == job.scans.count) break;
+    source.numbers.push_back(i);
+  }
+  if (source.numbers.empty())
+    throw Error(ErrorKind::data, folder.string() + ": has " + std::to_string(all) +
+                                     " scans, none of them is chosen");
+  return source;
+}
+
+/// SHA-256 of all files that the output depends on, by their names in the sequence folder.
+Json input_hashes(const Source& source, Session& session) {
+  const KittiSequence& sequence = source.sequence;
+  std::vector<fs::path> files;
+  for (const char* name : {"calib.txt", "poses.txt", "times.txt"})
+    if (fs::exists(sequence.folder / name)) files.push_back(sequence.folder / name);
+  for (const std::size_t number : source.numbers) {
+    files.push_back(sequence.scans[number]);
+    files.push_back(sequence.labels[number]);
+  }
+  constexpr std::size_t kBlock = 64;  // between two looks at whether the user wants to stop
+  session.progress.begin_step("hash the inputs", files.size());
+  std::vector<std::string> digests(files.size());
+  for (std::size_t first = 0; first < files.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, files.size() - first);
+    session.executor.for_chunks(count, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        digests[first + i] = sha256_of_file(files[first + i]);
+    });
+    session.progress.advance(first + count);
+  }
+  session.progress.end_step();
+  Json hashes = Json::object();
+  for (std::size_t i = 0; i < files.size(); ++i)
+    hashes[files[i].lexically_relative(sequence.folder).generic_string()] = digests[i];
+  return hashes;
+}
+
+Json scales_of(std::span<const GroupScale> scales) {
+  Json json = Json::array();
+  for (const GroupScale& scale : scales)
+    json.push_back({scale.neighbors, scale.radius, scale.error});
+  return json;
+}
+
+/// All of the model's parameters that the command has options for.
+Json build_content(const BuildOptions& build) {
+  Json json;
+  for (const auto& [name, method] : method_names())
+    if (method == build.method) json["method"] = name;
+  json["neighbors"] = build.neighbors;
+  json["alpha"] = build.alpha;
+  json["smoothness"] = build.smoothness;
+  json["semantic_scales"] = scales_of(build.semantic_scales);
+  return json;
+}
+
+/// What the data set is made of and how: the beginning of its manifest.
+Json content_of(const SimKitti32Job& job, const Source& source, const LidarModel& sensor,
+                Session& session) {
+  const Vec3d offset = job.offset_m;
+  return {{"sequence", source.name},
+          {"scans", source.numbers},
+          {"labels", load_label_scheme(job.labels).name()},
+          {"model", build_content(job.build)},
+          {"model_every", job.model_every},
+          {"sensor", sensor_content(sensor)},
+          {"offset_m", {offset.x, offset.y, offset.z}},
+          {"noise_m", job.noise_m},
+          {"depth", job.depth},
+          {"moving", job.moving},
+          {"moving_radius_m", job.moving_radius_m},
+          {"keep_model", job.keep_model},
+          {"seed", session.seed},
+          {"inputs", input_hashes(source, session)}};
+}
+
+/// Makes the scans that are not there yet.
+class Simulation {
+ public:
+  Simulation(const SimKitti32Job& job, const Source& source, const LidarModel& sensor,
+             ResumableFolder& folder, Session& session)
+      : job_(job),
+        source_(source),
+        labels_(load_label_scheme(job.labels)),
+        sensor_(sensor),
+        folder_(folder),
+        session_(session),
+        sequence_(fs::path("sequences") / source.name),
+        scans_(still_scans(poses())),
+        writer_(prepared_sequence()) {}
+
+  void run(SimKitti32Result& result) {
+    const std::vector<std::size_t> missing = keep_what_is_there();
+    result.scans = source_.numbers.size();
+    result.scans_resumed = result.scans - missing.size();
+    if (!missing.empty()) {
+      make_model(result);
+      simulate(missing, result);
+    }
+    writer_.finish();
+  }
+
+ private:
+  Trajectory poses() const {
+    Trajectory chosen;
+    for (const std::size_t number : source_.numbers)
+      chosen.push_back(source_.sequence.trajectory[number]);
+    return shifted(std::move(chosen), job_.offset_m);
+  }
+
+  /// An attempt that was interrupted at its very end had told the poses already.
+  fs::path prepared_sequence() const {
+    fs::path path = folder_.path() / sequence_;
+    fs::remove(path / "poses.txt");
+    return path;
+  }
+
+  /// Points and labels of a scan that is written; labels of an empty scan come with the poses.
+  std::vector<std::string> files_of(std::size_t scan) const {
+    const std::string name = scan_name(scan);
+    const std::string points = (sequence_ / "velodyne" / (name + ".bin")).string();
+    std::error_code missing;
+    if (fs::file_size(folder_.path() / points, missing) == 0) return {points};
+    return {points, (sequence_ / "labels" / (name + ".label")).string()};
+  }
+
+  std::vector<std::size_t> keep_what_is_there() {
+    session_.progress.begin_step("check what is there", source_.numbers.size());
+    std::vector<std::size_t> missing;
+    for (std::size_t i = 0; i < source_.numbers.size(); ++i) {
+      if (folder_.has(files_of(i))) {
+        writer_.keep_scan(i, scans_[i].reference);
+      } else {
+        missing.push_back(i);
+      }
+      session_.progress.advance(i + 1);
+    }
+    session_.progress.end_step();
+    return missing;
+  }
+
+  void make_model(SimKitti32Result& result) {
+    if (folder_.has(kModelFile)) return;
+    ModelFileJob model;
+    model.inputs = {source_.sequence.folder};
+    model.output = folder_.path() / kModelFile;
+    model.labels = job_.labels;
+    model.load.first_scan = source_.numbers.front();
+    model.load.scan_count = (source_.numbers.size() + job_.model_every - 1) / job_.model_every;
+    model.load.scan_stride = job_.scans.stride * job_.model_every;
+    model.build = job_.build;
+    model.build.remove = DynamicRemoval::moving;
+    result.model = run_model(model, session_);
+    folder_.record(kModelFile);
+  }
+
+  /// The model as its file has it, so that it does not matter whether this run made it.
+  void simulate(std::span<const std::size_t> missing, SimKitti32Result& result) {
+    const Stopwatch watch;
+    ModelScene scene(folder_.path() / kModelFile, job_.labels, session_);
+    World world(static_cast<std::uint32_t>(scene.view().primitive_count()), scene.origin(),
+                session_.executor);
+    if (job_.moving) result.moving_splats = add_moving(missing, scene.attributes(), world);
+    const PrimitiveAttributes attributes = world.attributes(scene.attributes());
+    session_.progress.begin_step("simulate", missing.size());
+    std::size_t done = 0;
+    // Scans that follow one another are cast together; what is missing is the end of the sequence
+    // unless files were damaged.
+    for (std::size_t begin = 0; begin < missing.size();) {
+      std::size_t end = begin + 1;
+      while (repeats(sensor_) && end < missing.size() && missing[end] == missing[end - 1] + 1)
+        ++end;
+      cast_run(missing[begin], end - begin, scene.scan_caster(), world, attributes, done);
+      begin = end;
+    }
+    session_.progress.end_step();
+    result.seconds_simulated = watch.seconds();
+  }
+
+  std::size_t add_moving(std::span<const std::size_t> scans, const PrimitiveAttributes& place,
+                         World& world) const {
+    session_.progress.begin_step("splats of what moves", scans.size());
+    MovingSplatOptions options;
+    options.radius_m = job_.moving_radius_m;
+    std::size_t splats = 0;
+    for (const std::size_t scan : scans) {
+      const std::size_t number = source_.numbers[scan];
+      MovingSplats moving = moving_splats(read_kitti_scan(source_.sequence, number), labels_,
+                                          options, session_.executor);
+      session_.progress.advance(scan + 1);
+      if (moving.splats.size() == 0) continue;
+      splats += moving.splats.size();
+      if (place.response != nullptr) to_reflectances(moving.splats, *place.response);
+      WorldObject object;
+      object.geometry = world.add_geometry(std::move(moving.splats), std::move(moving.instances));
+      object.trajectory = {source_.sequence.trajectory[number]};
+      object.only_scan = scan;
+      world.add_object(std::move(object));
+    }
+    session_.progress.end_step();
+    return splats;
+  }
+
+  /// The place tells reflectances; these are intensities as the sensor at zero measured them.
+  static void to_reflectances(SplatModel& splats, const IntensityResponse& response) {
+    for (std::size_t i = 0; i < splats.intensities.size(); ++i) {
+      const Disk& disk = splats.disks[i];
+      const float range_m = length(disk.center);
+      const float cosine = std::fabs(dot(disk.normal, disk.center)) / range_m;
+      splats.intensities[i] /= response.gain(range_m, cosine);
+    }
+  }
+
+  void cast_run(std::size_t first, std::size_t count, const ScanCaster& place, const World& world,
+                const PrimitiveAttributes& attributes, std::size_t& done) {
+    SimulateOptions options;
+    options.seed = session_.seed;
+    options.beam.depth = job_.depth;
+    const std::vector<Firing> firings = firings_of(sensor_, source_.numbers[first]);
+    const auto caster = make_world_caster(place, world, session_.executor, first);
+    const auto take_scan = [&](std::size_t i, std::span<const Hit> hits) {
+      const std::size_t index = first + i;
+      const Scan scan = scan_of_hits(hits, attributes, sensor_, firings, scans_[index],
+                                     source_.numbers[index], options, session_.executor);
+      writer_.write_scan(index, scan);
+      folder_.record(files_of(index));
+      session_.progress.advance(++done);
+    };
+    caster->cast(sensor_, firings, std::span(scans_).subspan(first, count), job_.depth, take_scan);
+  }
+
+  const SimKitti32Job& job_;
+  const Source& source_;
+  LabelScheme labels_;
+  const LidarModel& sensor_;
+  ResumableFolder& folder_;
+  Session& session_;
+  fs::path sequence_;  ///< in the folder
+  std::vector<ScanMotion> scans_;
+  SemanticKittiWriter writer_;
+};
+
+void count_classes(const fs::path& written, const Source& source, SimKitti32Result& result) {
+  const KittiSequence simulated = open_kitti_sequence(written);
+  for (std::size_t i = 0; i < simulated.scans.size(); ++i) {
+    for (const std::uint16_t id : read_kitti_scan(simulated, i).classes)
+      ++result.by_class[id].simulated;
+    for (const std::uint16_t id : read_kitti_scan(source.sequence, source.numbers[i]).classes)
+      ++result.by_class[id].original;
+  }
+  for (const auto& [id, count] : result.by_class) result.points += count.simulated;
+}
+
+Json classes_json(const SimKitti32Result& result, const LabelScheme& labels) {
+  Json json = Json::object();
+  for (const auto& [id, count] : result.by_class) {
+    const SemanticClass* const known = labels.find(id);
+    json[std::to_string(id)] = {{"name", known != nullptr ? known->name : ""},
+                                {"original", count.original},
+                                {"simulated", count.simulated}};
+  }
+  return json;
+}
+
+void check(const SimKitti32Job& job) {
+  if (job.model_every < 1) throw Error(ErrorKind::usage, "--model-every must be at least 1");
+  if (job.depth < 1) throw Error(ErrorKind::usage, "--depth must be at least 1");
+  if (!(job.noise_m >= 0) || !std::isfinite(job.noise_m))
+    throw Error(ErrorKind::usage, "--noise must be 0 or more");
+}
+
+}  // namespace
+
+SimKitti32Result run_simkitti32(const SimKitti32Job& job, Session& session) {
+  const Stopwatch total;
+  check(job);
+  LidarModel sensor = load_lidar_model(job.sensor);
+  sensor.range_noise_m = job.noise_m;
+  const Source source = open_source(job);
+  ResumableFolder folder(job.output, job.overwrite, "simkitti32",
+                         content_of(job, source, sensor, session));
+  SimKitti32Result result;
+  Simulation(job, source, sensor, folder, session).run(result);
+  result.rays = result.scans * sensor.rays_per_scan();
+  session.progress.begin_step("count", 0);
+  count_classes(folder.path() / "sequences" / source.name, source, result);
+  const std::vector<std::string> aids = job.keep_model || !fs::exists(folder.path() / kModelFile)
+                                            ? std::vector<std::string>{}
+                                            : std::vector<std::string>{kModelFile};
+  folder.commit(
+      {{"points", result.points}, {"classes", classes_json(result, load_label_scheme(job.labels))}},
+      aids);
+  session.progress.end_step();
+  result.seconds = total.seconds();
+  return result;
+}
+
+Json to_json(const SimKitti32Result& result, const LabelScheme& labels) {
+  Json json = {{"scans", result.scans},
+               {"scans_resumed", result.scans_resumed},
+               {"rays", result.rays},
+               {"points", result.points},
+               {"moving_splats", result.moving_splats},
+               {"classes", classes_json(result, labels)}};
+  if (result.model) json["model"] = to_json(*result.model);
+  json["seconds"] = {{"total", result.seconds}, {"simulate", result.seconds_simulated}};
+  return json;
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/maths/vec3.h"
+#include "cli/options/option_types.h"
+#include "cli/session.h"
+#include "commands/model_job.h"
+
+namespace adasplats::app {
+
+/// Paper section "SimKITTI32": what another LiDAR would have measured along a labelled sequence,
+/// with labels. The defaults are the paper's, but for the method of the static model: the paper's
+/// is `semantic`, which loses half of the vegetation (docs/simkitti32.md).
+struct SimKitti32Job {
+  std::filesystem::path sequence;  ///< SemanticKITTI sequence folder with labels
+  std::string labels = "semantickitti";
+  ScanRange scans;              ///< which ones are modelled and simulated
+  std::size_t model_every = 1;  ///< of those, every n-th makes the static model
+  BuildOptions build;
+  std::string sensor = "hdl-32-paper";
+  Vec3d offset_m = {0, 0, -0.5};  ///< of the sensor, in world axes
+  double noise_m = 0.005;         ///< standard deviation of the range
+  int depth = 5;                  ///< D, hits of a ray that are averaged
+  bool moving = true;             ///< what moves is simulated, too
+  double moving_radius_m = 0.14;  ///< of the splats of what moves
+  bool keep_model = false;        ///< as model.ply beside the sequences
+  std::filesystem::path output;
+  bool overwrite = false;
+};
+
+/// Points of one class in the sequence and in what was simulated.
+struct ClassCount {
+  std::size_t original = 0;
+  std::size_t simulated = 0;
+};
+
+struct SimKitti32Result {
+  std::size_t scans = 0;
+  std::size_t scans_resumed = 0;  ///< of them an interrupted run had written
+  std::size_t rays = 0;           ///< of all scans
+  std::size_t points = 0;
+  std::size_t moving_splats = 0;  ///< of the scans that this run wrote
+  std::map<std::uint16_t, ClassCount> by_class;
+  std::optional<ModelResult> model;  ///< nothing where an interrupted run had made it
+  double seconds_simulated = 0;
+  double seconds = 0;
+};
+
+/// Makes the data set. Interrupted at any moment, the same job goes on where it stopped and gives
+/// the same bytes. Errors: data (no labels, no scans), usage, cannot_create (also where what was
+/// left unfinished is of another job, other inputs or another version).
+SimKitti32Result run_simkitti32(const SimKitti32Job& job, Session& session);
+
+/// The keys of its --report.
+nlohmann::ordered_json to_json(const SimKitti32Result& result, const LabelScheme& labels);
+
+}  // namespace adasplats::app

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "cli/commands.h"
+#include "cli/options/option_types.h"
+#include "cli/terminal.h"
+#include "cli/text_table.h"
+#include "commands/simulate_job.h"
+
+namespace adasplats::app {
+namespace {
+
+constexpr const char* kSimulateExamples =
+    "  adasplats simulate street.ply --trajectory street/sequences/00 -o scans\n"
+    "  adasplats simulate street.ply --sensor hdl-32-paper --trajectory poses.csv \\\n"
+    "      --offset 1,1,-0.5 -o scans --format npy\n"
+    "  adasplats simulate street.ply --sensor ouster-os1-64 --trajectory poses.csv \\\n"
+    "      --rolling-shutter --sub-rays 7 --returns 2 --fog 200 -o scans\n"
+    "  adasplats simulate street.ply --trajectory poses.csv -o scans --device cuda --gpus 0,1\n"
+    "Rates: traced, in the tracer or in the kernels of all GPUs; returned, until the hits were in\n"
+    "host memory; assembled, until they were points with noise, classes and times; written, until\n"
+    "the scans were on disk. Each one holds those before it.\n";
+
+double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
+
+class SimulateCommand final : public Command {
+ public:
+  explicit SimulateCommand(CLI::App& program)
+      : Command(program, "simulate", "Drive a LiDAR through a splat model or a mesh",
+                kSimulateExamples) {
+    OptionSet& app = options();
+    require(add_path(app, "MODEL", job_.model,
+                     "Splat model, triangle mesh (PLY, OBJ, glTF) or world file (TOML)"));
+    require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));
+    app.add_option("--sensor", job_.sensor,
+                   "A sensor of 'adasplats sensors', or a file: TOML, Ouster JSON, Velodyne YAML, "
+                   "CSV of rays")
+        ->capture_default_str()
+        ->type_name("NAME|FILE");
+    app.add_option(
+           "--labels", job_.labels,
+           "What classes mean: semantickitti, paris-carla-3d or a TOML file; the default is "
+           "what the model says")
+        ->type_name("SCHEME");
+    add_drive_options(app);
+    add_beam_options(app);
+    add_weather_options(app);
+    add_choice<ScanFormat>(
+        app, "--format", job_.format, choices_of<ScanFormat>(kScanFormats),
+        "Of the scans; semantickitti writes OUTPUT/sequences/00, mcap OUTPUT/scans.mcap");
+    app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
+    add_device_options(GpuCount::several);
+  }
+
+  void run(Session& session) override {
+    check_options();
+    job_.drive.offset_m = offset_.value_or(Vec3d{});
+    job_.drive.mount.translation = mount_.value_or(Vec3d{});
+    const Vec3d turn = rotation_deg_.value_or(Vec3d{});
+    job_.drive.mount.rotation =
+        rotation_from_yaw_pitch_roll(radians(turn.x), radians(turn.y), radians(turn.z));
+    const SimulateResult result = run_simulate(job_, session);
+    const nlohmann::ordered_json json = to_json(result);
+    session.report.update(json);
+    TextTable table({"scans/s", job_.output.string()});
+    for (const auto& [name, value] : json["scans_per_second"].items()) {
+      table.add_row({name, fixed(value.get<double>(), 1)});
+    }
+    print(table.text() + "\n" + grouped(result.scans) + " scans, " + grouped(result.rays) +
+          " rays, " + grouped(result.hits) + " returns in " + fixed(result.seconds, 2) + " s\n");
+  }
+
+ private:
+  void check_options() const {
+    if (!job_.noise) refuse({"--range-noise"}, "with --no-noise");
+    if (!job_.drive.rolling_shutter) refuse({"--points"}, "without --rolling-shutter");
+    const auto require_positive = [this](const char* name, double value) {
+      if (is_given(name) && !(value > 0)) {
+        throw Error(ErrorKind::usage, std::string(name) + " must be greater than 0");
+      }
+    };
+    require_positive("--rate", job_.drive.rate_hz);
+    require_positive("--spacing", job_.drive.spacing_m);
+    require_positive("--fog", job_.weather.fog_visibility_m);
+  }
+
+  void add_drive_options(OptionSet& app) {
+    DriveOptions& drive = job_.drive;
+    require(add_path(app, "--trajectory", drive.trajectory,
+                     "Poses of the sensor: KITTI poses.txt, CSV, TUM, or a sequence folder"));
+    add_vector(app, "--offset", offset_, "Shift of the trajectory in world axes, m")
+        ->default_str("0,0,0");
+    add_vector(app, "--mount", mount_, "Where the sensor sits in the frame of the poses, m")
+        ->default_str("0,0,0");
+    add_vector(app, "--mount-rotation", rotation_deg_,
+               "Its yaw, pitch and roll there, degrees; a positive pitch looks down")
+        ->default_str("0,0,0");
+    app.add_option("--every", drive.every, "Take every n-th pose")
+        ->capture_default_str()
+        ->type_name("N");
+    app.add_option("--rate", drive.rate_hz, "Poses a second instead of those of the file")
+        ->type_name("HZ");
+    app.add_option("--spacing", drive.spacing_m, "Poses so far apart instead of those of the file")
+        ->type_name("M");
+    app.add_flag("--rolling-shutter", drive.rolling_shutter,
+                 "The sensor moves while it turns; a pose is that of the middle of its scan");
+    add_path(app, "--motion", drive.motion,
+             "How it moves where --trajectory has too few poses to tell (with --rolling-shutter)");
+    add_choice<PointFrame>(app, "--points", job_.frame, choices_of<PointFrame>(kPointFrames),
+                           "With a rolling shutter: as measured, or with the motion taken out");
+  }
+
+  void add_beam_options(OptionSet& app) {
+    BeamOptions& beam = job_.beam;
+    add_switch(app, "--noise,!--no-noise,!--no-range-noise", job_.noise,
+               "Noise of the sensor on ranges and angles");
+    app.add_option("--range-noise", job_.range_noise_m,
+                   "Standard deviation of the noise on ranges, m; the default is the sensor's")
+        ->type_name("M");
+    app.add_option("--min-range", job_.min_range_m, "Instead of the sensor's, m")->type_name("M");
+    app.add_option("--max-range", job_.max_range_m, "Instead of the sensor's, m")->type_name("M");
+    app.add_option("--rotation-rate", job_.rotation_hz,
+                   "Revolutions a second instead of the sensor's")
+        ->type_name("HZ");
+    app.add_option("--depth", beam.depth,
+                   "Splats along a ray whose weighted mean is the echo (the paper's D = 5)")
+        ->capture_default_str()
+        ->type_name("D");
+    app.add_option("--depth-gap", beam.depth_gap_m,
+                   "Splats of a ray farther behind the one before are not averaged, m")
+        ->capture_default_str()
+        ->type_name("M");
+    app.add_option("--sub-rays", beam.sub_rays, "Rays over the cross-section of a beam")
+        ->capture_default_str()
+        ->type_name("N");
+    app.add_option("--returns", beam.returns, "Most returns of a firing")
+        ->capture_default_str()
+        ->type_name("N");
+    app.add_option("--separation", beam.separation_m,
+                   "Echoes nearer to one another are one return, m")
+        ->capture_default_str()
+        ->type_name("M");
+    add_choice<ReturnMode>(app, "--return-mode", beam.mode, choices_of<ReturnMode>(kReturnModes),
+                           "Which echo comes first or alone");
+    add_path(app, "--ray-drop", job_.ray_drop,
+             "Beams that get lost as a real sensor's: a file of 'adasplats fit-drop'");
+  }
+
+  void add_weather_options(OptionSet& app) {
+    app.add_option("--rain", job_.weather.rain_mm_h, "Rate of rain, mm/h")->type_name("MM/H");
+    app.add_option("--fog", job_.weather.fog_visibility_m, "Visibility in fog, m")->type_name("M");
+    app.add_option("--snow", job_.weather.snow_mm_h, "Rate of snow, mm/h of water")
+        ->type_name("MM/H");
+    app.add_option("--white-intensity", job_.weather.white_intensity,
+                   "Intensity of a white wall in the model's unit, for weather: 1, or 100 of bytes")
+        ->capture_default_str()
+        ->type_name("I");
+  }
+
+  SimulateJob job_;
+  std::optional<Vec3d> offset_, mount_, rotation_deg_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_simulate_command(CLI::App& program) {
+  return std::make_unique<SimulateCommand>(program);
+}
+
+}  // namespace adasplats::app

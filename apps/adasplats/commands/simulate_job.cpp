@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/simulate_job.h"
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/stopwatch.h"
+#include "adasplats/dataset/kitti_boxes.h"
+#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/pipeline/scene/scan_simulator.h"
+#include "adasplats/pipeline/session/inputs.h"
+#include "cli/output_path.h"
+#include "cli/text_table.h"
+#include "commands/simulate_manifest.h"
+
+namespace adasplats::app {
+namespace {
+
+constexpr const char* kCommand = "simulate";
+
+/// Boxes around the objects that a scan sees.
+void write_boxes(const ModelScene& scene, const std::filesystem::path& folder, std::size_t index,
+                 const Scan& scan) {
+  const std::vector<ObjectBox> boxes = scene.world()->boxes(index, scan.time_s);
+  write_kitti_boxes(folder, index, sensed_boxes(boxes, scan, scene.labels()));
+}
+
+ScanSettings settings_of(const SimulateJob& job, std::uint64_t seed) {
+  ScanSettings settings;
+  settings.sensor = load_lidar_model(job.sensor);
+  LidarModel& sensor = settings.sensor;
+  sensor.range_noise_m = job.range_noise_m.value_or(sensor.range_noise_m);
+  sensor.min_range_m = job.min_range_m.value_or(sensor.min_range_m);
+  sensor.max_range_m = job.max_range_m.value_or(sensor.max_range_m);
+  sensor.rotation_hz = job.rotation_hz.value_or(sensor.rotation_hz);
+  if (!(sensor.min_range_m >= 0 && sensor.min_range_m < sensor.max_range_m))
+    throw Error(ErrorKind::usage, "--min-range must be 0 or more and less than --max-range");
+  if (!(sensor.rotation_hz > 0)) throw Error(ErrorKind::usage, "--rotation-rate must be positive");
+  settings.beam = job.beam;
+  settings.noise = job.noise;
+  settings.frame = job.frame;
+  settings.weather = job.weather;
+  settings.seed = seed;
+  check(settings);
+  if (!job.ray_drop.empty()) settings.ray_drop = load_ray_drop(job.ray_drop);
+  return settings;
+}
+
+/// Throws data where no ray met anything, with how far from the model the sensor was.
+void require_returns(const SimulateResult& result, const ModelScene& scene,
+                     const std::vector<ScanMotion>& scans, const LidarModel& sensor) {
+  if (result.hits != 0) return;
+  const auto [low, high] = scene.middle_box();
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const ScanMotion& scan : scans) {
+    const Vec3d at = scan.reference.world_from_sensor.translation;
+    nearest_m = std::min(nearest_m, length(max(max(low - at, at - high), Vec3d{})));
+  }
+  throw Error(ErrorKind::data,
+              "no returns: none of " + grouped(result.rays) + " rays in " + grouped(result.scans) +
+                  " scans met anything; the sensor was " + fixed(nearest_m, 1) +
+                  " m from the model's box at its nearest and sees " +
+                  fixed(sensor.min_range_m, 1) + " to " + fixed(sensor.max_range_m, 1) +
+                  " m (are trajectory and model in one frame? see --offset, --mount)");
+}
+
+}  // namespace
+
+SimulateResult run_simulate(const SimulateJob& job, Session& session) {
+  const Stopwatch total;
+  require_input(job.model);
+  const ScanSettings settings = settings_of(job, session.seed);
+  const std::vector<ScanMotion> scans = scans_along(job.drive, settings.sensor);
+  checked_output_folder(job.output, job.overwrite, kCommand);  // before long work
+  const ModelScene scene(job.model, job.labels, session, WorldFiles::taken);
+  OutputFolder folder(job.output, job.overwrite, kCommand, simulate_content(job, settings, scene));
+  ScanSimulator simulator(scene, settings, session.executor);
+
+  ScanWriterOptions writing;
+  writing.image_size = image_size_of(simulator.firings());
+  writing.labels = scene.labels();
+  const auto writer = make_scan_writer(folder.path(), job.format, writing);
+  SimulateResult result;
+  session.progress.begin_step("simulate", scans.size());
+  const Stopwatch all;
+  const auto take_scan = [&](std::size_t i, const Scan& scan) {
+    writer->write(i, scan);
+    if (scene.world() != nullptr) write_boxes(scene, folder.path() / "boxes", i, scan);
+    ++result.scans;
+    result.rays += scan.rays;
+    result.hits += scan.size();
+    session.progress.advance(i + 1);
+  };
+  const SimulationTimes times = simulator.run(scans, 0, take_scan);
+  require_returns(result, scene, scans, settings.sensor);
+  writer->finish();
+  session.progress.end_step();
+  folder.commit();
+  result.seconds_traced = times.traced_s;
+  result.seconds_returned = times.returned_s;
+  result.seconds_assembled = times.assembled_s;
+  result.seconds_written = all.seconds();
+  result.seconds = total.seconds();
+  return result;
+}
+
+nlohmann::ordered_json to_json(const SimulateResult& result) {
+  const double scans = static_cast<double>(result.scans);
+  nlohmann::ordered_json json;
+  json["scans"] = result.scans;
+  json["rays"] = result.rays;
+  json["hits"] = result.hits;
+  json["scans_per_second"] = {{"traced", scans / result.seconds_traced},
+                              {"returned", scans / result.seconds_returned},
+                              {"assembled", scans / result.seconds_assembled},
+                              {"written", scans / result.seconds_written}};
+  json["seconds"] = {{"total", result.seconds},
+                     {"traced", result.seconds_traced},
+                     {"returned", result.seconds_returned},
+                     {"assembled", result.seconds_assembled},
+                     {"written", result.seconds_written}};
+  return json;
+}
+
+}  // namespace adasplats::app

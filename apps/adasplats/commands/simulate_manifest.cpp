@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/simulate_manifest.h"
+
+#include <nlohmann/json.hpp>
+
+#include "adasplats/core/words.h"
+#include "adasplats/io/base/sha256.h"
+#include "adasplats/pipeline/scene/scene_files.h"
+#include "adasplats/pipeline/session/inputs.h"
+
+namespace adasplats::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The numbers of a trajectory as they were read, whatever files they came from.
+Json trajectory_content(const std::filesystem::path& path) {
+  const Trajectory trajectory = load_trajectory(path);
+  Sha256 hash;
+  for (const TimedPose& pose : trajectory) {
+    const auto& [rotation, place] = pose.world_from_sensor;
+    const Vec3d(&r)[3] = rotation.rows;
+    const double numbers[] = {pose.time_s, r[0].x, r[0].y, r[0].z,  r[1].x,  r[1].y, r[1].z,
+                              r[2].x,      r[2].y, r[2].z, place.x, place.y, place.z};
+    hash.add(numbers, sizeof(numbers));
+  }
+  return {{"poses", trajectory.size()}, {"sha256", hash.digest()}};
+}
+
+Json file_content(const std::filesystem::path& file) {
+  return {{"name", file.filename().string()}, {"sha256", sha256_of_file(file)}};
+}
+
+/// What the classes mean: it colours pictures and names boxes.
+Json labels_content(const LabelScheme& labels) {
+  Sha256 hash;
+  for (const SemanticClass& each : labels.classes()) {
+    hash.add(std::to_string(each.id) + "\n" + each.name + "\n");
+    hash.add(each.rgb.data(), each.rgb.size());
+  }
+  return {{"name", labels.name()}, {"sha256", hash.digest()}};
+}
+
+Json matrix_content(const RigidTransform& transform) {
+  Json rows = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    const Vec3d& r = transform.rotation.rows[row];
+    rows.push_back({r.x, r.y, r.z, transform.translation[row]});
+  }
+  return rows;
+}
+
+Json drive_content(const DriveOptions& drive) {
+  const auto positive = [](double value) { return value > 0 ? Json(value) : Json(); };
+  Json json = {{"trajectory", trajectory_content(drive.trajectory)},
+               {"offset_m", {drive.offset_m.x, drive.offset_m.y, drive.offset_m.z}},
+               {"mount", matrix_content(drive.mount)},
+               {"every", drive.every},
+               {"rate_hz", positive(drive.rate_hz)},
+               {"spacing_m", positive(drive.spacing_m)},
+               {"rolling_shutter", drive.rolling_shutter}};
+  if (!drive.motion.empty()) json["motion"] = trajectory_content(drive.motion);
+  return json;
+}
+
+Json beam_content(const BeamOptions& beam) {
+  return {{"depth", beam.depth},       {"depth_gap_m", beam.depth_gap_m},
+          {"sub_rays", beam.sub_rays}, {"separation_m", beam.separation_m},
+          {"returns", beam.returns},   {"return_mode", word_of(beam.mode, kReturnModes)}};
+}
+
+Json weather_content(const Weather& weather) {
+  return {{"rain_mm_h", weather.rain_mm_h},
+          {"fog_visibility_m", weather.fog_visibility_m},  // null: no fog
+          {"snow_mm_h", weather.snow_mm_h},
+          {"white_intensity", weather.white_intensity}};
+}
+
+}  // namespace
+
+Json sensor_content(const LidarModel& sensor) {
+  Json json = {{"name", sensor.name},
+               {"rings", sensor.rings()},
+               {"rays", sensor.rays_per_scan()},
+               {"rotation_hz", sensor.rotation_hz},
+               {"min_range_m", sensor.min_range_m},
+               {"max_range_m", sensor.max_range_m},
+               {"range_noise_m", sensor.range_noise_m},
+               {"angular_noise_rad", sensor.angular_noise_rad},
+               {"range_resolution_m", sensor.range_resolution_m},
+               {"divergence_rad", {sensor.divergence_rad[0], sensor.divergence_rad[1]}},
+               {"divergence_kind", word_of(sensor.divergence_kind, kDivergenceKinds)}};
+  Sha256 hash;
+  for (const Firing& firing : firings_of(sensor)) {
+    const float numbers[] = {firing.direction.x, firing.direction.y, firing.direction.z,
+                             firing.time_s,      firing.origin.x,    firing.origin.y,
+                             firing.origin.z};
+    hash.add(numbers, sizeof(numbers));
+    hash.add(&firing.ring, sizeof(firing.ring));
+    hash.add(&firing.column, sizeof(firing.column));
+  }
+  json["pattern"] = hash.digest();
+  return json;
+}
+
+Json simulate_content(const SimulateJob& job, const ScanSettings& settings,
+                      const ModelScene& scene) {
+  Json model = Json::array();
+  for (const std::filesystem::path& file : files_of_scene(job.model))
+    model.push_back(file_content(file));
+  Json content = {{"model", model},
+                  {"sensor", sensor_content(settings.sensor)},
+                  {"drive", drive_content(job.drive)},
+                  {"points", word_of(settings.frame, kPointFrames)},
+                  {"beam", beam_content(settings.beam)},
+                  {"noise", settings.noise},
+                  {"weather", weather_content(settings.weather)},
+                  {"seed", settings.seed},
+                  {"format", word_of(job.format, kScanFormats)}};
+  if (const LabelScheme* labels = scene.labels()) content["labels"] = labels_content(*labels);
+  if (!job.ray_drop.empty()) content["ray_drop"] = file_content(job.ray_drop);
+  return content;
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/view_inputs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "adasplats/cloud/load/cloud_inputs.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/core/error.h"
+#include "adasplats/evaluate/error_points.h"
+#include "adasplats/pipeline/scene/view_choice.h"
+#include "adasplats/pipeline/session/inputs.h"
+
+namespace adasplats::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The inputs by what they are.
+struct Sorted {
+  fs::path model;  ///< empty: none
+  std::vector<fs::path> clouds, errors, sequences, trajectories;
+};
+
+/// The splat model in a folder. Errors: usage (several).
+fs::path model_in(const fs::path& folder) {
+  std::vector<fs::path> models;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".ply" && is_splat_model(entry.path()))
+      models.push_back(entry.path());
+  std::sort(models.begin(), models.end());
+  if (models.empty()) return {};
+  if (models.size() == 1) return models.front();
+  std::string names;
+  for (const fs::path& model : models)
+    names += (names.empty() ? "" : ", ") + model.filename().string();
+  throw Error(ErrorKind::usage,
+              folder.string() + ": holds several models (" + names + "); name one of them");
+}
+
+/// The one sequence beside a model, also of the street of `demo`; empty: there is none.
+fs::path sequence_beside(const fs::path& folder) {
+  std::vector<fs::path> sequences = sequences_of_tree(folder);
+  if (sequences.empty()) sequences = sequences_of_tree(folder / "street");
+  if (sequences.size() > 1)
+    throw Error(ErrorKind::usage, folder.string() + ": holds " + std::to_string(sequences.size()) +
+                                      " sequences; name the model, and one of them as --sequence");
+  return sequences.empty() ? fs::path() : sequences.front();
+}
+
+void sort_folder(const fs::path& folder, Sorted& sorted) {
+  sorted.model = model_in(folder);
+  if (!sorted.model.empty()) {
+    const fs::path sequence = sequence_beside(folder);
+    if (!sequence.empty()) sorted.sequences.push_back(sequence);
+    return;
+  }
+  // Without a model a sequence is shown as points, too; beside one those are asked for by --cloud.
+  const fs::path points = resolve_cloud_input(folder);
+  if (is_kitti_sequence(points)) sorted.sequences.push_back(points);
+  sorted.clouds.push_back(points);
+}
+
+Sorted sorted_inputs(const ViewJob& job) {
+  require_input(job.input);
+  Sorted sorted;
+  if (fs::is_directory(job.input)) {
+    sort_folder(job.input, sorted);
+  } else if (is_splat_model(job.input)) {
+    sorted.model = job.input;
+  } else if (is_mesh_file(job.input)) {
+    throw Error(ErrorKind::usage,
+                job.input.string() + ": a triangle mesh; the viewer shows splat models and points");
+  } else if (has_error_points(job.input)) {
+    sorted.errors.push_back(job.input);
+  } else {
+    sorted.clouds.push_back(job.input);
+  }
+  for (const fs::path& cloud : job.clouds) sorted.clouds.push_back(resolve_cloud_input(cloud));
+  for (const fs::path& sequence : job.sequences)
+    sorted.sequences.push_back(resolve_cloud_input(sequence));
+  sorted.errors.insert(sorted.errors.end(), job.errors.begin(), job.errors.end());
+  sorted.trajectories = job.trajectories;
+  return sorted;
+}
+
+std::string name_of(const fs::path& path) {
+  const fs::path normal = fs::absolute(path).lexically_normal();
+  return (normal.has_filename() ? normal : normal.parent_path()).filename().string();
+}
+
+/// Loads what `sorted` names, layer by layer.
+class Loading {
+ public:
+  Loading(const ViewJob& job, const Sorted& sorted, Session& session)
+      : job_(job), sorted_(sorted), session_(session) {}
+
+  LoadedView run() {
+    std::vector<fs::path> inputs = sorted_.clouds;
+    inputs.insert(inputs.end(), sorted_.sequences.begin(), sorted_.sequences.end());
+    view_.scene.labels = label_scheme_for(job_.labels, inputs);
+    if (!sorted_.model.empty()) add_model();
+    for (const fs::path& cloud : sorted_.clouds) add_cloud(cloud);
+    for (const fs::path& errors : sorted_.errors) add_errors(errors);
+    for (const fs::path& sequence : sorted_.sequences)
+      view_.scene.sequences.push_back({name_of(sequence), open_kitti_sequence(sequence)});
+    for (const fs::path& poses : sorted_.trajectories)
+      view_.scene.trajectories.emplace_back(name_of(poses), load_trajectory(poses));
+    finish();
+    return std::move(view_);
+  }
+
+ private:
+  void add_model() {
+    view_.model = std::make_unique<ModelScene>(sorted_.model, job_.labels, session_);
+    ViewScene& scene = view_.scene;
+    scene.model = view_.model.get();
+    set_place(view_.model->origin(), view_.model->middle_box());
+    if (view_.model->labels() != nullptr) scene.labels = *view_.model->labels();
+    scene.command = {"adasplats", "simulate", sorted_.model.string()};
+    session_.progress.begin_step("levels of detail", 0);
+    scene.layers.push_back(splat_layer(name_of(sorted_.model), *view_.model->splats(), scene.origin,
+                                       session_.executor));
+    session_.progress.end_step();
+  }
+
+  void add_cloud(const fs::path& path) {
+    const PointCloud cloud =
+        load_cloud(std::span(&path, 1), job_.load, session_.executor, session_.progress).first;
+    if (cloud.empty()) throw Error(ErrorKind::data, path.string() + ": no points");
+    add_points(name_of(path), cloud, {});
+  }
+
+  void add_errors(const fs::path& path) {
+    require_input(path);
+    const ErrorPoints points = read_error_points(path);
+    if (points.cloud.empty()) throw Error(ErrorKind::data, path.string() + ": no points");
+    std::vector<float> sizes_m = points.errors_m;  // too near is as wrong as too far
+    for (float& error_m : sizes_m) error_m = std::fabs(error_m);
+    add_points(name_of(path), points.cloud, sizes_m);
+  }
+
+  void add_points(const std::string& name, const PointCloud& cloud,
+                  std::span<const float> errors_m) {
+    if (view_.scene.layers.empty())
+      set_place(cloud.origin, middle_box(cloud.positions, cloud.origin));
+    session_.progress.begin_step("levels of detail", 0);
+    view_.scene.layers.push_back(
+        point_layer(name, cloud, errors_m, view_.scene.origin, session_.executor));
+    session_.progress.end_step();
+  }
+
+  void set_place(Vec3d origin, std::pair<Vec3d, Vec3d> box) {
+    view_.scene.origin = origin;
+    view_.scene.middle_box = box;
+  }
+
+  void finish() {
+    ViewScene& scene = view_.scene;
+    scene.name = name_of(job_.input);
+    scene.sensor = job_.sensor;
+    scene.device = device_word(session_.device.kind);
+    scene.start_pose = start_pose_of(scene, job_.mount_height_m, session_.executor);
+  }
+
+  const ViewJob& job_;
+  const Sorted& sorted_;
+  Session& session_;
+  LoadedView view_;
+};
+
+}  // namespace
+
+LoadedView load_view(const ViewJob& job, Session& session) {
+  const Sorted sorted = sorted_inputs(job);
+  if (sorted.clouds.empty() && !job.cloud_option.empty()) {
+    throw Error(ErrorKind::usage,
+                job.cloud_option + " has no effect: no points are shown (--cloud)");
+  }
+  if (sorted.model.empty() && job.sensor_is_asked) {
+    throw Error(ErrorKind::usage, "--sensor has no effect: there is no model to drive through");
+  }
+  return Loading(job, sorted, session).run();
+}
+
+}  // namespace adasplats::app

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/view/view_scene.h"
+#include "commands/view_job.h"
+
+namespace adasplats::app {
+
+/// What the page is shown, and the model that it is simulated in.
+struct LoadedView {
+  std::unique_ptr<ModelScene> model;  ///< null: points alone
+  ViewScene scene;                    ///< looks into `model`
+};
+
+/// Finds out what the inputs are and loads them. Errors: usage (a triangle mesh; a folder with
+/// several models or nothing to show), those of loading.
+LoadedView load_view(const ViewJob& job, Session& session);
+
+}  // namespace adasplats::app
