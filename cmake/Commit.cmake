@@ -61,7 +61,7 @@ if(NOT commit MATCHES "^[0-9A-Za-z._-]+$")
   message(FATAL_ERROR "ADASPLATS_COMMIT: '${commit}' is no commit: letters, digits, '.', '_', '-'")
 endif()
 set(text "// Written by cmake/Commit.cmake.
-#include \"adasplats/pipeline/build_commit.h\"
+#include \"adasplats/pipeline/provenance/build_commit.h\"
 
 const char* const adasplats::kBuildCommit = \"${commit}\";
 const char* const adasplats::kBuildState = \"${state}\";

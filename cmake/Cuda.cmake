@@ -68,7 +68,7 @@ if(ADASPLATS_CUDA)
     set(oldest_gpu 75)
   endif()
   set_source_files_properties(
-    ${PROJECT_SOURCE_DIR}/src/adasplats/gpu/device.cpp
+    ${PROJECT_SOURCE_DIR}/src/adasplats/gpu/base/device.cpp
     PROPERTIES COMPILE_DEFINITIONS ADASPLATS_OLDEST_GPU=${oldest_gpu})
 endif()
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 
-# The programs that OptiX runs (src/adasplats/gpu/optix_programs.cu) are no kernels: nvcc makes
+# The programs that OptiX runs (src/adasplats/gpu/optix/optix_programs.cu) are no kernels: nvcc makes
 # intermediate code of them for any card from Turing on, the library carries that as an array of
 # bytes, and the driver compiles it. Nothing of the OptiX SDK is needed.
 if(NOT ADASPLATS_CUDA)
@@ -10,7 +10,7 @@ endif()
 find_program(ADASPLATS_BIN2C bin2c HINTS ${CUDAToolkit_BIN_DIR} REQUIRED)
 mark_as_advanced(ADASPLATS_BIN2C)
 
-set(programs ${PROJECT_SOURCE_DIR}/src/adasplats/gpu/optix_programs.cu)
+set(programs ${PROJECT_SOURCE_DIR}/src/adasplats/gpu/optix/optix_programs.cu)
 set(embedded ${PROJECT_BINARY_DIR}/optix)
 file(MAKE_DIRECTORY ${embedded})
 add_custom_command(

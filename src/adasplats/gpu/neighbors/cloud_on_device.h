@@ -44,7 +44,7 @@ DeviceBuffer<T> concatenate(std::span<const DeviceBuffer<T>* const> parts, cudaS
 /// stream.
 bool has_all_origins(const DeviceCloud& cloud, cudaStream_t stream);
 
-/// The order that canonical_order() gives (splats/canonical_order.h).
+/// The order that canonical_order() gives (splats/model/canonical_order.h).
 DeviceBuffer<std::uint32_t> canonical_order(const DeviceCloud& cloud, cudaStream_t stream);
 
 /// What both methods begin with: the cloud on the device in canonical order, without the points of

@@ -16,7 +16,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kChunkBytes = std::size_t{128} << 10;
+constexpr std::size_t kLasChunkBytes = std::size_t{128} << 10;
 
 template <class T>
 T field(const std::byte* record, std::size_t offset) {
@@ -116,7 +116,7 @@ Table read_las(const std::filesystem::path& path, const LasReadOptions& options)
   LasColumns columns(format, rows);
   LasDescription description = read_las_description(path, header);
   ExtraColumns extras(std::move(description.extra_fields), rows);
-  const std::size_t chunk_rows = std::max<std::size_t>(1, kChunkBytes / header.record_bytes);
+  const std::size_t chunk_rows = std::max<std::size_t>(1, kLasChunkBytes / header.record_bytes);
   for (std::size_t first = 0; first < rows; first += chunk_rows) {
     const std::size_t count = std::min(chunk_rows, rows - first);
     const std::byte* const records = file.peek(count * header.record_bytes).data();

@@ -21,7 +21,7 @@
 
 namespace adasplats {
 
-/// Whether a world file (simulate/world_file.h) may stand in a model's place.
+/// Whether a world file (simulate/world/world_file.h) may stand in a model's place.
 enum class WorldFiles : std::uint8_t { refused, taken };
 
 /// A splat model or a triangle mesh from a file with what is needed to cast rays into it, on
