@@ -17,11 +17,10 @@ using namespace adasplats;
 
 int run(int argc, char** argv) {
   BuildOptions options;
-  options.method = std::strcmp(argv[2], "basic") == 0
-                       ? SplatMethod::basic
-                       : (std::strcmp(argv[2], "semantic") == 0 ? SplatMethod::semantic
-                                                                : SplatMethod::descriptors);
-  options.resample = argc <= 3 || std::strcmp(argv[3], "no-resample") != 0;
+  RecipeChoice choice;
+  choice.method = value_of(argv[2], kSplatMethods);
+  choice.paper.resample = argc <= 3 || std::strcmp(argv[3], "no-resample") != 0;
+  options.recipe = choice.recipe();
   options.remove = DynamicRemoval::moving;
   const Executor executor(argc > 4 ? std::atoi(argv[4]) : 0);
   ProgressSink quiet;

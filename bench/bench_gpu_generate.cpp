@@ -49,13 +49,6 @@ PointCloud input_cloud(const std::string& input, const Executor& executor, Progr
   return load_cloud(inputs, {}, executor, progress).first;
 }
 
-SplatMethod method_of(const std::string& name) {
-  if (name == "basic") return SplatMethod::basic;
-  if (name == "descriptors") return SplatMethod::descriptors;
-  if (name == "consistent") return SplatMethod::consistent;
-  return SplatMethod::semantic;
-}
-
 struct Run {
   double seconds;
   SplatModel model;
@@ -102,8 +95,10 @@ int run(int argc, char** argv) {
   ProgressSink quiet;
   const PointCloud cloud = input_cloud(argv[1], executor, quiet);
   BuildOptions options;
-  options.method = method_of(argument(2, "semantic"));
-  options.resample = argument(3, "resample") != "no-resample";
+  RecipeChoice choice;
+  choice.method = value_of(argument(2, "semantic"), kSplatMethods);
+  choice.paper.resample = argument(3, "resample") != "no-resample";
+  options.recipe = choice.recipe();
   const auto engine = make_cuda_model_engine(0, executor);
   std::vector<Run> runs;
   for (int i = 0; i < std::max(1, std::atoi(argument(4, "3").c_str())); ++i) {
@@ -119,7 +114,7 @@ int run(int argc, char** argv) {
       {"device", device.gpus[0].name},
       {"points", cloud.size()},
       {"method", argument(2, "semantic")},
-      {"resample", options.resample},
+      {"resample", choice.paper.resample},
       {"splats", median.report.primitives},
       {"seconds", median.seconds},
       {"fastest_s", runs.front().seconds},

@@ -47,7 +47,7 @@ int run() {
   const adasplats::Executor executor;
   adasplats::ProgressSink silent;
   adasplats::BuildOptions options;
-  options.method = adasplats::SplatMethod::semantic;
+  options.recipe = adasplats::PaperOptions{.variant = adasplats::PaperVariant::semantic};
   const auto [model, report] =
       adasplats::build_model(road_points(*road), &labels, options, executor, silent);
   std::cout << report.points_in << " points became " << model.size() << " splats\n";

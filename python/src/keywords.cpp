@@ -96,6 +96,18 @@ void Keywords::take(const char* name, double& value) {
   value = number_of(*given);
 }
 
+void Keywords::take(const char* name, float& value) {
+  double number = static_cast<double>(value);
+  take(name, number);
+  value = static_cast<float>(number);
+}
+
+void Keywords::take(const char* name, GroupScale& value) {
+  Vec3d factors{value.neighbors, value.radius, value.error};
+  take(name, factors);
+  value = {factors.x, factors.y, factors.z};
+}
+
 void Keywords::take(const char* name, std::optional<double>& value) {
   const auto given = find(name, given_ ? py::object(py::none()) : default_of(value));
   if (!given) return;

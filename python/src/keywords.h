@@ -12,11 +12,13 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "adasplats/core/maths/vec3.h"
-#include "adasplats/core/words.h"
+#include "adasplats/core/setting.h"
+#include "adasplats/splats/paper/paper_options.h"
 
 namespace adasplats::python {
 
@@ -38,6 +40,8 @@ class Keywords {
   void take(const char* name, int& value);
   void take(const char* name, std::uint64_t& value);
   void take(const char* name, double& value);
+  void take(const char* name, float& value);
+  void take(const char* name, GroupScale& value);
   void take(const char* name, std::string& value);
   void take(const char* name, std::filesystem::path& value);  ///< None: no path
   void take(const char* name, Vec3d& value);
@@ -75,6 +79,18 @@ class Keywords {
   std::vector<std::string> names_;
   std::string signature_;
 };
+
+/// Takes all settings of a subject by their names.
+template <class Settings>
+void take_settings(Keywords& keywords, Settings& settings) {
+  visit_settings(settings, [&keywords]<class T>(const Setting& setting, T& value) {
+    if constexpr (std::is_enum_v<T>) {
+      keywords.take<T>(setting.name, value, words_of(value));
+    } else {
+      keywords.take(setting.name, value);
+    }
+  });
+}
 
 /// A docstring that begins with the signature, as inspect.signature wants it: `leading` are the
 /// arguments before the keywords, `take_all` takes every keyword.

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/pipeline/model/make_model.h"
-#include "adasplats/pipeline/model/unused_options.h"
+#include "adasplats/pipeline/model/unused_settings.h"
 #include "adasplats/pipeline/provenance/output_check.h"
 #include "clouds.h"
 #include "json.h"
@@ -74,75 +74,11 @@ constexpr const char* kModelsClassDoc =
     "normals\n"
     "and radii are strided). Raises TypeError, ValueError.";
 
-void take_scale(Keywords& keywords, const char* name, GroupScale& scale) {
-  Vec3d factors{scale.neighbors, scale.radius, scale.error};
-  keywords.take(name, factors);
-  scale = {factors.x, factors.y, factors.z};
-}
-
-constexpr std::pair<std::string_view, SplatMethod> kMethods[] = {
-    {"consistent", SplatMethod::consistent},
-    {"basic", SplatMethod::basic},
-    {"descriptors", SplatMethod::descriptors},
-    {"semantic", SplatMethod::semantic}};
-constexpr std::pair<std::string_view, DynamicRemoval> kRemovals[] = {
-    {"none", DynamicRemoval::none},
-    {"moving", DynamicRemoval::moving},
-    {"movable", DynamicRemoval::movable}};
-constexpr std::pair<std::string_view, SelectionOrder> kSelections[] = {
-    {"most-discards-first", SelectionOrder::most_discards_first},
-    {"largest-first", SelectionOrder::largest_first},
-    {"curve", SelectionOrder::curve},
-    {"scattered", SelectionOrder::scattered}};
-using ResampleBase = BuildOptions::ResampleBase;
-constexpr std::pair<std::string_view, ResampleBase> kResampleBases[] = {
-    {"points", ResampleBase::points},
-    {"centers", ResampleBase::centers},
-    {"mixed", ResampleBase::mixed}};
-
-/// By the names of the command line.
-void take_consistent(Keywords& keywords, ConsistentOptions& options) {
-  keywords.take("cell", options.cell_m);
-  keywords.take("small_cell", options.small_cell_m);
-  double largest_radius_m = static_cast<double>(options.cover.largest_radius_m);
-  keywords.take("largest_radius", largest_radius_m);
-  options.cover.largest_radius_m =
-      static_cast<decltype(options.cover.largest_radius_m)>(largest_radius_m);
-  keywords.take("balance_rounds", options.balance_rounds);
-  keywords.take("strict_rounds", options.strict_rounds);
-  keywords.take("settle_rounds", options.settle_rounds);
-  keywords.take("fill", options.fill);
-}
-
-void take_build(Keywords& keywords, BuildOptions& options) {
-  keywords.take<SplatMethod>("method", options.method, kMethods);
-  keywords.take("neighbors", options.neighbors);
-  keywords.take("alpha", options.alpha);
-  keywords.take("smoothness", options.smoothness);
-  keywords.take("radius", options.radius_m);
-  keywords.take("error_bound", options.error_m);
-  keywords.take<SelectionOrder>("selection", options.selection, kSelections);
-  keywords.take<DynamicRemoval>("remove", options.remove, kRemovals);
-  take_consistent(keywords, options.consistent);
-  keywords.take("denoise", options.denoise);
-  keywords.take("denoise_sigmas", options.denoise_sigmas);
-  keywords.take("denoise_votes", options.denoise_votes);
-  keywords.take("resample", options.resample);
-  keywords.take("resample_density", options.resample_density);
-  keywords.take<ResampleBase>("resample_base", options.resample_base, kResampleBases);
-  for (std::size_t group = 0; group < options.semantic_scales.size(); ++group) {
-    std::string name(adasplats::name_of(static_cast<SemanticGroup>(group)));
-    std::replace(name.begin(), name.end(), '-', '_');
-    take_scale(keywords, (name + "_scale").c_str(), options.semantic_scales[group]);
-  }
-  take_scale(keywords, "planar_scale", options.planar_scale);
-  keywords.take("group_normals", options.group_normals);
-}
-
 /// Loading has words of its own; `load` is for paths alone.
-void take_model(Keywords& keywords, ModelJob& job, WorkOptions& work) {
+void take_model(Keywords& keywords, ModelJob& job, RecipeChoice& recipe, WorkOptions& work) {
   keywords.take("labels", job.labels);
-  take_build(keywords, job.build);
+  take_settings(keywords, recipe);
+  keywords.take<DynamicRemoval>("remove", job.build.remove, kDynamicRemovals);
   keywords.take("reflectance", job.reflectance);
   take_load_options(keywords, job.load);
   work.has_seed = true;
@@ -157,11 +93,10 @@ std::shared_ptr<ModelObject> finished(std::pair<SplatModel, ModelResult>&& made)
 }
 
 /// Keywords that change nothing beside the others.
-void refuse_unused(const BuildOptions& options, const py::kwargs& given) {
-  for (const UnusedOption& option : unused_options(options)) {
-    std::string name = option.name;
-    std::replace(name.begin(), name.end(), '-', '_');
-    if (given.contains(name)) throw py::value_error(name + " has no effect " + option.why);
+void refuse_unused(const RecipeChoice& recipe, const py::kwargs& given) {
+  for (const UnusedSetting& unused : unused_settings(recipe)) {
+    if (given.contains(unused.setting.name))
+      throw py::value_error(std::string(unused.setting.name) + " has no effect " + unused.why);
   }
 }
 
@@ -169,9 +104,11 @@ std::shared_ptr<ModelObject> model(py::handle points, const py::kwargs& kwargs) 
   Keywords keywords("model", kwargs);
   ModelJob job;
   WorkOptions options;
-  take_model(keywords, job, options);
+  RecipeChoice recipe;
+  take_model(keywords, job, recipe, options);
   keywords.finish();
-  refuse_unused(job.build, kwargs);
+  refuse_unused(recipe, kwargs);
+  job.build.recipe = recipe.recipe();
   job.removal_is_asked = kwargs.contains("remove");
   const bool in_memory = py::isinstance<PointCloud>(points);
   if (!in_memory) job.inputs = paths_of(points, "points", "a PointCloud, ");
@@ -369,7 +306,8 @@ void bind_models(py::module_& module) {
       [](Keywords& keywords) {
         ModelJob job;
         WorkOptions work;
-        take_model(keywords, job, work);
+        RecipeChoice recipe;
+        take_model(keywords, job, recipe, work);
       },
       kModelDoc);
   module.def("model", &model, py::arg("points"), doc.c_str());

@@ -20,7 +20,8 @@ constexpr const char* kSimulateDoc =
     "(4, 4), 0.1 s apart. rolling_shutter: the sensor moves while it turns, as motion (a "
     "Trajectory)\n"
     "or else the poses tell; points: 'raw' as measured, or 'deskewed'. noise: of the sensor;\n"
-    "range_noise: its standard deviation on ranges instead of the sensor's, m. depth: splats along "
+    "range_noise (its standard deviation on ranges, m), min_range, max_range (m), rotation_rate\n"
+    "(Hz): instead of the sensor's. depth: splats along "
     "a\n"
     "ray whose weighted mean is the echo. sub_rays: rays over the cross-section of a beam. "
     "returns:\n"
@@ -38,7 +39,7 @@ constexpr std::size_t kGpuBatch = 16;
 struct SimulateArguments {
   ScanSettings settings;
   DriveArguments drive;
-  std::optional<double> range_noise_m;
+  SensorOverrides overrides;
   std::filesystem::path ray_drop;
   std::uint64_t first_number = 0;
   py::object progress = py::none();
@@ -47,18 +48,10 @@ struct SimulateArguments {
     drive.take(keywords);
     keywords.take<PointFrame>("points", settings.frame, kPointFrames);
     keywords.take("noise", settings.noise);
-    keywords.take("range_noise", range_noise_m);
-    keywords.take("depth", settings.beam.depth);
-    keywords.take("depth_gap", settings.beam.depth_gap_m);
-    keywords.take("sub_rays", settings.beam.sub_rays);
-    keywords.take("separation", settings.beam.separation_m);
-    keywords.take("returns", settings.beam.returns);
-    keywords.take<ReturnMode>("return_mode", settings.beam.mode, kReturnModes);
+    take_settings(keywords, overrides);
+    take_settings(keywords, settings.beam);
     keywords.take("ray_drop", ray_drop);
-    keywords.take("rain", settings.weather.rain_mm_h);
-    keywords.take("fog", settings.weather.fog_visibility_m);
-    keywords.take("snow", settings.weather.snow_mm_h);
-    keywords.take("white_intensity", settings.weather.white_intensity);
+    take_settings(keywords, settings.weather);
     keywords.take("seed", settings.seed);
     keywords.take("first_number", first_number);
     keywords.take("progress", progress);
@@ -76,7 +69,7 @@ struct Drive {
     keywords.finish();
     ScanSettings& settings = arguments.settings;
     settings.sensor = sensor_of(sensor);
-    if (arguments.range_noise_m) settings.sensor.range_noise_m = *arguments.range_noise_m;
+    arguments.overrides.apply(settings.sensor);
     if (!arguments.ray_drop.empty()) settings.ray_drop = load_ray_drop(arguments.ray_drop);
     check(settings);
     scans = arguments.drive.scans_at(poses, settings.sensor);

@@ -35,7 +35,7 @@ DemoRow run_method(const std::string& name, SplatMethod method, const fs::path& 
   model.inputs = {street / "mapping.ply"};
   model.output = folder / (name + ".ply");
   model.labels = "semantickitti";
-  model.build.method = method;
+  model.build.recipe = RecipeChoice{.method = method}.recipe();
   row.model = run_model(model, session);
 
   SimulateJob simulation;
@@ -90,7 +90,8 @@ DemoResult run_demo(const DemoJob& job, Session& session) {
   synth.scan.driving_spacing_m = job.driving_spacing_m;
   DemoResult result;
   result.street = run_synth_street(synth, session);
-  for (const auto& [name, method] : method_names()) {
+  for (const auto& [word, method] : kSplatMethods) {
+    const std::string name(word);
     result.rows.push_back(run_method(name, method, folder.path(), session));
     for (const fs::path& picture :
          draw(name, result.street.driving_scans, folder.path(), session)) {

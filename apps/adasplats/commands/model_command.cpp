@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
-#include "adasplats/pipeline/model/unused_options.h"
+#include "adasplats/pipeline/model/unused_settings.h"
 #include "cli/commands.h"
 #include "cli/options/build_options.h"
 #include "cli/options/load_options.h"
 #include "cli/options/option_types.h"
+#include "cli/options/setting_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 #include "commands/model_job.h"
@@ -52,7 +53,8 @@ class ModelCommand final : public Command {
                    "What labels mean: semantickitti, paris-carla-3d or a TOML file; the default is "
                    "semantickitti for sequence folders, else none")
         ->type_name("SCHEME");
-    add_build_options(app, job_.build);
+    add_settings(app, recipe_);
+    add_removal_option(app, job_.build.remove);
     add_switch(app, "--reflectance,!--no-reflectance", job_.reflectance,
                "Make reflectances of intensities: without what range and incidence did to them, "
                "which simulate applies again");
@@ -61,9 +63,10 @@ class ModelCommand final : public Command {
   }
 
   void run(Session& session) override {
-    for (const UnusedOption& option : unused_options(job_.build)) {
-      refuse({("--" + option.name).c_str()}, option.why);
+    for (const UnusedSetting& unused : unused_settings(recipe_)) {
+      refuse({option_of(unused.setting).c_str()}, unused.why);
     }
+    job_.build.recipe = recipe_.recipe();
     job_.removal_is_asked = is_given("--remove");
     // OptiX casts rays; models are made with CUDA alone.
     if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
@@ -81,6 +84,7 @@ class ModelCommand final : public Command {
 
  private:
   ModelFileJob job_;
+  RecipeChoice recipe_;
 };
 
 }  // namespace

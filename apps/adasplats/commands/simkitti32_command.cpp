@@ -70,7 +70,7 @@ class SimKitti32Command final : public Command {
   void add_model_options(OptionSet& app) {
     constexpr const char* kGroup = "Static model";
     add_choice<SplatMethod>(
-        app, "--method", job_.build.method, method_names(),
+        app, "--method", job_.method, choices_of<SplatMethod>(kSplatMethods),
         "How it is made; consistent agrees with the measured rays, semantic is the "
         "paper's")
         ->group(kGroup);

@@ -16,10 +16,10 @@
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/pipeline/session/settings_json.h"
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/simulate/world/moving_points.h"
 #include "adasplats/simulate/world/world.h"
-#include "cli/options/build_options.h"
 #include "cli/resumable_folder.h"
 #include "commands/simulate_manifest.h"
 
@@ -94,22 +94,11 @@ Json input_hashes(const Source& source, Session& session) {
   return hashes;
 }
 
-Json scales_of(std::span<const GroupScale> scales) {
-  Json json = Json::array();
-  for (const GroupScale& scale : scales)
-    json.push_back({scale.neighbors, scale.radius, scale.error});
-  return json;
-}
-
-/// All of the model's parameters that the command has options for.
-Json build_content(const BuildOptions& build) {
-  Json json;
-  for (const auto& [name, method] : method_names())
-    if (method == build.method) json["method"] = name;
-  json["neighbors"] = build.neighbors;
-  json["alpha"] = build.alpha;
-  json["smoothness"] = build.smoothness;
-  json["semantic_scales"] = scales_of(build.semantic_scales);
+/// The method and all of its settings.
+Json model_content(SplatMethod method) {
+  Json json = {{"method", word_of(method, kSplatMethods)}};
+  const ModelRecipe recipe = RecipeChoice{.method = method}.recipe();
+  std::visit([&json](const auto& settings) { put_settings(settings, json); }, recipe);
   return json;
 }
 
@@ -120,7 +109,7 @@ Json content_of(const SimKitti32Job& job, const Source& source, const LidarModel
   return {{"sequence", source.name},
           {"scans", source.numbers},
           {"labels", load_label_scheme(job.labels).name()},
-          {"model", build_content(job.build)},
+          {"model", model_content(job.method)},
           {"model_every", job.model_every},
           {"sensor", sensor_content(sensor)},
           {"offset_m", {offset.x, offset.y, offset.z}},
@@ -207,7 +196,7 @@ class Simulation {
     model.load.first_scan = source_.numbers.front();
     model.load.scan_count = (source_.numbers.size() + job_.model_every - 1) / job_.model_every;
     model.load.scan_stride = job_.scans.stride * job_.model_every;
-    model.build = job_.build;
+    model.build.recipe = RecipeChoice{.method = job_.method}.recipe();
     model.build.remove = DynamicRemoval::moving;
     result.model = run_model(model, session_);
     folder_.record(kModelFile);

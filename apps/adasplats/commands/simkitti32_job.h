@@ -25,7 +25,7 @@ struct SimKitti32Job {
   std::string labels = "semantickitti";
   ScanRange scans;              ///< which ones are modelled and simulated
   std::size_t model_every = 1;  ///< of those, every n-th makes the static model
-  BuildOptions build;
+  SplatMethod method = SplatMethod::consistent;
   std::string sensor = "hdl-32-paper";
   Vec3d offset_m = {0, 0, -0.5};  ///< of the sensor, in world axes
   double noise_m = 0.005;         ///< standard deviation of the range

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
+#include "cli/options/setting_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 #include "commands/simulate_job.h"
@@ -46,7 +47,7 @@ class SimulateCommand final : public Command {
         ->type_name("SCHEME");
     add_drive_options(app);
     add_beam_options(app);
-    add_weather_options(app);
+    add_settings(app, job_.weather);
     add_choice<ScanFormat>(
         app, "--format", job_.format, choices_of<ScanFormat>(kScanFormats),
         "Of the scans; semantickitti writes OUTPUT/sequences/00, mcap OUTPUT/scans.mcap");
@@ -113,50 +114,12 @@ class SimulateCommand final : public Command {
   }
 
   void add_beam_options(OptionSet& app) {
-    BeamOptions& beam = job_.beam;
     add_switch(app, "--noise,!--no-noise,!--no-range-noise", job_.noise,
                "Noise of the sensor on ranges and angles");
-    app.add_option("--range-noise", job_.range_noise_m,
-                   "Standard deviation of the noise on ranges, m; the default is the sensor's")
-        ->type_name("M");
-    app.add_option("--min-range", job_.min_range_m, "Instead of the sensor's, m")->type_name("M");
-    app.add_option("--max-range", job_.max_range_m, "Instead of the sensor's, m")->type_name("M");
-    app.add_option("--rotation-rate", job_.rotation_hz,
-                   "Revolutions a second instead of the sensor's")
-        ->type_name("HZ");
-    app.add_option("--depth", beam.depth,
-                   "Splats along a ray whose weighted mean is the echo (the paper's D = 5)")
-        ->capture_default_str()
-        ->type_name("D");
-    app.add_option("--depth-gap", beam.depth_gap_m,
-                   "Splats of a ray farther behind the one before are not averaged, m")
-        ->capture_default_str()
-        ->type_name("M");
-    app.add_option("--sub-rays", beam.sub_rays, "Rays over the cross-section of a beam")
-        ->capture_default_str()
-        ->type_name("N");
-    app.add_option("--returns", beam.returns, "Most returns of a firing")
-        ->capture_default_str()
-        ->type_name("N");
-    app.add_option("--separation", beam.separation_m,
-                   "Echoes nearer to one another are one return, m")
-        ->capture_default_str()
-        ->type_name("M");
-    add_choice<ReturnMode>(app, "--return-mode", beam.mode, choices_of<ReturnMode>(kReturnModes),
-                           "Which echo comes first or alone");
+    add_settings(app, job_.overrides);
+    add_settings(app, job_.beam);
     add_path(app, "--ray-drop", job_.ray_drop,
              "Beams that get lost as a real sensor's: a file of 'adasplats fit-drop'");
-  }
-
-  void add_weather_options(OptionSet& app) {
-    app.add_option("--rain", job_.weather.rain_mm_h, "Rate of rain, mm/h")->type_name("MM/H");
-    app.add_option("--fog", job_.weather.fog_visibility_m, "Visibility in fog, m")->type_name("M");
-    app.add_option("--snow", job_.weather.snow_mm_h, "Rate of snow, mm/h of water")
-        ->type_name("MM/H");
-    app.add_option("--white-intensity", job_.weather.white_intensity,
-                   "Intensity of a white wall in the model's unit, for weather: 1, or 100 of bytes")
-        ->capture_default_str()
-        ->type_name("I");
   }
 
   SimulateJob job_;

@@ -33,13 +33,9 @@ ScanSettings settings_of(const SimulateJob& job, std::uint64_t seed) {
   ScanSettings settings;
   settings.sensor = load_lidar_model(job.sensor);
   LidarModel& sensor = settings.sensor;
-  sensor.range_noise_m = job.range_noise_m.value_or(sensor.range_noise_m);
-  sensor.min_range_m = job.min_range_m.value_or(sensor.min_range_m);
-  sensor.max_range_m = job.max_range_m.value_or(sensor.max_range_m);
-  sensor.rotation_hz = job.rotation_hz.value_or(sensor.rotation_hz);
-  if (!(sensor.min_range_m >= 0 && sensor.min_range_m < sensor.max_range_m))
-    throw Error(ErrorKind::usage, "--min-range must be 0 or more and less than --max-range");
-  if (!(sensor.rotation_hz > 0)) throw Error(ErrorKind::usage, "--rotation-rate must be positive");
+  job.overrides.apply(sensor);
+  if (!(sensor.min_range_m < sensor.max_range_m))
+    throw Error(ErrorKind::usage, "--min-range must be less than --max-range");
   settings.beam = job.beam;
   settings.noise = job.noise;
   settings.frame = job.frame;

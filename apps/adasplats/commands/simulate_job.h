@@ -9,6 +9,7 @@
 
 #include "adasplats/dataset/scan_writer.h"
 #include "adasplats/pipeline/scene/drive.h"
+#include "adasplats/sensors/sensor_overrides.h"
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/simulate/scan/weather.h"
 #include "cli/session.h"
@@ -21,11 +22,7 @@ struct SimulateJob {
   std::string labels;           ///< scheme of the classes; empty: what the model says
   std::string sensor = "hdl-64-paper";
   DriveOptions drive;
-  // Instead of the sensor's own.
-  std::optional<double> range_noise_m;
-  std::optional<double> min_range_m;
-  std::optional<double> max_range_m;
-  std::optional<double> rotation_hz;
+  SensorOverrides overrides;
   BeamOptions beam;
   bool noise = true;
   PointFrame frame = PointFrame::raw;

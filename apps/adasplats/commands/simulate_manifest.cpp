@@ -8,6 +8,7 @@
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/pipeline/scene/scene_files.h"
 #include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/pipeline/session/settings_json.h"
 
 namespace adasplats::app {
 namespace {
@@ -64,17 +65,11 @@ Json drive_content(const DriveOptions& drive) {
   return json;
 }
 
-Json beam_content(const BeamOptions& beam) {
-  return {{"depth", beam.depth},       {"depth_gap_m", beam.depth_gap_m},
-          {"sub_rays", beam.sub_rays}, {"separation_m", beam.separation_m},
-          {"returns", beam.returns},   {"return_mode", word_of(beam.mode, kReturnModes)}};
-}
-
-Json weather_content(const Weather& weather) {
-  return {{"rain_mm_h", weather.rain_mm_h},
-          {"fog_visibility_m", weather.fog_visibility_m},  // null: no fog
-          {"snow_mm_h", weather.snow_mm_h},
-          {"white_intensity", weather.white_intensity}};
+template <class Settings>
+Json content_of(const Settings& settings) {
+  Json json;
+  put_settings(settings, json);
+  return json;
 }
 
 }  // namespace
@@ -113,9 +108,9 @@ Json simulate_content(const SimulateJob& job, const ScanSettings& settings,
                   {"sensor", sensor_content(settings.sensor)},
                   {"drive", drive_content(job.drive)},
                   {"points", word_of(settings.frame, kPointFrames)},
-                  {"beam", beam_content(settings.beam)},
+                  {"beam", content_of(settings.beam)},
                   {"noise", settings.noise},
-                  {"weather", weather_content(settings.weather)},
+                  {"weather", content_of(settings.weather)},
                   {"seed", settings.seed},
                   {"format", word_of(job.format, kScanFormats)}};
   if (const LabelScheme* labels = scene.labels()) content["labels"] = labels_content(*labels);

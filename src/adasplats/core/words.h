@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -23,6 +24,14 @@ std::string_view word_of(T value, std::type_identity_t<Words<T>> words) {
   for (const auto& [word, each] : words)
     if (each == value) return word;
   throw std::logic_error("a value without a word");
+}
+
+/// The value of a word. Errors: std::invalid_argument.
+template <class T, std::size_t N>
+T value_of(std::string_view word, const std::pair<std::string_view, T> (&words)[N]) {
+  for (const auto& [each, value] : words)
+    if (each == word) return value;
+  throw std::invalid_argument("no such word: " + std::string(word));
 }
 
 /// The words alone, in their order.

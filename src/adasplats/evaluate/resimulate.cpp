@@ -119,7 +119,7 @@ BeamToCast beam_to_cast(const MeasuredBeam& beam, const RigidTransform& scene_fr
 }
 
 /// Everything the beams of all scans are cast and sorted with.
-struct Setting {
+struct CastPlace {
   const Tracer& tracer;
   const SceneView& scene;
   Vec3d scene_origin;
@@ -129,7 +129,7 @@ struct Setting {
   Bins incidences;
 };
 
-CastScan cast_scan(const Setting& setting, const KittiSequence& sequence, std::size_t index,
+CastScan cast_scan(const CastPlace& setting, const KittiSequence& sequence, std::size_t index,
                    const Executor& executor) {
   const KittiScan scan = read_kitti_scan(sequence, index);
   const std::vector<std::uint32_t> selected =
@@ -212,7 +212,7 @@ BeamAccuracy accuracy_where(const std::vector<Beam>& beams, const Predicate& pre
 }
 
 void add_breakdowns(ResimulateResult& result, const std::vector<Beam>& beams,
-                    const Setting& setting, bool labelled) {
+                    const CastPlace& setting, bool labelled) {
   for (std::size_t bin = 0; bin < setting.ranges.size(); ++bin) {
     result.by_range.emplace_back(
         setting.ranges.name_of(bin),
@@ -254,8 +254,8 @@ ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d 
                             const ResimulateOptions& options, const Executor& executor,
                             ProgressSink& progress) {
   check(options);
-  const Setting setting{tracer,          scene, scene_origin, labels, options, range_bins(options),
-                        incidence_bins()};
+  const CastPlace setting{
+      tracer, scene, scene_origin, labels, options, range_bins(options), incidence_bins()};
   std::vector<Beam> beams;
   MeanCloudDistance clouds;
   progress.begin_step("re-simulate", sequence.scans.size());
@@ -288,8 +288,8 @@ ScanErrors resimulate_scan(const Tracer& tracer, const SceneView& scene, Vec3d s
                            const LabelScheme& labels, const ResimulateOptions& options,
                            const Executor& executor) {
   check(options);
-  const Setting setting{tracer,          scene, scene_origin, labels, options, range_bins(options),
-                        incidence_bins()};
+  const CastPlace setting{
+      tracer, scene, scene_origin, labels, options, range_bins(options), incidence_bins()};
   CastScan scan = cast_scan(setting, sequence, index, executor);
   ScanErrors result{std::move(scan.measured.positions), {}};
   for (const Beam& beam : scan.beams) result.errors_m.push_back(beam.error_m);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <variant>
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
@@ -49,45 +50,6 @@ class StepClock {
   Clock::time_point start_;
 };
 
-void check(const BuildOptions& options) {
-  const auto require = [](bool ok, const std::string& message) {
-    if (!ok) throw Error(ErrorKind::usage, message);
-  };
-  require(options.neighbors >= 3 && options.neighbors <= 100'000,
-          "neighbors (K) must be 3 to 100000, not " + std::to_string(options.neighbors));
-  require(options.alpha >= 0 && options.alpha <= 1,
-          "alpha must be 0 to 1, not " + std::to_string(options.alpha));
-  require(options.smoothness >= -1 && options.smoothness <= 1,
-          "smoothness (beta) must be -1 to 1, not " + std::to_string(options.smoothness));
-  require(!options.radius_m || *options.radius_m > 0, "radius (R) must be greater than 0");
-  require(!options.error_m || *options.error_m >= 0, "error bound (E) must not be negative");
-  require(options.denoise_sigmas > 0, "denoise sigmas must be greater than 0");
-  require(options.denoise_votes > 0 && options.denoise_votes <= 1,
-          "denoise votes must be greater than 0 and at most 1");
-  std::vector<GroupScale> scales(options.semantic_scales.begin(), options.semantic_scales.end());
-  scales.push_back(options.planar_scale);
-  for (const GroupScale& scale : scales)
-    require(scale.neighbors > 0 && scale.radius > 0 && scale.error >= 0,
-            "group scales must be greater than 0");
-  require(options.resample_density >= 0 && options.resample_density <= 100,
-          "resample density must be 0 to 100");
-  const ConsistentOptions& consistent = options.consistent;
-  require(consistent.cell_m > 0, "the cells of the consistent method must be greater than 0");
-  require(consistent.small_cell_m >= 0 && consistent.small_cell_m < consistent.cell_m,
-          "small cells must be smaller than the cells, or 0");
-  require(SectorReach::can_have(consistent.cover.sectors) &&
-              SectorReach::can_have(consistent.cover.unchecked_sectors),
-          "sectors must be 0, 1, 2, 4, 8 or 16");
-  require(consistent.judge.core_rings >= 1 && consistent.judge.core_rings <= RayEvidence::kBins,
-          "the rings of a disk's middle must be 1 to 16");
-  require(consistent.cover.largest_radius_m >= 0, "the largest radius must not be negative");
-  require(consistent.balance_rounds >= 0 && consistent.strict_rounds >= 0 &&
-              consistent.settle_rounds >= 0,
-          "rounds of the ray check must not be negative");
-  require(consistent.evidence_rays > 0 && consistent.evidence.stride > 0,
-          "evidence rays and their stride must be greater than 0");
-}
-
 /// The class of a point; an id that the scheme does not know is the input's fault.
 const SemanticClass& class_of(const LabelScheme& labels, std::uint16_t id) {
   const SemanticClass* found = labels.find(id);
@@ -107,7 +69,7 @@ std::vector<T> table_by_id(const std::vector<bool>& used, F&& value_of) {
 }
 
 ClassTables class_tables(const PointCloud& cloud, const LabelScheme* labels,
-                         const BuildOptions& options, BuildReport& report) {
+                         const BuildOptions& options, bool needs_groups, BuildReport& report) {
   ClassTables tables;
   RemovedPoints removed = points_to_remove(cloud, labels, options.remove);
   tables.removed = std::move(removed.ids);
@@ -115,21 +77,11 @@ ClassTables class_tables(const PointCloud& cloud, const LabelScheme* labels,
   if (labels == nullptr || cloud.classes.empty()) return tables;
   std::vector<bool> used(1 << 16);
   for (const std::uint16_t id : cloud.classes) used[id] = true;
-  if (options.method == SplatMethod::semantic) {
+  if (needs_groups) {
     tables.groups = table_by_id<SemanticGroup>(
         used, [&](std::uint16_t id) { return class_of(*labels, id).group; });
   }
   return tables;
-}
-
-std::string_view method_name(SplatMethod method) {
-  switch (method) {
-    case SplatMethod::basic: return "basic";
-    case SplatMethod::descriptors: return "descriptors";
-    case SplatMethod::semantic: return "semantic";
-    case SplatMethod::consistent: return "consistent";
-  }
-  return "";
 }
 
 void require_points(std::size_t points) {
@@ -153,8 +105,10 @@ void put_splats(ConsistentSplats made, SplatModel& model) {
 }
 
 /// The paper's methods.
-void run(PaperSteps& steps, PointCloud cloud, const ClassTables& tables,
-         const BuildOptions& options, StepSink step, SplatModel& model, BuildReport& report) {
+void run(const PaperOptions& options, const ModelEngine& engine, PointCloud cloud,
+         const ClassTables& tables, StepSink step, SplatModel& model, BuildReport& report) {
+  const std::unique_ptr<PaperSteps> made = engine.paper_steps();
+  PaperSteps& steps = *made;
   step("order", 0);
   report.points_used = steps.load(std::move(cloud), tables);
   report.points_dynamic = report.points_in - report.points_used;
@@ -166,7 +120,7 @@ void run(PaperSteps& steps, PointCloud cloud, const ClassTables& tables,
   }
   require_points(report.points_used);
   const std::size_t splats = steps.generate(options, step);
-  if (options.resample && options.method != SplatMethod::basic && splats > 0) {
+  if (options.resample && options.variant != PaperVariant::basic && splats > 0) {
     step("resampling", 1);
     const PaperSteps::Resampled resampled = steps.resample(options);
     report.points_used = resampled.points;
@@ -196,22 +150,23 @@ void tell_beyond(std::size_t removed, std::size_t all, double reach_m, ProgressS
   const std::string what =
       std::to_string(removed) + (removed == 1 ? " point lies" : " points lie") + " more than " +
       std::to_string(std::lround(reach_m / 1000)) +
-      " km from the middle of the cloud, farther than cells reach (larger ones, --cell and "
-      "--small-cell, reach farther)";
+      " km from the middle of the cloud, farther than cells reach (larger ones reach farther)";
   if (static_cast<double>(removed) > kMostRemoved * static_cast<double>(all))
     throw Error(ErrorKind::data, "of " + std::to_string(all) + " points " + what);
   progress.warn(what + ": left out");
 }
 
 /// Ours.
-void run(ConsistentSteps& steps, PointCloud cloud, const ClassTables& tables,
-         const BuildOptions& options, StepSink step, SplatModel& model, BuildReport& report) {
+void run(const ConsistentOptions& options, const ModelEngine& engine, PointCloud cloud,
+         const ClassTables& tables, StepSink step, SplatModel& model, BuildReport& report) {
+  const std::unique_ptr<ConsistentSteps> made = engine.consistent_steps();
+  ConsistentSteps& steps = *made;
   step("order", 0);
   const bool has_rays = cloud.has_beams();
   report.points_used = steps.load(std::move(cloud), tables);
   report.points_dynamic = report.points_in - report.points_noise - report.points_used;
   require_points(report.points_used);
-  report.consistent = consistent_disks(steps, has_rays, options.consistent, step);
+  report.consistent = consistent_disks(steps, has_rays, options, step);
   report.ray_checked = report.consistent->checked;
   put_splats(steps.take_splats(), model);
 }
@@ -221,12 +176,11 @@ std::size_t count_of(const OriginCounts& counts, OriginKind kind) {
 }
 
 /// What a model cannot have for want of origins; empty where nothing is missing.
-std::string origin_warning(SplatMethod method, const OriginCounts& counts) {
+std::string origin_warning(bool checks, const OriginCounts& counts) {
   const std::size_t unknown = count_of(counts, OriginKind::none);
   const std::size_t guessed = count_of(counts, OriginKind::guessed);
   const std::size_t all = unknown + guessed + count_of(counts, OriginKind::stated) +
                           count_of(counts, OriginKind::measured);
-  const bool checks = method == SplatMethod::consistent;
   const std::size_t lacking = checks ? unknown + guessed : unknown;
   if (lacking == 0) return {};
   const std::string which =
@@ -248,9 +202,11 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
                                                const BuildOptions& options,
                                                const Executor& executor, ProgressSink& progress,
                                                const ModelEngine* engine) {
-  check(options);
+  check(options.recipe);
+  const SplatMethod method = method_of(options.recipe);
+  const auto* ours = std::get_if<ConsistentOptions>(&options.recipe);
   if (cloud.empty()) throw Error(ErrorKind::data, "no points: there is nothing to model");
-  if (options.method == SplatMethod::semantic && (labels == nullptr || cloud.classes.empty()))
+  if (method == SplatMethod::semantic && (labels == nullptr || cloud.classes.empty()))
     throw Error(ErrorKind::data,
                 "the semantic method needs labels, and the input has none; "
                 "the descriptors method does without");
@@ -259,15 +215,15 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
   report.points_in = cloud.size();
   report.origins = count_origins(cloud);
   report.oriented = cloud.has_all_origins();
-  const std::string warning = origin_warning(options.method, report.origins);
+  const std::string warning = origin_warning(ours != nullptr, report.origins);
   if (!warning.empty()) progress.warn(warning);
-  if (options.method == SplatMethod::consistent) {
-    const double reach_m = kMostFusionCells * options.consistent.smallest_cell_m();
+  if (ours != nullptr) {
+    const double reach_m = kMostFusionCells * ours->smallest_cell_m();
     report.points_noise = remove_beyond(reach_m, cloud);
     tell_beyond(report.points_noise, report.points_in, reach_m, progress);
   }
   model.origin = cloud.origin;
-  model.method = std::string(method_name(options.method));
+  model.method = std::string(word_of(method, kSplatMethods));
   if (!cloud.classes.empty() && labels != nullptr) model.label_scheme = labels->name();
 
   std::unique_ptr<ModelEngine> cpu;
@@ -275,15 +231,16 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
     cpu = make_cpu_model_engine(executor);
     engine = cpu.get();
   }
-  const ClassTables tables = class_tables(cloud, labels, options, report);
+  const ClassTables tables =
+      class_tables(cloud, labels, options, method == SplatMethod::semantic, report);
   {
     StepClock clock(report.steps, progress);
     const auto step = [&](std::string_view name, int passes) { clock.begin(name, passes); };
-    if (options.method == SplatMethod::consistent) {
-      run(*engine->consistent_steps(), std::move(cloud), tables, options, step, model, report);
-    } else {
-      run(*engine->paper_steps(), std::move(cloud), tables, options, step, model, report);
-    }
+    std::visit(
+        [&](const auto& chosen) {
+          run(chosen, *engine, std::move(cloud), tables, step, model, report);
+        },
+        options.recipe);
     clock.end();
   }
   report.primitives = model.size();

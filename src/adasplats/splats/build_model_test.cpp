@@ -45,10 +45,12 @@ PointCloud small_place(std::size_t points, double noise_m) {
   return cloud;
 }
 
-std::pair<SplatModel, BuildReport> build(PointCloud cloud, const BuildOptions& options,
-                                         int threads = 2) {
+std::pair<SplatModel, BuildReport> build(PointCloud cloud, const PaperOptions& options,
+                                         int threads = 2,
+                                         DynamicRemoval removal = DynamicRemoval::movable) {
   ProgressSink quiet;
-  return build_model(std::move(cloud), &semantickitti_labels(), options, Executor(threads), quiet);
+  return build_model(std::move(cloud), &semantickitti_labels(), {options, removal},
+                     Executor(threads), quiet);
 }
 
 template <class T>
@@ -62,11 +64,11 @@ bool same_bytes(const SplatModel& a, const SplatModel& b) {
          same_bytes(a.groups, b.groups) && same_bytes(a.intensities, b.intensities);
 }
 
-class EveryMethod : public testing::TestWithParam<SplatMethod> {
+class EveryMethod : public testing::TestWithParam<PaperVariant> {
  protected:
-  BuildOptions options() const {
-    BuildOptions result;
-    result.method = GetParam();
+  PaperOptions options() const {
+    PaperOptions result;
+    result.variant = GetParam();
     return result;
   }
 };
@@ -82,7 +84,7 @@ TEST_P(EveryMethod, EveryLongStepTellsHowFarItIs) {
   RecordedProgress sink;
   ProgressMeter meter(sink);
   const Executor executor(1, {}, &meter);
-  build_model(small_place(100'000, 0.01), &semantickitti_labels(), options(), executor, meter);
+  build_model(small_place(100'000, 0.01), &semantickitti_labels(), {options()}, executor, meter);
   int long_steps = 0;
   for (const RecordedProgress::Step& step : sink.steps) {
     EXPECT_TRUE(step.is_ended) << step.name;
@@ -122,38 +124,35 @@ TEST_P(EveryMethod, SplatsLieOnTheSurfacesAndFaceTheSensor) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
-                         testing::Values(SplatMethod::basic, SplatMethod::descriptors,
-                                         SplatMethod::semantic));
+                         testing::Values(PaperVariant::basic, PaperVariant::descriptors,
+                                         PaperVariant::semantic));
 
 TEST(BuildModel, AdaptsTheNumberOfSplats) {
   // The paper's claim on a place of ground, surface and a pole: fewer splats with semantics.
-  BuildOptions options;
-  options.method = SplatMethod::basic;
+  PaperOptions options;
+  options.variant = PaperVariant::basic;
   options.resample = false;
   const std::size_t basic = build(small_place(60000, 0.005), options).first.size();
-  options.method = SplatMethod::semantic;
+  options.variant = PaperVariant::semantic;
   EXPECT_LT(build(small_place(60000, 0.005), options).first.size(), basic);
 }
 
 TEST(BuildModel, RemovesWhatMovesByLabel) {
   PointCloud cloud = small_place(5000, 0.005);
   for (std::size_t i = 0; i < cloud.size(); i += 10) cloud.classes[i] = i % 20 == 0 ? 252 : 10;
-  BuildOptions options;
+  PaperOptions options;
   options.denoise = false;
-  options.remove = DynamicRemoval::moving;
-  EXPECT_EQ(build(cloud, options).second.points_dynamic, 250U);
-  options.remove = DynamicRemoval::movable;
-  EXPECT_EQ(build(cloud, options).second.points_dynamic, 500U);
-  options.remove = DynamicRemoval::none;
-  EXPECT_EQ(build(cloud, options).second.points_dynamic, 0U);
+  EXPECT_EQ(build(cloud, options, 2, DynamicRemoval::moving).second.points_dynamic, 250U);
+  EXPECT_EQ(build(cloud, options, 2, DynamicRemoval::movable).second.points_dynamic, 500U);
+  EXPECT_EQ(build(cloud, options, 2, DynamicRemoval::none).second.points_dynamic, 0U);
 }
 
 TEST(BuildModel, DenoisingRemovesPlantedNoise) {
   PointCloud cloud = small_place(20000, 0.002);
   for (std::size_t i = 0; i < cloud.size(); i += 200)  // floor points 6 cm above the floor
     cloud.positions[i].z += 0.06F;
-  BuildOptions options;
-  options.method = SplatMethod::basic;
+  PaperOptions options;
+  options.variant = PaperVariant::basic;
   options.resample = false;
   const auto with = build(cloud, options);
   EXPECT_GE(with.second.points_noise, 90U);
@@ -163,7 +162,7 @@ TEST(BuildModel, DenoisingRemovesPlantedNoise) {
 }
 
 TEST(BuildModel, ErrorsAreClear) {
-  const auto kind_of_error = [](PointCloud cloud, const BuildOptions& options) {
+  const auto kind_of_error = [](PointCloud cloud, const PaperOptions& options) {
     try {
       build(std::move(cloud), options);
     } catch (const Error& error) {
@@ -171,7 +170,7 @@ TEST(BuildModel, ErrorsAreClear) {
     }
     return std::optional<ErrorKind>();
   };
-  BuildOptions options;
+  PaperOptions options;
   EXPECT_EQ(kind_of_error({}, options), ErrorKind::data);
   options.alpha = 2;
   EXPECT_EQ(kind_of_error(small_place(100, 0), options), ErrorKind::usage);
@@ -179,7 +178,7 @@ TEST(BuildModel, ErrorsAreClear) {
   options.alpha = std::nan("");
   EXPECT_EQ(kind_of_error(small_place(100, 0), options), ErrorKind::usage);
   options = {};
-  options.method = SplatMethod::semantic;
+  options.variant = PaperVariant::semantic;
   PointCloud unlabeled = small_place(100, 0);
   unlabeled.classes.clear();
   EXPECT_EQ(kind_of_error(unlabeled, options), ErrorKind::data);
@@ -189,10 +188,10 @@ TEST(BuildModel, ErrorsAreClear) {
 }
 
 TEST(BuildModel, DegenerateCloudsFinish) {
-  BuildOptions options;
-  for (const SplatMethod method :
-       {SplatMethod::basic, SplatMethod::descriptors, SplatMethod::semantic}) {
-    options.method = method;
+  PaperOptions options;
+  for (const PaperVariant variant :
+       {PaperVariant::basic, PaperVariant::descriptors, PaperVariant::semantic}) {
+    options.variant = variant;
     for (const std::size_t n : {1, 2, 39, 5000}) {
       PointCloud cloud = small_place(n, 0);
       for (Vec3f& p : cloud.positions) p = {1, 1, 1};
@@ -274,8 +273,8 @@ TEST(SelectGreedily, MostDiscardsFirstTakesTheWidestCandidate) {
 
 TEST(SplatModelFile, RoundTrip) {
   const auto path = std::filesystem::temp_directory_path() / "adasplats_model_test.ply";
-  BuildOptions options;
-  options.method = SplatMethod::semantic;
+  PaperOptions options;
+  options.variant = PaperVariant::semantic;
   SplatModel model = build(small_place(3000, 0.005), options).first;
   save_model(path, model);
   const SplatModel near = load_model(path);

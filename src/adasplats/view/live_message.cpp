@@ -10,6 +10,8 @@
 #include <span>
 
 #include "adasplats/core/error.h"
+#include "adasplats/pipeline/session/settings_json.h"
+#include "adasplats/sensors/sensor_overrides.h"
 
 namespace adasplats {
 namespace {
@@ -77,85 +79,88 @@ std::string short_number(double value) {
   return {text.data(), end};
 }
 
-/// One setting that is a number: its bounds, where it goes, and the option of `simulate` for it.
-struct NumberSetting {
-  const char* name;
-  double least, most;
-  const char* option;
-  double& (*value)(ScanSettings&);
-};
-
-std::span<const NumberSetting> number_settings() {
-  static constexpr NumberSetting kSettings[] = {
-      {"range_noise_m", 0, 10, "--range-noise",
-       [](ScanSettings& s) -> double& { return s.sensor.range_noise_m; }},
-      {"rotation_hz", 0.1, 100, "--rotation-rate",
-       [](ScanSettings& s) -> double& { return s.sensor.rotation_hz; }},
-      {"min_range_m", 0, 1e4, "--min-range",
-       [](ScanSettings& s) -> double& { return s.sensor.min_range_m; }},
-      {"max_range_m", 0.1, 1e4, "--max-range",
-       [](ScanSettings& s) -> double& { return s.sensor.max_range_m; }},
-      {"rain_mm_h", 0, 500, "--rain",
-       [](ScanSettings& s) -> double& { return s.weather.rain_mm_h; }},
-      {"snow_mm_h", 0, 100, "--snow",
-       [](ScanSettings& s) -> double& { return s.weather.snow_mm_h; }},
-  };
-  return kSettings;
+double number_of(const Json& json, const Setting& setting) {
+  const double value = json.is_number() ? json.get<double>() : std::nan("");
+  if (is_in_range(setting, value)) return value;
+  refuse(std::string(setting.key) + ": expected " + range_text(setting) + ", found " +
+         json.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, 60));
 }
 
-struct CountSetting {
-  const char* name;
-  int most;
-  const char* option;
-  int& (*value)(ScanSettings&);
-};
+/// Takes the setting of a key from JSON, and notes the option of `simulate` for it.
+class SettingFromJson {
+ public:
+  SettingFromJson(const std::string& key, const Json& json, std::vector<std::string>& options)
+      : key_(key), json_(json), options_(options) {}
 
-std::span<const CountSetting> count_settings() {
-  static constexpr CountSetting kSettings[] = {
-      {"sub_rays", 19, "--sub-rays", [](ScanSettings& s) -> int& { return s.beam.sub_rays; }},
-      {"returns", 3, "--returns", [](ScanSettings& s) -> int& { return s.beam.returns; }},
-  };
-  return kSettings;
-}
+  bool found() const { return found_; }
 
-/// Fog has no greatest visibility: 0 and null are clear air.
-void set_fog(LiveSensor& sensor, const Json& json) {
-  const double visibility_m = json.is_null() ? 0 : number_of(json, "fog_visibility_m", 0, 1e6);
-  if (visibility_m == 0) return;
-  sensor.settings.weather.fog_visibility_m = visibility_m;
-  sensor.options.insert(sensor.options.end(), {"--fog", short_number(visibility_m)});
-}
+  template <class T>
+  void operator()(const Setting& setting, T& value) {
+    if (key_ != setting.key) return;
+    found_ = true;
+    if constexpr (std::is_enum_v<T>) {
+      take_word(setting, value);
+    } else if constexpr (std::is_same_v<T, int>) {
+      const double number = number_of(json_, setting);
+      if (number != std::floor(number)) refuse(key_ + ": expected a whole number");
+      put(setting, static_cast<int>(number), value);
+    } else if constexpr (std::is_same_v<T, double>) {
+      // What is infinite by default has no number: 0 and null stand for it.
+      const bool none = json_.is_null() || json_ == 0;
+      if (none && !std::isfinite(T(value))) return;
+      put(setting, number_of(json_, setting), value);
+    } else {
+      put(setting, number_of(json_, setting), value);
+    }
+  }
 
-bool set_number(LiveSensor& sensor, const std::string& name, const Json& json) {
-  for (const NumberSetting& setting : number_settings()) {
-    if (name != setting.name) continue;
-    double& value = setting.value(sensor.settings);
-    const double given = number_of(json, name, setting.least, setting.most);
-    if (given != value)
-      sensor.options.insert(sensor.options.end(), {setting.option, short_number(given)});
+ private:
+  template <class T>
+  void take_word(const Setting& setting, T& value) {
+    const std::string word = text_of(json_, key_);
+    for (const auto& [each, meaning] : words_of(value)) {
+      if (each != word) continue;
+      if (meaning != value) options_.insert(options_.end(), {option_of(setting), word});
+      value = meaning;
+      return;
+    }
+    std::string known;
+    for (const auto& [each, meaning] : words_of(value))
+      known += (known.empty() ? "" : ", ") + std::string(each);
+    refuse(key_ + ": expected one of " + known);
+  }
+
+  template <class T, class Given>
+  void put(const Setting& setting, Given given, T& value) {
+    if (value != given)
+      options_.insert(options_.end(),
+                      {option_of(setting), short_number(static_cast<double>(given))});
     value = given;
-    return true;
   }
-  return false;
+
+  const std::string& key_;
+  const Json& json_;
+  std::vector<std::string>& options_;
+  bool found_ = false;
+};
+
+/// The sensor's own values as settings.
+SensorOverrides overrides_of(const LidarModel& sensor) {
+  return {sensor.range_noise_m, sensor.min_range_m, sensor.max_range_m, sensor.rotation_hz};
 }
 
-bool set_count(LiveSensor& sensor, const std::string& name, const Json& json) {
-  for (const CountSetting& setting : count_settings()) {
-    if (name != setting.name) continue;
-    int& value = setting.value(sensor.settings);
-    const double given = number_of(json, name, 1, setting.most);
-    if (given != std::floor(given)) refuse(name + ": expected a whole number");
-    if (static_cast<int>(given) != value)
-      sensor.options.insert(sensor.options.end(), {setting.option, short_number(given)});
-    value = static_cast<int>(given);
-    return true;
-  }
-  return false;
+bool set_by_table(LiveSensor& sensor, const std::string& key, const Json& json) {
+  SettingFromJson take(key, json, sensor.options);
+  SensorOverrides overrides = overrides_of(sensor.settings.sensor);
+  visit_settings(overrides, take);
+  overrides.apply(sensor.settings.sensor);
+  visit_settings(sensor.settings.beam, take);
+  visit_settings(sensor.settings.weather, take);
+  return take.found();
 }
 
 void set(LiveSensor& sensor, const std::string& name, const Json& json) {
-  if (set_number(sensor, name, json) || set_count(sensor, name, json)) return;
-  if (name == "fog_visibility_m") return set_fog(sensor, json);
+  if (set_by_table(sensor, name, json)) return;
   if (name == "noise") {
     sensor.settings.noise = truth_of(json, name);
     if (!sensor.settings.noise) sensor.options.emplace_back("--no-noise");
@@ -176,8 +181,8 @@ LiveSensor parse_sensor(const Json& json) {
   if (!(sensor.settings.sensor.min_range_m < sensor.settings.sensor.max_range_m))
     refuse("min_range_m: expected less than max_range_m");
   check(sensor.settings);
-  const std::size_t rays = sensor.settings.sensor.rays_per_scan() *
-                           static_cast<std::size_t>(sensor.settings.beam.sub_rays);
+  const std::size_t rays =
+      sensor.settings.sensor.rays_per_scan() * sensor.settings.beam.hits_per_firing();
   if (rays > kMostRays)
     refuse(std::to_string(rays) + " rays a scan, expected at most " + std::to_string(kMostRays));
   return sensor;
@@ -203,13 +208,11 @@ PickMessage parse_pick(const Json& json, Vec3d origin) {
 }
 
 Json settings_json(const LiveSensor& sensor) {
-  ScanSettings settings = sensor.settings;
-  Json json = {{"noise", settings.noise}};
-  for (const NumberSetting& setting : number_settings())
-    json[setting.name] = setting.value(settings);
-  for (const CountSetting& setting : count_settings()) json[setting.name] = setting.value(settings);
-  const double fog_m = settings.weather.fog_visibility_m;
-  json["fog_visibility_m"] = std::isfinite(fog_m) ? fog_m : 0.0;
+  Json json = {{"noise", sensor.settings.noise}};
+  put_settings(overrides_of(sensor.settings.sensor), json);
+  put_settings(sensor.settings.beam, json);
+  put_settings(sensor.settings.weather, json);
+  if (!std::isfinite(sensor.settings.weather.fog_visibility_m)) json["fog_visibility_m"] = 0.0;
   json["rolling_shutter"] = sensor.rolling_shutter;
   return json;
 }

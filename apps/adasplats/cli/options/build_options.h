@@ -7,12 +7,6 @@
 
 namespace adasplats::app {
 
-/// The words of --method.
-const std::vector<std::pair<std::string, SplatMethod>>& method_names();
-
-/// Adds the flags of BuildOptions.
-void add_build_options(OptionSet& app, BuildOptions& options);
-
 /// " (car 1,200, person 30)"; empty where there are none.
 std::string text_of(const std::vector<RemovedPoints::OfClass>& removed);
 

@@ -31,6 +31,16 @@ Option* Option::group(const std::string& name) {
   return this;
 }
 
+Option* Option::in_range(const Setting& setting) {
+  const auto refusal = [setting](const std::string& text) -> std::string {
+    double value = 0;
+    if (!CLI::detail::lexical_cast(text, value)) return "";  // the reader says so
+    return is_in_range(setting, value) ? "" : "is " + text + ", expected " + range_text(setting);
+  };
+  option_->check(CLI::Validator(refusal, ""));
+  return this;
+}
+
 Option* Option::range(int least, int most) {
   option_->check(CLI::Range(least, most).description(""));
   return this;

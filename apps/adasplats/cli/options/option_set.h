@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/core/setting.h"
+
 // The parser itself takes seconds to compile: only the files that run it include it.
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
@@ -28,6 +30,8 @@ class Option {
   Option* default_str(const std::string& text);
   /// Heading in help.
   Option* group(const std::string& name);
+  /// Refuses numbers outside of a setting's range.
+  Option* in_range(const Setting& setting);
   /// Refuses whole numbers outside of [least, most].
   Option* range(int least, int most);
   /// One value may hold several with `separator` between them.

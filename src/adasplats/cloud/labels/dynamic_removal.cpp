@@ -17,15 +17,6 @@ bool can_remove(const LabelScheme& labels, DynamicRemoval removal) {
 
 }  // namespace
 
-std::string_view name_of(DynamicRemoval removal) {
-  switch (removal) {
-    case DynamicRemoval::none: return "none";
-    case DynamicRemoval::moving: return "moving";
-    case DynamicRemoval::movable: return "movable";
-  }
-  throw std::logic_error("name_of: no such removal");
-}
-
 bool is_removed(const SemanticClass& semantic_class, DynamicRemoval removal) {
   switch (removal) {
     case DynamicRemoval::none: return false;

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/core/words.h"
 
 namespace adasplats {
 
@@ -17,8 +19,14 @@ namespace adasplats {
 /// all that is movable ("moving and parked cars, moving pedestrians, cyclists, etc.", section
 /// "Adaptive Splatting"); only its SimKITTI32 keeps parked cars.
 enum class DynamicRemoval : std::uint8_t { none, moving, movable };
-
-std::string_view name_of(DynamicRemoval removal);
+inline constexpr std::pair<std::string_view, DynamicRemoval> kDynamicRemovals[] = {
+    {"none", DynamicRemoval::none},
+    {"moving", DynamicRemoval::moving},
+    {"movable", DynamicRemoval::movable}};
+inline Words<DynamicRemoval> words_of(DynamicRemoval) { return kDynamicRemovals; }
+inline std::string_view name_of(DynamicRemoval removal) {
+  return word_of(removal, kDynamicRemovals);
+}
 
 bool is_removed(const SemanticClass& semantic_class, DynamicRemoval removal);
 

@@ -59,7 +59,7 @@ class CudaPaperSteps final : public PaperSteps {
     return cloud_.size();
   }
 
-  std::size_t denoise(const BuildOptions& options) override {
+  std::size_t denoise(const PaperOptions& options) override {
     const DeviceGuard guard(device_);
     const DevicePointIndex index(cloud_.positions.data(), cloud_.size(), stream_.get());
     const DeviceBase base = base_neighborhoods(
@@ -75,13 +75,13 @@ class CudaPaperSteps final : public PaperSteps {
     return cloud_.size();
   }
 
-  std::size_t generate(const BuildOptions& options, StepSink step) override {
+  std::size_t generate(const PaperOptions& options, StepSink step) override {
     const DeviceGuard guard(device_);
     generation_ = generate_splats(cloud_, groups_, options, stream_.get(), step);
     return generation_.disks.size();
   }
 
-  Resampled resample(const BuildOptions& options) override {
+  Resampled resample(const PaperOptions& options) override {
     const DeviceGuard guard(device_);
     DeviceResampled made = gpu::resample(cloud_, generation_, options, stream_.get());
     cloud_ = std::move(made.cloud);

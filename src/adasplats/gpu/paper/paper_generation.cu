@@ -172,9 +172,9 @@ void begin(std::string_view name, cudaStream_t stream, StepSink step) {
 
 DeviceGeneration generate_splats(const DeviceCloud& cloud,
                                  const DeviceBuffer<SemanticGroup>& groups,
-                                 const BuildOptions& options, cudaStream_t stream, StepSink step) {
+                                 const PaperOptions& options, cudaStream_t stream, StepSink step) {
   begin("neighbourhoods", stream, step);
-  const bool adaptive = options.method != SplatMethod::basic;
+  const bool adaptive = options.variant != PaperVariant::basic;
   const DevicePointIndex index(cloud.positions.data(), cloud.size(), stream);
   DeviceBase base = base_neighborhoods(
       cloud.positions.data(), index,

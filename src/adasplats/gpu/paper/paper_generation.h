@@ -23,6 +23,6 @@ struct DeviceGeneration {
 /// Errors: usage (neighbourhoods too large for a GPU).
 DeviceGeneration generate_splats(const DeviceCloud& cloud,
                                  const DeviceBuffer<SemanticGroup>& groups,
-                                 const BuildOptions& options, cudaStream_t stream, StepSink step);
+                                 const PaperOptions& options, cudaStream_t stream, StepSink step);
 
 }  // namespace adasplats::gpu

@@ -350,12 +350,13 @@ PointCloud dense_room() {
   return cloud;
 }
 
-std::pair<SplatModel, BuildReport> build(const PointCloud& cloud, const BuildOptions& options,
+std::pair<SplatModel, BuildReport> build(const PointCloud& cloud, const PaperOptions& options,
                                          bool on_gpu) {
   ProgressSink quiet;
   const Executor executor(0);
   const auto engine = on_gpu ? make_cuda_model_engine(0, executor) : nullptr;
-  return build_model(cloud, &semantickitti_labels(), options, executor, quiet, engine.get());
+  return build_model(cloud, &semantickitti_labels(), {options, DynamicRemoval::moving}, executor,
+                     quiet, engine.get());
 }
 
 template <class T>
@@ -388,7 +389,7 @@ void publish(const std::string& name, double value) {
 }
 
 struct Case {
-  SplatMethod method;
+  PaperVariant variant;
   bool resample;
   bool labels;
   bool sensors;
@@ -396,11 +397,10 @@ struct Case {
 
 class EveryMethod : public testing::TestWithParam<Case> {
  protected:
-  BuildOptions options() const {
-    BuildOptions result;
-    result.method = GetParam().method;
+  PaperOptions options() const {
+    PaperOptions result;
+    result.variant = GetParam().variant;
     result.resample = GetParam().resample;
-    result.remove = DynamicRemoval::moving;
     return result;
   }
   PointCloud cloud() const {
@@ -436,11 +436,11 @@ TEST_P(EveryMethod, GivesTheSameBytesTwice) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
-                         testing::Values(Case{SplatMethod::basic, false, true, true},
-                                         Case{SplatMethod::descriptors, false, true, true},
-                                         Case{SplatMethod::descriptors, true, false, false},
-                                         Case{SplatMethod::semantic, false, true, true},
-                                         Case{SplatMethod::semantic, true, true, true}));
+                         testing::Values(Case{PaperVariant::basic, false, true, true},
+                                         Case{PaperVariant::descriptors, false, true, true},
+                                         Case{PaperVariant::descriptors, true, false, false},
+                                         Case{PaperVariant::semantic, false, true, true},
+                                         Case{PaperVariant::semantic, true, true, true}));
 
 TEST(PaperModel, OfDegenerateCloudsIsThatOfTheCpu) {
   ADASPLATS_NEEDS_GPU();
@@ -448,8 +448,8 @@ TEST(PaperModel, OfDegenerateCloudsIsThatOfTheCpu) {
     for (const std::size_t count : {1, 2, 39, 41, 3000}) {
       PointCloud cloud;
       cloud.positions = make_points(shape, count);
-      BuildOptions options;
-      options.method = SplatMethod::descriptors;
+      PaperOptions options;
+      options.variant = PaperVariant::descriptors;
       SCOPED_TRACE(count);
       expect_same(build(cloud, options, true), build(cloud, options, false));
     }
@@ -460,8 +460,8 @@ TEST(PaperModel, AMillionEqualPointsEnd) {
   ADASPLATS_NEEDS_GPU();
   PointCloud cloud;
   cloud.positions.assign(1'000'000, {1, 2, 3});
-  BuildOptions options;
-  options.method = SplatMethod::descriptors;
+  PaperOptions options;
+  options.variant = PaperVariant::descriptors;
   const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(build(cloud, options, true).first.size(), 0U);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
@@ -473,14 +473,14 @@ TEST(PaperModel, OptionsOfTheMethodsCount) {
   ADASPLATS_NEEDS_GPU();
   const PointCloud cloud = scanned_room();
   for (int variant = 0; variant < 6; ++variant) {
-    BuildOptions options;
-    options.method = SplatMethod::semantic;
+    PaperOptions options;
+    options.variant = PaperVariant::semantic;
     if (variant == 0) options.radius_m = 0.12;
     if (variant == 1) options.error_m = 0.004;
     if (variant == 2) options.group_normals = false;
     if (variant == 3) options.selection = SelectionOrder::curve;
-    if (variant == 4) options.resample_base = BuildOptions::ResampleBase::points;
-    if (variant == 5) options.resample_base = BuildOptions::ResampleBase::centers;
+    if (variant == 4) options.resample_base = ResampleBase::points;
+    if (variant == 5) options.resample_base = ResampleBase::centers;
     SCOPED_TRACE(variant);
     expect_same(build(cloud, options, true), build(cloud, options, false));
   }
@@ -488,8 +488,8 @@ TEST(PaperModel, OptionsOfTheMethodsCount) {
 
 TEST(PaperModel, ErrorsLeaveNothingBehind) {
   ADASPLATS_NEEDS_GPU();
-  BuildOptions options;
-  options.method = SplatMethod::basic;
+  PaperOptions options;
+  options.variant = PaperVariant::basic;
   build(scanned_room(), options, true);  // what CUDA itself needs is there from now on
   const std::size_t before = free_memory_bytes(0);
   options.neighbors = 1000;
@@ -502,8 +502,8 @@ TEST(PaperModel, ErrorsLeaveNothingBehind) {
 TEST(PaperModel, TooLittleMemoryIsAnError) {
   ADASPLATS_NEEDS_GPU();
   const PointCloud cloud = dense_room();
-  BuildOptions options;
-  options.method = SplatMethod::basic;
+  PaperOptions options;
+  options.variant = PaperVariant::basic;
   options.neighbors = 500;  // lists of 230,400 x 500 x 4 bytes
   {
     const Stream stream;

@@ -61,8 +61,8 @@ struct Alike {
   }
 };
 
-Alike alike_in(const Centers& centers, const BuildOptions& options, cudaStream_t stream) {
-  const bool by_class = options.method == SplatMethod::semantic;
+Alike alike_in(const Centers& centers, const PaperOptions& options, cudaStream_t stream) {
+  const bool by_class = options.variant == PaperVariant::semantic;
   return {centers.disks.data(), by_class ? centers.cloud.classes.data() : nullptr,
           centers.groups.data(), static_cast<float>(options.smoothness),
           has_all_origins(centers.cloud, stream)};
@@ -121,7 +121,7 @@ std::size_t most_new_points(const DeviceBuffer<std::uint32_t>& densities, double
 }
 
 /// New points in no order, midpoints that two splats made twice.
-NewPoints interpolate_points(const Centers& centers, double radius_m, const BuildOptions& options,
+NewPoints interpolate_points(const Centers& centers, double radius_m, const PaperOptions& options,
                              cudaStream_t stream) {
   const DevicePointIndex index(centers.cloud.positions.data(), centers.cloud.size(), stream);
   const auto radius = static_cast<float>(radius_m);
@@ -212,12 +212,12 @@ Part joined(std::span<const Part> parts, cudaStream_t stream) {
 }  // namespace
 
 DeviceResampled resample(const DeviceCloud& cloud, const DeviceGeneration& first,
-                         const BuildOptions& options, cudaStream_t stream) {
+                         const PaperOptions& options, cudaStream_t stream) {
   const Centers centers = centers_of(cloud, first, stream);
   const NewPoints added =
       without_duplicates(interpolate_points(centers, first.radius_m, options, stream), stream);
 
-  using Base = BuildOptions::ResampleBase;
+  using Base = ResampleBase;
   const Base base = options.resample_base;
   Part parts[3] = {
       part_of(cloud, first.groups, base != Base::centers, base == Base::points, stream),

@@ -6,7 +6,7 @@
 
 #include "adasplats/gpu/neighbors/cloud_on_device.h"
 #include "adasplats/gpu/paper/paper_generation.h"
-#include "adasplats/splats/build_model.h"
+#include "adasplats/splats/paper/paper_options.h"
 
 namespace adasplats::gpu {
 
@@ -20,6 +20,6 @@ struct DeviceResampled {
 /// What resample() gives, the same bits, but in canonical order.
 /// Errors: usage (splats are too dense for a GPU).
 DeviceResampled resample(const DeviceCloud& cloud, const DeviceGeneration& first,
-                         const BuildOptions& options, cudaStream_t stream);
+                         const PaperOptions& options, cudaStream_t stream);
 
 }  // namespace adasplats::gpu

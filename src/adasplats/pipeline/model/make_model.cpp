@@ -27,7 +27,7 @@ void require_splats(const SplatModel& model, const BuildReport& built) {
                   std::to_string(built.points_dynamic) + " were removed as dynamic and " +
                   std::to_string(built.points_noise) +
                   " as noise, and no surface was found in the rest; it takes several points of "
-                  "each surface (see --cell, --neighbors, --denoise and --remove)");
+                  "each surface (see cell, neighbors, denoise and remove)");
 }
 
 /// Makes one model; the points come from `load_points`, as often as they are asked for: building
@@ -42,9 +42,9 @@ class Making {
         scheme_(std::move(scheme)),
         load_points_(std::move(load_points)),
         session_(session) {
-    if (!scheme_ && options_.build.method == SplatMethod::semantic) {
+    if (!scheme_ && method_of(options_.build.recipe) == SplatMethod::semantic) {
       throw Error(ErrorKind::usage,
-                  "--method semantic needs --labels (semantickitti, paris-carla-3d or a file)");
+                  "the method semantic needs labels (semantickitti, paris-carla-3d or a file)");
     }
   }
 

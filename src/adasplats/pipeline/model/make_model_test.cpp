@@ -37,7 +37,7 @@ class MakeModelTest : public testing::Test {
 TEST_F(MakeModelTest, PointsInMemoryGiveTheModelOfTheStageBelow) {
   for (const SplatMethod method : {SplatMethod::basic, SplatMethod::consistent}) {
     ModelOptions options;
-    options.build.method = method;
+    options.build.recipe = RecipeChoice{.method = method}.recipe();
     options.build.remove = DynamicRemoval::none;
     options.reflectance = false;
     const PointCloud cloud = plane();
@@ -56,7 +56,7 @@ TEST_F(MakeModelTest, PointsInMemoryGiveTheModelOfTheStageBelow) {
 TEST_F(MakeModelTest, LabelsAreNamedInTheModel) {
   ModelOptions options;
   options.labels = "semantickitti";
-  options.build.method = SplatMethod::semantic;
+  options.build.recipe = RecipeChoice{.method = SplatMethod::semantic}.recipe();
   const auto made = make_model(plane(), options, session_);
   EXPECT_EQ(made.first.label_scheme, "semantickitti");
   EXPECT_EQ(to_json(made.second)["primitives"], made.first.size());

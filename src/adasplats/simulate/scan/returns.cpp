@@ -220,24 +220,10 @@ Vec3f leaning(Vec3f axis, double horizontal_rad, double vertical_rad) {
       normalized(d + std::tan(horizontal_rad) * sideways + std::tan(vertical_rad) * upwards));
 }
 
-void check_count(const char* what, int found, int most) {
-  if (found >= 1 && found <= most) return;
-  throw Error(ErrorKind::usage, std::string(what) + " is " + std::to_string(found) +
-                                    ", expected 1 to " + std::to_string(most));
-}
-
 }  // namespace
 
 void check_beam(const BeamOptions& options, const LidarModel& sensor) {
-  check_count("the depth of hits a ray", options.depth, kMostDepth);
-  check_count("the number of sub-rays", options.sub_rays, static_cast<int>(kMostSubRays));
-  check_count("the number of returns a firing", options.returns, static_cast<int>(kMostSubRays));
-  if (!(options.depth_gap_m >= 0))
-    throw Error(ErrorKind::usage,
-                "the depth gap must be 0 m or more, found " + std::to_string(options.depth_gap_m));
-  if (!(options.separation_m >= 0))
-    throw Error(ErrorKind::usage, "the separation of returns must be 0 m or more, found " +
-                                      std::to_string(options.separation_m));
+  check_settings(options);
   if (options.sub_rays == 1) return;
   if (options.sub_rays == 2)
     throw Error(ErrorKind::usage,

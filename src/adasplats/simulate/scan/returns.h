@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adasplats/core/maths/ray.h"
+#include "adasplats/core/setting.h"
 #include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {
@@ -18,6 +19,7 @@ namespace adasplats {
 enum class ReturnMode : std::uint8_t { first, last, strongest };
 inline constexpr std::pair<std::string_view, ReturnMode> kReturnModes[] = {
     {"strongest", ReturnMode::strongest}, {"first", ReturnMode::first}, {"last", ReturnMode::last}};
+inline Words<ReturnMode> words_of(ReturnMode) { return kReturnModes; }
 
 /// What a firing sends out and how its echoes become returns.
 struct BeamOptions {
@@ -41,6 +43,45 @@ struct BeamOptions {
   }
 };
 
+/// Most hits a ray and most rays a firing: returns_of() works without the heap.
+inline constexpr int kMostDepth = 64;
+inline constexpr std::size_t kMostSubRays = 64;
+
+template <class Visit>
+void visit_settings(BeamOptions& beam, Visit&& visit) {
+  visit(Setting{.name = "depth",
+                .help = "Splats along a ray whose weighted mean is the echo (the paper's D = 5)",
+                .value = "D",
+                .least = 1,
+                .most = kMostDepth},
+        beam.depth);
+  visit(Setting{.name = "depth_gap",
+                .help = "Splats of a ray farther behind the one before are not averaged, m",
+                .value = "M",
+                .key = "depth_gap_m",
+                .least = 0},
+        beam.depth_gap_m);
+  visit(Setting{.name = "sub_rays",
+                .help = "Rays over the cross-section of a beam",
+                .value = "N",
+                .least = 1,
+                .most = kMostSubRays},
+        beam.sub_rays);
+  visit(Setting{.name = "separation",
+                .help = "Echoes nearer to one another are one return, m",
+                .value = "M",
+                .key = "separation_m",
+                .least = 0},
+        beam.separation_m);
+  visit(Setting{.name = "returns",
+                .help = "Most returns of a firing",
+                .value = "N",
+                .least = 1,
+                .most = kMostSubRays},
+        beam.returns);
+  visit(Setting{.name = "return_mode", .help = "Which echo comes first or alone"}, beam.mode);
+}
+
 /// One echo that a sensor tells.
 struct Return {
   float range_m = 0;            ///< along the firing's axis
@@ -48,11 +89,7 @@ struct Return {
   float energy = 0;             ///< share of the beam that came back from there, 0..1
 };
 
-/// Most hits a ray and most rays a firing: returns_of() works without the heap.
-inline constexpr int kMostDepth = 64;
-inline constexpr std::size_t kMostSubRays = 64;
-
-/// Errors: usage (depth, sub_rays or returns out of 1..64; a gap or separation below zero; 2
+/// Errors: usage (a setting out of range; 2
 /// sub-rays, which cannot stand evenly around the axis; sub-rays of a sensor without a divergence).
 void check_beam(const BeamOptions& options, const LidarModel& sensor);
 

@@ -378,20 +378,9 @@ Scan scan_of(std::span<const Told> told, const Scan& clear, std::span<const Firi
 }  // namespace
 
 void check_weather(const Weather& weather, const LidarModel& sensor) {
-  const auto refuse = [](const char* what, double found, const char* expected) {
-    throw Error(ErrorKind::usage,
-                std::string(what) + " is " + std::to_string(found) + ", expected " + expected);
-  };
-  if (!(weather.rain_mm_h >= 0 && std::isfinite(weather.rain_mm_h)))
-    refuse("the rain rate in mm/h", weather.rain_mm_h, "0 or more");
-  if (!(weather.snow_mm_h >= 0 && std::isfinite(weather.snow_mm_h)))
-    refuse("the snow rate in mm/h", weather.snow_mm_h, "0 or more");
-  if (!(weather.fog_visibility_m >= 0))
-    refuse("the visibility in m", weather.fog_visibility_m, "0 (no fog) or more");
-  if (!(weather.white_intensity > 0 && std::isfinite(weather.white_intensity)))
-    refuse("the intensity of a white wall", weather.white_intensity, "more than 0");
+  check_settings(weather);
   if (!(sensor.max_range_m > 0 && std::isfinite(sensor.max_range_m)))
-    refuse("the sensor's greatest range in m", sensor.max_range_m, "a length");
+    throw Error(ErrorKind::usage, "the sensor '" + sensor.name + "' has no greatest range");
 }
 
 bool Weather::is_clear() const { return extinction_per_m(*this) == 0; }

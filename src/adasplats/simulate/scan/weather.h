@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "adasplats/core/setting.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/simulate/scan/returns.h"
 #include "adasplats/simulate/scan/scan.h"
@@ -24,6 +25,36 @@ struct Weather {
   bool is_clear() const;
 };
 
+template <class Visit>
+void visit_settings(Weather& weather, Visit&& visit) {
+  visit(Setting{.name = "rain",
+                .help = "Rate of rain, mm/h",
+                .value = "MM/H",
+                .key = "rain_mm_h",
+                .least = 0},
+        weather.rain_mm_h);
+  visit(Setting{.name = "fog",
+                .help = "Visibility in fog, m",
+                .value = "M",
+                .key = "fog_visibility_m",
+                .least = 0,
+                .most = std::numeric_limits<double>::infinity()},
+        weather.fog_visibility_m);
+  visit(Setting{.name = "snow",
+                .help = "Rate of snow, mm/h of water",
+                .value = "MM/H",
+                .key = "snow_mm_h",
+                .least = 0},
+        weather.snow_mm_h);
+  visit(Setting{.name = "white_intensity",
+                .help = "Intensity of a white wall in the model's unit, for weather: 1, or 100 of "
+                        "bytes",
+                .value = "I",
+                .least = 0,
+                .above_least = true},
+        weather.white_intensity);
+}
+
 /// Extinction coefficient of the air, 1/m: the sum of the three.
 double extinction_per_m(const Weather& weather);
 
@@ -37,8 +68,7 @@ double told_share(const Weather& weather, const LidarModel& sensor, double range
 /// How likely a drop, a flake or fog nearer than `range_m` sends back enough to be told.
 double clutter_share(const Weather& weather, const LidarModel& sensor, double range_m);
 
-/// Errors: usage (rates or visibility negative or not a number, a white_intensity that is not
-/// positive, no greatest range).
+/// Errors: usage (a setting out of range, no greatest range).
 void check_weather(const Weather& weather, const LidarModel& sensor);
 
 /// The scan as it is in such weather. Intensities fall by exp(-2 alpha r); returns get lost
@@ -49,8 +79,7 @@ void check_weather(const Weather& weather, const LidarModel& sensor);
 ///
 /// `firings`: those of the scan, in the frame of its points (for de-skewed scans moved like these).
 /// Drawn by (seed, scan_index, firing). Where beam.returns > 1, return_indices are there.
-/// Errors: usage (rates or visibility negative or not a number, a white_intensity that is not
-/// positive, no greatest range). Throws std::logic_error where a return has no firing.
+/// Errors: those of check_weather(). Throws std::logic_error where a return has no firing.
 Scan in_weather(const Scan& clear, std::span<const Firing> firings, const LidarModel& sensor,
                 const BeamOptions& beam, const Weather& weather, std::uint64_t seed,
                 std::uint64_t scan_index);

@@ -21,7 +21,7 @@
 namespace adasplats {
 namespace {
 
-using Words = std::vector<std::string>;
+using KeyNames = std::vector<std::string>;
 
 constexpr double kFarthest_m = 1e9;
 constexpr double kMostScale = 1e6;
@@ -32,7 +32,7 @@ Error line_error(const std::filesystem::path& path, std::uint64_t line, const st
   return Error(kind, path.string() + ":" + std::to_string(line) + ": " + message);
 }
 
-std::string suggestion(const std::string& word, const Words& known) {
+std::string suggestion(const std::string& word, const KeyNames& known) {
   const std::optional<std::string> nearest = nearest_word(word, known);
   return nearest ? ", did you mean '" + *nearest + "'?" : std::string();
 }
@@ -40,7 +40,7 @@ std::string suggestion(const std::string& word, const Words& known) {
 /// One table of the file; every error has the line of what is wrong.
 class WorldTable {
  public:
-  WorldTable(const std::filesystem::path& path, const toml::table& table, const Words& known)
+  WorldTable(const std::filesystem::path& path, const toml::table& table, const KeyNames& known)
       : path_(path), table_(table) {
     for (const auto& [key, value] : table) {
       const std::string word(key.str());
@@ -162,7 +162,7 @@ std::optional<std::variant<std::uint16_t, std::string>> read_class(const WorldTa
 }
 
 bool read_only_during(const WorldTable& table) {
-  static const Words choices = {"always", "during"};
+  static const KeyNames choices = {"always", "during"};
   const std::string word = table.text("present");
   if (word.empty() || word == "always") return false;
   if (word == "during") return true;
@@ -199,7 +199,7 @@ std::uint16_t class_number(const WorldFile& file, const WorldFileObject& object,
   if (const auto* const number = std::get_if<std::uint16_t>(&*object.class_id)) return *number;
   const std::string& name = std::get<std::string>(*object.class_id);
   if (const SemanticClass* const found = scheme.find(name)) return found->id;
-  Words names;
+  KeyNames names;
   for (const SemanticClass& one : scheme.classes()) names.push_back(one.name);
   throw line_error(
       file.path, object.line,
@@ -220,8 +220,8 @@ Trajectory trajectory_of(const WorldFile& file, const WorldFileObject& object) {
 }  // namespace
 
 WorldFile read_world_file(const std::filesystem::path& path) {
-  static const Words file_keys = {"model", "object"};
-  static const Words object_keys = {"geometry", "class",     "instance",   "position",
+  static const KeyNames file_keys = {"model", "object"};
+  static const KeyNames object_keys = {"geometry", "class",     "instance",   "position",
                                     "yaw_deg",  "pitch_deg", "roll_deg",   "scale",
                                     "name",     "present",   "trajectory", "scan"};
   const toml::table content = parse(path);

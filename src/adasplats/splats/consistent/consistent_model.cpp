@@ -4,9 +4,26 @@
 
 #include <algorithm>
 
+#include "adasplats/core/error.h"
 #include "adasplats/splats/consistent/consistent_steps.h"
 
 namespace adasplats {
+
+void check(const ConsistentOptions& consistent) {
+  check_settings(consistent);
+  const auto require = [](bool ok, const char* message) {
+    if (!ok) throw Error(ErrorKind::usage, message);
+  };
+  require(consistent.small_cell_m < consistent.cell_m,
+          "small cells must be smaller than the cells, or 0");
+  require(SectorReach::can_have(consistent.cover.sectors) &&
+              SectorReach::can_have(consistent.cover.unchecked_sectors),
+          "sectors must be 0, 1, 2, 4, 8 or 16");
+  require(consistent.judge.core_rings >= 1 && consistent.judge.core_rings <= RayEvidence::kBins,
+          "the rings of a disk's middle must be 1 to 16");
+  require(consistent.evidence_rays > 0 && consistent.evidence.stride > 0,
+          "evidence rays and their stride must be greater than 0");
+}
 
 AdaptivePlaneOptions ConsistentOptions::planes_for_splitting() const {
   AdaptivePlaneOptions few = planes;

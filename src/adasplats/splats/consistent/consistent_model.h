@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "adasplats/core/host_device.h"
+#include "adasplats/core/setting.h"
 #include "adasplats/splats/consistent/seed_growth.h"
 #include "adasplats/splats/rays/disk_evidence.h"
 #include "adasplats/splats/rays/disk_shift.h"
@@ -57,6 +58,52 @@ struct ConsistentOptions {
   /// Of growing disks; `checked`: rays tell where surfaces end.
   CoverOptions cover_options(bool checked) const;
 };
+
+template <class Visit>
+void visit_settings(ConsistentOptions& consistent, Visit&& visit) {
+  constexpr const char* kGroup = "Method consistent";
+  visit(Setting{.name = "cell",
+                .help = "Side of the cells that points are fused in, m",
+                .key = "cell_m",
+                .group = kGroup,
+                .least = 0,
+                .above_least = true},
+        consistent.cell_m);
+  visit(Setting{.name = "small_cell",
+                .help = "Side of cells where the surface is not flat, m; 0: as elsewhere",
+                .key = "small_cell_m",
+                .group = kGroup,
+                .least = 0},
+        consistent.small_cell_m);
+  visit(Setting{.name = "largest_radius",
+                .help = "Of a splat, m; 0: splats do not grow over their neighbours",
+                .key = "largest_radius_m",
+                .group = kGroup,
+                .least = 0},
+        consistent.cover.largest_radius_m);
+  visit(Setting{.name = "balance_rounds",
+                .help = "Of judging small disks by the measured rays; 0: no ray check",
+                .group = kGroup,
+                .least = 0},
+        consistent.balance_rounds);
+  visit(Setting{.name = "strict_rounds",
+                .help = "Of limiting grown splats that rays go through",
+                .group = kGroup,
+                .least = 0},
+        consistent.strict_rounds);
+  visit(Setting{.name = "settle_rounds",
+                .help = "Of moving splats to where rays end",
+                .group = kGroup,
+                .least = 0},
+        consistent.settle_rounds);
+  visit(Setting{.name = "fill",
+                .help = "Put small splats where measured rays fall through",
+                .group = kGroup},
+        consistent.fill);
+}
+
+/// Errors: usage (an option out of range).
+void check(const ConsistentOptions& consistent);
 
 /// What consistent_disks() did, in numbers.
 struct ConsistentReport {

@@ -32,7 +32,6 @@ struct Warnings : ProgressSink {
 
 BuildOptions consistent_options() {
   BuildOptions options;
-  options.method = SplatMethod::consistent;
   options.remove = DynamicRemoval::none;
   return options;
 }
@@ -150,7 +149,7 @@ TEST(ConsistentModel, WhatLaterRaysPassThroughLeavesNextToNoSplat) {
   EXPECT_TRUE(room_model().report.ray_checked);
   // Without the rays it stays: that is what the check is for.
   BuildOptions unchecked = consistent_options();
-  unchecked.consistent.balance_rounds = 0;
+  std::get<ConsistentOptions>(unchecked.recipe).balance_rounds = 0;
   const Built built = build(cloud, 2, unchecked);
   EXPECT_GE(splats_in(built.model, above_floor, 0.05), 5U);
   EXPECT_FALSE(built.report.ray_checked);
@@ -220,10 +219,16 @@ TEST(ConsistentModel, MajorityOfACellAndTheSmallestOfEquals) {
 }
 
 /// Small neighbourhoods: enough for the bytes.
+ConsistentOptions quick_recipe() {
+  ConsistentOptions recipe;
+  recipe.planes.scales = {10, 20, 40, 40, 40};
+  recipe.cover.neighbors = 40;
+  return recipe;
+}
+
 BuildOptions quick_options() {
   BuildOptions options = consistent_options();
-  options.consistent.planes.scales = {10, 20, 40, 40, 40};
-  options.consistent.cover.neighbors = 40;
+  options.recipe = quick_recipe();
   return options;
 }
 
@@ -345,7 +350,7 @@ TEST(ConsistentModel, OptionsOutOfRangeAreAnError) {
   cloud.positions = {{1, 2, 3}};
   const auto kind_with = [&](auto change) {
     BuildOptions options = consistent_options();
-    change(options.consistent);
+    change(std::get<ConsistentOptions>(options.recipe));
     return kind_of_error(cloud, options);
   };
   EXPECT_EQ(kind_with([](ConsistentOptions&) {}), std::nullopt);
@@ -493,7 +498,7 @@ PointCloud ordered(const PointCloud& cloud) {
 TEST(ConsistentDisks, CellsBelongToTheirDisks) {
   // Every disk stands on its cell: off its mean by the shifts to the plane and to the rays at most.
   const PointCloud cloud = ordered(thin_room());
-  const ConsistentOptions options = quick_options().consistent;
+  const ConsistentOptions options = quick_recipe();
   const Made made = disks_of(cloud, options);
   EXPECT_TRUE(made.checked);
   ASSERT_EQ(made.cells.size(), made.disks.size());
@@ -517,14 +522,14 @@ TEST(ConsistentDisks, CellsBelongToTheirDisks) {
 TEST(ConsistentDisks, StepsWithRaysAreLeftOutWithoutThem) {
   const std::vector<std::string> expected = {"fusion", "planes", "cover"};
   const PointCloud cloud = ordered(thin_room());
-  ConsistentOptions options = quick_options().consistent;
+  ConsistentOptions options = quick_recipe();
   options.balance_rounds = 0;
   const Made without_rounds = disks_of(cloud, options);
   EXPECT_EQ(without_rounds.steps, expected);
   EXPECT_FALSE(without_rounds.checked);
   PointCloud without_sensors = cloud;
   without_sensors.sensor_positions.clear();
-  const Made made = disks_of(without_sensors, quick_options().consistent);
+  const Made made = disks_of(without_sensors, quick_recipe());
   EXPECT_EQ(made.steps, expected);
   EXPECT_FALSE(made.checked);
 }
@@ -546,7 +551,7 @@ std::vector<bool> points_missed(const PointCloud& cloud, const Made& made, doubl
 
 TEST(ConsistentDisks, FillingAddsSplatsWhereRaysFallBetweenAndChangesNoOther) {
   const PointCloud cloud = ordered(thin_room());
-  ConsistentOptions options = quick_options().consistent;
+  ConsistentOptions options = quick_recipe();
   options.cover.overlap = 0.95;  // leaves gaps between disks
   options.fill = false;
   const Made bare = disks_of(cloud, options);
@@ -575,7 +580,7 @@ TEST(ConsistentDisks, FillingAddsSplatsWhereRaysFallBetweenAndChangesNoOther) {
 
 TEST(ConsistentDisks, SmallCellsAreWhereNothingIsFlat) {
   const PointCloud cloud = ordered(thin_room());
-  ConsistentOptions options = quick_options().consistent;
+  ConsistentOptions options = quick_recipe();
   const FusedPoints large = fuse_points(cloud.positions, options.cell_m, Executor(1));
   options.small_cell_m = 0;
   const Made whole = disks_of(cloud, options);
@@ -612,7 +617,7 @@ TEST(ConsistentDisks, WithoutSensorPositionsDisksEndWhereAFlatPatchEnds) {
       cloud.positions.push_back(
           {0.05F * static_cast<float>(x) + 0.02F, 0.05F * static_cast<float>(y) + 0.02F, 0.02F});
   constexpr float kEnd_m = 0.05F * 49 + 0.02F;
-  ConsistentOptions options = consistent_options().consistent;
+  ConsistentOptions options = ConsistentOptions();
   const auto farthest_over_border = [](const Made& made) {
     float farthest_m = 0;
     for (const Disk& disk : made.disks)

@@ -11,7 +11,7 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/scene/intersect.h"
 #include "adasplats/splats/consistent/consistent_model.h"
-#include "adasplats/splats/paper/paper_steps.h"
+#include "adasplats/splats/model/class_tables.h"
 
 namespace adasplats {
 

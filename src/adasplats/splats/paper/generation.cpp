@@ -76,31 +76,31 @@ std::vector<SurfacePoint> surface_points(const PointCloud& cloud, std::span<cons
 
 }  // namespace
 
-std::array<GroupRules, kSemanticGroups> group_rules(const BuildOptions& options, double radius_m,
+std::array<GroupRules, kSemanticGroups> group_rules(const PaperOptions& options, double radius_m,
                                                     double error_m, bool is_oriented) {
   std::array<GroupRules, kSemanticGroups> rules;
   for (std::size_t g = 0; g < kSemanticGroups; ++g) {
     GroupScale scale;
-    if (options.method == SplatMethod::semantic) scale = options.semantic_scales[g];
-    if (options.method == SplatMethod::descriptors) {
+    if (options.variant == PaperVariant::semantic) scale = options.semantic_scales[g];
+    if (options.variant == PaperVariant::descriptors) {
       const bool planar = static_cast<SemanticGroup>(g) == SemanticGroup::surface ||
                           static_cast<SemanticGroup>(g) == SemanticGroup::ground;
       scale = planar ? options.planar_scale : options.semantic_scales[g];
     }
     const float radius = static_cast<float>(radius_m * scale.radius);
-    const bool adaptive = options.method != SplatMethod::basic;
+    const bool adaptive = options.variant != PaperVariant::basic;
     rules[g] = {{scaled_count(options.neighbors, scale.neighbors), radius * radius},
                 {static_cast<float>(error_m * scale.error),
                  // Basic splats stop at the error bound alone.
                  adaptive ? static_cast<float>(options.smoothness) : -2.0F,
-                 options.method == SplatMethod::semantic, is_oriented},
+                 options.variant == PaperVariant::semantic, is_oriented},
                 scale.neighbors == 1 && scale.radius == 1};
   }
   return rules;
 }
 
 Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGroup> groups,
-                           const BuildOptions& options, const Executor& executor, StepSink step) {
+                           const PaperOptions& options, const Executor& executor, StepSink step) {
   step("neighbourhoods", base_passes(options.radius_m));
   const PointIndex index = PointIndex::from_sorted(cloud.positions, executor);
   BaseNeighborhoods base = base_neighborhoods(
@@ -110,14 +110,14 @@ Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGrou
   Generation result;
   result.radius_m = base.radius_m;
   result.error_m = options.error_m.value_or(base.error_m);
-  if (options.method != SplatMethod::basic) {
+  if (options.variant != PaperVariant::basic) {
     result.groups.assign(groups.begin(), groups.end());
     if (groups.empty())
       for (const ShapeKind kind : base.kinds) result.groups.push_back(group_of(kind));
   }
   const auto rules = group_rules(options, result.radius_m, result.error_m, cloud.has_all_origins());
 
-  const bool refines = options.method != SplatMethod::basic && options.group_normals;
+  const bool refines = options.variant != PaperVariant::basic && options.group_normals;
   step("normals", refines ? 1 : 0);
   if (refines)
     refine_normals(

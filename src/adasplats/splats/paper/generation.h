@@ -11,8 +11,8 @@
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
-#include "adasplats/splats/build_model.h"
 #include "adasplats/splats/paper/grow.h"
+#include "adasplats/splats/paper/paper_options.h"
 #include "adasplats/splats/paper/select.h"
 #include "adasplats/surface/base_neighborhoods.h"
 
@@ -37,7 +37,7 @@ struct GroupRules {
 };
 
 /// Those of the four groups for R and E. `is_oriented`: normals face the sensors.
-std::array<GroupRules, kSemanticGroups> group_rules(const BuildOptions& options, double radius_m,
+std::array<GroupRules, kSemanticGroups> group_rules(const PaperOptions& options, double radius_m,
                                                     double error_m, bool is_oriented);
 
 /// Splats of one pass over a cloud, each with the rank of the point it was grown from.
@@ -54,8 +54,8 @@ struct Generation {
 using StepSink = FunctionRef<void(std::string_view name, int passes)>;
 
 /// One generation of splats from a cloud in canonical order. `groups` has one entry a point, or is
-/// empty: then descriptors give them (SplatMethod::descriptors) or none are used (basic).
+/// empty: then descriptors give them (PaperVariant::descriptors) or none are used (basic).
 Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGroup> groups,
-                           const BuildOptions& options, const Executor& executor, StepSink step);
+                           const PaperOptions& options, const Executor& executor, StepSink step);
 
 }  // namespace adasplats

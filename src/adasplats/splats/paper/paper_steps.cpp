@@ -24,18 +24,18 @@ class CpuPaperSteps final : public PaperSteps {
     return cloud_.size();
   }
 
-  std::size_t denoise(const BuildOptions& options) override {
+  std::size_t denoise(const PaperOptions& options) override {
     const std::vector<std::uint32_t> kept = ranks_without_noise(options);
     if (kept.size() < cloud_.size()) keep(kept);
     return cloud_.size();
   }
 
-  std::size_t generate(const BuildOptions& options, StepSink step) override {
+  std::size_t generate(const PaperOptions& options, StepSink step) override {
     generation_ = generate_splats(cloud_, groups_, options, executor_, step);
     return generation_.disks.size();
   }
 
-  Resampled resample(const BuildOptions& options) override {
+  Resampled resample(const PaperOptions& options) override {
     ResampledCloud made = adasplats::resample(cloud_, generation_, options, executor_);
     cloud_ = std::move(made.cloud);
     groups_ = std::move(made.groups);
@@ -57,7 +57,7 @@ class CpuPaperSteps final : public PaperSteps {
   }
 
  private:
-  std::vector<std::uint32_t> ranks_without_noise(const BuildOptions& options) const {
+  std::vector<std::uint32_t> ranks_without_noise(const PaperOptions& options) const {
     const PointIndex index = PointIndex::from_sorted(cloud_.positions, executor_);
     const BaseNeighborhoods base = base_neighborhoods(
         cloud_.positions, index,

@@ -13,15 +13,10 @@
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/scene/intersect.h"
+#include "adasplats/splats/model/class_tables.h"
 #include "adasplats/splats/paper/generation.h"
 
 namespace adasplats {
-
-/// What build_model knows of every class id before it begins; empty: nothing (no labels).
-struct ClassTables {
-  std::vector<std::uint8_t> removed;  ///< 65,536 flags: points of this class are left out
-  std::vector<SemanticGroup> groups;  ///< 65,536 groups of the semantic method
-};
 
 /// What a generation made, with the attributes of the seed points.
 struct PaperSplats {
@@ -46,11 +41,11 @@ class PaperSteps {
 
   /// Paper section "Splat-Based Resampling and Denoising", first paragraph. Gives the number of
   /// points kept.
-  virtual std::size_t denoise(const BuildOptions& options) = 0;
+  virtual std::size_t denoise(const PaperOptions& options) = 0;
 
   /// One generation of splats from the cloud as it is; gives their number. Calls `step` as
   /// generate_splats() does.
-  virtual std::size_t generate(const BuildOptions& options, StepSink step) = 0;
+  virtual std::size_t generate(const PaperOptions& options, StepSink step) = 0;
 
   /// What the cloud became: its size and how many of its points are new.
   struct Resampled {
@@ -58,7 +53,7 @@ class PaperSteps {
     std::size_t new_points = 0;
   };
   /// Replaces the cloud by the one for the second generation, in canonical order.
-  virtual Resampled resample(const BuildOptions& options) = 0;
+  virtual Resampled resample(const PaperOptions& options) = 0;
 
   /// The splats of the last generation, on the host.
   virtual PaperSplats take_splats() = 0;

@@ -55,7 +55,7 @@ void fill_around(std::uint32_t splat, int missing, std::vector<std::uint64_t>& n
 
 std::vector<NewPoint> interpolate_points(const PointCloud& centers, const std::vector<Disk>& disks,
                                          std::span<const SemanticGroup> groups, double radius_m,
-                                         const BuildOptions& options, const Executor& executor) {
+                                         const PaperOptions& options, const Executor& executor) {
   const PointIndex index = PointIndex::from_sorted(centers.positions, executor);
   const float radius = static_cast<float>(radius_m);
   const ProgressPass pass(executor, 2 * centers.size());  // counting, filling
@@ -65,7 +65,7 @@ std::vector<NewPoint> interpolate_points(const PointCloud& centers, const std::v
   const auto smoothness = static_cast<float>(options.smoothness);
   const auto alike = [&](std::uint32_t a, std::uint32_t b) {
     if (!is_smooth(disks[a].normal, disks[b].normal, smoothness, is_oriented)) return false;
-    if (options.method == SplatMethod::semantic) return centers.classes[a] == centers.classes[b];
+    if (options.variant == PaperVariant::semantic) return centers.classes[a] == centers.classes[b];
     return groups.empty() || groups[a] == groups[b];
   };
   std::vector<std::vector<NewPoint>> chunks(centers.size() / kFineGrain + 1);
@@ -104,7 +104,7 @@ void remove_duplicates(std::vector<NewPoint>& points) {
 }  // namespace
 
 ResampledCloud resample(const PointCloud& cloud, const Generation& first,
-                        const BuildOptions& options, const Executor& executor) {
+                        const PaperOptions& options, const Executor& executor) {
   // Centers have moved off their seeds: put them along the curve again.
   PointCloud centers = cloud_of_centers(cloud, first);
   const std::vector<std::uint32_t> order = canonical_order(centers, executor);
@@ -141,7 +141,7 @@ ResampledCloud resample(const PointCloud& cloud, const Generation& first,
     }
     append(result.cloud, gather(from, kept));
   };
-  using Base = BuildOptions::ResampleBase;
+  using Base = ResampleBase;
   const Base base = options.resample_base;
   keep(cloud, first.groups, base != Base::centers, base == Base::points);
   keep(centers, groups, base == Base::centers, base != Base::points);

@@ -39,6 +39,6 @@ struct ResampledCloud {
 /// mean, new points half way between neighbouring splats of the same class (group without labels)
 /// whose normals agree. `cloud` is what `first` was generated from.
 ResampledCloud resample(const PointCloud& cloud, const Generation& first,
-                        const BuildOptions& options, const Executor& executor);
+                        const PaperOptions& options, const Executor& executor);
 
 }  // namespace adasplats

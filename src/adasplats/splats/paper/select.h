@@ -5,10 +5,13 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/maths/random.h"
+#include "adasplats/core/words.h"
 
 namespace adasplats {
 
@@ -28,6 +31,12 @@ enum class SelectionOrder : std::uint8_t {
   curve,                ///< by rank: along the Hilbert curve
   scattered,            ///< by a hash of the rank
 };
+inline constexpr std::pair<std::string_view, SelectionOrder> kSelectionOrders[] = {
+    {"most-discards-first", SelectionOrder::most_discards_first},
+    {"largest-first", SelectionOrder::largest_first},
+    {"curve", SelectionOrder::curve},
+    {"scattered", SelectionOrder::scattered}};
+inline Words<SelectionOrder> words_of(SelectionOrder) { return kSelectionOrders; }
 
 /// Candidates are taken by ascending key, equal ones by rank.
 ADASPLATS_HD inline std::uint64_t visiting_key(SelectionOrder order, std::uint32_t rank,

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/core/setting.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+namespace {
+
+constexpr double kFinite = std::numeric_limits<double>::max();
+
+std::string shortest(double value) {
+  std::array<char, 32> text{};
+  const auto [end, failure] = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end};
+}
+
+}  // namespace
+
+std::string option_of(const Setting& setting) {
+  std::string name = setting.name;
+  std::replace(name.begin(), name.end(), '_', '-');
+  return "--" + name;
+}
+
+bool is_in_range(const Setting& setting, double value) {
+  return (setting.above_least ? value > setting.least : value >= setting.least) &&
+         value <= setting.most;
+}
+
+std::string range_text(const Setting& setting) {
+  const bool has_least = setting.least > -kFinite;
+  const bool has_most = setting.most < kFinite;
+  const std::string least = shortest(setting.least);
+  const std::string most = shortest(setting.most);
+  if (!has_least) return has_most ? "at most " + most : "a finite number";
+  if (setting.above_least) return "more than " + least + (has_most ? ", at most " + most : "");
+  return has_most ? least + " to " + most : least + " or more";
+}
+
+void check_setting(const Setting& setting, double value) {
+  if (is_in_range(setting, value)) return;
+  throw Error(ErrorKind::usage, std::string(setting.name) + " is " + shortest(value) +
+                                    ", expected " + range_text(setting));
+}
+
+}  // namespace adasplats

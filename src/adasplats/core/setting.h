@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "adasplats/core/words.h"
+
+namespace adasplats {
+
+/// One setting as users meet it: an option of the command line, a keyword of Python, a key of
+/// configurations, reports and messages. The settings of a subject stand in one table beside its
+/// struct,
+///
+///     template <class Visit>
+///     void visit_settings(BeamOptions& beam, Visit&& visit) {
+///       visit(Setting{.name = "sub_rays", .help = "Rays over the cross-section of a beam",
+///                     .value = "N", .least = 1, .most = 64},
+///             beam.sub_rays);
+///     }
+///
+/// and everything that takes, tells or checks settings walks it: cli/options/setting_options,
+/// pipeline/session/settings_json, python/src/keywords, check_settings(). A new setting is one
+/// entry. Members are truth values, numbers, std::optional numbers, enumerations that have words
+/// (words_of(), found beside the enumeration) and GroupScale.
+struct Setting {
+  const char* name;           ///< in snake_case; the option is that with dashes
+  const char* help;           ///< one line, no full stop
+  const char* value = "";     ///< word for the value in help: "M", "N"
+  const char* key = name;     ///< in JSON, with the unit: "separation_m"
+  const char* opposite = "";  ///< of a truth value: the option that turns it off; "": "no-NAME"
+  const char* group = "";     ///< heading in help
+  double least = -std::numeric_limits<double>::max();
+  double most = std::numeric_limits<double>::max();
+  bool above_least = false;  ///< the least is out of range itself
+};
+
+/// "--sub-rays".
+std::string option_of(const Setting& setting);
+
+/// Whether a value is in range; never for NaN.
+bool is_in_range(const Setting& setting, double value);
+/// "0 or more", "1 to 64", "more than 0", "more than 0, at most 1".
+std::string range_text(const Setting& setting);
+/// Errors: usage ("sub_rays is 65, expected 1 to 64").
+void check_setting(const Setting& setting, double value);
+
+/// Checks the ranges of all settings of a subject. Errors: usage, of the first that is out of
+/// range.
+template <class Settings>
+void check_settings(const Settings& settings) {
+  Settings copy = settings;
+  visit_settings(copy, [](const Setting& setting, const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_arithmetic_v<Value>) {
+      if constexpr (!std::is_same_v<Value, bool>)
+        check_setting(setting, static_cast<double>(value));
+    } else if constexpr (requires { value.has_value(); }) {
+      if (value) check_setting(setting, static_cast<double>(*value));
+    } else if constexpr (requires { value.factors(); }) {
+      for (const double factor : value.factors()) check_setting(setting, factor);
+    }
+  });
+}
+
+/// The settings of a subject, in the order of its table.
+template <class Settings>
+std::vector<Setting> settings_of() {
+  Settings settings;
+  std::vector<Setting> list;
+  visit_settings(settings,
+                 [&list](const Setting& setting, const auto&) { list.push_back(setting); });
+  return list;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "adasplats/core/setting.h"
+#include "adasplats/sensors/lidar_model.h"
+
+namespace adasplats {
+
+/// What users set instead of a sensor's own values.
+struct SensorOverrides {
+  std::optional<double> range_noise_m;
+  std::optional<double> min_range_m;
+  std::optional<double> max_range_m;
+  std::optional<double> rotation_hz;
+
+  void apply(LidarModel& sensor) const;
+};
+
+template <class Visit>
+void visit_settings(SensorOverrides& sensor, Visit&& visit) {
+  visit(Setting{.name = "range_noise",
+                .help = "Standard deviation of the noise on ranges, m; the default is the sensor's",
+                .value = "M",
+                .key = "range_noise_m",
+                .least = 0},
+        sensor.range_noise_m);
+  visit(Setting{.name = "min_range",
+                .help = "Instead of the sensor's, m",
+                .value = "M",
+                .key = "min_range_m",
+                .least = 0},
+        sensor.min_range_m);
+  visit(Setting{.name = "max_range",
+                .help = "Instead of the sensor's, m",
+                .value = "M",
+                .key = "max_range_m",
+                .least = 0,
+                .above_least = true},
+        sensor.max_range_m);
+  visit(Setting{.name = "rotation_rate",
+                .help = "Revolutions a second instead of the sensor's",
+                .value = "HZ",
+                .key = "rotation_hz",
+                .least = 0,
+                .above_least = true},
+        sensor.rotation_hz);
+}
+
+}  // namespace adasplats

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/core/setting.h"
+#include "adasplats/splats/paper/select.h"
+
+namespace adasplats {
+
+/// What tells splats of one kind of surface from those of another.
+enum class PaperVariant : std::uint8_t {
+  basic,        ///< nothing: section "Basic Splatting"
+  descriptors,  ///< local descriptors: "Adaptive Splatting Using Local Descriptors"
+  semantic,     ///< classes: "Adaptive Splatting"
+};
+
+/// Factors on K, R and E for one group of points.
+struct GroupScale {
+  double neighbors = 1;  ///< times K
+  double radius = 1;     ///< times R
+  double error = 1;      ///< times E
+
+  std::array<double, 3> factors() const { return {neighbors, radius, error}; }
+};
+
+/// What the second generation starts from, besides the new points. The paper's text says the
+/// points, its figures (fewer points and splats than before) say the splats' centers.
+enum class ResampleBase : std::uint8_t {
+  points,   ///< all points
+  centers,  ///< centers of all splats
+  mixed,    ///< centers on ground and surface, points of thin things (linear, non-surface)
+};
+inline constexpr std::pair<std::string_view, ResampleBase> kResampleBases[] = {
+    {"points", ResampleBase::points},
+    {"centers", ResampleBase::centers},
+    {"mixed", ResampleBase::mixed}};
+inline Words<ResampleBase> words_of(ResampleBase) { return kResampleBases; }
+
+/// The paper's method (sections "Basic Splatting" to "Splat-Based Resampling and Denoising").
+struct PaperOptions {
+  PaperVariant variant = PaperVariant::basic;
+
+  int neighbors = 40;       ///< K, section "Basic Splatting"
+  double alpha = 0.2;       ///< share of a splat's radius within which seeds are discarded
+  double smoothness = 0.6;  ///< beta: least dot product of normals, section "Adaptive Splatting"
+  std::optional<double> radius_m;  ///< R instead of the mean distance to the K-th neighbour
+  std::optional<double> error_m;   ///< E instead of the mean point-to-plane distance
+  /// The order of the greedy selection.
+  SelectionOrder selection = SelectionOrder::most_discards_first;
+
+  bool denoise = true;         ///< section "Splat-Based Resampling and Denoising"
+  double denoise_sigmas = 3;   ///< a neighbourhood votes against points farther than this
+  double denoise_votes = 0.5;  ///< share of its neighbourhoods that removes a point
+  bool resample = true;        ///< second generation; adaptive variants only, as in the paper
+  /// Wanted density of splats, times its mean: a neighbourhood that has less makes new points, as
+  /// many as it lacks, rounded a splat. Where it has more than two thirds, that is none.
+  double resample_density = 1;
+  ResampleBase resample_base = ResampleBase::mixed;
+
+  /// Section "Adaptive Splatting": ground, surface, linear, non-surface.
+  std::array<GroupScale, kSemanticGroups> semantic_scales = {
+      {{3, 3, 3}, {1, 1, 1}, {0.33, 0.33, 0.33}, {0.25, 0.25, 0.25}}};
+  /// Section "Local Descriptors": planar points (ground and surface) have 2; others as above.
+  GroupScale planar_scale = {2, 2, 2};
+  /// Normals from the group's own neighbourhood (else from the base neighbourhood).
+  bool group_normals = true;
+};
+
+template <class Visit>
+void visit_settings(PaperOptions& paper, Visit&& visit) {
+  constexpr const char* kCleaning = "Denoising and resampling";
+  constexpr const char* kScales = "Scales of neighbours K, radius R and error bound E by group";
+  visit(Setting{.name = "neighbors", .help = "K, neighbours of a point", .least = 3, .most = 1e5},
+        paper.neighbors);
+  visit(Setting{.name = "alpha",
+                .help = "Share of a splat's radius within which other seeds are discarded",
+                .least = 0,
+                .most = 1},
+        paper.alpha);
+  visit(Setting{.name = "smoothness",
+                .help = "Least dot product of normals in a splat",
+                .least = -1,
+                .most = 1},
+        paper.smoothness);
+  visit(Setting{.name = "radius",
+                .help = "R, m; without it the mean distance to the K-th neighbour",
+                .key = "radius_m",
+                .least = 0,
+                .above_least = true},
+        paper.radius_m);
+  visit(Setting{.name = "error_bound",
+                .help = "E, m; without it the mean distance of neighbours from their plane",
+                .key = "error_m",
+                .least = 0},
+        paper.error_m);
+  visit(Setting{.name = "selection", .help = "Order in which candidate splats are taken"},
+        paper.selection);
+  visit(Setting{.name = "denoise", .help = "Remove noise", .group = kCleaning}, paper.denoise);
+  visit(Setting{.name = "denoise_sigmas",
+                .help = "A neighbourhood votes against points farther than this from its plane",
+                .group = kCleaning,
+                .least = 0,
+                .above_least = true},
+        paper.denoise_sigmas);
+  visit(Setting{.name = "denoise_votes",
+                .help = "Share of its neighbourhoods that removes a point",
+                .group = kCleaning,
+                .least = 0,
+                .most = 1,
+                .above_least = true},
+        paper.denoise_votes);
+  visit(Setting{.name = "resample",
+                .help = "Fill in points on splats and generate again",
+                .group = kCleaning},
+        paper.resample);
+  visit(Setting{.name = "resample_density",
+                .help = "Wanted density of splats, times its mean; none are added where two thirds "
+                        "of it are there",
+                .group = kCleaning,
+                .least = 0,
+                .most = 100},
+        paper.resample_density);
+  visit(Setting{.name = "resample_base",
+                .help = "What the second generation starts from, with the new points",
+                .group = kCleaning},
+        paper.resample_base);
+  const auto scale = [&](const char* name, const char* help, GroupScale& value) {
+    visit(Setting{.name = name, .help = help, .group = kScales, .least = 0}, value);
+  };
+  scale("ground_scale", "Of the group ground", paper.semantic_scales[0]);
+  scale("surface_scale", "Of the group surface", paper.semantic_scales[1]);
+  scale("linear_scale", "Of the group linear", paper.semantic_scales[2]);
+  scale("non_surface_scale", "Of the group non-surface", paper.semantic_scales[3]);
+  scale("planar_scale", "Of planar points in the method descriptors", paper.planar_scale);
+  visit(Setting{.name = "group_normals",
+                .help = "Normals from the group's own neighbourhood, or from the base one",
+                .opposite = "base-normals",
+                .group = kScales},
+        paper.group_normals);
+}
+
+/// Errors: usage (a setting out of range).
+void check(const PaperOptions& paper);
+
+}  // namespace adasplats

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "adasplats/core/setting.h"
+#include "adasplats/splats/consistent/consistent_model.h"
+#include "adasplats/splats/paper/paper_options.h"
+
+namespace adasplats {
+
+/// How splats are made of points: a method with its options, each beside its steps.
+using ModelRecipe = std::variant<ConsistentOptions, PaperOptions>;
+
+/// The words for methods: the paper's variants, and ours.
+enum class SplatMethod : std::uint8_t { consistent, basic, descriptors, semantic };
+inline constexpr std::pair<std::string_view, SplatMethod> kSplatMethods[] = {
+    {"consistent", SplatMethod::consistent},
+    {"basic", SplatMethod::basic},
+    {"descriptors", SplatMethod::descriptors},
+    {"semantic", SplatMethod::semantic}};
+inline Words<SplatMethod> words_of(SplatMethod) { return kSplatMethods; }
+
+SplatMethod method_of(const ModelRecipe& recipe);
+/// Errors: usage (an option out of range).
+void check(const ModelRecipe& recipe);
+
+/// A recipe as users choose one: a word, and options of every method.
+struct RecipeChoice {
+  SplatMethod method = SplatMethod::consistent;
+  PaperOptions paper;  ///< without the variant, which the method says
+  ConsistentOptions consistent;
+
+  /// That of the method; the options of others have no effect (unused_settings()).
+  ModelRecipe recipe() const;
+};
+
+template <class Visit>
+void visit_settings(RecipeChoice& choice, Visit&& visit) {
+  visit(Setting{.name = "method",
+                .help = "consistent agrees with the measured rays; the others are the paper's "
+                        "variants, of which semantic needs labels"},
+        choice.method);
+  visit_settings(choice.paper, visit);
+  visit_settings(choice.consistent, visit);
+}
+
+}  // namespace adasplats
