@@ -105,6 +105,8 @@ def check_include(path, stage, stages, bracket, target):
     if not target.startswith("adasplats/"):
         if bracket == '"' and (path.parent / target).exists():
             return f'"{target}" is written without "adasplats/{stage}/"'
+        if bracket == '"' and "/" in target:
+            return f'"{target}" is of no stage'
         return None
     used = target.split("/")[1]
     order = list(stages)
@@ -224,6 +226,7 @@ PLANTS = {
     "has no folder": {"CMakeLists.txt": GOOD["CMakeLists.txt"] + "adasplats_stage(ghost)\n"},
     "depends on 'io', not above": {
         "CMakeLists.txt": GOOD["CMakeLists.txt"].replace("(core ", "(core DEPENDS io ")},
+    '"cli/a.h" is of no stage': {"src/adasplats/io/bad.cpp": '#include "cli/a.h"\n'},
     "room 'left' does not stand before 'low'": {
         "src/adasplats/house/low/l.h": '#include "adasplats/house/left/a.h"\n'},
     "room 'left' does not stand before 'right'": {

@@ -12,12 +12,12 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
+#include "adasplats/pipeline/output/output_folder.h"
 #include "cli/commands.h"
 #include "cli/help_text.h"
 #include "cli/interrupt.h"
 #include "cli/options/config_file.h"
 #include "cli/options/option_types.h"
-#include "cli/output_path.h"
 #include "cli/report.h"
 #include "cli/terminal.h"
 

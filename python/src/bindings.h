@@ -24,6 +24,7 @@ void bind_scenes(py::module_& module);
 void bind_hits(py::module_& module);
 void bind_evaluate(py::module_& module);
 void bind_synth(py::module_& module);
+void bind_recipes(py::module_& module);
 /// Makes every function of the finished module say in words what is wrong with its arguments.
 void explain_wrong_arguments(const py::module_& module);
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "adasplats/pipeline/provenance/output_check.h"
+#include "adasplats/pipeline/output/output_check.h"
 #include "bindings.h"
 #include "pickles.h"
 #include "work.h"
@@ -153,6 +153,14 @@ LocalVectors local_vectors(const Rows& world, py::handle origin) {
   return local;
 }
 
+void take_scan_range(Keywords& keywords, ScanRange& range) {
+  std::optional<double> count;
+  keywords.take("first_scan", range.first);
+  keywords.take("scan_count", count);
+  keywords.take("scan_stride", range.stride);
+  if (count) range.count = static_cast<std::size_t>(std::max(0.0, *count));
+}
+
 void take_load_options(Keywords& keywords, LoadOptions& options) {
   keywords.take("label_field", options.label_field);
   keywords.take("sensor_x_field", options.sensor_x_field);
@@ -160,15 +168,11 @@ void take_load_options(Keywords& keywords, LoadOptions& options) {
   keywords.take("sensor_z_field", options.sensor_z_field);
   keywords.take("viewpoint", options.viewpoint);
   keywords.take("trajectory", options.trajectory);
-  std::uint64_t first = options.first_scan;
-  std::optional<double> count;
-  std::uint64_t stride = options.scan_stride;
-  keywords.take("first_scan", first);
-  keywords.take("scan_count", count);
-  keywords.take("scan_stride", stride);
-  options.first_scan = first;
-  if (count) options.scan_count = static_cast<std::size_t>(std::max(0.0, *count));
-  options.scan_stride = stride;
+  ScanRange scans{options.first_scan, options.scan_count, options.scan_stride};
+  take_scan_range(keywords, scans);
+  options.first_scan = scans.first;
+  options.scan_count = scans.count;
+  options.scan_stride = scans.stride;
   keywords.take("strict", options.strict);
   keywords.take("beams_from_poses", options.beams_from_poses);
   keywords.take("salvage", options.salvage);

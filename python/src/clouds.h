@@ -7,6 +7,7 @@
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/pipeline/session/scan_range.h"
 #include "arrays.h"
 #include "keywords.h"
 
@@ -19,6 +20,9 @@ struct LocalVectors {
 };
 /// `origin`: None for the one that choose_origin() gives. Errors: ValueError (not finite).
 LocalVectors local_vectors(const Rows& world, py::handle origin);
+
+/// The keywords of a range of scans: first_scan, scan_count, scan_stride.
+void take_scan_range(Keywords& keywords, ScanRange& range);
 
 /// The keywords of LoadOptions.
 void take_load_options(Keywords& keywords, LoadOptions& options);

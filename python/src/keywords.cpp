@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "adasplats/core/error.h"
 #include "arrays.h"
@@ -94,6 +95,14 @@ void Keywords::take(const char* name, double& value) {
   if (!given || (given->is_none() && !std::isfinite(value))) return;
   if (!is_number(*given)) wrong_type(name, "a number", *given);
   value = number_of(*given);
+}
+
+void Keywords::take(const char* name, std::uint32_t& value) {
+  std::uint64_t wide = value;
+  take(name, wide);
+  if (wide > std::numeric_limits<std::uint32_t>::max())
+    throw py::value_error(function_ + "(): " + name + " is out of range");
+  value = static_cast<std::uint32_t>(wide);
 }
 
 void Keywords::take(const char* name, float& value) {
@@ -188,6 +197,13 @@ void Keywords::finish() const {
     if (std::find(names_.begin(), names_.end(), name) != names_.end()) continue;
     throw py::type_error(function_ + "() got an unexpected keyword argument '" + name + "'" +
                          did_you_mean(name, names_));
+  }
+}
+
+void refuse_unused(const std::vector<UnusedSetting>& unused, const py::kwargs& given) {
+  for (const auto& [setting, why] : unused) {
+    if (given.contains(setting.name))
+      throw py::value_error(std::string(setting.name) + " has no effect " + why);
   }
 }
 

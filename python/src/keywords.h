@@ -18,6 +18,7 @@
 
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/setting.h"
+#include "adasplats/pipeline/model/unused_settings.h"
 #include "adasplats/splats/paper/paper_options.h"
 
 namespace adasplats::python {
@@ -38,6 +39,7 @@ class Keywords {
   /// what is expected, ValueError (out of range, an unknown word).
   void take(const char* name, bool& value);
   void take(const char* name, int& value);
+  void take(const char* name, std::uint32_t& value);
   void take(const char* name, std::uint64_t& value);
   void take(const char* name, double& value);
   void take(const char* name, float& value);
@@ -91,6 +93,9 @@ void take_settings(Keywords& keywords, Settings& settings) {
     }
   });
 }
+
+/// Errors: ValueError, of a keyword that was given and changes nothing beside the others.
+void refuse_unused(const std::vector<UnusedSetting>& unused, const py::kwargs& given);
 
 /// A docstring that begins with the signature, as inspect.signature wants it: `leading` are the
 /// arguments before the keywords, `take_all` takes every keyword.

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "adasplats/pipeline/provenance/output_check.h"
+#include "adasplats/pipeline/output/output_check.h"
 #include "adasplats/scene/mesh_model.h"
 #include "bindings.h"
 #include "clouds.h"

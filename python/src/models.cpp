@@ -10,7 +10,7 @@
 
 #include "adasplats/pipeline/model/make_model.h"
 #include "adasplats/pipeline/model/unused_settings.h"
-#include "adasplats/pipeline/provenance/output_check.h"
+#include "adasplats/pipeline/output/output_check.h"
 #include "clouds.h"
 #include "json.h"
 #include "pickles.h"
@@ -92,14 +92,6 @@ std::shared_ptr<ModelObject> finished(std::pair<SplatModel, ModelResult>&& made)
   return object;
 }
 
-/// Keywords that change nothing beside the others.
-void refuse_unused(const RecipeChoice& recipe, const py::kwargs& given) {
-  for (const UnusedSetting& unused : unused_settings(recipe)) {
-    if (given.contains(unused.setting.name))
-      throw py::value_error(std::string(unused.setting.name) + " has no effect " + unused.why);
-  }
-}
-
 std::shared_ptr<ModelObject> model(py::handle points, const py::kwargs& kwargs) {
   Keywords keywords("model", kwargs);
   ModelJob job;
@@ -107,7 +99,7 @@ std::shared_ptr<ModelObject> model(py::handle points, const py::kwargs& kwargs) 
   RecipeChoice recipe;
   take_model(keywords, job, recipe, options);
   keywords.finish();
-  refuse_unused(recipe, kwargs);
+  refuse_unused(unused_settings(recipe), kwargs);
   job.build.recipe = recipe.recipe();
   job.removal_is_asked = kwargs.contains("remove");
   const bool in_memory = py::isinstance<PointCloud>(points);

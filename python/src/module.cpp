@@ -27,5 +27,6 @@ PYBIND11_MODULE(_adasplats, module) {
   bindings::bind_scenes(module);
   bindings::bind_evaluate(module);
   bindings::bind_synth(module);
+  bindings::bind_recipes(module);
   bindings::explain_wrong_arguments(module);
 }

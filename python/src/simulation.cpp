@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <deque>
 
+#include "adasplats/sensors/sensor_overrides.h"
 #include "adasplats/simulate/scan/scan_motion.h"
 #include "clouds.h"
 #include "scans.h"

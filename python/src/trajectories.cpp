@@ -4,7 +4,7 @@
 
 #include <pybind11/stl.h>
 
-#include "adasplats/pipeline/provenance/output_check.h"
+#include "adasplats/pipeline/output/output_check.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "bindings.h"
 #include "clouds.h"

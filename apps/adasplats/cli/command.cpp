@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/provenance/output_check.h"
+#include "adasplats/pipeline/output/output_check.h"
 
 namespace adasplats::app {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/provenance/metrics_json.h"
 #include "cli/options/build_options.h"
-#include "cli/output_path.h"
 #include "cli/report.h"
 #include "commands/render_job.h"
 #include "commands/synth_job.h"

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "adasplats/evaluate/resimulate.h"
+#include "adasplats/recipes/model_file.h"
+#include "adasplats/recipes/simulate_scans.h"
 #include "adasplats/synth/street.h"
 #include "cli/session.h"
 #include "commands/evaluate/evaluate_job.h"
-#include "commands/model_job.h"
-#include "commands/simulate_job.h"
 
 namespace adasplats::app {
 

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "adasplats/recipes/export.h"
 #include "cli/commands.h"
 #include "cli/options/load_options.h"
 #include "cli/options/option_types.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
-#include "commands/export_job.h"
 
 namespace adasplats::app {
 namespace {
@@ -33,11 +33,7 @@ class ExportCommand final : public Command {
     require(writes(add_path(app, "-o,--output", job_.output, "File to write"),
                    {".ply", ".glb", ".mcap"}));
     add_choice<std::optional<ExportFormat>>(app, "--format", job_.format,
-                                            {{"gaussian-3d", ExportFormat::gaussian_3d},
-                                             {"gaussian-2d", ExportFormat::gaussian_2d},
-                                             {"glb", ExportFormat::glb},
-                                             {"ply", ExportFormat::ply},
-                                             {"mcap", ExportFormat::mcap}},
+                                            choices_of_optional(kExportFormats),
                                             "Of the file; else what its ending says");
     app.add_option(
            "--labels", job_.labels,
@@ -45,9 +41,7 @@ class ExportCommand final : public Command {
            "what the model says")
         ->type_name("SCHEME");
     add_choice<std::optional<ExportColor>>(app, "--color", job_.color,
-                                           {{"class", ExportColor::semantic},
-                                            {"intensity", ExportColor::intensity},
-                                            {"height", ExportColor::height}},
+                                           choices_of_optional(kExportColors),
                                            "What colours show; else the first of these there is");
     add_load_options(app, job_.load);
   }

@@ -5,10 +5,10 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/pipeline/evaluate/evaluate_echoes.h"
+#include "adasplats/pipeline/output/output_folder.h"
 #include "cli/commands.h"
 #include "cli/options/echo_options.h"
 #include "cli/options/option_types.h"
-#include "cli/output_path.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/pipeline/model/unused_settings.h"
+#include "adasplats/recipes/model_file.h"
 #include "cli/commands.h"
 #include "cli/options/build_options.h"
 #include "cli/options/load_options.h"
@@ -10,7 +11,6 @@
 #include "cli/options/setting_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
-#include "commands/model_job.h"
 
 namespace adasplats::app {
 namespace {

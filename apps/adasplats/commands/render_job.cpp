@@ -13,10 +13,10 @@
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/arrays/png.h"
+#include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/simulate/image/point_colors.h"
-#include "cli/output_path.h"
 
 namespace adasplats::app {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "adasplats/io/arrays/png.h"
+#include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/sensors/lidar_library.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
-#include "cli/output_path.h"
 #include "cli/terminal.h"
 #include "commands/sensors_job.h"
 

@@ -3,12 +3,12 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/recipes/simkitti32.h"
 #include "cli/commands.h"
-#include "cli/options/build_options.h"
 #include "cli/options/option_types.h"
+#include "cli/options/setting_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
-#include "commands/simkitti32_job.h"
 
 namespace adasplats::app {
 namespace {
@@ -32,12 +32,6 @@ class SimKitti32Command final : public Command {
     app.add_option("--sensor", job_.sensor, "Name of a sensor, or a file; see adasplats sensors")
         ->capture_default_str()
         ->type_name("NAME|FILE");
-    add_vector(app, "--offset", offset_, "Shift of the sensor in world axes, m")
-        ->default_str("0,0,-0.5");
-    app.add_option("--noise", job_.noise_m, "Standard deviation of the range, m")
-        ->capture_default_str();
-    app.add_option("--depth", job_.depth, "D, hits of a ray that are averaged")
-        ->capture_default_str();
     app.add_option_function<std::string>(
            "--scans",
            [this](const std::string& text) { job_.scans = parse_scan_range("--scans", text); },
@@ -46,17 +40,13 @@ class SimKitti32Command final : public Command {
     app.add_option("--labels", job_.labels, "What labels mean: semantickitti or a TOML file")
         ->capture_default_str()
         ->type_name("SCHEME");
-    add_switch(app, "--moving,!--no-moving", job_.moving, "Simulate what moves, too");
-    app.add_option("--moving-radius", job_.moving_radius_m, "Of the splats of what moves, m")
-        ->capture_default_str();
-    add_model_options(app);
+    add_settings(app, job_);
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     add_device_options(GpuCount::several);
   }
 
   void run(Session& session) override {
     if (!job_.moving) refuse({"--moving-radius"}, "with --no-moving");
-    if (offset_) job_.offset_m = *offset_;
     const LabelScheme labels = load_label_scheme(job_.labels);
     const SimKitti32Result result = run_simkitti32(job_, session);
     session.report.update(to_json(result, labels));
@@ -67,22 +57,6 @@ class SimKitti32Command final : public Command {
   }
 
  private:
-  void add_model_options(OptionSet& app) {
-    constexpr const char* kGroup = "Static model";
-    add_choice<SplatMethod>(
-        app, "--method", job_.method, choices_of<SplatMethod>(kSplatMethods),
-        "How it is made; consistent agrees with the measured rays, semantic is the "
-        "paper's")
-        ->group(kGroup);
-    app.add_option("--model-every", job_.model_every,
-                   "Take every n-th of the scans for it, for less memory")
-        ->capture_default_str()
-        ->type_name("N")
-        ->group(kGroup);
-    app.add_flag("--keep-model", job_.keep_model, "Leave it in the output, as model.ply")
-        ->group(kGroup);
-  }
-
   static std::string table_of(const SimKitti32Result& result, const LabelScheme& labels) {
     double original = 0;
     double simulated = 0;
@@ -102,7 +76,6 @@ class SimKitti32Command final : public Command {
   }
 
   SimKitti32Job job_;
-  std::optional<Vec3d> offset_;
 };
 
 }  // namespace

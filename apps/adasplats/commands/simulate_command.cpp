@@ -3,12 +3,12 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "adasplats/recipes/simulate_scans.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
-#include "commands/simulate_job.h"
 
 namespace adasplats::app {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/output_path.h"
+#include "adasplats/pipeline/output/output_folder.h"
 
 namespace adasplats::app {
 

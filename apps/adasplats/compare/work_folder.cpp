@@ -15,7 +15,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "cli/output_path.h"
+#include "adasplats/pipeline/output/output_folder.h"
 
 namespace adasplats::app {
 namespace {

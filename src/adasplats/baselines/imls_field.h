@@ -9,6 +9,7 @@
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/maths/vec3.h"
+#include "adasplats/core/setting.h"
 
 namespace adasplats {
 
@@ -19,6 +20,32 @@ struct ImlsOptions {
   double sigma_voxels = 2;       ///< of the Gaussian weight, in voxels
   double truncation_voxels = 3;  ///< values only this near to a point; N_x are the points within
 };
+
+template <class Visit>
+void visit_settings(ImlsOptions& imls, Visit&& visit) {
+  constexpr const char* kGroup = "IMLS";
+  visit(Setting{.name = "voxel",
+                .help = "Side of a voxel, m",
+                .key = "voxel_m",
+                .group = kGroup,
+                .least = 0,
+                .above_least = true},
+        imls.voxel_m);
+  visit(Setting{.name = "sigma",
+                .help = "Of the Gaussian weight, voxels",
+                .key = "sigma_voxels",
+                .group = kGroup,
+                .least = 0,
+                .above_least = true},
+        imls.sigma_voxels);
+  visit(Setting{.name = "truncation",
+                .help = "Values only in voxels this near to a point, voxels",
+                .key = "truncation_voxels",
+                .group = kGroup,
+                .least = 0,
+                .above_least = true},
+        imls.truncation_voxels);
+}
 
 /// What imls_surface is made from: the IMLS function of oriented points in the voxels near them,
 /// block by block. Paper eq. IMLS with the weight exp(-d^2 / sigma^2):

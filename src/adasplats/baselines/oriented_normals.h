@@ -8,6 +8,7 @@
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/maths/vec3.h"
+#include "adasplats/core/setting.h"
 
 namespace adasplats {
 
@@ -16,6 +17,12 @@ struct NormalOptions {
   /// Neighbours between which orientation spreads where there are no sensor positions.
   std::uint32_t spread_neighbors = 10;
 };
+
+template <class Visit>
+void visit_settings(NormalOptions& normals, Visit&& visit) {
+  visit(Setting{.name = "neighbors", .help = "K, points of a normal", .least = 3, .most = 1e5},
+        normals.neighbors);
+}
 
 struct OrientedNormals {
   std::vector<Vec3f> normals;  ///< unit, one a point

@@ -44,10 +44,7 @@ class WorkFolder {
 };
 
 void check(const PoissonOptions& options, std::size_t points) {
-  if (options.depth < 1 || options.depth > 16)
-    throw Error(ErrorKind::usage, "the depth must be 1 to 16");
-  if (!(options.samples_per_node > 0 && options.samples_per_node <= 1000))
-    throw Error(ErrorKind::usage, "the samples per node must be above 0 and at most 1000");
+  check_settings(options);
   if (points == 0) throw Error(ErrorKind::data, "no points: there is nothing to reconstruct");
 }
 
@@ -99,12 +96,12 @@ PoissonSurface by_poisson_recon(const PoissonOptions& options, const PoissonProg
   const fs::path whole = folder / "whole.ply", trimmed_mesh = folder / "trimmed.ply";
   PoissonSurface surface;
   progress.begin_step("reconstruct", 0);
-  surface.peak_memory_bytes =
-      run_program(programs.reconstruct,
-                  {"--in", (folder / "points.ply").string(), "--out", whole.string(), "--depth",
-                   std::to_string(options.depth), "--bType", "3", "--samplesPerNode",
-                   text_of(options.samples_per_node), "--density", "--tempDir", folder.string()},
-                  threads, folder / "log", progress);
+  surface.peak_memory_bytes = run_program(
+      programs.reconstruct,
+      {"--in", (folder / "points.ply").string(), "--out", whole.string(), "--depth",
+       std::to_string(options.depth), "--bType", "3", "--samplesPerNode",
+       text_of(options.samples_per_node.value_or(2)), "--density", "--tempDir", folder.string()},
+      threads, folder / "log", progress);
   progress.begin_step("trim", 0);
   const std::uint64_t trim_bytes =
       run_program(programs.trim,

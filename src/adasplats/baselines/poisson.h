@@ -7,8 +7,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "adasplats/core/progress.h"
+#include "adasplats/core/setting.h"
 #include "adasplats/scene/scene.h"
 
 namespace adasplats {
@@ -20,14 +23,21 @@ enum class PoissonProvider : std::uint8_t {
   open3d,         ///< adasplats-poisson beside this program, which links Open3D
 };
 
+inline constexpr std::pair<std::string_view, PoissonProvider> kPoissonProviders[] = {
+    {"auto", PoissonProvider::automatic},
+    {"poissonrecon", PoissonProvider::poisson_recon},
+    {"open3d", PoissonProvider::open3d}};
+inline Words<PoissonProvider> words_of(PoissonProvider) { return kPoissonProviders; }
+
 /// Open3D's, which cannot be changed.
 inline constexpr double kOpen3dSamplesPerNode = 1.5;
 
 /// Screened Poisson reconstruction (Kazhdan and Hoppe 2013); defaults are those of the paper's
 /// section on experiments. The boundary is always Neumann's.
 struct PoissonOptions {
-  int depth = 13;               ///< of the octree, at most
-  double samples_per_node = 2;  ///< for PoissonRecon
+  int depth = 13;  ///< of the octree, at most
+  /// Least number of points in a node: 2 by default, 1.5 for Open3D, which has no other.
+  std::optional<double> samples_per_node;
   /// Parts whose samples lie at a lesser depth of the octree are cut away; without it depth - 3,
   /// which is the paper's 10 at its depth of 13.
   std::optional<double> trim;
@@ -35,6 +45,35 @@ struct PoissonOptions {
 
   double trim_depth() const { return trim.value_or(depth - 3); }
 };
+
+template <class Visit>
+void visit_settings(PoissonOptions& poisson, Visit&& visit) {
+  constexpr const char* kGroup = "Screened Poisson";
+  visit(Setting{.name = "depth",
+                .help = "Depth of the octree, at most",
+                .group = kGroup,
+                .least = 1,
+                .most = 16},
+        poisson.depth);
+  visit(Setting{.name = "samples_per_node",
+                .help = "Least number of points in a node; without it 2, or 1.5 of Open3D, which "
+                        "has no other",
+                .group = kGroup,
+                .least = 0,
+                .most = 1000,
+                .above_least = true},
+        poisson.samples_per_node);
+  visit(Setting{.name = "trim",
+                .help = "Cut away what was measured at a lesser depth; the default is the depth "
+                        "less 3",
+                .group = kGroup},
+        poisson.trim);
+  visit(Setting{.name = "poisson_program",
+                .help = "What reconstructs: PoissonRecon and SurfaceTrimmer on PATH, else Open3D "
+                        "(adasplats-poisson)",
+                .group = kGroup},
+        poisson.provider);
+}
 
 /// The programs that do the work.
 struct PoissonPrograms {

@@ -83,6 +83,21 @@ Option* add_vector(OptionSet& app, const std::string& name, std::optional<Vec3d>
       ->type_name("X,Y,Z");
 }
 
+Option* add_vector(OptionSet& app, const std::string& name, Vec3d& target,
+                   const std::string& help) {
+  return app
+      .add_option_function<std::string>(
+          name,
+          [&target, name](const std::string& text) {
+            const std::array<double, 3> v = parse_three(name, text);
+            target = {v[0], v[1], v[2]};
+          },
+          help)
+      ->type_name("X,Y,Z")
+      ->default_str(short_number(target.x) + "," + short_number(target.y) + "," +
+                    short_number(target.z));
+}
+
 Option* add_scale(OptionSet& app, const std::string& name, GroupScale& target,
                   const std::string& help) {
   return app

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,6 +26,7 @@ Option* add_path(OptionSet& app, const std::string& name, std::filesystem::path&
                  const std::string& help);
 Option* add_vector(OptionSet& app, const std::string& name, std::optional<Vec3d>& target,
                    const std::string& help);
+Option* add_vector(OptionSet& app, const std::string& name, Vec3d& target, const std::string& help);
 Option* add_scale(OptionSet& app, const std::string& name, GroupScale& target,
                   const std::string& help);
 /// --picture-width, pixels of a picture of 16:9.
@@ -42,6 +44,12 @@ using Choices = std::vector<std::pair<std::string, T>>;
 template <class T>
 Choices<T> choices_of(std::type_identity_t<Words<T>> words) {
   return {words.begin(), words.end()};
+}
+
+/// For a choice that may be left open.
+template <class T, std::size_t N>
+Choices<std::optional<T>> choices_of_optional(const std::pair<std::string_view, T> (&words)[N]) {
+  return {std::begin(words), std::end(words)};
 }
 
 /// One of a few words.

@@ -32,6 +32,18 @@ void OptionsOfSettings::operator()(const Setting& setting, int& value) const {
   add_number(setting, value);
 }
 
+void OptionsOfSettings::operator()(const Setting& setting, std::uint32_t& value) const {
+  add_number(setting, value);
+}
+
+void OptionsOfSettings::operator()(const Setting& setting, std::size_t& value) const {
+  add_number(setting, value);
+}
+
+void OptionsOfSettings::operator()(const Setting& setting, Vec3d& value) const {
+  finish(setting, add_vector(app_, option_of(setting), value, setting.help));
+}
+
 void OptionsOfSettings::operator()(const Setting& setting, float& value) const {
   add_number(setting, value);
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <type_traits>
 
@@ -17,9 +19,12 @@ class OptionsOfSettings {
 
   void operator()(const Setting& setting, bool& value) const;
   void operator()(const Setting& setting, int& value) const;
+  void operator()(const Setting& setting, std::uint32_t& value) const;
+  void operator()(const Setting& setting, std::size_t& value) const;
   void operator()(const Setting& setting, float& value) const;
   void operator()(const Setting& setting, double& value) const;
   void operator()(const Setting& setting, std::optional<double>& value) const;
+  void operator()(const Setting& setting, Vec3d& value) const;
   void operator()(const Setting& setting, GroupScale& value) const;
   template <class T>
   requires std::is_enum_v<T>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "adasplats/splats/recipe.h"
@@ -14,6 +15,21 @@ struct UnusedSetting {
   Setting setting;
   std::string why;  ///< behind "has no effect": "with the method consistent"
 };
+
+/// All settings of a subject that another choice leaves without effect, but for what is turned off:
+/// that would not have been done anyway, as wished.
+template <class Settings>
+std::vector<UnusedSetting> all_unused(const Settings& settings, const std::string& why) {
+  std::vector<UnusedSetting> list;
+  Settings copy = settings;
+  visit_settings(copy, [&]<class Value>(const Setting& setting, const Value& value) {
+    if constexpr (std::is_same_v<Value, bool>) {
+      if (!value) return;
+    }
+    list.push_back({setting, why});
+  });
+  return list;
+}
 
 /// Which settings of making a model the method and the other settings leave without effect. A user
 /// who has given one of them believes something else.

@@ -14,6 +14,18 @@ void JsonOfSettings::operator()(const Setting& setting, int value) const {
   json_[setting.key] = value;
 }
 
+void JsonOfSettings::operator()(const Setting& setting, std::uint32_t value) const {
+  json_[setting.key] = value;
+}
+
+void JsonOfSettings::operator()(const Setting& setting, std::size_t value) const {
+  json_[setting.key] = value;
+}
+
+void JsonOfSettings::operator()(const Setting& setting, const Vec3d& value) const {
+  json_[setting.key] = {value.x, value.y, value.z};
+}
+
 void JsonOfSettings::operator()(const Setting& setting, float value) const {
   json_[setting.key] = value;
 }

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string_view>
 #include <type_traits>
 
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/setting.h"
 #include "adasplats/splats/paper/paper_options.h"
 
@@ -19,9 +22,12 @@ class JsonOfSettings {
 
   void operator()(const Setting& setting, bool value) const;
   void operator()(const Setting& setting, int value) const;
+  void operator()(const Setting& setting, std::uint32_t value) const;
+  void operator()(const Setting& setting, std::size_t value) const;
   void operator()(const Setting& setting, float value) const;
   void operator()(const Setting& setting, double value) const;
   void operator()(const Setting& setting, const std::optional<double>& value) const;
+  void operator()(const Setting& setting, const Vec3d& value) const;
   void operator()(const Setting& setting, const GroupScale& value) const;
   void operator()(const Setting& setting, std::string_view word) const;
   template <class T>

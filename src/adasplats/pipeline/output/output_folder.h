@@ -6,7 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-namespace adasplats::app {
+namespace adasplats {
 
 /// Of an output folder: says what made it.
 inline constexpr const char* kContentFile = "adasplats.json";
@@ -55,4 +55,4 @@ class OutputFolder {
   int lock_ = -1;  ///< descriptor of the partial folder, locked
 };
 
-}  // namespace adasplats::app
+}  // namespace adasplats

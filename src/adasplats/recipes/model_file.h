@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "adasplats/pipeline/model/make_model.h"
-#include "cli/session.h"
+#include "adasplats/pipeline/session/session.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 /// Point files in, model file out.
 struct ModelFileJob : ModelJob {
@@ -17,4 +17,4 @@ struct ModelFileJob : ModelJob {
 /// Loads, builds on the session's device and saves.
 ModelResult run_model(const ModelFileJob& job, Session& session);
 
-}  // namespace adasplats::app
+}  // namespace adasplats

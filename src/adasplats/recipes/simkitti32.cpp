@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "commands/simkitti32_job.h"
+#include "adasplats/recipes/simkitti32.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,16 +14,16 @@
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/semantickitti_writer.h"
 #include "adasplats/io/base/sha256.h"
+#include "adasplats/pipeline/output/resumable_folder.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/pipeline/session/settings_json.h"
+#include "adasplats/recipes/scan_manifest.h"
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/simulate/world/moving_points.h"
 #include "adasplats/simulate/world/world.h"
-#include "cli/resumable_folder.h"
-#include "commands/simulate_manifest.h"
 
-namespace adasplats::app {
+namespace adasplats {
 namespace {
 
 namespace fs = std::filesystem;
@@ -105,21 +105,15 @@ Json model_content(SplatMethod method) {
 /// What the data set is made of and how: the beginning of its manifest.
 Json content_of(const SimKitti32Job& job, const Source& source, const LidarModel& sensor,
                 Session& session) {
-  const Vec3d offset = job.offset_m;
-  return {{"sequence", source.name},
-          {"scans", source.numbers},
-          {"labels", load_label_scheme(job.labels).name()},
-          {"model", model_content(job.method)},
-          {"model_every", job.model_every},
-          {"sensor", sensor_content(sensor)},
-          {"offset_m", {offset.x, offset.y, offset.z}},
-          {"noise_m", job.noise_m},
-          {"depth", job.depth},
-          {"moving", job.moving},
-          {"moving_radius_m", job.moving_radius_m},
-          {"keep_model", job.keep_model},
-          {"seed", session.seed},
-          {"inputs", input_hashes(source, session)}};
+  Json content = {{"sequence", source.name},
+                  {"scans", source.numbers},
+                  {"labels", load_label_scheme(job.labels).name()},
+                  {"sensor", sensor_content(sensor)},
+                  {"seed", session.seed}};
+  put_settings(job, content);
+  content["model"] = model_content(job.method);
+  content["inputs"] = input_hashes(source, session);
+  return content;
 }
 
 /// Makes the scans that are not there yet.
@@ -310,18 +304,11 @@ Json classes_json(const SimKitti32Result& result, const LabelScheme& labels) {
   return json;
 }
 
-void check(const SimKitti32Job& job) {
-  if (job.model_every < 1) throw Error(ErrorKind::usage, "--model-every must be at least 1");
-  if (job.depth < 1) throw Error(ErrorKind::usage, "--depth must be at least 1");
-  if (!(job.noise_m >= 0) || !std::isfinite(job.noise_m))
-    throw Error(ErrorKind::usage, "--noise must be 0 or more");
-}
-
 }  // namespace
 
 SimKitti32Result run_simkitti32(const SimKitti32Job& job, Session& session) {
   const Stopwatch total;
-  check(job);
+  check_settings(job);
   LidarModel sensor = load_lidar_model(job.sensor);
   sensor.range_noise_m = job.noise_m;
   const Source source = open_source(job);
@@ -355,4 +342,4 @@ Json to_json(const SimKitti32Result& result, const LabelScheme& labels) {
   return json;
 }
 
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -7,9 +7,9 @@
 
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/scene/scan_simulator.h"
-#include "commands/simulate_job.h"
+#include "adasplats/recipes/simulate_scans.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 /// A sensor: its numbers, and a SHA-256 of the rays of a scan. A file of the same name may say
 /// something else tomorrow.
@@ -20,4 +20,4 @@ nlohmann::ordered_json sensor_content(const LidarModel& sensor);
 nlohmann::ordered_json simulate_content(const SimulateJob& job, const ScanSettings& settings,
                                         const ModelScene& scene);
 
-}  // namespace adasplats::app
+}  // namespace adasplats

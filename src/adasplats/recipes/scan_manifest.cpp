@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "commands/simulate_manifest.h"
+#include "adasplats/recipes/scan_manifest.h"
 
 #include <nlohmann/json.hpp>
 
@@ -10,7 +10,7 @@
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/pipeline/session/settings_json.h"
 
-namespace adasplats::app {
+namespace adasplats {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -118,4 +118,4 @@ Json simulate_content(const SimulateJob& job, const ScanSettings& settings,
   return content;
 }
 
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -4,17 +4,18 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
 #include "adasplats/dataset/scan_writer.h"
 #include "adasplats/pipeline/scene/drive.h"
+#include "adasplats/pipeline/session/session.h"
 #include "adasplats/sensors/sensor_overrides.h"
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/simulate/scan/weather.h"
-#include "cli/session.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 /// Paper section "New Trajectory Simulation": a sensor along a shifted trajectory.
 struct SimulateJob {
@@ -51,4 +52,4 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session);
 /// The keys of a simulation's --report.
 nlohmann::ordered_json to_json(const SimulateResult& result);
 
-}  // namespace adasplats::app
+}  // namespace adasplats

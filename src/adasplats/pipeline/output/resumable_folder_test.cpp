@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/resumable_folder.h"
+#include "adasplats/pipeline/output/resumable_folder.h"
 
 #include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
 
 #include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/sha256.h"
 
-namespace adasplats::app {
+namespace adasplats {
 namespace {
 
 namespace fs = std::filesystem;
@@ -135,4 +137,4 @@ TEST(ResumableFolder, OneProcessAtATime) {
 }
 
 }  // namespace
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "commands/simulate_job.h"
+#include "adasplats/recipes/simulate_scans.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,14 +12,13 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/dataset/kitti_boxes.h"
+#include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/scene/scan_simulator.h"
 #include "adasplats/pipeline/session/inputs.h"
-#include "cli/output_path.h"
-#include "cli/text_table.h"
-#include "commands/simulate_manifest.h"
+#include "adasplats/recipes/scan_manifest.h"
 
-namespace adasplats::app {
+namespace adasplats {
 namespace {
 
 constexpr const char* kCommand = "simulate";
@@ -35,7 +36,7 @@ ScanSettings settings_of(const SimulateJob& job, std::uint64_t seed) {
   LidarModel& sensor = settings.sensor;
   job.overrides.apply(sensor);
   if (!(sensor.min_range_m < sensor.max_range_m))
-    throw Error(ErrorKind::usage, "--min-range must be less than --max-range");
+    throw Error(ErrorKind::usage, "min_range must be less than max_range");
   settings.beam = job.beam;
   settings.noise = job.noise;
   settings.frame = job.frame;
@@ -44,6 +45,13 @@ ScanSettings settings_of(const SimulateJob& job, std::uint64_t seed) {
   check(settings);
   if (!job.ray_drop.empty()) settings.ray_drop = load_ray_drop(job.ray_drop);
   return settings;
+}
+
+/// "12.3".
+std::string decimetres(double metres) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.1f", metres);
+  return text.data();
 }
 
 /// Throws data where no ray met anything, with how far from the model the sensor was.
@@ -57,11 +65,11 @@ void require_returns(const SimulateResult& result, const ModelScene& scene,
     nearest_m = std::min(nearest_m, length(max(max(low - at, at - high), Vec3d{})));
   }
   throw Error(ErrorKind::data,
-              "no returns: none of " + grouped(result.rays) + " rays in " + grouped(result.scans) +
-                  " scans met anything; the sensor was " + fixed(nearest_m, 1) +
-                  " m from the model's box at its nearest and sees " +
-                  fixed(sensor.min_range_m, 1) + " to " + fixed(sensor.max_range_m, 1) +
-                  " m (are trajectory and model in one frame? see --offset, --mount)");
+              "no returns: none of " + std::to_string(result.rays) + " rays in " +
+                  std::to_string(result.scans) + " scans met anything; the sensor was " +
+                  decimetres(nearest_m) + " m from the model's box at its nearest and sees " +
+                  decimetres(sensor.min_range_m) + " to " + decimetres(sensor.max_range_m) +
+                  " m (are trajectory and model in one frame? offset and mount shift it)");
 }
 
 }  // namespace
@@ -122,4 +130,4 @@ nlohmann::ordered_json to_json(const SimulateResult& result) {
   return json;
 }
 
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "adasplats/core/maths/vec3.h"
-#include "cli/options/option_types.h"
-#include "cli/session.h"
-#include "commands/model_job.h"
+#include "adasplats/core/setting.h"
+#include "adasplats/pipeline/session/scan_range.h"
+#include "adasplats/pipeline/session/session.h"
+#include "adasplats/recipes/model_file.h"
+#include "adasplats/simulate/scan/returns.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 /// Paper section "SimKITTI32": what another LiDAR would have measured along a labelled sequence,
 /// with labels. The defaults are the paper's, but for the method of the static model: the paper's
@@ -36,6 +38,46 @@ struct SimKitti32Job {
   std::filesystem::path output;
   bool overwrite = false;
 };
+
+template <class Visit>
+void visit_settings(SimKitti32Job& job, Visit&& visit) {
+  constexpr const char* kModel = "Static model";
+  visit(
+      Setting{.name = "offset", .help = "Shift of the sensor in world axes, m", .key = "offset_m"},
+      job.offset_m);
+  visit(Setting{.name = "noise",
+                .help = "Standard deviation of the range, m",
+                .key = "noise_m",
+                .least = 0},
+        job.noise_m);
+  visit(Setting{.name = "depth",
+                .help = "D, hits of a ray that are averaged",
+                .least = 1,
+                .most = kMostDepth},
+        job.depth);
+  visit(Setting{.name = "moving", .help = "Simulate what moves, too"}, job.moving);
+  visit(Setting{.name = "moving_radius",
+                .help = "Of the splats of what moves, m",
+                .key = "moving_radius_m",
+                .least = 0,
+                .above_least = true},
+        job.moving_radius_m);
+  visit(Setting{.name = "method",
+                .help = "How it is made; consistent agrees with the measured rays, semantic is the "
+                        "paper's",
+                .group = kModel},
+        job.method);
+  visit(Setting{.name = "model_every",
+                .help = "Take every n-th of the scans for it, for less memory",
+                .value = "N",
+                .group = kModel,
+                .least = 1},
+        job.model_every);
+  visit(
+      Setting{
+          .name = "keep_model", .help = "Leave it in the output, as model.ply", .group = kModel},
+      job.keep_model);
+}
 
 /// Points of one class in the sequence and in what was simulated.
 struct ClassCount {
@@ -63,4 +105,4 @@ SimKitti32Result run_simkitti32(const SimKitti32Job& job, Session& session);
 /// The keys of its --report.
 nlohmann::ordered_json to_json(const SimKitti32Result& result, const LabelScheme& labels);
 
-}  // namespace adasplats::app
+}  // namespace adasplats

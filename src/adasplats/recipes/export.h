@@ -7,16 +7,28 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/pipeline/session/session.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 /// What other programs open (docs/exports.md).
 enum class ExportFormat : std::uint8_t { gaussian_3d, gaussian_2d, glb, ply, mcap };
-/// What colours show; names as --color has them.
+inline constexpr std::pair<std::string_view, ExportFormat> kExportFormats[] = {
+    {"gaussian-3d", ExportFormat::gaussian_3d},
+    {"gaussian-2d", ExportFormat::gaussian_2d},
+    {"glb", ExportFormat::glb},
+    {"ply", ExportFormat::ply},
+    {"mcap", ExportFormat::mcap}};
+/// What colours show.
 enum class ExportColor : std::uint8_t { semantic, intensity, height };
+inline constexpr std::pair<std::string_view, ExportColor> kExportColors[] = {
+    {"class", ExportColor::semantic},
+    {"intensity", ExportColor::intensity},
+    {"height", ExportColor::height}};
 
 /// A splat model, a point cloud or the scans of a sequence, for other programs.
 struct ExportJob {
@@ -39,6 +51,6 @@ struct ExportResult {
 
 /// Writes the file. Errors: usage (a format that the input cannot have, with those it can; an
 /// ending that tells none), and those of reading and writing.
-ExportResult run_export(const ExportJob& job, adasplats::Session& session);
+ExportResult run_export(const ExportJob& job, Session& session);
 
-}  // namespace adasplats::app
+}  // namespace adasplats

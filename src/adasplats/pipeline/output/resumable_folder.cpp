@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/resumable_folder.h"
+#include "adasplats/pipeline/output/resumable_folder.h"
 
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -13,9 +14,9 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/sha256.h"
-#include "cli/output_path.h"
+#include "adasplats/pipeline/output/output_folder.h"
 
-namespace adasplats::app {
+namespace adasplats {
 namespace {
 
 namespace fs = std::filesystem;
@@ -84,11 +85,11 @@ fs::path unfinished_of(const fs::path& folder) {
 }  // namespace
 
 ResumableFolder::ResumableFolder(const fs::path& folder, bool overwrite, std::string command,
-                                 Json content)
+                                 const Json& content)
     : folder_(checked_output_folder(folder, overwrite, command)),
       unfinished_(unfinished_of(folder_)),
       command_(std::move(command)),
-      content_(std::move(content)),
+      content_(std::make_unique<Json>(content)),
       lock_(create_and_lock(unfinished_, folder_)) {
   try {
     take_over();
@@ -104,7 +105,7 @@ ResumableFolder::ResumableFolder(const fs::path& folder, bool overwrite, std::st
 void ResumableFolder::take_over() {
   remove_temporaries(unfinished_);
   const fs::path file = unfinished_ / kContentFile;
-  const std::string wanted = content_text(command_, content_);
+  const std::string wanted = content_text(command_, *content_);
   if (!fs::exists(file)) {
     if (!fs::is_empty(unfinished_))
       throw cannot_resume(unfinished_, std::string("it has no ") + kContentFile);
@@ -175,7 +176,7 @@ void ResumableFolder::record(std::span<const std::string> files) {
 
 void ResumableFolder::commit(const Json& summary, std::span<const std::string> aids) {
   for (const std::string& aid : aids) fs::remove(unfinished_ / aid);
-  Json content = content_;
+  Json content = *content_;
   content.update(summary);
   std::set<std::string> names;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(unfinished_))
@@ -196,4 +197,4 @@ void ResumableFolder::commit(const Json& summary, std::span<const std::string> a
   lock_ = -1;
 }
 
-}  // namespace adasplats::app
+}  // namespace adasplats

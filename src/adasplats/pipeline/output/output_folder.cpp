@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/output_path.h"
+#include "adasplats/pipeline/output/output_folder.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -13,7 +13,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 
-namespace adasplats::app {
+namespace adasplats {
 namespace {
 
 namespace fs = std::filesystem;
@@ -158,4 +158,4 @@ void OutputFolder::commit() {
   lock_ = -1;
 }
 
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -4,11 +4,12 @@
 
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 
-namespace adasplats::app {
+namespace adasplats {
 
 /// An output folder that appears whole or not at all, whose making can be interrupted at any moment
 /// and goes on where it stopped. It is filled beside its place under the name ".NAME.unfinished",
@@ -21,7 +22,7 @@ class ResumableFolder {
   /// Errors: cannot_create (another process fills the folder; the unfinished one is of another run,
   /// with the key that differs, or is damaged), io.
   ResumableFolder(const std::filesystem::path& folder, bool overwrite, std::string command,
-                  nlohmann::ordered_json content);
+                  const nlohmann::ordered_json& content);
   /// Leaves what was recorded for another process; nothing, if nothing was.
   ~ResumableFolder();
   ResumableFolder(const ResumableFolder&) = delete;
@@ -47,10 +48,10 @@ class ResumableFolder {
   std::filesystem::path folder_;
   std::filesystem::path unfinished_;
   std::string command_;
-  nlohmann::ordered_json content_;
-  std::map<std::string, std::string> recorded_;  ///< SHA-256 by file
-  int lock_ = -1;                                ///< descriptor of the unfinished folder, locked
-  int journal_ = -1;                             ///< descriptor, at its end
+  std::unique_ptr<nlohmann::ordered_json> content_;  ///< never null
+  std::map<std::string, std::string> recorded_;      ///< SHA-256 by file
+  int lock_ = -1;     ///< descriptor of the unfinished folder, locked
+  int journal_ = -1;  ///< descriptor, at its end
 };
 
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "commands/model_job.h"
+#include "adasplats/recipes/model_file.h"
 
 #include "adasplats/core/stopwatch.h"
-#include "cli/output_path.h"
+#include "adasplats/pipeline/output/output_folder.h"
 
-namespace adasplats::app {
+namespace adasplats {
 
 ModelResult run_model(const ModelFileJob& job, Session& session) {
   check_output_file(job.output);
@@ -20,4 +20,4 @@ ModelResult run_model(const ModelFileJob& job, Session& session) {
   return std::move(result);
 }
 
-}  // namespace adasplats::app
+}  // namespace adasplats

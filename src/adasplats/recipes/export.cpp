@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "commands/export_job.h"
+#include "adasplats/recipes/export.h"
 
 #include <algorithm>
 #include <array>
@@ -15,16 +15,16 @@
 #include "adasplats/core/error.h"
 #include "adasplats/dataset/mcap_writer.h"
 #include "adasplats/io/base/number_text.h"
-#include "adasplats/pipeline/provenance/output_check.h"
+#include "adasplats/pipeline/output/output_check.h"
+#include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/pipeline/session/scan_range.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/simulate/image/point_colors.h"
 #include "adasplats/splats/model/gaussian_ply.h"
 #include "adasplats/splats/model/splat_model.h"
-#include "cli/output_path.h"
 
-namespace adasplats::app {
+namespace adasplats {
 namespace {
 
 namespace fs = std::filesystem;
@@ -125,7 +125,7 @@ std::vector<Rgb> colors_of(PointCloud& cloud, const LabelScheme* labels,
     case ExportColor::semantic: return point_colors(cloud, labels, ImageColor::semantic, {});
     case ExportColor::intensity:
       if (cloud.intensities.empty() && !cloud.empty())
-        throw Error(ErrorKind::usage, "--color intensity: the input has no intensities");
+        throw Error(ErrorKind::usage, "color by intensity: the input has no intensities");
       return point_colors(cloud, labels, ImageColor::intensity, {});
     case ExportColor::height: return colors_by_height(cloud);
   }
@@ -230,12 +230,12 @@ ExportResult write_export(const ExportJob& job, Session& session) {
   const ExportFormat format = format_of(job, kind);
   if (job.color && !has_colors(format)) {
     throw Error(ErrorKind::usage,
-                "--color has no effect on " + std::string(name_of(format)) +
+                "color has no effect on " + std::string(name_of(format)) +
                     ", which tells classes and intensities themselves; it is for gaussian-3d, "
                     "gaussian-2d and glb");
   }
   if (!job.labels.empty() && !has_colors(format)) {
-    throw Error(ErrorKind::usage, "--labels has no effect on " + std::string(name_of(format)) +
+    throw Error(ErrorKind::usage, "labels have no effect on " + std::string(name_of(format)) +
                                       ", which holds the numbers of classes as they are");
   }
   const bool scans = format == ExportFormat::mcap &&
@@ -255,7 +255,7 @@ ExportResult write_export(const ExportJob& job, Session& session) {
 
 }  // namespace
 
-ExportResult run_export(const ExportJob& job, adasplats::Session& session) {
+ExportResult run_export(const ExportJob& job, Session& session) {
   ExportJob resolved = job;
   resolved.input = resolve_cloud_input(job.input);
   ExportResult result = write_export(resolved, session);
@@ -263,4 +263,4 @@ ExportResult run_export(const ExportJob& job, adasplats::Session& session) {
   return result;
 }
 
-}  // namespace adasplats::app
+}  // namespace adasplats

@@ -1,0 +1,60 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""Whole recipes from Python: the same bytes as the command line's, the same refusals."""
+import numpy as np
+import pytest
+from conftest import report_of, run_program
+from test_pipeline import files_of, without_times
+
+import adasplats
+
+
+def test_mesh_of_a_file_and_of_points(street, tmp_path):
+    run_program("mesh", street.cloud, "-o", tmp_path / "cli.ply", "--labels", "semantickitti",
+                "--voxel", 0.3, "--remove", "moving")
+    options = {"labels": "semantickitti", "voxel": 0.3, "remove": "moving"}
+    adasplats.mesh(street.cloud, **options).save(tmp_path / "file.ply")
+    adasplats.mesh(adasplats.read(street.cloud), **options).save(tmp_path / "points.ply")
+    expected = (tmp_path / "cli.ply").read_bytes()
+    assert (tmp_path / "file.ply").read_bytes() == expected
+    assert (tmp_path / "points.ply").read_bytes() == expected
+    with pytest.raises(ValueError, match="depth has no effect with the method imls"):
+        adasplats.mesh(street.cloud, depth=9)
+    with pytest.raises(ValueError, match="voxel is -1, expected more than 0"):
+        adasplats.mesh(street.cloud, voxel=-1)
+    with pytest.raises(FileNotFoundError):
+        adasplats.mesh(tmp_path / "nothing.ply")
+
+
+def test_export(street, tmp_path):
+    run_program("export", street.model, "-o", tmp_path / "cli.ply", "--format", "gaussian-2d")
+    told = adasplats.export(street.model, tmp_path / "here.ply", format="gaussian-2d")
+    assert (tmp_path / "here.ply").read_bytes() == (tmp_path / "cli.ply").read_bytes()
+    assert told == {"splats": len(adasplats.Model.load(street.model)), "points_dropped": 0,
+                    "bytes": (tmp_path / "here.ply").stat().st_size}
+    adasplats.export(street.cloud, tmp_path / "cloud.glb", color="height", labels="semantickitti")
+    assert (tmp_path / "cloud.glb").stat().st_size > 0
+    with pytest.raises(ValueError, match="format must be one of 'gaussian-3d', "):
+        adasplats.export(street.model, tmp_path / "x.ply", format="gauss")
+    with pytest.raises(ValueError, match="mcap"):
+        adasplats.export(street.model, tmp_path / "x.mcap")
+    assert not (tmp_path / "x.mcap").exists()
+
+
+def test_simkitti32(street, tmp_path):
+    expected = report_of(tmp_path, "simkitti32", street.sequence, "-o", tmp_path / "cli", "--sensor",
+                         street.sensor, "--scans", "0:3", "--depth", 3, "--offset", "0,0,-0.4")
+    told = adasplats.simkitti32(street.sequence, tmp_path / "here", sensor=street.sensor, scan_count=3,
+                                depth=3, offset=(0, 0, -0.4), device="cpu")
+    assert files_of(tmp_path / "here") == files_of(tmp_path / "cli")
+    assert set(told) <= set(expected) and told["scans"] == 3
+    left_out = {"model", "seconds", "seconds_simulated", "scans_per_second"}
+    assert ({k: v for k, v in told.items() if k not in left_out}
+            == {k: v for k, v in without_times(expected).items() if k in told and k not in left_out})
+    points = sum(np.fromfile(scan, np.float32).size // 4
+                 for scan in (tmp_path / "here").rglob("*.bin"))
+    assert points == told["points"] > 0
+    with pytest.raises(ValueError, match="depth is 0, expected 1 to 64"):
+        adasplats.simkitti32(street.sequence, tmp_path / "no", depth=0)
+    with pytest.raises(OSError):
+        adasplats.simkitti32(street.sequence, tmp_path / "here")
