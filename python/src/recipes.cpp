@@ -129,6 +129,7 @@ struct SimKitti32Call {
     keywords.take("labels", job.labels);
     take_scan_range(keywords, job.scans);
     take_settings(keywords, job);
+    keywords.take("ray_drop", job.ray_drop);
     keywords.take("overwrite", job.overwrite);
     work.has_seed = true;
     work.take(keywords);

@@ -58,3 +58,17 @@ def test_simkitti32(street, tmp_path):
         adasplats.simkitti32(street.sequence, tmp_path / "no", depth=0)
     with pytest.raises(OSError):
         adasplats.simkitti32(street.sequence, tmp_path / "here")
+
+
+def test_simkitti32_has_the_weather_and_the_drop_of_simulate(street, tmp_path):
+    def points(name, **options):
+        return adasplats.simkitti32(street.sequence, tmp_path / name, sensor=street.sensor,
+                                    scan_count=2, device="cpu", **options)["points"]
+
+    clear = points("clear")
+    assert points("fog", fog=15) < 0.8 * clear
+    drop = tmp_path / "drop.toml"
+    drop.write_text("usual_reflectance = 0.3\nweights = [0, 0.1, 0, 0, 0, 0, 0, 0]\n")
+    assert points("drop", ray_drop=drop) < 0.8 * clear
+    told = (tmp_path / "clear" / "adasplats.json").read_text()
+    assert '"fog_visibility_m": null' in told and '"rain_mm_h": 0.0' in told

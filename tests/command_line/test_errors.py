@@ -39,7 +39,7 @@ class Usage(ProgramTest):
         self.run_bad(64, *model, "--ground-scale", "3,3,x")
         self.run_bad(64, *model, "--scans", "0")
         self.run_bad(64, *model, "--threads", "-1", says=["--threads"])
-        self.run_bad(64, *unlabelled, "--method", "semantic", says=["--labels"])
+        self.run_bad(64, *unlabelled, "--method", "semantic", says=["needs labels"])
         self.run_bad(64, "simulate", self.cloud, "--trajectory", self.poses, "-o",
                      self.folder / "s", "--sensor", "hdl-64-papr", says=["hdl-64-paper"])
         self.assertNotIn("m.ply", self.names())

@@ -129,7 +129,7 @@ class OptionsTest(ProgramTest):
                     "semantickitti")
         self.refuse("--viewpoint", "export", model, "-o", self.folder / "out.glb", "--viewpoint",
                     "0,0,0")
-        self.refuse("--labels", "export", sequence, "-o", self.folder / "out.mcap", "--labels",
+        self.refuse("labels have no effect", "export", sequence, "-o", self.folder / "out.mcap", "--labels",
                     "semantickitti")
         self.refuse("--label-field", "export", sequence, "-o", self.folder / "out.mcap",
                     "--label-field", "label")

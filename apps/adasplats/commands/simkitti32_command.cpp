@@ -41,6 +41,8 @@ class SimKitti32Command final : public Command {
         ->capture_default_str()
         ->type_name("SCHEME");
     add_settings(app, job_);
+    add_path(app, "--ray-drop", job_.ray_drop,
+             "Beams that get lost as a real sensor's: a file of 'adasplats fit-drop'");
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     add_device_options(GpuCount::several);
   }

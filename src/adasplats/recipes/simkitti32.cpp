@@ -16,10 +16,10 @@
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/pipeline/output/resumable_folder.h"
 #include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/pipeline/scene/scan_simulator.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/pipeline/session/settings_json.h"
 #include "adasplats/recipes/scan_manifest.h"
-#include "adasplats/simulate/scan/scan.h"
 #include "adasplats/simulate/world/moving_points.h"
 #include "adasplats/simulate/world/world.h"
 
@@ -112,6 +112,7 @@ Json content_of(const SimKitti32Job& job, const Source& source, const LidarModel
                   {"seed", session.seed}};
   put_settings(job, content);
   content["model"] = model_content(job.method);
+  if (!job.ray_drop.empty()) content["ray_drop"] = sha256_of_file(job.ray_drop);
   content["inputs"] = input_hashes(source, session);
   return content;
 }
@@ -200,26 +201,52 @@ class Simulation {
   void simulate(std::span<const std::size_t> missing, SimKitti32Result& result) {
     const Stopwatch watch;
     ModelScene scene(folder_.path() / kModelFile, job_.labels, session_);
-    World world(static_cast<std::uint32_t>(scene.view().primitive_count()), scene.origin(),
-                session_.executor);
-    if (job_.moving) result.moving_splats = add_moving(missing, scene.attributes(), world);
-    const PrimitiveAttributes attributes = world.attributes(scene.attributes());
+    if (job_.moving) {
+      const IntensityResponse* const response = scene.attributes().response;
+      scene.add_objects(
+          [&](World& world) { result.moving_splats = add_moving(missing, response, world); });
+    }
+    ScanSimulator simulator(scene, settings(), session_.executor);
     session_.progress.begin_step("simulate", missing.size());
     std::size_t done = 0;
     // Scans that follow one another are cast together; what is missing is the end of the sequence
     // unless files were damaged.
     for (std::size_t begin = 0; begin < missing.size();) {
       std::size_t end = begin + 1;
-      while (repeats(sensor_) && end < missing.size() && missing[end] == missing[end - 1] + 1)
-        ++end;
-      cast_run(missing[begin], end - begin, scene.scan_caster(), world, attributes, done);
+      while (end < missing.size() && follows(missing[end - 1], missing[end])) ++end;
+      write_run(simulator, missing[begin], end - begin, done);
       begin = end;
     }
     session_.progress.end_step();
     result.seconds_simulated = watch.seconds();
   }
 
-  std::size_t add_moving(std::span<const std::size_t> scans, const PrimitiveAttributes& place,
+  ScanSettings settings() const {
+    ScanSettings settings;
+    settings.sensor = sensor_;
+    settings.beam.depth = job_.depth;
+    settings.weather = job_.weather;
+    if (!job_.ray_drop.empty()) settings.ray_drop = load_ray_drop(job_.ray_drop);
+    settings.seed = session_.seed;
+    return settings;
+  }
+
+  /// Scans are numbered as in the sequence: noise, patterns and what moves go by that.
+  bool follows(std::size_t scan, std::size_t next) const {
+    return next == scan + 1 && source_.numbers[next] == source_.numbers[scan] + 1;
+  }
+
+  void write_run(ScanSimulator& simulator, std::size_t first, std::size_t count,
+                 std::size_t& done) {
+    simulator.run(std::span(scans_).subspan(first, count), source_.numbers[first],
+                  [&](std::size_t i, const Scan& scan) {
+                    writer_.write_scan(first + i, scan);
+                    folder_.record(files_of(first + i));
+                    session_.progress.advance(++done);
+                  });
+  }
+
+  std::size_t add_moving(std::span<const std::size_t> scans, const IntensityResponse* response,
                          World& world) const {
     session_.progress.begin_step("splats of what moves", scans.size());
     MovingSplatOptions options;
@@ -232,11 +259,11 @@ class Simulation {
       session_.progress.advance(scan + 1);
       if (moving.splats.size() == 0) continue;
       splats += moving.splats.size();
-      if (place.response != nullptr) to_reflectances(moving.splats, *place.response);
+      if (response != nullptr) to_reflectances(moving.splats, *response);
       WorldObject object;
       object.geometry = world.add_geometry(std::move(moving.splats), std::move(moving.instances));
       object.trajectory = {source_.sequence.trajectory[number]};
-      object.only_scan = scan;
+      object.only_scan = number;
       world.add_object(std::move(object));
     }
     session_.progress.end_step();
@@ -251,24 +278,6 @@ class Simulation {
       const float cosine = std::fabs(dot(disk.normal, disk.center)) / range_m;
       splats.intensities[i] /= response.gain(range_m, cosine);
     }
-  }
-
-  void cast_run(std::size_t first, std::size_t count, const ScanCaster& place, const World& world,
-                const PrimitiveAttributes& attributes, std::size_t& done) {
-    SimulateOptions options;
-    options.seed = session_.seed;
-    options.beam.depth = job_.depth;
-    const std::vector<Firing> firings = firings_of(sensor_, source_.numbers[first]);
-    const auto caster = make_world_caster(place, world, session_.executor, first);
-    const auto take_scan = [&](std::size_t i, std::span<const Hit> hits) {
-      const std::size_t index = first + i;
-      const Scan scan = scan_of_hits(hits, attributes, sensor_, firings, scans_[index],
-                                     source_.numbers[index], options, session_.executor);
-      writer_.write_scan(index, scan);
-      folder_.record(files_of(index));
-      session_.progress.advance(++done);
-    };
-    caster->cast(sensor_, firings, std::span(scans_).subspan(first, count), job_.depth, take_scan);
   }
 
   const SimKitti32Job& job_;

@@ -16,6 +16,7 @@
 #include "adasplats/pipeline/session/session.h"
 #include "adasplats/recipes/model_file.h"
 #include "adasplats/simulate/scan/returns.h"
+#include "adasplats/simulate/scan/weather.h"
 
 namespace adasplats {
 
@@ -29,12 +30,14 @@ struct SimKitti32Job {
   std::size_t model_every = 1;  ///< of those, every n-th makes the static model
   SplatMethod method = SplatMethod::consistent;
   std::string sensor = "hdl-32-paper";
-  Vec3d offset_m = {0, 0, -0.5};  ///< of the sensor, in world axes
-  double noise_m = 0.005;         ///< standard deviation of the range
-  int depth = 5;                  ///< D, hits of a ray that are averaged
-  bool moving = true;             ///< what moves is simulated, too
-  double moving_radius_m = 0.14;  ///< of the splats of what moves
-  bool keep_model = false;        ///< as model.ply beside the sequences
+  Vec3d offset_m = {0, 0, -0.5};   ///< of the sensor, in world axes
+  double noise_m = 0.005;          ///< standard deviation of the range
+  int depth = 5;                   ///< D, hits of a ray that are averaged
+  bool moving = true;              ///< what moves is simulated, too
+  double moving_radius_m = 0.14;   ///< of the splats of what moves
+  bool keep_model = false;         ///< as model.ply beside the sequences
+  std::filesystem::path ray_drop;  ///< fitted model; empty: every echo is told
+  Weather weather;
   std::filesystem::path output;
   bool overwrite = false;
 };
@@ -77,6 +80,7 @@ void visit_settings(SimKitti32Job& job, Visit&& visit) {
       Setting{
           .name = "keep_model", .help = "Leave it in the output, as model.ply", .group = kModel},
       job.keep_model);
+  visit_settings(job.weather, visit);
 }
 
 /// Points of one class in the sequence and in what was simulated.

@@ -19,25 +19,31 @@ struct SensorOverrides {
   void apply(LidarModel& sensor) const;
 };
 
+/// No LiDAR sees farther within an atmosphere; what is beyond is a mistake, as of a unit.
+inline constexpr double kFarthestSensed_m = 1e6;
+
 template <class Visit>
 void visit_settings(SensorOverrides& sensor, Visit&& visit) {
   visit(Setting{.name = "range_noise",
                 .help = "Standard deviation of the noise on ranges, m; the default is the sensor's",
                 .value = "M",
                 .key = "range_noise_m",
-                .least = 0},
+                .least = 0,
+                .most = 1000},
         sensor.range_noise_m);
   visit(Setting{.name = "min_range",
                 .help = "Instead of the sensor's, m",
                 .value = "M",
                 .key = "min_range_m",
-                .least = 0},
+                .least = 0,
+                .most = kFarthestSensed_m},
         sensor.min_range_m);
   visit(Setting{.name = "max_range",
                 .help = "Instead of the sensor's, m",
                 .value = "M",
                 .key = "max_range_m",
                 .least = 0,
+                .most = kFarthestSensed_m,
                 .above_least = true},
         sensor.max_range_m);
   visit(Setting{.name = "rotation_rate",
@@ -45,6 +51,7 @@ void visit_settings(SensorOverrides& sensor, Visit&& visit) {
                 .value = "HZ",
                 .key = "rotation_hz",
                 .least = 0,
+                .most = 1e4,
                 .above_least = true},
         sensor.rotation_hz);
 }

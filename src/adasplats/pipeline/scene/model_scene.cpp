@@ -36,7 +36,10 @@ ModelScene::ModelScene(const std::filesystem::path& file, const std::string& lab
   session.progress.begin_step("load " + file.filename().string(), 0);
   load(world_file ? world_file->model : file);
   prepare(file.string(), session);
-  if (world_file) make_world(*world_file);
+  if (!world_file) return;
+  add_objects([&](World& world) {
+    adasplats::add_objects(world, *world_file, labels_ ? *labels_ : LabelScheme("", {}));
+  });
   session.progress.end_step();
 }
 
@@ -73,9 +76,9 @@ void ModelScene::prepare(const std::string& name, Session& session) {
   attributes_ = place_attributes();
 }
 
-void ModelScene::make_world(const WorldFile& file) {
+void ModelScene::add_objects(FunctionRef<void(World&)> fill) {
   world_.emplace(static_cast<std::uint32_t>(view().primitive_count()), origin(), executor_);
-  add_objects(*world_, file, labels_ ? *labels_ : LabelScheme("", {}));
+  fill(*world_);
   attributes_ = world_->attributes(place_attributes());
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "adasplats/core/function_ref.h"
 #include "adasplats/gpu/simulate/gpu_scene.h"
 #include "adasplats/pipeline/session/session.h"
 #include "adasplats/scene/mesh_model.h"
@@ -37,6 +38,9 @@ class ModelScene {
   ModelScene(MeshModel mesh, std::optional<LabelScheme> labels, Session& session);
   ModelScene(const ModelScene&) = delete;  // the tracer and the views look into it
   ModelScene& operator=(const ModelScene&) = delete;
+
+  /// Puts objects into the place, which has none yet; `fill` gets a world without any.
+  void add_objects(FunctionRef<void(World&)> fill);
 
   /// Splats or triangles.
   SceneView view() const;
@@ -70,7 +74,6 @@ class ModelScene {
   void load(const std::filesystem::path& file);
   void prepare(const std::string& name, Session& session);
   void make_tracers(Session& session);
-  void make_world(const WorldFile& file);
   PrimitiveAttributes place_attributes() const;
 
   const Executor& executor_;

@@ -25,13 +25,17 @@ struct Weather {
   bool is_clear() const;
 };
 
+/// Above the most that was ever measured: 38 mm in a minute (Barot, Guadeloupe, 1970; WMO).
+inline constexpr double kMostRain_mm_h = 3000;
+
 template <class Visit>
 void visit_settings(Weather& weather, Visit&& visit) {
   visit(Setting{.name = "rain",
                 .help = "Rate of rain, mm/h",
                 .value = "MM/H",
                 .key = "rain_mm_h",
-                .least = 0},
+                .least = 0,
+                .most = kMostRain_mm_h},
         weather.rain_mm_h);
   visit(Setting{.name = "fog",
                 .help = "Visibility in fog, m",
@@ -44,7 +48,8 @@ void visit_settings(Weather& weather, Visit&& visit) {
                 .help = "Rate of snow, mm/h of water",
                 .value = "MM/H",
                 .key = "snow_mm_h",
-                .least = 0},
+                .least = 0,
+                .most = kMostRain_mm_h},
         weather.snow_mm_h);
   visit(Setting{.name = "white_intensity",
                 .help = "Intensity of a white wall in the model's unit, for weather: 1, or 100 of "

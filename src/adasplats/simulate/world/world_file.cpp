@@ -222,8 +222,8 @@ Trajectory trajectory_of(const WorldFile& file, const WorldFileObject& object) {
 WorldFile read_world_file(const std::filesystem::path& path) {
   static const KeyNames file_keys = {"model", "object"};
   static const KeyNames object_keys = {"geometry", "class",     "instance",   "position",
-                                    "yaw_deg",  "pitch_deg", "roll_deg",   "scale",
-                                    "name",     "present",   "trajectory", "scan"};
+                                       "yaw_deg",  "pitch_deg", "roll_deg",   "scale",
+                                       "name",     "present",   "trajectory", "scan"};
   const toml::table content = parse(path);
   const WorldTable table(path, content, file_keys);
   WorldFile file;
