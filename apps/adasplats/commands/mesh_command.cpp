@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "adasplats/io/point_format.h"
 #include "adasplats/recipes/make_mesh.h"
 #include "cli/commands.h"
 #include "cli/options/build_options.h"
@@ -30,8 +31,7 @@ class MeshCommand final : public Command {
                    [this](const std::vector<std::string>& names) {
                      job_.inputs.assign(names.begin(), names.end());
                    },
-                   "Point files (PLY, PCD, LAS, LAZ, text, KITTI bin) and SemanticKITTI sequence "
-                   "folders")
+                   "Point files (" + point_format_names() + ") and SemanticKITTI sequence folders")
                 ->type_name("PATH"));
     require(writes(add_path(app, "-o,--output", output_, "Mesh to write, PLY"), {".ply"}));
     app.add_option("--labels", job_.labels,

@@ -32,7 +32,7 @@ std::string columns_text(const SensorFacts& facts) {
   return facts.columns == 0 ? "-" : grouped(facts.columns);
 }
 
-nlohmann::ordered_json to_json(const LidarModel& sensor, const SensorFacts& facts) {
+nlohmann::ordered_json sensor_json(const LidarModel& sensor, const SensorFacts& facts) {
   return {{"name", facts.name},
           {"beams", facts.beams},
           {"columns", facts.columns},
@@ -268,14 +268,14 @@ std::string library_table(Session& session) {
          fixed(sensor.min_range_m, 2) + " .. " + fixed(sensor.max_range_m, 0),
          fixed(1e3 * sensor.range_noise_m, 0), std::to_string(sensor.most_returns)});
     sources.push_back(sensor.source);
-    session.report["sensors"].push_back(to_json(sensor, facts));
+    session.report["sensors"].push_back(sensor_json(sensor, facts));
   }
   return with_last_column(table.text(), sources);
 }
 
 std::string describe(const LidarModel& sensor, Session& session) {
   const SensorFacts facts = facts_of(sensor);
-  session.report["sensor"] = to_json(sensor, facts);
+  session.report["sensor"] = sensor_json(sensor, facts);
   const auto span = [](double low, double high, const char* unit) {
     return signed_degrees(low) + " .. " + signed_degrees(high) + unit;
   };

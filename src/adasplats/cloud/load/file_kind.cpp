@@ -15,6 +15,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/input_file.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/io/point_format.h"
 
 namespace adasplats {
 
@@ -24,10 +25,6 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 16;
 constexpr double kTolerance = 1e-3;  // of rotations, as read_trajectory has it
 
 constexpr std::array<std::string_view, 3> kMeshes = {".obj", ".gltf", ".glb"};
-// E57 is not read, which whoever reads it says.
-constexpr std::array<std::string_view, 6> kPointFiles = {".pcd", ".las", ".laz",
-                                                         ".bin", ".ptx", ".e57"};
-constexpr std::array<std::string_view, 5> kTexts = {".xyz", ".pts", ".csv", ".txt", ".asc"};
 
 bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
   return std::ranges::find(words, word) != words.end();
@@ -169,20 +166,21 @@ FileKind kind_of_text(const std::vector<std::string>& lines) {
 }  // namespace
 
 FileKind kind_of_file(const std::filesystem::path& file) {
-  const std::string extension = lower_case(file.extension().string());
-  if (is_one_of(extension, kMeshes)) return FileKind::mesh;
-  if (is_one_of(extension, kPointFiles)) return FileKind::points;
+  if (is_one_of(lower_case(file.extension().string()), kMeshes)) return FileKind::mesh;
+  const PointFormat* const format = format_of_extension(file);
+  // Whoever reads a format that is not understood says so.
+  if (format != nullptr && format->tells == ExtensionTells::points) return FileKind::points;
   const auto lines = first_lines(file);
-  if (is_one_of(extension, kTexts)) return lines ? kind_of_text(*lines) : FileKind::points;
+  if (format != nullptr && format->tells == ExtensionTells::text)
+    return lines ? kind_of_text(*lines) : FileKind::points;
   const bool is_ply = lines && !lines->empty() && lines->front() == "ply";
   const FileKind kind = is_ply ? kind_of_ply(*lines) : FileKind::points;
-  return kind == FileKind::points && extension != ".ply" ? FileKind::other : kind;
+  return kind == FileKind::points && format == nullptr ? FileKind::other : kind;
 }
 
 bool has_extension_of_a_kind(const std::filesystem::path& file) {
-  const std::string extension = lower_case(file.extension().string());
-  return extension == ".ply" || is_one_of(extension, kMeshes) ||
-         is_one_of(extension, kPointFiles) || is_one_of(extension, kTexts);
+  return format_of_extension(file) != nullptr ||
+         is_one_of(lower_case(file.extension().string()), kMeshes);
 }
 
 std::string_view plural_name_of(FileKind kind) {

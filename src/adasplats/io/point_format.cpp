@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/io/point_format.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "adasplats/io/base/input_file.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/ply/ply.h"
+
+namespace adasplats {
+namespace {
+
+using Text = std::string_view;
+
+constexpr Text kPly[] = {".ply"};
+constexpr Text kPlyStarts[] = {"ply\n", "ply\r"};
+constexpr Text kPcd[] = {".pcd"};
+constexpr Text kPcdStarts[] = {"# .PCD"};
+constexpr Text kLas[] = {".las", ".laz"};
+constexpr Text kLasStarts[] = {"LASF"};
+constexpr Text kE57[] = {".e57"};
+constexpr Text kE57Starts[] = {"ASTM-E57"};
+constexpr Text kBin[] = {".bin"};
+constexpr Text kText[] = {".xyz", ".txt", ".asc", ".csv", ".pts"};
+constexpr Text kPtx[] = {".ptx"};
+
+using Path = std::filesystem::path;
+using Options = LasReadOptions;
+
+constexpr PointFormat kFormats[] = {
+    {.name = "PLY",
+     .extensions = kPly,
+     .beginnings = kPlyStarts,
+     .tells = ExtensionTells::geometry,
+     .read = [](const Path& path, const Options&) { return read_ply(path); }},
+    {.name = "PCD",
+     .extensions = kPcd,
+     .beginnings = kPcdStarts,
+     .read = [](const Path& path, const Options&) { return read_pcd(path); }},
+    {.name = "LAS or LAZ", .extensions = kLas, .beginnings = kLasStarts, .read = &read_las},
+    {.name = "E57",
+     .extensions = kE57,
+     .beginnings = kE57Starts,
+     .cure = "convert the file to LAS or PLY, with CloudCompare or 'pdal translate', say"},
+    {.name = "KITTI bin",
+     .extensions = kBin,
+     .remark = " (KITTI; *.pcd.bin: nuScenes)",
+     .read = [](const Path& path, const Options&) { return read_bin(path); }},
+    {.name = "text",
+     .extensions = kText,
+     .tells = ExtensionTells::text,
+     .read = [](const Path& path, const Options&) { return read_text_points(path); }},
+    {.name = "PTX",
+     .extensions = kPtx,
+     .read = [](const Path& path, const Options&) { return read_text_points(path); }},
+};
+
+const PointFormat* format_of_first_bytes(const Path& path) {
+  InputFile file(path);
+  const std::size_t count = static_cast<std::size_t>(std::min<std::uint64_t>(8, file.size_bytes()));
+  const std::string_view start(reinterpret_cast<const char*>(file.peek(count).data()), count);
+  for (const PointFormat& format : kFormats)
+    for (const std::string_view beginning : format.beginnings)
+      if (start.starts_with(beginning)) return &format;
+  return nullptr;
+}
+
+/// ".ply, .pcd and .ptx", of the formats that can be read.
+std::string understood_extensions() {
+  std::vector<std::string> words;
+  for (const PointFormat& format : kFormats) {
+    if (format.read == nullptr) continue;
+    for (const std::string_view extension : format.extensions) words.emplace_back(extension);
+    words.back() += format.remark;
+  }
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  return text;
+}
+
+}  // namespace
+
+std::span<const PointFormat> point_formats() { return kFormats; }
+
+const PointFormat* format_of_extension(const Path& path) {
+  const std::string extension = lower_case(path.extension().string());
+  for (const PointFormat& format : kFormats)
+    for (const std::string_view known : format.extensions)
+      if (known == extension) return &format;
+  return nullptr;
+}
+
+const PointFormat& format_of_file(const Path& path) {
+  const PointFormat* const by_bytes = format_of_first_bytes(path);
+  const PointFormat* const by_extension = format_of_extension(path);
+  if (by_bytes != nullptr && by_extension != nullptr && by_bytes != by_extension)
+    throw data_error({path, 0, {}}, "begins like " + std::string(by_bytes->name) +
+                                        ", its extension says " + std::string(by_extension->name));
+  if (by_extension != nullptr) return *by_extension;
+  if (by_bytes != nullptr) return *by_bytes;
+  throw data_error({path, {}, {}}, "unknown format " + shown(path.extension().string()) +
+                                       ", understood are " + understood_extensions());
+}
+
+std::string point_format_names() {
+  std::string text;
+  for (const PointFormat& format : kFormats) {
+    if (format.read == nullptr) continue;
+    text += (text.empty() ? "" : ", ") + std::string(format.name);
+  }
+  return text;
+}
+
+Table read_points(const Path& path, const LasReadOptions& options) {
+  const PointFormat& format = format_of_file(path);
+  if (format.read != nullptr) return format.read(path, options);
+  throw data_error({path, {}, {}},
+                   std::string(format.name) + " is not supported: " + std::string(format.cure));
+}
+
+}  // namespace adasplats
