@@ -151,6 +151,7 @@ else
   if wanted layers; then
     check layers-self-test tools/check_layers.py --self-test
     check layers tools/check_layers.py
+    check paths tools/check_paths.py
     check shared-maths-self-test tools/check_shared_maths.py --self-test
     check shared-maths tools/check_shared_maths.py
   fi
