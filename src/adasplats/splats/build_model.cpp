@@ -211,7 +211,8 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
                 "the semantic method needs labels, and the input has none; "
                 "the descriptors method does without");
   std::pair<SplatModel, BuildReport> result;
-  auto& [model, report] = result;
+  SplatModel& model = result.first;
+  BuildReport& report = result.second;
   report.points_in = cloud.size();
   report.origins = count_origins(cloud);
   report.oriented = cloud.has_all_origins();

@@ -75,34 +75,8 @@ struct PaperOptions {
 };
 
 template <class Visit>
-void visit_settings(PaperOptions& paper, Visit&& visit) {
+void visit_cleaning_settings(PaperOptions& paper, Visit&& visit) {
   constexpr const char* kCleaning = "Denoising and resampling";
-  constexpr const char* kScales = "Scales of neighbours K, radius R and error bound E by group";
-  visit(Setting{.name = "neighbors", .help = "K, neighbours of a point", .least = 3, .most = 1e5},
-        paper.neighbors);
-  visit(Setting{.name = "alpha",
-                .help = "Share of a splat's radius within which other seeds are discarded",
-                .least = 0,
-                .most = 1},
-        paper.alpha);
-  visit(Setting{.name = "smoothness",
-                .help = "Least dot product of normals in a splat",
-                .least = -1,
-                .most = 1},
-        paper.smoothness);
-  visit(Setting{.name = "radius",
-                .help = "R, m; without it the mean distance to the K-th neighbour",
-                .key = "radius_m",
-                .least = 0,
-                .above_least = true},
-        paper.radius_m);
-  visit(Setting{.name = "error_bound",
-                .help = "E, m; without it the mean distance of neighbours from their plane",
-                .key = "error_m",
-                .least = 0},
-        paper.error_m);
-  visit(Setting{.name = "selection", .help = "Order in which candidate splats are taken"},
-        paper.selection);
   visit(Setting{.name = "denoise", .help = "Remove noise", .group = kCleaning}, paper.denoise);
   visit(Setting{.name = "denoise_sigmas",
                 .help = "A neighbourhood votes against points farther than this from its plane",
@@ -132,6 +106,11 @@ void visit_settings(PaperOptions& paper, Visit&& visit) {
                 .help = "What the second generation starts from, with the new points",
                 .group = kCleaning},
         paper.resample_base);
+}
+
+template <class Visit>
+void visit_scale_settings(PaperOptions& paper, Visit&& visit) {
+  constexpr const char* kScales = "Scales of neighbours K, radius R and error bound E by group";
   const auto scale = [&](const char* name, const char* help, GroupScale& value) {
     visit(Setting{.name = name, .help = help, .group = kScales, .least = 0}, value);
   };
@@ -145,6 +124,37 @@ void visit_settings(PaperOptions& paper, Visit&& visit) {
                 .opposite = "base-normals",
                 .group = kScales},
         paper.group_normals);
+}
+
+template <class Visit>
+void visit_settings(PaperOptions& paper, Visit&& visit) {
+  visit(Setting{.name = "neighbors", .help = "K, neighbours of a point", .least = 3, .most = 1e5},
+        paper.neighbors);
+  visit(Setting{.name = "alpha",
+                .help = "Share of a splat's radius within which other seeds are discarded",
+                .least = 0,
+                .most = 1},
+        paper.alpha);
+  visit(Setting{.name = "smoothness",
+                .help = "Least dot product of normals in a splat",
+                .least = -1,
+                .most = 1},
+        paper.smoothness);
+  visit(Setting{.name = "radius",
+                .help = "R, m; without it the mean distance to the K-th neighbour",
+                .key = "radius_m",
+                .least = 0,
+                .above_least = true},
+        paper.radius_m);
+  visit(Setting{.name = "error_bound",
+                .help = "E, m; without it the mean distance of neighbours from their plane",
+                .key = "error_m",
+                .least = 0},
+        paper.error_m);
+  visit(Setting{.name = "selection", .help = "Order in which candidate splats are taken"},
+        paper.selection);
+  visit_cleaning_settings(paper, visit);
+  visit_scale_settings(paper, visit);
 }
 
 /// Errors: usage (a setting out of range).
