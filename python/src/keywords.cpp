@@ -108,6 +108,8 @@ void Keywords::take(const char* name, std::uint32_t& value) {
 void Keywords::take(const char* name, float& value) {
   double number = static_cast<double>(value);
   take(name, number);
+  if (std::fabs(number) > static_cast<double>(std::numeric_limits<float>::max()))
+    throw py::value_error(function_ + "(): " + name + " is out of range");
   value = static_cast<float>(number);
 }
 

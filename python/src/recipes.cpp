@@ -103,11 +103,23 @@ struct ExportCall {
   }
 };
 
+/// The first keyword that says how to load points or scans; "" where there is none.
+std::string load_keyword(const py::kwargs& given) {
+  for (const auto& [name, value] : given) {
+    const auto word = name.cast<std::string>();
+    const bool other = word == "format" || word == "labels" || word == "color" ||
+                       word == "threads" || word == "progress";
+    if (!other) return word;
+  }
+  return "";
+}
+
 py::dict export_file(py::handle input, py::handle output, const py::kwargs& kwargs) {
   Keywords keywords("export", kwargs);
   ExportCall call;
   call.take(keywords);
   keywords.finish();
+  call.job.cloud_option = load_keyword(kwargs);
   call.job.input = path_of(input, "input");
   call.job.output = path_of(output, "output");
   Work work(call.work);
@@ -141,6 +153,7 @@ py::object simkitti32(py::handle sequence, py::handle output, const py::kwargs& 
   SimKitti32Call call;
   call.take(keywords);
   keywords.finish();
+  refuse_unused(unused_settings(call.job), kwargs);
   call.job.sequence = path_of(sequence, "sequence");
   call.job.output = path_of(output, "output");
   Work work(call.work);

@@ -72,3 +72,32 @@ def test_simkitti32_has_the_weather_and_the_drop_of_simulate(street, tmp_path):
     assert points("drop", ray_drop=drop) < 0.8 * clear
     told = (tmp_path / "clear" / "adasplats.json").read_text()
     assert '"fog_visibility_m": null' in told and '"rain_mm_h": 0.0' in told
+
+
+def test_what_is_wrong_is_said_before_long_work(street, tmp_path):
+    def refuse(text, **options):
+        with pytest.raises(ValueError, match=text):
+            adasplats.simkitti32(street.sequence, tmp_path / "none", sensor=street.sensor, **options)
+        assert list(tmp_path.glob("*none*")) == []
+
+    drop = tmp_path / "drop.toml"
+    drop.write_text("garbage = 1\n")
+    refuse("garbage", ray_drop=drop)
+    refuse("stride is 0", scan_stride=0)
+    refuse("moving_radius has no effect", moving=False, moving_radius=0.2)
+    refuse("rain is -1, expected 0 to 3000", rain=-1)
+    with pytest.raises(ValueError, match="first_scan has no effect on a splat model"):
+        adasplats.export(street.model, tmp_path / "x.glb", first_scan=3)
+
+
+@pytest.mark.parametrize("options, text", [
+    ({"min_range": -5}, "min_range is -5"), ({"min_range": float("nan")}, "min_range is nan"),
+    ({"range_noise": -1}, "range_noise is -1"),
+    ({"min_range": 100, "max_range": 10}, "less than max_range"),
+    ({"rotation_rate": 0}, "rotation_rate is 0, expected 0.001 to 10000"),
+    ({"sub_rays": 65}, "sub_rays is 65, expected 1 to 64"),
+])
+def test_ranges_of_a_sensor(scene, poses, options, text):
+    with pytest.raises(ValueError, match=text):
+        scene.simulate("velodyne-vlp-16", poses, **options)
+

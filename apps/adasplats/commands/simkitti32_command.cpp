@@ -48,7 +48,9 @@ class SimKitti32Command final : public Command {
   }
 
   void run(Session& session) override {
-    if (!job_.moving) refuse({"--moving-radius"}, "with --no-moving");
+    for (const UnusedSetting& unused : unused_settings(job_)) {
+      refuse({option_of(unused.setting).c_str()}, unused.why);
+    }
     const LabelScheme labels = load_label_scheme(job_.labels);
     const SimKitti32Result result = run_simkitti32(job_, session);
     session.report.update(to_json(result, labels));

@@ -49,11 +49,10 @@ void check(const ImlsOptions& options, std::size_t points, std::size_t normals) 
     if (!good) throw Error(ErrorKind::usage, what);
   };
   if (points != normals) throw std::logic_error("ImlsField: not one normal a point");
-  require(options.voxel_m > 0 && std::isfinite(options.voxel_m), "voxels must be greater than 0");
-  require(options.truncation_voxels >= 1 && options.truncation_voxels <= kSide,
-          "the truncation must be 1 to 8 voxels");
+  static_assert(kSide == 8, "the table of settings says so");
+  check_settings(options);
   // Beyond 3 sigmas a weight is below 0.0002, and weight() was made for what is within.
-  require(3 * options.sigma_voxels >= options.truncation_voxels && options.sigma_voxels <= 1e3,
+  require(3 * options.sigma_voxels >= options.truncation_voxels,
           "sigma must be at least a third of the truncation");
 }
 

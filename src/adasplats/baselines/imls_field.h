@@ -36,14 +36,15 @@ void visit_settings(ImlsOptions& imls, Visit&& visit) {
                 .key = "sigma_voxels",
                 .group = kGroup,
                 .least = 0,
+                .most = 1000,
                 .above_least = true},
         imls.sigma_voxels);
   visit(Setting{.name = "truncation",
                 .help = "Values only in voxels this near to a point, voxels",
                 .key = "truncation_voxels",
                 .group = kGroup,
-                .least = 0,
-                .above_least = true},
+                .least = 1,
+                .most = 8},
         imls.truncation_voxels);
 }
 

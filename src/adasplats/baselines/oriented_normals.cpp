@@ -144,8 +144,7 @@ std::size_t apply_signs(std::span<const Vec3f> points, const SignedSets& sets,
 void check(std::size_t points, std::size_t sensor_positions, const NormalOptions& options) {
   if (sensor_positions != 0 && sensor_positions != points)
     throw std::logic_error("oriented_normals: not one sensor position a point");
-  if (options.neighbors < 3 || options.neighbors > 1000)
-    throw Error(ErrorKind::usage, "neighbors must be 3 to 1000");
+  check_settings(options);
   if (sensor_positions == 0 && points * std::uint64_t{options.spread_neighbors} >= kNone)
     throw Error(ErrorKind::data,
                 "too many points to orient their normals without sensor positions");

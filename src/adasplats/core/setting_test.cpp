@@ -57,6 +57,13 @@ TEST(Setting, RangesAreCheckedByName) {
   EXPECT_EQ(refusal({.triple = {1, 1, 0}}), "triple is 0, expected more than 0");
 }
 
+TEST(Setting, NumbersAreWrittenPlainly) {
+  EXPECT_EQ(range_text({.name = "n", .help = "", .least = 3, .most = 1e5}), "3 to 100000");
+  EXPECT_EQ(range_text({.name = "n", .help = "", .least = 0.001, .most = 1e4}), "0.001 to 10000");
+  EXPECT_EQ(range_text({.name = "n", .help = "", .most = 0.25}), "at most 0.25");
+  EXPECT_EQ(range_text({.name = "n", .help = ""}), "a finite number");
+}
+
 TEST(Setting, HasAnOptionAKeyAndAPlaceInItsTable) {
   const std::vector<Setting> settings = settings_of<Oven>();
   ASSERT_EQ(settings.size(), 5U);

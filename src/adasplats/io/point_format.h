@@ -22,7 +22,7 @@ enum class ExtensionTells : std::uint8_t {
 /// A format of point files. All of them stand in one list (point_format.cpp): reading, the kinds of
 /// files in a folder, messages and help are made from it. A new format is its reader and an entry.
 struct PointFormat {
-  std::string_view name;                         ///< "LAS", as help has it
+  std::string_view name;                         ///< "LAS or LAZ", as help has it
   std::span<const std::string_view> extensions;  ///< ".las", ".laz"
   std::span<const std::string_view> beginnings;  ///< first bytes, any of them; none: not told
   ExtensionTells tells = ExtensionTells::points;
@@ -40,7 +40,7 @@ const PointFormat* format_of_extension(const std::filesystem::path& path);
 /// do; an unknown format, with those that are understood), those of opening the file.
 const PointFormat& format_of_file(const std::filesystem::path& path);
 
-/// "PLY, PCD, LAS, LAZ, KITTI bin, text", for help.
+/// "PLY, PCD, LAS or LAZ, KITTI bin, text, PTX", for help.
 std::string point_format_names();
 
 }  // namespace adasplats

@@ -102,7 +102,7 @@ ExportFormat format_of(const ExportJob& job, InputKind kind) {
       ending.empty() ? "a name without an ending" : "the ending ." + ending;
   throw Error(ErrorKind::usage, can_be + "; " + of_ending +
                                     (meant.empty() ? " is none of them" : " says not which") +
-                                    ": give --format");
+                                    ": give the format");
 }
 
 bool has_colors(ExportFormat format) {
@@ -238,8 +238,10 @@ ExportResult write_export(const ExportJob& job, Session& session) {
     throw Error(ErrorKind::usage, "labels have no effect on " + std::string(name_of(format)) +
                                       ", which holds the numbers of classes as they are");
   }
-  const bool scans = format == ExportFormat::mcap &&
-                     (job.cloud_option == "--scans" || job.cloud_option == "--strict");
+  constexpr std::array<std::string_view, 6> kOfScans = {"--scans",    "--strict",    "first_scan",
+                                                        "scan_count", "scan_stride", "strict"};
+  const bool scans = format == ExportFormat::mcap && std::find(kOfScans.begin(), kOfScans.end(),
+                                                               job.cloud_option) != kOfScans.end();
   if (!job.cloud_option.empty() && !scans &&
       (kind == InputKind::model || format == ExportFormat::mcap)) {
     throw Error(

@@ -38,8 +38,9 @@ struct ExportJob {
   std::string labels;  ///< scheme of the classes; empty: what the model says
   /// Else by class where classes and their scheme are known, else by intensity, else by height.
   std::optional<ExportColor> color;
-  LoadOptions load;          ///< of clouds and sequences
-  std::string cloud_option;  ///< that was given and is for these alone; empty: none
+  LoadOptions load;  ///< of clouds and sequences
+  /// That was given and is for these alone, as the user wrote it; empty: none.
+  std::string cloud_option;
 };
 
 struct ExportResult {

@@ -55,14 +55,7 @@ Source open_source(const SimKitti32Job& job) {
     throw Error(ErrorKind::data, folder.string() +
                                      ": has no labels/, which say what moves and what simulated "
                                      "points are");
-  const std::size_t all = source.sequence.scans.size();
-  for (std::size_t i = job.scans.first; i < all; i += job.scans.stride) {
-    if (source.numbers.size() == job.scans.count) break;
-    source.numbers.push_back(i);
-  }
-  if (source.numbers.empty())
-    throw Error(ErrorKind::data, folder.string() + ": has " + std::to_string(all) +
-                                     " scans, none of them is chosen");
+  source.numbers = chosen_scans(job.scans, source.sequence.scans.size(), folder);
   return source;
 }
 
@@ -120,12 +113,12 @@ Json content_of(const SimKitti32Job& job, const Source& source, const LidarModel
 /// Makes the scans that are not there yet.
 class Simulation {
  public:
-  Simulation(const SimKitti32Job& job, const Source& source, const LidarModel& sensor,
+  Simulation(const SimKitti32Job& job, const Source& source, const ScanSettings& settings,
              ResumableFolder& folder, Session& session)
       : job_(job),
         source_(source),
         labels_(load_label_scheme(job.labels)),
-        sensor_(sensor),
+        settings_(settings),
         folder_(folder),
         session_(session),
         sequence_(fs::path("sequences") / source.name),
@@ -206,7 +199,7 @@ class Simulation {
       scene.add_objects(
           [&](World& world) { result.moving_splats = add_moving(missing, response, world); });
     }
-    ScanSimulator simulator(scene, settings(), session_.executor);
+    ScanSimulator simulator(scene, settings_, session_.executor);
     session_.progress.begin_step("simulate", missing.size());
     std::size_t done = 0;
     // Scans that follow one another are cast together; what is missing is the end of the sequence
@@ -219,16 +212,6 @@ class Simulation {
     }
     session_.progress.end_step();
     result.seconds_simulated = watch.seconds();
-  }
-
-  ScanSettings settings() const {
-    ScanSettings settings;
-    settings.sensor = sensor_;
-    settings.beam.depth = job_.depth;
-    settings.weather = job_.weather;
-    if (!job_.ray_drop.empty()) settings.ray_drop = load_ray_drop(job_.ray_drop);
-    settings.seed = session_.seed;
-    return settings;
   }
 
   /// Scans are numbered as in the sequence: noise, patterns and what moves go by that.
@@ -283,7 +266,7 @@ class Simulation {
   const SimKitti32Job& job_;
   const Source& source_;
   LabelScheme labels_;
-  const LidarModel& sensor_;
+  const ScanSettings& settings_;
   ResumableFolder& folder_;
   Session& session_;
   fs::path sequence_;  ///< in the folder
@@ -313,19 +296,40 @@ Json classes_json(const SimKitti32Result& result, const LabelScheme& labels) {
   return json;
 }
 
+/// What can be wrong is said before long work, and before a folder is begun for it.
+ScanSettings settings_of(const SimKitti32Job& job, std::uint64_t seed) {
+  check_settings(job);
+  ScanSettings settings;
+  settings.sensor = load_lidar_model(job.sensor);
+  settings.sensor.range_noise_m = job.noise_m;
+  settings.beam.depth = job.depth;
+  settings.weather = job.weather;
+  if (!job.ray_drop.empty()) settings.ray_drop = load_ray_drop(job.ray_drop);
+  settings.seed = seed;
+  check(settings);
+  return settings;
+}
+
 }  // namespace
+
+std::vector<UnusedSetting> unused_settings(const SimKitti32Job& job) {
+  std::vector<UnusedSetting> unused;
+  if (job.moving) return unused;
+  for (UnusedSetting& each : all_unused(job, "without what moves")) {
+    if (std::string_view(each.setting.name) == "moving_radius") unused.push_back(std::move(each));
+  }
+  return unused;
+}
 
 SimKitti32Result run_simkitti32(const SimKitti32Job& job, Session& session) {
   const Stopwatch total;
-  check_settings(job);
-  LidarModel sensor = load_lidar_model(job.sensor);
-  sensor.range_noise_m = job.noise_m;
+  const ScanSettings settings = settings_of(job, session.seed);
   const Source source = open_source(job);
   ResumableFolder folder(job.output, job.overwrite, "simkitti32",
-                         content_of(job, source, sensor, session));
+                         content_of(job, source, settings.sensor, session));
   SimKitti32Result result;
-  Simulation(job, source, sensor, folder, session).run(result);
-  result.rays = result.scans * sensor.rays_per_scan();
+  Simulation(job, source, settings, folder, session).run(result);
+  result.rays = result.scans * settings.sensor.rays_per_scan();
   session.progress.begin_step("count", 0);
   count_classes(folder.path() / "sequences" / source.name, source, result);
   const std::vector<std::string> aids = job.keep_model || !fs::exists(folder.path() / kModelFile)

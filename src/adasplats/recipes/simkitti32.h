@@ -12,6 +12,7 @@
 
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/setting.h"
+#include "adasplats/pipeline/model/unused_settings.h"
 #include "adasplats/pipeline/session/scan_range.h"
 #include "adasplats/pipeline/session/session.h"
 #include "adasplats/recipes/model_file.h"
@@ -74,7 +75,8 @@ void visit_settings(SimKitti32Job& job, Visit&& visit) {
                 .help = "Take every n-th of the scans for it, for less memory",
                 .value = "N",
                 .group = kModel,
-                .least = 1},
+                .least = 1,
+                .most = 1e6},
         job.model_every);
   visit(
       Setting{
@@ -82,6 +84,9 @@ void visit_settings(SimKitti32Job& job, Visit&& visit) {
       job.keep_model);
   visit_settings(job.weather, visit);
 }
+
+/// The settings that have no effect beside the others.
+std::vector<UnusedSetting> unused_settings(const SimKitti32Job& job);
 
 /// Points of one class in the sequence and in what was simulated.
 struct ClassCount {

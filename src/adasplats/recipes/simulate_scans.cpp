@@ -35,8 +35,6 @@ ScanSettings settings_of(const SimulateJob& job, std::uint64_t seed) {
   settings.sensor = load_lidar_model(job.sensor);
   LidarModel& sensor = settings.sensor;
   job.overrides.apply(sensor);
-  if (!(sensor.min_range_m < sensor.max_range_m))
-    throw Error(ErrorKind::usage, "min_range must be less than max_range");
   settings.beam = job.beam;
   settings.noise = job.noise;
   settings.frame = job.frame;

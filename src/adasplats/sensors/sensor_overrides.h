@@ -50,9 +50,8 @@ void visit_settings(SensorOverrides& sensor, Visit&& visit) {
                 .help = "Revolutions a second instead of the sensor's",
                 .value = "HZ",
                 .key = "rotation_hz",
-                .least = 0,
-                .most = 1e4,
-                .above_least = true},
+                .least = 1e-3,
+                .most = 1e4},
         sensor.rotation_hz);
 }
 

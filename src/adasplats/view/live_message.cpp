@@ -181,10 +181,11 @@ LiveSensor parse_sensor(const Json& json) {
   if (!(sensor.settings.sensor.min_range_m < sensor.settings.sensor.max_range_m))
     refuse("min_range_m: expected less than max_range_m");
   check(sensor.settings);
-  const std::size_t rays =
-      sensor.settings.sensor.rays_per_scan() * sensor.settings.beam.hits_per_firing();
-  if (rays > kMostRays)
-    refuse(std::to_string(rays) + " rays a scan, expected at most " + std::to_string(kMostRays));
+  const std::size_t firings = sensor.settings.sensor.rays_per_scan();
+  const std::size_t hits = sensor.settings.beam.hits_per_firing();
+  if (firings > kMostRays / hits)
+    refuse(std::to_string(firings) + " firings of " + std::to_string(hits) +
+           " rays a scan, expected at most " + std::to_string(kMostRays) + " rays");
   return sensor;
 }
 

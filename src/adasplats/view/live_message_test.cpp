@@ -149,6 +149,30 @@ TEST(LiveMessage, SettingsOutOfRangeAreRefused) {
   expect_refused(with(R"({"rotation_hz":0})"), "rotation_hz");
 }
 
+TEST(LiveMessage, EverySettingOfBeamsAndWeatherIsTaken) {
+  const auto sensor = parsed<LiveSensor>(
+      R"({"type":"sensor","name":"velodyne-vlp-16","settings":{"depth":3,"depth_gap_m":0.2,)"
+      R"("separation_m":0.5,"return_mode":"last","white_intensity":100,"fog_visibility_m":0}})");
+  EXPECT_EQ(sensor.settings.beam.depth, 3);
+  EXPECT_EQ(sensor.settings.beam.depth_gap_m, 0.2);
+  EXPECT_EQ(sensor.settings.beam.separation_m, 0.5);
+  EXPECT_EQ(sensor.settings.beam.mode, ReturnMode::last);
+  EXPECT_EQ(sensor.settings.weather.white_intensity, 100);
+  EXPECT_TRUE(sensor.settings.weather.is_clear());
+  const std::vector<std::string> options = {"--depth",           "3",   "--depth-gap",   "0.2",
+                                            "--separation",      "0.5", "--return-mode", "last",
+                                            "--white-intensity", "100"};
+  EXPECT_EQ(sensor.options, options);
+}
+
+TEST(LiveMessage, WordsThatAreNotKnownAreRefused) {
+  const std::string start = R"({"type":"sensor","name":"velodyne-vlp-16","settings":)";
+  expect_refused(start + R"({"return_mode":"best"}})", "strongest, first, last");
+  expect_refused(start + R"({"return_mode":1}})", "text");
+  expect_refused(start + R"({"sub_rays":65}})", "1 to 64");
+  expect_refused(start + R"({"rotation_hz":1e-300}})", "rotation_hz");
+}
+
 TEST(LiveMessage, AScanThatTakesForeverIsRefused) {
   expect_refused(R"({"type":"sensor","name":"livox-mid-40","settings":{"rotation_hz":0.1,)"
                  R"("sub_rays":19,"returns":1}})",

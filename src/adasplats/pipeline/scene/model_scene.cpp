@@ -36,10 +36,11 @@ ModelScene::ModelScene(const std::filesystem::path& file, const std::string& lab
   session.progress.begin_step("load " + file.filename().string(), 0);
   load(world_file ? world_file->model : file);
   prepare(file.string(), session);
-  if (!world_file) return;
-  add_objects([&](World& world) {
-    adasplats::add_objects(world, *world_file, labels_ ? *labels_ : LabelScheme("", {}));
-  });
+  if (world_file) {
+    add_objects([&](World& world) {
+      adasplats::add_objects(world, *world_file, labels_ ? *labels_ : LabelScheme("", {}));
+    });
+  }
   session.progress.end_step();
 }
 

@@ -5,7 +5,9 @@
 #include <memory>
 #include <utility>
 
+#include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
+#include "adasplats/sensors/sensor_overrides.h"
 
 namespace adasplats {
 namespace {
@@ -30,6 +32,10 @@ std::vector<Firing> firings_of_points(std::span<const Firing> firings, const Sca
 }  // namespace
 
 void check(const ScanSettings& settings) {
+  const LidarModel& sensor = settings.sensor;
+  check_settings(SensorOverrides{sensor.range_noise_m, sensor.min_range_m, {}, sensor.rotation_hz});
+  if (!(sensor.min_range_m < sensor.max_range_m))
+    throw Error(ErrorKind::usage, "min_range must be less than max_range");
   check_beam(settings.beam, settings.sensor);
   check_weather(settings.weather, settings.sensor);
 }

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/recorded_progress_test.h"
 
 namespace adasplats {
 namespace {
@@ -147,6 +149,18 @@ TEST(ModelSceneTest, AModelWithoutSplatsIsRefused) {
   Session session{executor, progress, 1, device};
   EXPECT_THROW(ModelScene(SplatModel(), std::nullopt, session), Error);
   EXPECT_THROW(ModelScene(MeshModel(), std::nullopt, session), Error);
+}
+
+TEST(ModelSceneFromAFile, EndsTheStepsThatItBegins) {
+  const TemporaryFolder folder;
+  save_model(folder.path() / "m.ply", floor_and_wall());
+  const Executor executor(1);
+  RecordedProgress progress;
+  DeviceChoice device;
+  Session session{executor, progress, 1, device};
+  const ModelScene scene(folder.path() / "m.ply", "", session);
+  ASSERT_FALSE(progress.steps.empty());
+  EXPECT_TRUE(progress.steps.back().is_ended);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 
 namespace adasplats {
 
-/// Puts settings into a JSON object, by their keys. What is not finite becomes null.
+/// Puts settings into a JSON object, by their keys. What is not finite is written as null.
 class JsonOfSettings {
  public:
   explicit JsonOfSettings(nlohmann::ordered_json& json) : json_(json) {}

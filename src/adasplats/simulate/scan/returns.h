@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -59,7 +60,8 @@ void visit_settings(BeamOptions& beam, Visit&& visit) {
                 .help = "Splats of a ray farther behind the one before are not averaged, m",
                 .value = "M",
                 .key = "depth_gap_m",
-                .least = 0},
+                .least = 0,
+                .most = std::numeric_limits<double>::infinity()},
         beam.depth_gap_m);
   visit(Setting{.name = "sub_rays",
                 .help = "Rays over the cross-section of a beam",
@@ -71,7 +73,8 @@ void visit_settings(BeamOptions& beam, Visit&& visit) {
                 .help = "Echoes nearer to one another are one return, m",
                 .value = "M",
                 .key = "separation_m",
-                .least = 0},
+                .least = 0,
+                .most = std::numeric_limits<double>::infinity()},
         beam.separation_m);
   visit(Setting{.name = "returns",
                 .help = "Most returns of a firing",
