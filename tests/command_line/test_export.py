@@ -82,7 +82,7 @@ class Export(ProgramTest):
         model = self.model()
         bad = lambda source, name, *words, says: self.run_bad(64, "export", source, "-o",
                                                               self.folder / name, *words, says=says)
-        bad(model, "out.ply", says=["splat model", "gaussian-3d, gaussian-2d or glb", "--format"])
+        bad(model, "out.ply", says=["splat model", "gaussian-3d, gaussian-2d or glb", "give the format"])
         bad(model, "out.mcap", says=["splat model", "gaussian-3d, gaussian-2d or glb"])
         bad(model, "out", says=["out", ".ply, .glb or .mcap"])
         bad(model, "out.ply", "--format", "ply", says=["not as ply"])

@@ -107,7 +107,7 @@ struct SimKitti32Result {
 };
 
 /// Makes the data set. Interrupted at any moment, the same job goes on where it stopped and gives
-/// the same bytes. Errors: data (no labels, no scans), usage, cannot_create (also where what was
+/// the same bytes. Errors: data (no labels), usage (no scans), cannot_create (also where what was
 /// left unfinished is of another job, other inputs or another version).
 SimKitti32Result run_simkitti32(const SimKitti32Job& job, Session& session);
 
