@@ -106,7 +106,7 @@ struct ExportCall {
 /// The first keyword that says how to load points or scans; "" where there is none.
 std::string load_keyword(const py::kwargs& given) {
   for (const auto& [name, value] : given) {
-    const auto word = name.cast<std::string>();
+    auto word = name.cast<std::string>();
     const bool other = word == "format" || word == "labels" || word == "color" ||
                        word == "threads" || word == "progress";
     if (!other) return word;
