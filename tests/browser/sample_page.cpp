@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "adasplats/io/arrays/png.h"
-#include "report_page/report_page.h"
-#include "report_page/sample_results.h"
+#include "adasplats/report/report_page.h"
+#include "adasplats/report/sample_results_test.h"
 
 namespace {
 
-using adasplats::app::page::sample_results;
+using adasplats::page::sample_results;
 
 constexpr int kWidth = 320;
 constexpr int kHeight = 180;
@@ -54,8 +54,8 @@ nlohmann::ordered_json made_up(const std::filesystem::path& folder) {
 void make_pages(const std::filesystem::path& folder) {
   std::ifstream given(folder / "compare.json");
   const auto results = given ? nlohmann::ordered_json::parse(given) : made_up(folder);
-  std::ofstream(folder / "report.html") << adasplats::app::report_html(results, folder);
-  std::ofstream(folder / "report.md") << adasplats::app::report_markdown(results);
+  std::ofstream(folder / "report.html") << adasplats::report_html(results, folder);
+  std::ofstream(folder / "report.md") << adasplats::report_markdown(results);
 }
 
 }  // namespace

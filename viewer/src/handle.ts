@@ -4,16 +4,16 @@
 // window.adasplats: for tests, and for whoever likes the console.
 
 import { Vector3 } from 'three';
-import type { CameraMode } from './camera_rig';
-import { byId } from './dom';
-import type { Driver } from './driver';
-import type { LidarPanel } from './lidar_panel';
-import type { Live } from './live';
-import { kScanPointWords, type Pose, type ScanPacket } from './protocol';
-import type { ScanCloud } from './scan_cloud';
-import type { ScanRate } from './scan_rate';
-import type { SceneView } from './scene_view';
-import { kColorModes, type ColorMode } from './shaders';
+import type { CameraMode } from './driving/camera_rig';
+import { byId } from './panels/dom';
+import type { Driver } from './driving/driver';
+import type { LidarPanel } from './panels/lidar_panel';
+import type { Live } from './server/live';
+import { kScanPointWords, type Pose, type ScanPacket } from './server/protocol';
+import type { ScanCloud } from './picture/scan_cloud';
+import type { ScanRate } from './panels/scan_rate';
+import type { SceneView } from './picture/scene_view';
+import { kColorModes, type ColorMode } from './picture/shaders';
 
 export interface HandleParts {
   view: SceneView;

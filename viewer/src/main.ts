@@ -4,26 +4,20 @@
 // Starts the page: reads the scene, as soon as somebody answers.
 
 import { App } from './app';
-import { byId } from './dom';
-import { parseScene, ProtocolError, type SceneInfo } from './protocol';
+import { showBanner } from './panels/notices';
+import { parseScene, ProtocolError, type SceneInfo } from './server/protocol';
 
 const kPauseMs = 1000;
-
-function tell(message: string) {
-  const banner = byId('banner');
-  banner.textContent = message;
-  banner.hidden = false;
-}
 
 async function readScene(): Promise<SceneInfo> {
   for (;;) {
     try {
       const reply = await fetch('scene.json');
       if (reply.ok) return parseScene(await reply.json());
-      tell(`The server answers ${reply.status}`);
+      showBanner(`The server answers ${reply.status}`);
     } catch (error) {
       const odd = error instanceof ProtocolError || error instanceof SyntaxError;
-      tell(odd ? `The server sent something odd: ${error.message}` : 'Waiting for the server');
+      showBanner(odd ? `The server sent something odd: ${error.message}` : 'Waiting for the server');
     }
     await new Promise((resolve) => window.setTimeout(resolve, kPauseMs));
   }
@@ -31,11 +25,11 @@ async function readScene(): Promise<SceneInfo> {
 
 async function start() {
   const scene = await readScene();
-  byId('banner').hidden = true;
+  showBanner(null);
   try {
     new App(scene).start();
   } catch (error) {
-    tell(`This browser cannot show the scene (it needs WebGL 2): ${(error as Error).message}`);
+    showBanner(`This browser cannot show the scene (it needs WebGL 2): ${(error as Error).message}`);
   }
 }
 

@@ -4,8 +4,8 @@
 // The mouse over the scene: takes the sensor, or clicks; the rest is the camera's.
 
 import { Plane, Raycaster, Vector2, Vector3 } from 'three';
-import type { SceneView } from './scene_view';
-import type { SensorBody } from './sensor_body';
+import type { SceneView } from '../picture/scene_view';
+import type { SensorBody } from '../picture/sensor_body';
 
 export interface PointerEvents {
   dragged(x: number, y: number): void;

@@ -4,7 +4,7 @@
 // Colours: of classes, one texel an id, and perceptual maps of numbers.
 
 import { DataTexture, LinearFilter, NearestFilter, RGBAFormat, UnsignedByteType } from 'three';
-import type { ClassInfo, Vec3 } from './protocol';
+import type { ClassInfo, Vec3 } from '../server/protocol';
 
 /** Ten even steps of matplotlib's maps (van der Walt and Smith, CC0). */
 const kMaps = {

@@ -5,9 +5,9 @@
 
 import { Vector3 } from 'three';
 import { button, fill, grouped, make } from './dom';
-import { cssColor, type ClassPalette } from './palette';
-import type { PickedMessage, Vec3 } from './protocol';
-import type { Echo } from './scan_cloud';
+import { cssColor, type ClassPalette } from '../picture/palette';
+import type { PickedMessage, Vec3 } from '../server/protocol';
+import type { Echo } from '../picture/scan_cloud';
 
 type Line = [string, string | Node];
 

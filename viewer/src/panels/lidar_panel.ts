@@ -4,7 +4,7 @@
 // The LiDAR: which, with which parameters, and whether it scans.
 
 import { button, choice, fill, grouped, make, tick } from './dom';
-import type { SensorInfo, SensorMessage, Settings } from './protocol';
+import type { SensorInfo, SensorMessage, Settings } from '../server/protocol';
 
 interface Field {
   key: string;

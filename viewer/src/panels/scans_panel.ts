@@ -4,10 +4,10 @@
 // Recorded scans, one at a time, and the trajectories they were taken along.
 
 import { button, fill, grouped, make, slider, tick } from './dom';
-import { PathLine } from './path_line';
-import { parseScan, type Pose, type SceneInfo } from './protocol';
-import type { ScanCloud } from './scan_cloud';
-import type { SceneView } from './scene_view';
+import { PathLine } from '../picture/path_line';
+import { parseScan, type Pose, type SceneInfo } from '../server/protocol';
+import type { ScanCloud } from '../picture/scan_cloud';
+import type { SceneView } from '../picture/scene_view';
 
 const kTrajectoryColors = [0xf2c14e, 0x5bc0eb, 0xe56b6f, 0x9bc53d, 0xc77dff];
 

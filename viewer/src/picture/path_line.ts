@@ -4,7 +4,7 @@
 // A line through poses: a trajectory, or what was driven.
 
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Line, LineBasicMaterial } from 'three';
-import type { Pose } from './protocol';
+import type { Pose } from '../server/protocol';
 
 export class PathLine {
   readonly object: Line<BufferGeometry, LineBasicMaterial>;

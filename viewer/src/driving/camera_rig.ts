@@ -5,7 +5,7 @@
 
 import { MOUSE, PerspectiveCamera, TOUCH, Vector3 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import type { Box } from './protocol';
+import type { Box } from '../server/protocol';
 
 export type CameraMode = 'orbit' | 'follow' | 'top';
 

@@ -4,7 +4,7 @@
 // The strip below the scene: a scan as its sensor has it, rings over columns.
 
 import { mapColor, type ClassPalette } from './palette';
-import { kScanPointWords, type ScanPacket } from './protocol';
+import { kScanPointWords, type ScanPacket } from '../server/protocol';
 
 export type ImageMode = 'range' | 'class' | 'intensity';
 

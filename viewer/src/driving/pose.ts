@@ -4,7 +4,7 @@
 // Poses as three's matrices, and the heading in them.
 
 import { Matrix4, Quaternion, Vector3 } from 'three';
-import type { Pose } from './protocol';
+import type { Pose } from '../server/protocol';
 
 const kUp = new Vector3(0, 0, 1);
 

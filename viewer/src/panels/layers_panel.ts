@@ -4,7 +4,7 @@
 // What is drawn: layers over each other or two side by side.
 
 import { choice, fill, make, row, segments, short, slider, tick } from './dom';
-import type { SceneView } from './scene_view';
+import type { SceneView } from '../picture/scene_view';
 
 export function layersPanel(view: SceneView): HTMLElement {
   const element = make('div');

@@ -4,10 +4,10 @@
 // What colours mean: the mode, the classes, and a legend of numbers.
 
 import { button, choice, fill, make, tick } from './dom';
-import { cssColor, cssGradient } from './palette';
-import type { SceneInfo } from './protocol';
-import type { SceneView } from './scene_view';
-import { kColorModes, type ColorMode } from './shaders';
+import { cssColor, cssGradient } from '../picture/palette';
+import type { SceneInfo } from '../server/protocol';
+import type { SceneView } from '../picture/scene_view';
+import { kColorModes, type ColorMode } from '../picture/shaders';
 
 const kNames: Record<ColorMode, string> = {
   class: 'Class',
@@ -61,6 +61,13 @@ export class ColorPanel {
     this.view.colorMode = mode;
     this.classes.hidden = mode !== 'class';
     this.showLegend(mode);
+  }
+
+  /** The next mode that the scene has. */
+  chooseNext() {
+    const options = [...this.select.options].filter((o) => !o.disabled);
+    const next = (options.findIndex((o) => o.value === this.view.colorMode) + 1) % options.length;
+    if (options[next]) this.choose(options[next].value as ColorMode);
   }
 
   private showLegend(mode: ColorMode) {

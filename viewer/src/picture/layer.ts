@@ -17,7 +17,7 @@ import {
   type IUniform,
 } from 'three';
 import { nodeBox, parentsOf, type Tree } from './lod';
-import { kElementBytes, parseElements, type LayerInfo, type TreeNode } from './protocol';
+import { kElementBytes, parseElements, type LayerInfo, type TreeNode } from '../server/protocol';
 import { kDiskFragment, kDiskVertex, kPointFragment, kPointVertex } from './shaders';
 
 /** What all layers are drawn with; the same objects in every material. */

@@ -16,8 +16,8 @@ import {
   Vector3,
   type IUniform,
 } from 'three';
-import { matrixOf } from './pose';
-import { kScanPointWords, type ScanPacket } from './protocol';
+import { matrixOf } from '../driving/pose';
+import { kScanPointWords, type ScanPacket } from '../server/protocol';
 import { kPointFragment, kScanModes, kScanVertex, type ScanMode } from './shaders';
 
 /** One echo, to be told to the user. */

@@ -5,7 +5,7 @@
 
 import { Quaternion, Vector3 } from 'three';
 import { poseOf, rotationOf, withYaw, yawOf } from './pose';
-import type { PickedMessage, Pose } from './protocol';
+import type { PickedMessage, Pose } from '../server/protocol';
 import { drive, moves, type Controls, type Vehicle } from './vehicle';
 
 const kKeys: Record<string, keyof Controls> = {

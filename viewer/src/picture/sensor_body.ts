@@ -18,8 +18,8 @@ import {
   Vector2,
   Vector3,
 } from 'three';
-import { rotationOf } from './pose';
-import type { Pose } from './protocol';
+import { rotationOf } from '../driving/pose';
+import type { Pose } from '../server/protocol';
 
 const kRadiusM = 0.12;
 const kHeightM = 0.16;

@@ -6,12 +6,12 @@
 
 import { Frustum, Matrix4, Object3D, Vector2 } from 'three';
 import { Budget } from './budget';
-import { CameraRig } from './camera_rig';
+import { CameraRig } from '../driving/camera_rig';
 import { Layer, type SharedUniforms } from './layer';
 import { ancestors, chooseCut, type Cut, type View } from './lod';
-import { FetchQueue } from './node_store';
+import { FetchQueue } from '../server/node_store';
 import { ClassPalette, mapsTexture } from './palette';
-import { parseNodes, type LayerInfo, type SceneInfo } from './protocol';
+import { parseNodes, type LayerInfo, type SceneInfo } from '../server/protocol';
 import { kColorModes, type ColorMode } from './shaders';
 import { Stage, type Area } from './stage';
 

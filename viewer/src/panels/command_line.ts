@@ -3,8 +3,8 @@
 
 // What was driven, as a command that simulates the same and the file of poses that it reads.
 
-import type { TimedPose } from './driver';
-import type { Vec3 } from './protocol';
+import type { TimedPose } from '../driving/driver';
+import type { Vec3 } from '../server/protocol';
 
 export const kPosesFile = 'poses.csv';
 

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The ways in which the camera moves, as buttons.
+
+import type { CameraMode } from './camera_rig';
+import { segments } from '../panels/dom';
+import type { SceneView } from '../picture/scene_view';
+
+const kModes: [CameraMode, string][] = [
+  ['orbit', 'Orbit'],
+  ['follow', 'Follow'],
+  ['top', 'Top'],
+];
+
+export class CameraModes {
+  readonly element: ReturnType<typeof segments>;
+
+  constructor(private readonly view: SceneView) {
+    this.element = segments(
+      'Camera',
+      kModes.map(([value, text]) => ({ value, text })),
+      'orbit',
+      (mode) => this.set(mode as CameraMode),
+    );
+  }
+
+  choose(mode: CameraMode) {
+    this.element.choose(mode);
+    this.set(mode);
+  }
+
+  /** By its key, 1 for the first. Whether there is one. */
+  chooseNumber(key: string): boolean {
+    const found = kModes[Number(key) - 1];
+    if (found) this.choose(found[0]);
+    return found !== undefined;
+  }
+
+  private set(mode: CameraMode) {
+    this.view.rig.setMode(mode);
+    this.view.moved();
+  }
+}

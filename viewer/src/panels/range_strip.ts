@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The strip below the scene: the live scan as a range image, and what it is.
+
+import { byId, fill, make, segments } from './dom';
+import type { ClassPalette } from '../picture/palette';
+import { RangeImage, type ImageMode } from '../picture/range_image';
+import type { ScanCloud } from '../picture/scan_cloud';
+
+const kImageMs = 60;
+const kModes: ImageMode[] = ['range', 'class', 'intensity'];
+
+export class RangeStrip {
+  private readonly image: RangeImage;
+  private readonly facts = make('span', { id: 'strip-facts', className: 'facts' });
+  private dirty = false;
+  private lastMs = 0;
+
+  constructor(
+    private readonly cloud: ScanCloud,
+    palette: ClassPalette,
+  ) {
+    this.image = new RangeImage(byId<HTMLCanvasElement>('range-image'), palette);
+    const modes = segments(
+      'Range image',
+      kModes.map((m) => ({ value: m, text: m[0].toUpperCase() + m.slice(1) })),
+      'range',
+      (mode) => {
+        this.image.mode = mode as ImageMode;
+        this.draw();
+      },
+    );
+    fill(byId('strip-bar'), make('strong', {}, 'Range image'), modes, this.facts);
+  }
+
+  draw() {
+    if (this.cloud.packet) this.image.draw(this.cloud.packet);
+  }
+
+  /** In each frame; a new scan is drawn soon, not in all of them. */
+  step(isNewScan: boolean) {
+    this.dirty ||= isNewScan;
+    if (!this.dirty || performance.now() - this.lastMs <= kImageMs) return;
+    this.dirty = false;
+    this.lastMs = performance.now();
+    this.draw();
+  }
+
+  showFacts() {
+    const { packet } = this.cloud;
+    if (packet)
+      this.facts.textContent =
+        `${packet.rings} rings × ${packet.columns} columns, to ${packet.max_range_m.toFixed(0)} m`;
+  }
+}

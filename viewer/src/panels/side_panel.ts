@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The panel beside the scene: a section a subject, made anew for each scene.
+
+import { ColorPanel } from './color_panel';
+import { byId, fill, make, tick } from './dom';
+import type { DrivePanel } from './drive_panel';
+import { layersPanel } from './layers_panel';
+import type { LidarPanel } from './lidar_panel';
+import type { SceneInfo } from '../server/protocol';
+import type { ScanCloud } from '../picture/scan_cloud';
+import type { ScanPointsPanel } from './scan_points_panel';
+import { ScansPanel, type ScansEvents } from './scans_panel';
+import type { SceneView } from '../picture/scene_view';
+import type { ColorMode } from '../picture/shaders';
+
+export interface SidePanelParts {
+  view: SceneView;
+  lidar: LidarPanel;
+  drive: DrivePanel;
+  scanPoints: ScanPointsPanel;
+  recordedCloud: ScanCloud;
+}
+
+export interface SidePanelEvents extends ScansEvents {
+  colorsChanged(): void;
+}
+
+export class SidePanel {
+  private colors: ColorPanel | null = null;
+  private scans: ScansPanel | null = null;
+
+  constructor(
+    private readonly parts: SidePanelParts,
+    private readonly events: SidePanelEvents,
+  ) {
+    byId('fold').onclick = () => this.fold();
+  }
+
+  show(scene: SceneInfo) {
+    const { view, lidar, drive, scanPoints, recordedCloud } = this.parts;
+    this.scans?.dispose();
+    this.colors = new ColorPanel(view, scene, byId('legend'), () => this.events.colorsChanged());
+    this.scans = new ScansPanel(view, scene, recordedCloud, this.events);
+    const can = scene.can_simulate;
+    scanPoints.style();
+    fill(
+      byId('sections'),
+      section('Model', layersPanel(view)),
+      section('Colour', this.colors.element),
+      can ? section('LiDAR', lidar.element) : null,
+      section(can ? 'Drive and camera' : 'Camera', drive.element),
+      can || scene.scans.length > 0 ? section('Scan points', scanPoints.element) : null,
+      this.scans.empty ? null : section('Recorded', this.scans.element),
+      section('Drawing', drawingPanel(view), false),
+    );
+  }
+
+  fold() {
+    const folded = document.body.classList.toggle('folded');
+    byId('fold').textContent = folded ? '›' : '‹';
+    byId('fold').ariaExpanded = String(!folded);
+  }
+
+  chooseColor(mode: ColorMode) {
+    this.colors?.choose(mode);
+  }
+
+  nextColor() {
+    this.colors?.chooseNext();
+  }
+
+  /** Follows what has been loaded. */
+  update() {
+    this.colors?.update();
+  }
+}
+
+function section(title: string, content: HTMLElement, open = true): HTMLElement {
+  return make('details', { open }, make('summary', {}, title), content);
+}
+
+function drawingPanel(view: SceneView): HTMLElement {
+  const { stage } = view;
+  const usual = stage.outline;
+  return make(
+    'div',
+    {},
+    tick('Darken edges', stage.outline > 0, (on) => {
+      stage.outline = on ? usual : 0;
+      view.invalidate();
+    }),
+  );
+}
