@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/setting.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/dataset/range_image.h"
 #include "adasplats/view/live_message.h"
@@ -37,7 +38,7 @@ constexpr std::size_t kMostSimulators = 8;
 struct Client {
   std::shared_ptr<WebSocketPeer> peer;
   std::shared_ptr<const LiveSensor> sensor;
-  bool sensor_is_new = true;  ///< the page has not been told of it
+  bool sensor_is_new = true;  ///< the page has not been sent it
   LivePose pose;
   bool running = false;
   int under_way = 0;
@@ -57,7 +58,7 @@ struct Client {
 struct Work {
   std::shared_ptr<WebSocketPeer> peer;
   std::shared_ptr<const LiveSensor> sensor;
-  bool tell_sensor = false;
+  bool sends_sensor = false;
   std::deque<PickMessage> picks;
   bool scan = false;
   LivePose pose;
@@ -184,7 +185,7 @@ class LiveScans::Implementation {
     work.peer = client.peer;
     work.sensor = client.sensor;
     work.pose = client.pose;
-    work.tell_sensor = std::exchange(client.sensor_is_new, false);
+    work.sends_sensor = std::exchange(client.sensor_is_new, false);
     work.picks = std::exchange(client.picks, {});
     work.scan = client.wants_scan(now);
     if (!work.scan) return work;
@@ -208,7 +209,7 @@ class LiveScans::Implementation {
       try {
         perform(*work);
       } catch (const std::exception& error) {
-        work->peer->send_text(error_message(error.what()));
+        work->peer->send_text(error_message(with_settings_as_options(error.what())));
       } catch (...) {  // an interruption: whoever waits for it ends the server as well
       }
     }
@@ -217,10 +218,10 @@ class LiveScans::Implementation {
   void perform(const Work& work) {
     for (const PickMessage& pick : work.picks)
       work.peer->send_text(picked_message(scene_, pick, executor_));
-    if (!work.tell_sensor && !work.scan) return;
+    if (!work.sends_sensor && !work.scan) return;
     Simulator& simulator = simulators_.of(*work.sensor);
     const ImageSize size = simulator.size;
-    if (work.tell_sensor)
+    if (work.sends_sensor)
       work.peer->send_text(sensor_message(*work.sensor, size.rings, size.columns,
                                           simulator.scans->firings().size()));
     if (work.scan) send_scan(work, *simulator.scans, size);
@@ -278,9 +279,9 @@ void LiveScans::received(const std::shared_ptr<WebSocketPeer>& peer, std::string
   } catch (const Error& error) {
     constexpr std::uint16_t kInvalidPayload = 1007;  // RFC 6455, 7.4.1
     if (error.kind() == ErrorKind::data) {
-      peer->close(kInvalidPayload, error.what());
+      peer->close(kInvalidPayload, with_settings_as_options(error.what()));
     } else {
-      peer->send_text(error_message(error.what()));
+      peer->send_text(error_message(with_settings_as_options(error.what())));
     }
   }
 }

@@ -14,7 +14,7 @@
 
 namespace adasplats {
 
-/// What a packet tells besides the scan.
+/// What a packet says besides the scan.
 struct ScanPacketHead {
   std::uint32_t number = 0;
   std::uint32_t rings = 0;    ///< of the sensor, rows of its range image
@@ -22,7 +22,7 @@ struct ScanPacketHead {
   bool moved = false;         ///< the sensor, while it measured
   double seconds = 0;         ///< that the simulation took; 0: recorded
   double max_range_m = 0;
-  float full_intensity = 1;  ///< told as 1; what is above is clamped
+  float full_intensity = 1;  ///< reported as 1; what is above is clamped
   Vec3d local_origin;        ///< of the page's positions, world coordinates
 };
 
@@ -31,7 +31,7 @@ struct ScanPacketHead {
 /// another size than its points.
 std::shared_ptr<const std::string> scan_packet(const Scan& scan, const ScanPacketHead& head);
 
-/// The same of a recorded scan, which does not tell rings and columns. Its points get those of
+/// The same of a recorded scan, which does not have rings and columns. Its points get those of
 /// their direction, for a range image: `head.rings` rows over the middle 99 % of its elevations,
 /// topmost first, and `head.columns` steps of azimuth, clockwise from the rear; what lies beyond is
 /// in the outermost. 0 rings or columns: all 0. Points that are not finite are left out. Errors: as

@@ -14,9 +14,9 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/serve/http_server.h"
+#include "adasplats/sensors/lidar_model.h"
 #include "adasplats/splats/model/splat_model.h"
-#include "adasplats/view/level_tree.h"
+#include "adasplats/view/levels/level_tree.h"
 
 namespace adasplats {
 
@@ -45,14 +45,14 @@ struct ViewSequence {
 /// What a browser is shown. All of it stays as it is while it is served.
 struct ViewScene {
   std::string name;
-  Vec3d origin;  ///< of what the page is told, world coordinates
+  Vec3d origin;  ///< of what the page is sent, world coordinates
   std::vector<ViewLayer> layers;
   std::vector<std::pair<std::string, Trajectory>> trajectories;  ///< besides those of `sequences`
   std::vector<ViewSequence> sequences;
   std::optional<LabelScheme> labels;
   std::pair<Vec3d, Vec3d> middle_box;   ///< world coordinates: where to look first
   const ModelScene* model = nullptr;    ///< that scans are simulated in; null: none
-  std::string sensor = "hdl-64-paper";  ///< chosen at the start
+  std::string sensor = kDefaultSensor;  ///< chosen at the start
   RigidTransform start_pose;            ///< of the sensor, world coordinates
   std::string device = "cpu";
   std::vector<std::string> command;  ///< that 'copy command line' begins with
@@ -62,23 +62,6 @@ struct ViewScene {
 /// what lies in the middle of the model.
 RigidTransform start_pose_of(const ViewScene& scene, double mount_height_m,
                              const Executor& executor);
-
-/// Answers the page's GETs (docs/viewer_protocol.md): the page, scene.json, layers and recorded
-/// scans, and nothing else. `scene` must outlive it.
-class ViewPages {
- public:
-  explicit ViewPages(const ViewScene& scene);
-  /// Status 404 for what there is not, 500 where a recorded scan can no longer be read.
-  HttpReply get(std::string_view path) const;
-
- private:
-  HttpReply layer(std::string_view path) const;
-  HttpReply recorded_scan(std::string_view name) const;
-
-  const ViewScene& scene_;
-  SharedBytes scene_json_;
-  std::vector<SharedBytes> nodes_;  ///< nodes.bin of each layer
-};
 
 /// "scene.json".
 std::string scene_json(const ViewScene& scene);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "adasplats/core/maths/vec3.h"
-#include "adasplats/view/level_tree.h"
+#include "adasplats/view/levels/level_tree.h"
 
 namespace adasplats {
 

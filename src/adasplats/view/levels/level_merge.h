@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adasplats/scene/intersect.h"
-#include "adasplats/view/level_sample.h"
+#include "adasplats/view/levels/level_sample.h"
 
 namespace adasplats {
 

@@ -21,7 +21,7 @@ struct LevelInput {
   std::span<const Vec3f> positions;  ///< points; else empty
   std::span<const std::uint16_t> classes;
   std::span<const float> intensities;
-  std::span<const float> errors_m;  ///< magnitudes count; NaN: not known, told as the greatest
+  std::span<const float> errors_m;  ///< magnitudes count; NaN: not known, reported as the greatest
 };
 
 struct LevelOptions {

@@ -53,7 +53,7 @@ class LevelOrder {
 
   /// All elements.
   const LevelBlock& whole() const { return whole_; }
-  /// Takes the smallest cube around a block. Where the curve does not tell its elements apart (far
+  /// Takes the smallest cube around a block. Where the curve does not keep its elements apart (far
   /// outliers made its cells too large), puts them in the order of a curve over their own box. Only
   /// equal positions leave a block of kHilbertBits. Changes no element outside the block.
   void tighten(LevelBlock& block, const Executor& executor);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/view/level_tree.h"
+#include "adasplats/view/levels/level_tree.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "adasplats/view/level_merge.h"
-#include "adasplats/view/level_order.h"
-#include "adasplats/view/level_sample.h"
+#include "adasplats/view/levels/level_merge.h"
+#include "adasplats/view/levels/level_order.h"
+#include "adasplats/view/levels/level_sample.h"
 
 namespace adasplats {
 namespace {
