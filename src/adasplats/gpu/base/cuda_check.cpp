@@ -23,14 +23,14 @@ std::string out_of_memory() {
   if (cudaMemGetInfo(&free_bytes, &total_bytes) == cudaSuccess) {
     message += " (" + gigabytes(free_bytes) + " of " + gigabytes(total_bytes) + " are free)";
   }
-  return message + "; use --device cpu, fewer points or a GPU with more memory";
+  return message + "; use `device` cpu, fewer points or a GPU with more memory";
 }
 
 }  // namespace
 
 void cuda_check(cudaError_t status, std::string_view doing) {
   if (status == cudaSuccess) return;
-  cudaGetLastError();  // the error is told here: the next call starts without it
+  cudaGetLastError();  // the error is reported here: the next call starts without it
   const std::string where = "cannot " + std::string(doing) + ": ";
   if (status == cudaErrorMemoryAllocation) {
     throw Error(ErrorKind::unavailable, where + out_of_memory());

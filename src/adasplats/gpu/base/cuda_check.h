@@ -9,8 +9,8 @@
 namespace adasplats::gpu {
 
 /// Private to gpu/: throws an Error (`unavailable`) where a CUDA call failed. `doing` says what was
-/// being done ("copy the rays to the GPU"). Out of memory is told with what is free and with what
-/// helps. Also used after a kernel launch: cuda_check(cudaGetLastError(), "sort the points").
+/// being done ("copy the rays to the GPU"). Out of memory is reported with what is free and with
+/// what helps. Also used after a kernel launch: cuda_check(cudaGetLastError(), "sort the points").
 void cuda_check(cudaError_t status, std::string_view doing);
 
 /// Makes a device the current one of this thread and restores the former one.

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "adasplats/gpu/base/launch.cuh"
+
 namespace adasplats::gpu {
 
 /// Private to gpu/: what the 32 threads of a warp work out together. All lanes call these, and all
@@ -64,5 +66,22 @@ __device__ inline std::uint64_t warp_min(std::uint64_t value) {
 }
 
 __device__ inline std::uint64_t warp_max(std::uint64_t value) { return ~warp_min(~value); }
+
+template <class F>
+__global__ void __launch_bounds__(kBlockThreads) for_each_warp_kernel(std::uint64_t count, F body) {
+  constexpr std::uint32_t kWarps = kBlockThreads / kWarpLanes;
+  const std::uint64_t i = std::uint64_t{blockIdx.x} * kWarps + threadIdx.x / kWarpLanes;
+  if (i < count) body(static_cast<std::uint32_t>(i));
+}
+
+/// Private to gpu/: calls body(i) for i in [0, count), each with the 32 lanes of a warp.
+template <class F>
+void for_each_warp(std::uint64_t count, cudaStream_t stream, const char* doing, F body) {
+  if (count == 0) return;
+  constexpr std::uint32_t kWarps = kBlockThreads / kWarpLanes;
+  const auto blocks = static_cast<unsigned>((count + kWarps - 1) / kWarps);
+  for_each_warp_kernel<<<blocks, kBlockThreads, 0, stream>>>(count, body);
+  cuda_check(cudaGetLastError(), doing);
+}
 
 }  // namespace adasplats::gpu

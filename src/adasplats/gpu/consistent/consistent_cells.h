@@ -13,18 +13,6 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: what kernels read of DeviceCells.
-struct CellsView {
-  const Vec3f* positions = nullptr;
-  const std::uint32_t* begins = nullptr;
-  const std::uint32_t* members = nullptr;
-  std::uint32_t size = 0;
-
-  ADASPLATS_HD std::span<const std::uint32_t> points_of(std::size_t cell) const {
-    return {members + begins[cell], begins[cell + 1] - begins[cell]};
-  }
-};
-
 /// Private to gpu/: FusedPoints in device memory.
 struct DeviceCells {
   DeviceBuffer<Vec3f> positions;

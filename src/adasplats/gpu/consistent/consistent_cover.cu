@@ -98,21 +98,6 @@ struct Grow {
   }
 };
 
-/// Calls body(i) for i below `count`, each with all lanes of a warp of its own.
-template <class F>
-__global__ void __launch_bounds__(kBlockThreads) for_each_warp_kernel(std::uint32_t count, F body) {
-  const std::uint32_t i = blockIdx.x * (kBlockThreads / kWarpLanes) + threadIdx.x / kWarpLanes;
-  if (i < count) body(i);
-}
-
-template <class F>
-void for_each_warp(std::uint32_t count, cudaStream_t stream, const char* doing, F body) {
-  if (count == 0) return;
-  constexpr unsigned kWarps = kBlockThreads / kWarpLanes;
-  for_each_warp_kernel<<<(count + kWarps - 1) / kWarps, kBlockThreads, 0, stream>>>(count, body);
-  cuda_check(cudaGetLastError(), doing);
-}
-
 /// Takes out of a disk's list what it does not cover any more: radii only become smaller, and
 /// disks do not come back.
 struct ShortenList {

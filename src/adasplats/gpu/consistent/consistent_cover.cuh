@@ -20,12 +20,6 @@ struct CoverView {
   std::uint32_t* lengths = nullptr;       ///< 0 for disks that are not there
   double overlap = 0;
   std::uint32_t size = 0;
-
-  /// From now on disk `i` is no larger than this; with 0 it is not there at all.
-  __device__ void limit(std::size_t i, float limit_m) const {
-    radii_m[i] = std::min(radii_m[i], limit_m);
-    seeds[i].radius = std::min(seeds[i].radius, limit_m);
-  }
 };
 
 /// Private to gpu/: SurfaceCover in device memory: the same disks, chosen in rounds. A disk is
@@ -47,6 +41,7 @@ class DeviceCover {
   int rounds() const { return rounds_; }
 
   CoverView view() const;
+  CoverLimits limits() const { return {seeds_.data(), radii_m_.data()}; }
   const DeviceBuffer<float>& radii_m() const { return radii_m_; }
 
  private:

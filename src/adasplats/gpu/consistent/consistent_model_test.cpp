@@ -272,10 +272,10 @@ TEST_F(ConsistentOnGpu, ErrorsSayWhatHelpsAndLeaveTheStepsDestructible) {
   ConsistentOptions options;
   EXPECT_EQ(error_of(options), "");
   options.cover.neighbors = 600;
-  EXPECT_NE(error_of(options).find("--device cpu"), std::string::npos);
+  EXPECT_NE(error_of(options).find("`device` cpu"), std::string::npos);
   options = {};
   options.planes.scales.back() = 600;
-  EXPECT_NE(error_of(options).find("--device cpu"), std::string::npos);
+  EXPECT_NE(error_of(options).find("`device` cpu"), std::string::npos);
   EXPECT_THROW(gpu::make_cuda_consistent_steps(1000, executor), Error);
 }
 

@@ -14,17 +14,6 @@
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: what kernels read of DeviceEvidence.
-struct EvidenceView {
-  static constexpr std::size_t kBins = DiskEvidence::kBins;
-  std::uint32_t* confirmed = nullptr;
-  std::uint32_t* contradicted = nullptr;
-
-  ADASPLATS_HD DiskEvidence of(std::size_t disk) const {
-    return {{confirmed + disk * kBins, kBins}, {contradicted + disk * kBins, kBins}};
-  }
-};
-
 /// Private to gpu/: RayEvidence in device memory.
 struct DeviceEvidence {
   DeviceBuffer<std::uint32_t> confirmed;
@@ -44,8 +33,8 @@ class DeviceRays {
              cudaStream_t stream);
 
   std::size_t size() const { return numbers_.size(); }
-  /// Of the points, in the order of their rays.
-  const DeviceBuffer<std::uint32_t>& numbers() const { return numbers_; }
+  /// The rays' points, in the order of the rays.
+  const DeviceBuffer<std::uint32_t>& points() const { return numbers_; }
 
   /// collect_evidence() on disks [0, count).
   DeviceEvidence evidence(const Disk* disks, std::size_t count,

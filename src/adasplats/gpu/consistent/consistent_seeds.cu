@@ -51,26 +51,6 @@ DeviceBuffer<float> mean_intensities(const CellsView& cells, const DeviceBuffer<
 
 }  // namespace
 
-DeviceBuffer<float> spacing_units(const MeasuredPoints& points, const CellsView& cells,
-                                  bool with_beam, cudaStream_t stream) {
-  DeviceBuffer<float> units_m(cells.size, stream);
-  for_each(cells.size, stream, "find the spacing of cells",
-           [points, cells, with_beam, to = units_m.data()] __device__(std::uint64_t cell) {
-             to[cell] = spacing_unit_m(points, cells.points_of(cell), with_beam);
-           });
-  return units_m;
-}
-
-DeviceBuffer<std::uint8_t> cells_without_beam(const MeasuredPoints& points, const CellsView& cells,
-                                              cudaStream_t stream) {
-  DeviceBuffer<std::uint8_t> without(cells.size, stream);
-  for_each(cells.size, stream, "look at origins",
-           [points, cells, to = without.data()] __device__(std::uint64_t cell) {
-             to[cell] = has_beam(points, cells.points_of(cell)) ? 0 : 1;
-           });
-  return without;
-}
-
 double median_spacing(const DeviceBuffer<LocalPlane>& planes, const DeviceBuffer<float>& units_m,
                       cudaStream_t stream) {
   // The bits of floats that are not negative sort as they do; cells that do not count come last.
@@ -90,21 +70,14 @@ double median_spacing(const DeviceBuffer<LocalPlane>& planes, const DeviceBuffer
   return static_cast<double>(std::bit_cast<float>(middle));
 }
 
-DeviceBuffer<Disk> seeds_of_planes(const MeasuredPoints& points, const CellsView& cells,
-                                   const TypicalSpacing& typical, const ConsistentOptions& options,
-                                   DeviceBuffer<LocalPlane>& planes, cudaStream_t stream) {
-  DeviceBuffer<Disk> seeds(cells.size, stream);
-  for_each(cells.size, stream, "make seeds",
-           [points, cells, options, typical, all = planes.data(),
-            to = seeds.data()] __device__(std::uint64_t i) {
-             const auto members = cells.points_of(i);
-             LocalPlane& plane = all[i];
-             plane.normal = seed_normal(plane.normal, points, members);
-             const double largest_m = largest_seed_m(points, members, typical, options);
-             const auto spacing_m = static_cast<double>(plane.spacing_m);
-             to[i] = {plane.center, seed_radius(spacing_m, largest_m, options), plane.normal};
+std::size_t count_present(const DeviceBuffer<Disk>& disks, cudaStream_t stream) {
+  DeviceBuffer<std::uint32_t> count(1, stream);
+  count.fill_bytes(0);
+  for_each(disks.size(), stream, "count disks",
+           [from = disks.data(), to = count.data()] __device__(std::uint64_t i) {
+             if (from[i].radius > 0) atomicAdd(to, 1U);
            });
-  return seeds;
+  return count.download().front();
 }
 
 ConsistentSplats splats_of(const DeviceBuffer<Disk>& disks, const DeviceCells& cells,

@@ -13,23 +13,13 @@ namespace adasplats::gpu {
 
 /// Private to gpu/: what the steps make of cells and planes, in device memory.
 
-/// What every cell's spacing is compared with (spacing_unit_m()).
-DeviceBuffer<float> spacing_units(const MeasuredPoints& points, const CellsView& cells,
-                                  bool with_beam, cudaStream_t stream);
-
-/// One flag a cell: none of its points has a beam.
-DeviceBuffer<std::uint8_t> cells_without_beam(const MeasuredPoints& points, const CellsView& cells,
-                                              cudaStream_t stream);
-
 /// Median of the planes' spacings over their units, of those with a unit; 0 where there is none.
 /// Waits for the stream.
 double median_spacing(const DeviceBuffer<LocalPlane>& planes, const DeviceBuffer<float>& units_m,
                       cudaStream_t stream);
 
-/// Turns the planes' normals to the sensors and makes a seed of each.
-DeviceBuffer<Disk> seeds_of_planes(const MeasuredPoints& points, const CellsView& cells,
-                                   const TypicalSpacing& typical, const ConsistentOptions& options,
-                                   DeviceBuffer<LocalPlane>& planes, cudaStream_t stream);
+/// How many disks have a radius. Waits for the stream.
+std::size_t count_present(const DeviceBuffer<Disk>& disks, cudaStream_t stream);
 
 /// The disks that have a radius, with the attributes of their cells' points, on the host.
 ConsistentSplats splats_of(const DeviceBuffer<Disk>& disks, const DeviceCells& cells,

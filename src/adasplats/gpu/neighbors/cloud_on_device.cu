@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <map>
+#include <type_traits>
 #include <vector>
 
 #include "adasplats/cloud/labels/label_scheme.h"
@@ -18,13 +21,25 @@ DeviceBuffer<T> copied(const std::vector<T>& values, cudaStream_t stream) {
   return DeviceBuffer<T>(std::span<const T>(values), stream);
 }
 
-/// One attribute of clouds one after another; those without points do not count.
+/// One array of clouds one after another, that which `of` gives.
+template <class Of>
+auto concatenated(std::span<const DeviceCloud* const> clouds, const Of& of, cudaStream_t stream) {
+  using Buffer = std::decay_t<decltype(of(*clouds.front()))>;
+  std::vector<const Buffer*> parts;
+  for (const DeviceCloud* cloud : clouds) parts.push_back(&of(*cloud));
+  return concatenate(std::span<const Buffer* const>(parts), stream);
+}
+
+/// The values that decide between points at one place, the least important last.
+void add_tie_breakers(std::vector<TieBreaker>& breakers, const DeviceBuffer<Vec3f>& values) {
+  for (int axis = 0; axis < 3; ++axis) breakers.push_back(TieBreaker::of(values.data(), axis));
+}
+void add_tie_breakers(std::vector<TieBreaker>& breakers, const DeviceBuffer<OriginKind>& values) {
+  breakers.push_back(TieBreaker::of(reinterpret_cast<const std::uint8_t*>(values.data())));
+}
 template <class T>
-DeviceBuffer<T> concatenated(std::span<const DeviceCloud* const> clouds,
-                             DeviceBuffer<T> DeviceCloud::*attribute, cudaStream_t stream) {
-  std::vector<const DeviceBuffer<T>*> parts;
-  for (const DeviceCloud* cloud : clouds) parts.push_back(&(cloud->*attribute));
-  return concatenate(std::span<const DeviceBuffer<T>* const>(parts), stream);
+void add_tie_breakers(std::vector<TieBreaker>& breakers, const DeviceBuffer<T>& values) {
+  breakers.push_back(TieBreaker::of(values.data()));
 }
 
 /// Removes from an order the points whose class has a flag.
@@ -46,11 +61,12 @@ DeviceBuffer<std::uint32_t> without_classes(const DeviceBuffer<std::uint32_t>& o
 
 DeviceCloud copy_to_device(const PointCloud& cloud, cudaStream_t stream) {
   if (cloud.size() >= std::size_t{1} << 31)
-    throw Error(ErrorKind::unavailable, "2^31 points or more do not fit a GPU; use --device cpu");
-  return {copied(cloud.positions, stream),    copied(cloud.sensor_positions, stream),
-          copied(cloud.origin_kinds, stream), copied(cloud.intensities, stream),
-          copied(cloud.classes, stream),      copied(cloud.instances, stream),
-          copied(cloud.scan_indices, stream)};
+    throw Error(ErrorKind::unavailable, "2^31 points or more do not fit a GPU; use `device` cpu");
+  DeviceCloud copy;
+  copy.positions = copied(cloud.positions, stream);
+  for_each_attribute(
+      [&](const auto& attribute) { attribute.of(copy) = copied(attribute.of(cloud), stream); });
+  return copy;
 }
 
 template <class T>
@@ -81,11 +97,12 @@ template DeviceBuffer<Disk> gather(const DeviceBuffer<Disk>&, const DeviceBuffer
 
 DeviceCloud gather(const DeviceCloud& cloud, const DeviceBuffer<std::uint32_t>& indices,
                    cudaStream_t stream) {
-  return {
-      gather(cloud.positions, indices, stream),    gather(cloud.sensor_positions, indices, stream),
-      gather(cloud.origin_kinds, indices, stream), gather(cloud.intensities, indices, stream),
-      gather(cloud.classes, indices, stream),      gather(cloud.instances, indices, stream),
-      gather(cloud.scan_indices, indices, stream)};
+  DeviceCloud result;
+  result.positions = gather(cloud.positions, indices, stream);
+  for_each_attribute([&](const auto& attribute) {
+    attribute.of(result) = gather(attribute.of(cloud), indices, stream);
+  });
+  return result;
 }
 
 template <class T>
@@ -108,13 +125,13 @@ template DeviceBuffer<SemanticGroup> concatenate(
     std::span<const DeviceBuffer<SemanticGroup>* const>, cudaStream_t);
 
 DeviceCloud concatenate(std::span<const DeviceCloud* const> clouds, cudaStream_t stream) {
-  return {concatenated(clouds, &DeviceCloud::positions, stream),
-          concatenated(clouds, &DeviceCloud::sensor_positions, stream),
-          concatenated(clouds, &DeviceCloud::origin_kinds, stream),
-          concatenated(clouds, &DeviceCloud::intensities, stream),
-          concatenated(clouds, &DeviceCloud::classes, stream),
-          concatenated(clouds, &DeviceCloud::instances, stream),
-          concatenated(clouds, &DeviceCloud::scan_indices, stream)};
+  DeviceCloud whole;
+  whole.positions = concatenated(
+      clouds, [](auto& cloud) -> auto& { return cloud.positions; }, stream);
+  for_each_attribute([&](const auto& attribute) {
+    attribute.of(whole) = concatenated(clouds, attribute.of, stream);
+  });
+  return whole;
 }
 
 bool has_all_origins(const DeviceCloud& cloud, cudaStream_t stream) {
@@ -130,21 +147,15 @@ bool has_all_origins(const DeviceCloud& cloud, cudaStream_t stream) {
 }
 
 DeviceBuffer<std::uint32_t> canonical_order(const DeviceCloud& cloud, cudaStream_t stream) {
-  std::vector<TieBreaker> more;  // the least important first
-  if (!cloud.origin_kinds.empty()) {
-    more.push_back(
-        TieBreaker::of(reinterpret_cast<const std::uint8_t*>(cloud.origin_kinds.data())));
-  }
-  if (!cloud.sensor_positions.empty())
-    for (int axis = 2; axis >= 0; --axis)
-      more.push_back(TieBreaker::of(cloud.sensor_positions.data(), axis));
-  const auto add = [&](const auto& values) {
-    if (!values.empty()) more.push_back(TieBreaker::of(values.data()));
-  };
-  add(cloud.intensities);
-  add(cloud.scan_indices);
-  add(cloud.instances);
-  add(cloud.classes);
+  std::map<int, std::vector<TieBreaker>> ranked;
+  for_each_attribute([&](const auto& attribute) {
+    const auto& values = attribute.of(cloud);
+    if (!values.empty()) add_tie_breakers(ranked[attribute.tie_rank], values);
+  });
+  std::vector<TieBreaker> more;
+  for (const auto& [rank, breakers] : ranked)
+    more.insert(more.end(), breakers.begin(), breakers.end());
+  std::reverse(more.begin(), more.end());  // the least important first
   return hilbert_order(cloud.positions.data(), cloud.size(), stream, more);
 }
 

@@ -66,7 +66,7 @@ DevicePointIndex::DevicePointIndex(const Vec3f* points, std::size_t count, cudaS
   if (count >= std::size_t{1} << 31)
     throw Error(ErrorKind::unavailable, std::to_string(count) +
                                             " points are more than a GPU takes at once (2^31); "
-                                            "use --device cpu");
+                                            "use `device` cpu");
   view_.size = static_cast<std::uint32_t>(count);
   view_.leaves = groups_over(view_.size);
   if (count == 0) return;
@@ -107,7 +107,7 @@ void check_neighbors(std::uint64_t neighbors) {
   throw Error(ErrorKind::usage, "neighbourhoods of " + std::to_string(neighbors) +
                                     " points are more than a GPU takes (" +
                                     std::to_string(DevicePointIndex::kMostNeighbors) +
-                                    "); use --device cpu");
+                                    "); use `device` cpu");
 }
 
 namespace {

@@ -10,23 +10,6 @@
 
 namespace adasplats::gpu {
 
-template <class F>
-__global__ void __launch_bounds__(kBlockThreads) for_each_warp_kernel(std::uint64_t count, F body) {
-  constexpr std::uint32_t kWarps = kBlockThreads / kWarpLanes;
-  const std::uint64_t i = std::uint64_t{blockIdx.x} * kWarps + threadIdx.x / kWarpLanes;
-  if (i < count) body(static_cast<std::uint32_t>(i));
-}
-
-/// Private to gpu/: calls body(i) for i in [0, count), each with the 32 lanes of a warp.
-template <class F>
-void for_each_warp(std::uint64_t count, cudaStream_t stream, const char* doing, F body) {
-  if (count == 0) return;
-  constexpr std::uint32_t kWarps = kBlockThreads / kWarpLanes;
-  const auto blocks = static_cast<unsigned>((count + kWarps - 1) / kWarps);
-  for_each_warp_kernel<<<blocks, kBlockThreads, 0, stream>>>(count, body);
-  cuda_check(cudaGetLastError(), doing);
-}
-
 /// Leaves the members of a list for which keep(rank) holds, in their order; all lanes of a warp.
 template <class Keep>
 __device__ void keep_in_list(const ListsView& lists, std::uint32_t point, const Keep& keep) {

@@ -17,7 +17,7 @@
 
 namespace adasplats {
 
-/// Splats that agree with the rays that were measured: beyond the paper (docs/fidelity.md).
+/// Splats that agree with measured rays (docs/fidelity.md, also where each number comes from).
 struct ConsistentOptions {
   double cell_m = 0.05;  ///< side of the cells that points are fused in
   /// Cells with no plane around them beyond this scale (of `planes.scales`) are split...
@@ -29,7 +29,7 @@ struct ConsistentOptions {
   /// Largest radius of a seed, times the median spacing of cells: per metre of distance to the
   /// sensor where that is known, as beams spread.
   double largest_spacing = 1.2;
-  /// Where there are no rays to tell what is free, disks stay smaller and end where points end.
+  /// Where there are no rays to say what is free, disks stay smaller and end where points end.
   double unchecked_largest_spacing = 0.6;
   double isolated = 3;         ///< a cell that wants so many times the largest has no splat
   double least_range_m = 0.1;  ///< nearer points have no ray: no LiDAR measures them
@@ -55,7 +55,7 @@ struct ConsistentOptions {
   }
   /// As many rays as a round needs, of so many; other ones every round.
   EvidenceOptions evidence_of_round(int round, std::size_t rays) const;
-  /// Of growing disks; `checked`: rays tell where surfaces end.
+  /// Of growing disks; `checked`: rays say where surfaces end.
   CoverOptions cover_options(bool checked) const;
 };
 

@@ -595,8 +595,8 @@ TEST(ConsistentDisks, SmallCellsAreWhereNothingIsFlat) {
   const auto planes = adaptive_planes(large, index, options.planes, Executor(1));
   std::size_t before = large.size();
   for (std::uint8_t scale = 0; scale < 2; ++scale) {
-    std::vector<bool> split;
-    for (const LocalPlane& plane : planes) split.push_back(plane.scale <= scale);
+    std::vector<std::uint8_t> split;
+    for (const LocalPlane& plane : planes) split.push_back(plane.scale <= scale ? 1 : 0);
     options.split_scale = scale;
     const FusedPoints some = disks_of(cloud, options).fused;
     const FusedPoints expected = split_cells(cloud.positions, large, split, 0.02, Executor(1));

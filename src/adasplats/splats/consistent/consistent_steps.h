@@ -48,7 +48,7 @@ class ConsistentSteps {
   virtual void order_rays(const ConsistentOptions& options) = 0;
   /// Shrinks and removes seeds that more rays contradict than confirm: one round.
   virtual void balance_seeds(int round, const ConsistentOptions& options) = 0;
-  /// Grows every seed over its neighbours. `checked`: rays tell where surfaces end.
+  /// Grows every seed over its neighbours. `checked`: rays say where surfaces end.
   virtual void cover(bool checked, const ConsistentOptions& options) = 0;
   /// Chooses disks and limits those that hang over edges: one round.
   virtual void limit_overhangs(int round, const ConsistentOptions& options) = 0;

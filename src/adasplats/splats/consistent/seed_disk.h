@@ -27,7 +27,7 @@ struct MeasuredPoints {
   }
 };
 
-/// Whether rays tell what is free around a cell: the beam of any of its points is known.
+/// Whether rays say what is free around a cell: the beam of any of its points is known.
 ADASPLATS_HD inline bool has_beam(const MeasuredPoints& points,
                                   std::span<const std::uint32_t> members) {
   for (const std::uint32_t i : members) {

@@ -12,7 +12,7 @@
 
 namespace adasplats {
 
-struct CoverOptions {
+struct CoverOptions {                // docs/fidelity.md has where each number comes from
   std::uint32_t neighbors = 160;     ///< seeds that a disk can grow over, at most
   double tolerance_m = 0.02;         ///< a disk grows over seeds this near to its plane
   double least_normal_cosine = 0.9;  ///< and turned like it
@@ -20,7 +20,7 @@ struct CoverOptions {
   double largest_radius_m = 0.5;
   /// A disk reaches no farther than the seeds it grows over do in every one of so many directions
   /// (and half a seed beyond): nothing hangs over edges. 0: no such limit, for clouds in which
-  /// measured rays tell where surfaces end and what merely nobody looked at. 0, 1, 2, 4, 8 or 16.
+  /// measured rays say where surfaces end and what merely nobody looked at. 0, 1, 2, 4, 8 or 16.
   int sectors = 0;
   int unchecked_sectors = 16;      ///< the same for seeds that no rays check
   double overlap = 0.6;            ///< a disk covers the seeds within this share of its radius
@@ -133,5 +133,17 @@ ADASPLATS_HD inline float grown_radius(const Disk& disk, float reach_m,
 ADASPLATS_HD inline float covered_reach(double overlap, float radius_m) {
   return static_cast<float>(overlap) * radius_m;
 }
+
+/// How large disks may be, of all seeds, wherever they are.
+struct CoverLimits {
+  Disk* seeds = nullptr;
+  float* radii_m = nullptr;
+
+  /// From now on disk `i` is no larger than this; with 0 it is not there at all.
+  ADASPLATS_HD void limit(std::size_t i, float limit_m) const {
+    radii_m[i] = std::min(radii_m[i], limit_m);
+    seeds[i].radius = std::min(seeds[i].radius, limit_m);
+  }
+};
 
 }  // namespace adasplats

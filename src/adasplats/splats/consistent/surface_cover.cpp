@@ -104,9 +104,4 @@ std::vector<Disk> SurfaceCover::choose(const Executor& executor) const {
   return chosen;
 }
 
-void SurfaceCover::limit(std::size_t i, float radius_m) {
-  radii_m_[i] = std::min(radii_m_[i], radius_m);
-  seeds_[i].radius = std::min(seeds_[i].radius, radius_m);
-}
-
 }  // namespace adasplats

@@ -27,11 +27,9 @@ class SurfaceCover {
   /// radius.
   std::vector<Disk> choose(const Executor& executor) const;
 
-  /// From now on disk `i` is no larger than this; with 0 it is not there at all.
-  void limit(std::size_t i, float radius_m);
-  float seed_radius(std::size_t i) const { return seeds_[i].radius; }
-  /// How large disk `i` may be: what it grew to, or its limit.
-  float radius_m(std::size_t i) const { return radii_m_[i]; }
+  CoverLimits limits() { return {seeds_.data(), radii_m_.data()}; }
+  /// How large every disk may be: what it grew to, or its limit.
+  const std::vector<float>& radii_m() const { return radii_m_; }
 
  private:
   /// The seeds that disk `i` may cover, whatever its radius.

@@ -301,10 +301,10 @@ TEST(SurfaceCover, LimitsHold) {
   for (std::size_t i = 0; i < before.size(); ++i) {
     if (!(before[i].radius > 0)) continue;
     const float limit_m = i % 2 == 0 ? 0.1F : 0.0F;
-    cover.limit(i, limit_m);
-    cover.limit(i, 0.2F);  // a wider one afterwards changes nothing
+    cover.limits().limit(i, limit_m);
+    cover.limits().limit(i, 0.2F);  // a wider one afterwards changes nothing
     expected[i].radius = std::min(expected[i].radius, limit_m);
-    EXPECT_EQ(cover.seed_radius(i), expected[i].radius);
+    EXPECT_EQ(cover.limits().seeds[i].radius, expected[i].radius);
   }
   const std::vector<Disk> after = cover.choose(executor);
   expect_all_covered(expected, after);
@@ -313,7 +313,7 @@ TEST(SurfaceCover, LimitsHold) {
     if (before[i].radius > 0) {
       EXPECT_LE(after[i].radius, i % 2 == 0 ? 0.1F : 0.0F);
     }
-  for (std::size_t i = 0; i < before.size(); ++i) cover.limit(i, 0);
+  for (std::size_t i = 0; i < before.size(); ++i) cover.limits().limit(i, 0);
   EXPECT_EQ(count_chosen(cover.choose(executor)), 0U);
 }
 

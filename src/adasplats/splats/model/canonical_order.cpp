@@ -4,57 +4,81 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "adasplats/neighbors/hilbert.h"
 
 namespace adasplats {
 namespace {
 
-/// -1, 0 or 1 as a comes before, with or after b in one attribute (absent: equal).
+/// -1, 0 or 1 as a comes before, with or after b in one attribute.
 template <class T>
 int compare(const std::vector<T>& values, std::uint32_t a, std::uint32_t b) {
-  if (values.empty() || values[a] == values[b]) return 0;
+  if (values[a] == values[b]) return 0;
   return values[a] < values[b] ? -1 : 1;
 }
 
 /// With NaN, an intensity that is not known, behind all numbers.
 int compare(const std::vector<float>& values, std::uint32_t a, std::uint32_t b) {
-  if (values.empty() || values[a] == values[b]) return 0;
+  if (values[a] == values[b]) return 0;
   const int unknown = (std::isnan(values[a]) ? 1 : 0) - (std::isnan(values[b]) ? 1 : 0);
   if (unknown != 0 || std::isnan(values[a])) return unknown;
   return values[a] < values[b] ? -1 : 1;
 }
 
 int compare(const std::vector<Vec3f>& values, std::uint32_t a, std::uint32_t b) {
-  if (values.empty()) return 0;
   for (int axis = 0; axis < 3; ++axis)
     if (values[a][axis] != values[b][axis]) return values[a][axis] < values[b][axis] ? -1 : 1;
   return 0;
 }
 
-bool attributes_before(const PointCloud& cloud, std::uint32_t a, std::uint32_t b) {
-  for (const int result :
-       {compare(cloud.classes, a, b), compare(cloud.instances, a, b),
-        compare(cloud.scan_indices, a, b), compare(cloud.intensities, a, b),
-        compare(cloud.sensor_positions, a, b), compare(cloud.origin_kinds, a, b)})
-    if (result != 0) return result < 0;
-  return false;
-}
+/// Compares two points in all attributes that the cloud has, those of the least rank first.
+class TieBreakers {
+ public:
+  explicit TieBreakers(const PointCloud& cloud) {
+    for_each_attribute([&](const auto& attribute) {
+      const auto& values = attribute.of(cloud);
+      if (values.empty()) return;
+      ranked_.emplace_back(attribute.tie_rank, [&values](std::uint32_t a, std::uint32_t b) {
+        return compare(values, a, b);
+      });
+    });
+    std::ranges::sort(ranked_, {}, &Ranked::first);
+  }
+
+  bool operator()(std::uint32_t a, std::uint32_t b) const {
+    for (const Ranked& ranked : ranked_)
+      if (const int result = ranked.second(a, b); result != 0) return result < 0;
+    return false;
+  }
+
+ private:
+  using Ranked = std::pair<int, std::function<int(std::uint32_t, std::uint32_t)>>;
+  std::vector<Ranked> ranked_;
+};
 
 }  // namespace
 
 std::vector<std::uint32_t> canonical_order(const PointCloud& cloud, const Executor& executor) {
   std::vector<std::uint32_t> order = hilbert_order(cloud.positions, executor);
+  const TieBreakers breakers(cloud);
   for (auto begin = order.begin(); begin != order.end();) {
     const auto end = std::find_if(begin + 1, order.end(), [&](std::uint32_t i) {
       return !(cloud.positions[i] == cloud.positions[*begin]);
     });
-    if (end - begin > 1)
-      std::sort(begin, end,
-                [&](std::uint32_t a, std::uint32_t b) { return attributes_before(cloud, a, b); });
+    if (end - begin > 1) std::sort(begin, end, std::cref(breakers));
     begin = end;
   }
   return order;
+}
+
+PointCloud load_in_order(const PointCloud& cloud, std::span<const std::uint8_t> removed,
+                         const Executor& executor) {
+  std::vector<std::uint32_t> order = canonical_order(cloud, executor);
+  if (!removed.empty() && !cloud.classes.empty())
+    std::erase_if(order, [&](std::uint32_t i) { return removed[cloud.classes[i]] != 0; });
+  return gather(cloud, order);
 }
 
 }  // namespace adasplats

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "adasplats/cloud/points/point_cloud.h"
@@ -13,5 +14,10 @@ namespace adasplats {
 /// An order of the points that depends on the set of points alone: along a Hilbert curve, equal
 /// positions by every attribute in turn. Points that are equal in all are interchangeable.
 std::vector<std::uint32_t> canonical_order(const PointCloud& cloud, const Executor& executor);
+
+/// What every method begins with: the points in canonical order (of all), without those of classes
+/// that have a flag in `removed` (ClassTables::removed; may be empty).
+PointCloud load_in_order(const PointCloud& cloud, std::span<const std::uint8_t> removed,
+                         const Executor& executor);
 
 }  // namespace adasplats

@@ -26,7 +26,7 @@ inline constexpr double kGaussianOpacity = 0.99;
 
 /// Writes a model as the PLY of trained Gaussians that public viewers open: x y z nx ny nz
 /// f_dc_0..2 opacity scale_0.. rot_0..3. Positions are float32, relative to the model's origin,
-/// which the comment "adasplats.origin X Y Z" tells (world coordinates, m). Scales are natural
+/// which the comment "adasplats.origin X Y Z" gives (world coordinates, m). Scales are natural
 /// logarithms of standard deviations in m; the opacity is a logit; rot is a unit quaternion w x y z
 /// whose third axis is the disk's normal; f_dc are the spherical harmonics of degree 0 of `colors`,
 /// one a disk (sRGB, as pictures). No f_rest: the same colour from all sides. Atomic. Memory: 68

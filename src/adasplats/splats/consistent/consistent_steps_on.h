@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "adasplats/splats/consistent/consistent_state.h"
+#include "adasplats/splats/consistent/consistent_steps.h"
+#include "adasplats/splats/consistent/element_steps.h"
+
+namespace adasplats {
+
+/// The steps of the consistent method, once for all devices. `Place` is a CpuPlace or GpuPlace that
+/// also has what is of another shape on each device (Cells, Index, Rays, Cover and the members that
+/// are called here); what one element does is in element_steps.h.
+template <class Place>
+class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentState {
+ public:
+  template <class Where>
+  explicit ConsistentStepsOn(const Where& where) : place_(where) {}
+
+  std::size_t load(PointCloud cloud, const ClassTables& tables) override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    cloud_ = place_.load(cloud, tables.removed);
+    place_.wait("order the points");
+    return cloud_.size();
+  }
+
+  void fuse(const ConsistentOptions& options) override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    cells_ = place_.fuse(cloud_, options.cell_m);
+    place_.wait("fuse points");
+  }
+
+  void fit_seeds(const ConsistentOptions& options) override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    const TypicalSpacing typical = split_where_not_flat(options);
+    index_.emplace(place_.index(cells_));
+    planes_ = place_.planes(cells_, *index_, options.planes);
+    seeds_ = place_.template array<Disk>(cells_.size());
+    place_.for_each(
+        cells_.size(), "make seeds",
+        MakeSeed{points(), cells_.view(), typical, options, planes_.data(), seeds_.data()});
+    place_.wait("fit planes");
+  }
+
+  void order_rays(const ConsistentOptions& options) override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    rays_.emplace(place_.rays(cloud_, points(), options.least_range_m));
+  }
+
+  /// What stands behind seeds that went is judged better in the next round.
+  void balance_seeds(int round, const ConsistentOptions& options) override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    auto counts = count(seeds_, options.evidence_of_round(round, rays_->size()));
+    place_.for_each(seeds_.size(), "judge seeds",
+                    JudgeSeed{seeds_.data(), counts.view(), options.judge});
+    place_.wait("judge seeds");
+  }
+
+  void cover(bool checked, const ConsistentOptions& options) override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    // None where every point has its beam.
+    const bool some_unchecked = checked && !cloud_.origin_kinds.empty();
+    auto unchecked = place_.template array<std::uint8_t>(some_unchecked ? cells_.size() : 0);
+    place_.for_each(unchecked.size(), "look at origins",
+                    FlagWithoutBeam{points(), cells_.view(), unchecked.data()});
+    cover_.emplace(place_.cover(seeds_, unchecked, *index_, options.cover_options(checked)));
+    place_.wait("grow disks");
+  }
+
+  void limit_overhangs(int round, const ConsistentOptions& options) override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    chosen_ = place_.choose(*cover_);
+    auto counts = count(chosen_, options.evidence_of_round(round, rays_->size()));
+    place_.for_each(
+        chosen_.size(), "limit disks",
+        LimitOverhang{cover_->limits(), chosen_.data(), counts.view(), options.most_contradicted});
+    place_.wait("limit disks");
+  }
+
+  void limit_unchosen() override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    place_.for_each(chosen_.size(), "limit disks", LimitUnchosen{cover_->limits(), chosen_.data()});
+  }
+
+  void choose() override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    chosen_ = place_.choose(*cover_);
+    place_.wait("choose disks");
+  }
+
+  void settle(const ConsistentOptions& options) override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    const auto sums = place_.shifts(chosen_, *rays_, options.settle);
+    place_.for_each(chosen_.size(), "settle disks",
+                    SettleDisk{chosen_.data(), sums.data(), options.settle});
+    place_.wait("settle disks");
+  }
+
+  void fill_gaps(const ConsistentOptions& options) override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    const auto missed = place_.missed(chosen_, *rays_, cloud_.size(), options.missed_m);
+    place_.for_each(chosen_.size(), "fill gaps",
+                    PutBackSeed{chosen_.data(), seeds_.data(), cells_.view(), missed.data()});
+    place_.wait("fill gaps");
+  }
+
+  ConsistentCounts counts() const override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    return {cells_.size(), place_.count_present(seeds_), rays_ ? rays_->size() : 0,
+            place_.count_present(chosen_)};
+  }
+
+  ConsistentSplats take_splats() override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    return place_.splats(chosen_, cells_, cloud_);
+  }
+
+  ConsistentState state() const override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    ConsistentState state;
+    state.fused = place_.on_host(cells_);
+    state.planes = place_.on_host(planes_);
+    state.seeds = place_.on_host(seeds_);
+    if (rays_) state.rays = place_.on_host(rays_->points());
+    if (cover_) state.radii_m = place_.on_host(cover_->radii_m());
+    state.chosen = place_.on_host(chosen_);
+    return state;
+  }
+
+  RayEvidence evidence(const std::vector<Disk>& disks,
+                       const EvidenceOptions& options) const override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    return place_.on_host(count(place_.copied(disks), options));
+  }
+
+ private:
+  template <class T>
+  using Array = typename Place::template Array<T>;
+
+  MeasuredPoints points() const {
+    return {cloud_.positions.data(), data_or_null(cloud_.sensor_positions),
+            data_or_null(cloud_.origin_kinds)};
+  }
+
+  auto count(const Array<Disk>& disks, const EvidenceOptions& options) const {
+    return place_.evidence(disks, *rays_, options);
+  }
+
+  double median_spacing(const Array<LocalPlane>& planes, bool with_beam) {
+    auto units_m = place_.template array<float>(cells_.size());
+    place_.for_each(cells_.size(), "find the spacing of cells",
+                    FindSpacingUnit{points(), cells_.view(), with_beam, units_m.data()});
+    return place_.median_spacing(planes, units_m);
+  }
+
+  /// Splits cells where nothing is flat. Gives the median spacings of the cells before.
+  TypicalSpacing split_where_not_flat(const ConsistentOptions& options) {
+    const auto index = place_.index(cells_);
+    const auto planes = place_.planes(cells_, index, options.planes_for_splitting());
+    const TypicalSpacing spacing = {median_spacing(planes, true), median_spacing(planes, false)};
+    if (options.small_cell_m == 0) return spacing;
+    auto split = place_.template array<std::uint8_t>(cells_.size());
+    place_.for_each(cells_.size(), "split cells",
+                    FlagNotFlat{planes.data(), options.split_scale, split.data()});
+    cells_ = place_.split(cloud_, cells_, split, options.small_cell_m);
+    return spacing;
+  }
+
+  // In the order in which they are made; memory goes back to the place before it ends.
+  Place place_;
+  typename Place::Cloud cloud_;
+  typename Place::Cells cells_;
+  std::optional<typename Place::Index> index_;  ///< of the cells
+  Array<LocalPlane> planes_;
+  Array<Disk> seeds_;
+  std::optional<typename Place::Rays> rays_;
+  std::optional<typename Place::Cover> cover_;
+  Array<Disk> chosen_;
+};
+
+}  // namespace adasplats
