@@ -144,7 +144,7 @@ std::size_t remove_beyond(double reach_m, PointCloud& cloud) {
 }
 
 /// Says what was removed; throws data where that is no single fault, but a second place.
-void tell_beyond(std::size_t removed, std::size_t all, double reach_m, ProgressSink& progress) {
+void report_beyond(std::size_t removed, std::size_t all, double reach_m, ProgressSink& progress) {
   constexpr double kMostRemoved = 0.01;  // as LoadOptions::max_dropped
   if (removed == 0) return;
   const std::string what =
@@ -221,7 +221,7 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
   if (ours != nullptr) {
     const double reach_m = kMostFusionCells * ours->smallest_cell_m();
     report.points_noise = remove_beyond(reach_m, cloud);
-    tell_beyond(report.points_noise, report.points_in, reach_m, progress);
+    report_beyond(report.points_noise, report.points_in, reach_m, progress);
   }
   model.origin = cloud.origin;
   model.method = std::string(word_of(method, kSplatMethods));

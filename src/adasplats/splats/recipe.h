@@ -39,14 +39,20 @@ struct RecipeChoice {
   ModelRecipe recipe() const;
 };
 
+/// Calls visit(options, who they are for) for the options of every method.
+template <class Choice, class Visit>
+void visit_methods(Choice& choice, Visit&& visit) {
+  visit(choice.paper, "the paper's methods");
+  visit(choice.consistent, "the method consistent");
+}
+
 template <class Visit>
 void visit_settings(RecipeChoice& choice, Visit&& visit) {
   visit(Setting{.name = "method",
                 .help = "consistent agrees with the measured rays; the others are the paper's "
                         "variants, of which semantic needs labels"},
         choice.method);
-  visit_settings(choice.paper, visit);
-  visit_settings(choice.consistent, visit);
+  visit_methods(choice, [&](auto& options, const char*) { visit_settings(options, visit); });
 }
 
 }  // namespace adasplats

@@ -75,13 +75,14 @@ FusedPoints fuse_points(std::span<const Vec3f> points, double cell_m, const Exec
 }
 
 FusedPoints split_cells(std::span<const Vec3f> points, const FusedPoints& fused,
-                        const std::vector<bool>& split, double cell_m, const Executor& executor) {
+                        std::span<const std::uint8_t> split, double cell_m,
+                        const Executor& executor) {
   // The points of the split cells in ascending order, so that small cells list theirs so too.
   std::vector<std::uint32_t> loose;
   std::vector<std::uint32_t> whole;  // cells that stay
   for (std::size_t cell = 0; cell < fused.size(); ++cell) {
     const auto members = fused.points_of(cell);
-    if (split[cell]) {
+    if (split[cell] != 0) {
       loose.insert(loose.end(), members.begin(), members.end());
     } else {
       whole.push_back(static_cast<std::uint32_t>(cell));

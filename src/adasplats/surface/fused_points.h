@@ -7,9 +7,22 @@
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/core/host_device.h"
 #include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
+
+/// What the steps of one cell read of FusedPoints, wherever these are.
+struct CellsView {
+  const Vec3f* positions = nullptr;
+  const std::uint32_t* begins = nullptr;
+  const std::uint32_t* members = nullptr;
+  std::uint32_t size = 0;
+
+  ADASPLATS_HD std::span<const std::uint32_t> points_of(std::size_t cell) const {
+    return {members + begins[cell], begins[cell + 1] - begins[cell]};
+  }
+};
 
 /// Points of many scans fused in the cells of a grid: noise layers become one, and no place weighs
 /// more because the sensor stood near it. Cells stand in Hilbert order of their means.
@@ -19,8 +32,11 @@ struct FusedPoints {
   std::vector<std::uint32_t> members;  ///< point indices, cell by cell, ascending within one
 
   std::size_t size() const { return positions.size(); }
+  CellsView view() const {
+    return {positions.data(), begins.data(), members.data(), static_cast<std::uint32_t>(size())};
+  }
   std::span<const std::uint32_t> points_of(std::size_t cell) const {
-    return std::span(members).subspan(begins[cell], begins[cell + 1] - begins[cell]);
+    return view().points_of(cell);
   }
   float count(std::size_t cell) const {
     return static_cast<float>(begins[cell + 1] - begins[cell]);
@@ -35,6 +51,7 @@ FusedPoints fuse_points(std::span<const Vec3f> points, double cell_m, const Exec
 /// The same with some cells split: their points are fused again in cells of side `cell_m`, finer
 /// than before, for surfaces that are no larger than a cell. One flag a cell.
 FusedPoints split_cells(std::span<const Vec3f> points, const FusedPoints& fused,
-                        const std::vector<bool>& split, double cell_m, const Executor& executor);
+                        std::span<const std::uint8_t> split, double cell_m,
+                        const Executor& executor);
 
 }  // namespace adasplats

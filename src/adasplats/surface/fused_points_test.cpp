@@ -129,9 +129,10 @@ void expect_same(const FusedPoints& a, const FusedPoints& b) {
 }
 
 /// Nearly every third cell.
-std::vector<bool> some_flags(std::size_t cells) {
-  std::vector<bool> split(cells);
-  for (std::size_t cell = 0; cell < cells; ++cell) split[cell] = Random(4, 0, cell).uniform() < 0.3;
+std::vector<std::uint8_t> some_flags(std::size_t cells) {
+  std::vector<std::uint8_t> split(cells);
+  for (std::size_t cell = 0; cell < cells; ++cell)
+    split[cell] = Random(4, 0, cell).uniform() < 0.3 ? 1 : 0;
   return split;
 }
 
@@ -139,7 +140,7 @@ TEST(SplitCells, WithNoFlagAllCellsStay) {
   for (const std::size_t n : {0, 1, 5000}) {
     const std::vector<Vec3f> points = random_points(n, -0.5, 0.5);
     const FusedPoints fused = fuse_points(points, 0.1, Executor(1));
-    const std::vector<bool> none(fused.size(), false);
+    const std::vector<std::uint8_t> none(fused.size(), 0);
     expect_same(split_cells(points, fused, none, 0.03, Executor(2)), fused);
   }
 }
@@ -148,7 +149,7 @@ TEST(SplitCells, WithAllFlagsPointsAreFusedInTheSmallCells) {
   for (const std::size_t n : {0, 1, 5000}) {
     const std::vector<Vec3f> points = random_points(n, -0.5, 0.5);
     const FusedPoints fused = fuse_points(points, 0.1, Executor(1));
-    const std::vector<bool> all(fused.size(), true);
+    const std::vector<std::uint8_t> all(fused.size(), 1);
     const FusedPoints small = split_cells(points, fused, all, 0.03, Executor(2));
     expect_same(small, fuse_points(points, 0.03, Executor(1)));
     expect_equals_grid(points, 0.03, small);
@@ -159,10 +160,10 @@ TEST(SplitCells, WithAllFlagsPointsAreFusedInTheSmallCells) {
 TEST(SplitCells, WithSomeFlagsEqualsTwoGridsByBruteForce) {
   const std::vector<Vec3f> points = random_points(8000, -0.5, 0.5);
   const FusedPoints fused = fuse_points(points, 0.1, Executor(2));
-  const std::vector<bool> split = some_flags(fused.size());
+  const std::vector<std::uint8_t> split = some_flags(fused.size());
   std::vector<bool> is_loose(points.size());
   for (std::size_t cell = 0; cell < fused.size(); ++cell)
-    for (const std::uint32_t i : fused.points_of(cell)) is_loose[i] = split[cell];
+    for (const std::uint32_t i : fused.points_of(cell)) is_loose[i] = split[cell] != 0;
   // Small cells of 0.03 m reach over the borders of large ones: points of two split cells may meet.
   std::map<std::pair<bool, CellKey>, std::vector<std::uint32_t>> grids;
   for (std::uint32_t i = 0; i < points.size(); ++i)
@@ -200,13 +201,14 @@ TEST(SplitCells, SplitCellsCanBeSplitAgain) {
   const Executor executor(1);
   const FusedPoints one = fuse_points(points, 1, executor);
   ASSERT_EQ(one.size(), 1U);
-  const FusedPoints two = split_cells(points, one, {true}, 0.5, executor);
+  const FusedPoints two = split_cells(points, one, std::vector<std::uint8_t>{1}, 0.5, executor);
   ASSERT_EQ(two.size(), 2U);
   const std::size_t left = two.positions[0].x < 0.5F ? 0 : 1;
   EXPECT_EQ(two.points_of(left)[0], 0U);
   EXPECT_EQ(two.points_of(left)[1], 2U);
   EXPECT_LT(length(two.positions[left] - Vec3f{0.1F, 0.25F, 0.1F}), 1e-6F);
-  const FusedPoints three = split_cells(points, two, {left == 0, left == 1}, 0.25, executor);
+  const FusedPoints three =
+      split_cells(points, two, std::vector<std::uint8_t>{left == 0, left == 1}, 0.25, executor);
   std::vector<std::vector<std::uint32_t>> cells;
   for (std::size_t cell = 0; cell < three.size(); ++cell) {
     const auto members = three.points_of(cell);
@@ -219,7 +221,7 @@ TEST(SplitCells, SplitCellsCanBeSplitAgain) {
 TEST(SplitCells, SameForEveryNumberOfThreads) {
   const std::vector<Vec3f> points = random_points(150000, -2, 2);
   const FusedPoints fused = fuse_points(points, 0.1, Executor(1));
-  const std::vector<bool> split = some_flags(fused.size());
+  const std::vector<std::uint8_t> split = some_flags(fused.size());
   const FusedPoints one = split_cells(points, fused, split, 0.02, Executor(1));
   EXPECT_GT(one.size(), fused.size() + 20000);
   for (const int threads : {2, 3})

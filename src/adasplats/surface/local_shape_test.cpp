@@ -58,7 +58,7 @@ PlaneDistances distances_of(const std::vector<float>& distances, std::size_t lan
 
 // Oracle: the same points in another order, added by as many lanes as a GPU does.
 TEST(LocalShape, SumsAreTheSameInEveryOrder) {
-  int alike = 0;  // plain sums: the data of this test do tell
+  int alike = 0;  // plain sums: the data of this test decide
   for (const std::size_t count : {1, 3, 40, 120, 513}) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
       std::vector<Vec3f> offsets = some_offsets(seed, count);

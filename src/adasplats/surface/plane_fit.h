@@ -12,7 +12,7 @@
 
 namespace adasplats {
 
-struct AdaptivePlaneOptions {
+struct AdaptivePlaneOptions {  // docs/fidelity.md has where each number comes from
   /// Neighbourhood sizes that are tried, ascending; the largest that is still a plane is taken.
   /// Large ones average noise and registration errors out and are never one scan ring alone.
   std::array<std::uint32_t, 5> scales = {10, 20, 40, 80, 160};

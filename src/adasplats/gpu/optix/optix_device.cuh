@@ -51,7 +51,7 @@ __device__ __forceinline__ void set_payload(std::uint32_t value) {
   asm volatile("call _optix_set_payload, (%0, %1);" ::"r"(kIndex), "r"(value));
 }
 
-/// Tells that nothing beyond `t` is of interest any more.
+/// Says that nothing beyond `t` is of interest any more.
 __device__ __forceinline__ void end_ray_at(float t) {
   [[maybe_unused]] std::uint32_t accepted;
   asm volatile("call (%0), _optix_report_intersection_0, (%1, %2);"

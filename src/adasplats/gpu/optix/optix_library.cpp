@@ -19,14 +19,15 @@ namespace {
 
 constexpr const char* kName = "libnvoptix.so.1";
 constexpr const char* kOverride = "ADASPLATS_OPTIX_LIBRARY";
-/// Where drivers put it when the loader is not told: packages, containers, Windows' subsystem.
+/// Where drivers put it when the loader is not told where: packages, containers, Windows'
+/// subsystem.
 constexpr std::array kFolders = {"/usr/lib/x86_64-linux-gnu", "/usr/lib/aarch64-linux-gnu",
                                  "/usr/lib64", "/usr/local/nvidia/lib64", "/usr/lib/wsl/lib"};
 
 constexpr const char* kCure =
     "it comes with the NVIDIA driver, 535 or newer; a container gets it with "
     "NVIDIA_DRIVER_CAPABILITIES=graphics,compute,utility; "
-    "ADASPLATS_OPTIX_LIBRARY names it elsewhere; or use --device cuda";
+    "ADASPLATS_OPTIX_LIBRARY names it elsewhere; or use `device` cuda";
 
 struct Abi {
   int number;
@@ -172,7 +173,7 @@ void OptixLibrary::check(int result, const char* doing, const std::string& log) 
                         " with OptiX: " + functions_->error_name(result) + " (" +
                         functions_->error_string(result) + ")";
   if (!log.empty()) message += ": " + log;
-  throw Error(ErrorKind::unavailable, message + "; update the NVIDIA driver or use --device cuda");
+  throw Error(ErrorKind::unavailable, message + "; update the NVIDIA driver or use `device` cuda");
 }
 
 }  // namespace adasplats

@@ -37,7 +37,7 @@ void expect_unavailable(const std::string& because) {
   EXPECT_FALSE(search.available);
   for (const std::string& part :
        {because, std::string("535 or newer"), std::string("NVIDIA_DRIVER_CAPABILITIES"),
-        std::string("--device cuda"), std::string("ADASPLATS_OPTIX_LIBRARY")})
+        std::string("`device` cuda"), std::string("ADASPLATS_OPTIX_LIBRARY")})
     EXPECT_NE(search.reason.find(part), std::string::npos) << search.reason;
   try {
     const OptixLibrary library;

@@ -3,7 +3,7 @@
 
 // Compiled on its own for the driver (cmake/Optix.cmake), which finds the programs by their names.
 // OptiX walks its tree and calls an intersection program for every box that a ray enters. The
-// programs keep the hits themselves and tell OptiX only how far it has to look: so the order of
+// programs keep the hits themselves and give OptiX only how far it has to look: so the order of
 // equal distances is ours, and it does not matter whether a primitive is offered twice.
 
 #include "adasplats/gpu/optix/optix_device.cuh"

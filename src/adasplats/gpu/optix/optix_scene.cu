@@ -206,7 +206,7 @@ std::unique_ptr<DeviceScene> make_optix_scene(const SceneView& scene) {
   if (scene.primitive_count() > optix::kMaxPrimitives) {
     throw Error(ErrorKind::data, "the scene has " + std::to_string(scene.primitive_count()) +
                                      " primitives and OptiX takes at most " +
-                                     std::to_string(optix::kMaxPrimitives) + "; use --device cuda");
+                                     std::to_string(optix::kMaxPrimitives) + "; use `device` cuda");
   }
   return std::make_unique<OptixScene>(scene);
 }

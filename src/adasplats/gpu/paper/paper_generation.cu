@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "adasplats/gpu/neighbors/gpu_place.cuh"
 #include "adasplats/gpu/neighbors/neighborhoods_lists.cuh"
 #include "adasplats/gpu/paper/paper_generation.h"
 #include "adasplats/gpu/paper/paper_shapes.h"
 #include "adasplats/gpu/paper/select_rounds.h"
+#include "adasplats/splats/paper/element_steps.h"
 
 namespace adasplats::gpu {
 namespace {
@@ -14,16 +16,6 @@ namespace {
 struct AllRules {
   GroupRules of[kSemanticGroups];
 };
-
-DeviceBuffer<SemanticGroup> groups_of_kinds(const DeviceBuffer<ShapeKind>& kinds,
-                                            cudaStream_t stream) {
-  DeviceBuffer<SemanticGroup> groups(kinds.size(), stream);
-  for_each(kinds.size(), stream, "group points",
-           [from = kinds.data(), to = groups.data()] __device__(std::uint64_t i) {
-             to[i] = group_of(from[i]);
-           });
-  return groups;
-}
 
 DeviceBuffer<SemanticGroup> copied(const DeviceBuffer<SemanticGroup>& groups, cudaStream_t stream) {
   DeviceBuffer<SemanticGroup> copy(groups.size(), stream);
@@ -56,24 +48,6 @@ void refine(const DeviceCloud& cloud, const DeviceLists& lists, const AllRules& 
              to[i] = rules.of[static_cast<std::uint32_t>(groups[i])].like_base ? 0 : 1;
            });
   refine_normals(cloud.positions.data(), lists, wanted.data(), normals, stream);
-}
-
-/// Points as growing needs them, with normals turned to the sensor or given a sign that depends on
-/// the data alone.
-DeviceBuffer<SurfacePoint> surface_points(const DeviceCloud& cloud, const Vec3f* normals,
-                                          const SemanticGroup* groups, cudaStream_t stream) {
-  DeviceBuffer<SurfacePoint> points(cloud.size(), stream);
-  for_each(cloud.size(), stream, "orient normals",
-           [groups, normals, positions = cloud.positions.data(),
-            sensors = cloud.sensor_positions.data(), kinds = cloud.origin_kinds.data(),
-            classes = cloud.classes.data(), to = points.data()] __device__(std::uint64_t i) {
-             const bool known = sensors != nullptr && (kinds == nullptr || is_known(kinds[i]));
-             const Vec3f normal = !known ? with_canonical_sign(normals[i])
-                                         : oriented(normals[i], sensors[i] - positions[i]);
-             to[i] = {positions[i], classes == nullptr ? 0U : classes[i], normal,
-                      groups == nullptr ? 0U : static_cast<std::uint32_t>(groups[i])};
-           });
-  return points;
 }
 
 /// A point in two loads.
@@ -149,19 +123,6 @@ Candidates grow_all(const DeviceBuffer<SurfacePoint>& points, const DeviceLists&
   return candidates;
 }
 
-DeviceBuffer<Disk> disks_of(const DeviceBuffer<std::uint32_t>& seeds,
-                            const DeviceBuffer<SurfacePoint>& points, const Candidates& candidates,
-                            cudaStream_t stream) {
-  DeviceBuffer<Disk> disks(seeds.size(), stream);
-  for_each(seeds.size(), stream, "make splats",
-           [seeds = seeds.data(), points = points.data(), radii = candidates.radii.data(),
-            shifts = candidates.shifts.data(), to = disks.data()] __device__(std::uint64_t i) {
-             const std::uint32_t seed = seeds[i];
-             to[i] = GrownSplat{radii[seed], shifts[seed]}.disk(points[seed]);
-           });
-  return disks;
-}
-
 /// Waits for the step before: steps are timed, and its errors are its own.
 void begin(std::string_view name, cudaStream_t stream, StepSink step) {
   cuda_check(cudaStreamSynchronize(stream), "make splats");
@@ -170,9 +131,10 @@ void begin(std::string_view name, cudaStream_t stream, StepSink step) {
 
 }  // namespace
 
-DeviceGeneration generate_splats(const DeviceCloud& cloud,
+DeviceGeneration generate_splats(const GpuPlace& place, const DeviceCloud& cloud,
                                  const DeviceBuffer<SemanticGroup>& groups,
-                                 const PaperOptions& options, cudaStream_t stream, StepSink step) {
+                                 const PaperOptions& options, StepSink step) {
+  const cudaStream_t stream = place.stream();
   begin("neighbourhoods", stream, step);
   const bool adaptive = options.variant != PaperVariant::basic;
   const DevicePointIndex index(cloud.positions.data(), cloud.size(), stream);
@@ -182,8 +144,13 @@ DeviceGeneration generate_splats(const DeviceCloud& cloud,
   DeviceGeneration result;
   result.radius_m = base.radius_m;
   result.error_m = options.error_m.value_or(base.error_m);
-  if (adaptive)
-    result.groups = groups.empty() ? groups_of_kinds(base.kinds, stream) : copied(groups, stream);
+  if (adaptive && !groups.empty()) {
+    result.groups = copied(groups, stream);
+  } else if (adaptive) {
+    result.groups = place.array<SemanticGroup>(cloud.size());
+    place.for_each(cloud.size(), "group points",
+                   FindGroupOfShape{base.kinds.data(), result.groups.data()});
+  }
   const auto rules_of_groups =
       group_rules(options, result.radius_m, result.error_m, has_all_origins(cloud, stream));
   AllRules rules;
@@ -194,14 +161,17 @@ DeviceGeneration generate_splats(const DeviceCloud& cloud,
   if (adaptive && options.group_normals)
     refine(cloud, lists, rules, result.groups.data(), base.normals, stream);
   const DeviceBuffer<SurfacePoint> points =
-      surface_points(cloud, base.normals.data(), result.groups.data(), stream);
+      surface_points(place, cloud, base.normals, result.groups);
 
   begin("growing", stream, step);
   const Candidates candidates = grow_all(points, lists, rules, options.alpha, stream);
 
   begin("selection", stream, step);
   result.seeds = select_greedily(candidates.radii, lists, options.selection, stream);
-  result.disks = disks_of(result.seeds, points, candidates, stream);
+  result.disks = place.array<Disk>(result.seeds.size());
+  place.for_each(result.seeds.size(), "make splats",
+                 MakeSplat{result.seeds.data(), points.data(), candidates.radii.data(),
+                           candidates.shifts.data(), result.disks.data()});
   cuda_check(cudaStreamSynchronize(stream), "make splats");
   return result;
 }

@@ -10,6 +10,8 @@
 
 namespace adasplats::gpu {
 
+class GpuPlace;
+
 /// Private to gpu/: a Generation in device memory.
 struct DeviceGeneration {
   DeviceBuffer<Disk> disks;
@@ -21,8 +23,8 @@ struct DeviceGeneration {
 
 /// What generate_splats() gives, the same bits. `groups` are empty or one a point of the cloud.
 /// Errors: usage (neighbourhoods too large for a GPU).
-DeviceGeneration generate_splats(const DeviceCloud& cloud,
+DeviceGeneration generate_splats(const GpuPlace& place, const DeviceCloud& cloud,
                                  const DeviceBuffer<SemanticGroup>& groups,
-                                 const PaperOptions& options, cudaStream_t stream, StepSink step);
+                                 const PaperOptions& options, StepSink step);
 
 }  // namespace adasplats::gpu

@@ -188,7 +188,7 @@ TEST(Neighborhoods, TooManyAreRefused) {
   const DevicePointIndex index(positions.data(), 10, stream.get());
   const Thrown thrown = error_of([&] { find_lists(index, {513}, false, stream.get()); });
   EXPECT_EQ(thrown.kind, ErrorKind::usage);
-  EXPECT_NE(thrown.what.find("--device cpu"), std::string::npos) << thrown.what;
+  EXPECT_NE(thrown.what.find("`device` cpu"), std::string::npos) << thrown.what;
 }
 
 TEST(SortKeys, SortsSelectsAndAdds) {

@@ -7,22 +7,14 @@
 
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/neighbors/point_index.h"
+#include "adasplats/splats/model/cpu_place.h"
+#include "adasplats/splats/paper/element_steps.h"
 
 namespace adasplats {
 namespace {
 
 std::uint32_t scaled_count(int neighbors, double scale) {
   return static_cast<std::uint32_t>(std::max(1.0, std::round(neighbors * scale)));
-}
-
-/// Turns normals to the sensor, or gives them a sign that depends on the data alone.
-void orient_normals(const PointCloud& cloud, std::span<Vec3f> normals, const Executor& executor) {
-  executor.for_chunks(normals.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      normals[i] = !is_known(cloud.origin_kind(i))
-                       ? with_canonical_sign(normals[i])
-                       : oriented(normals[i], cloud.sensor_positions[i] - cloud.positions[i]);
-  });
 }
 
 /// All candidates of a cloud: what would be the splat of each point.
@@ -62,18 +54,6 @@ Candidates grow_all(std::span<const SurfacePoint> points, const PointIndex& inde
   return candidates;
 }
 
-std::vector<SurfacePoint> surface_points(const PointCloud& cloud, std::span<const Vec3f> normals,
-                                         std::span<const SemanticGroup> groups,
-                                         const Executor& executor) {
-  std::vector<SurfacePoint> points(cloud.size());
-  executor.for_chunks(cloud.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      points[i] = {cloud.positions[i], cloud.classes.empty() ? 0U : cloud.classes[i], normals[i],
-                   groups.empty() ? 0U : static_cast<std::uint32_t>(groups[i])};
-  });
-  return points;
-}
-
 }  // namespace
 
 std::array<GroupRules, kSemanticGroups> group_rules(const PaperOptions& options, double radius_m,
@@ -110,10 +90,13 @@ Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGrou
   Generation result;
   result.radius_m = base.radius_m;
   result.error_m = options.error_m.value_or(base.error_m);
-  if (options.variant != PaperVariant::basic) {
+  const CpuPlace place(executor);
+  if (options.variant != PaperVariant::basic && !groups.empty()) {
     result.groups.assign(groups.begin(), groups.end());
-    if (groups.empty())
-      for (const ShapeKind kind : base.kinds) result.groups.push_back(group_of(kind));
+  } else if (options.variant != PaperVariant::basic) {
+    result.groups.resize(cloud.size());
+    place.for_each(cloud.size(), "group points",
+                   FindGroupOfShape{base.kinds.data(), result.groups.data()});
   }
   const auto rules = group_rules(options, result.radius_m, result.error_m, cloud.has_all_origins());
 
@@ -127,24 +110,19 @@ Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGrou
           return group.like_base ? NeighborLimit{0, -1.0F} : group.limit;
         },
         base.normals, executor);
-  orient_normals(cloud, base.normals, executor);
+  const std::vector<SurfacePoint> points =
+      surface_points(place, cloud, base.normals, result.groups);
 
   step("growing", 1);
-  const std::vector<SurfacePoint> points =
-      surface_points(cloud, base.normals, result.groups, executor);
   const Candidates candidates = grow_all(points, index, rules, options.alpha, executor);
 
   step("selection", 0);
   result.seeds =
       select_greedily(candidates.radii, candidates.discards, options.selection, executor);
   result.disks.resize(result.seeds.size());
-  executor.for_chunks(result.seeds.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      const std::uint32_t seed = result.seeds[s];
-      const GrownSplat splat{candidates.radii[seed], candidates.shifts[seed]};
-      result.disks[s] = splat.disk(points[seed]);
-    }
-  });
+  place.for_each(result.seeds.size(), "make splats",
+                 MakeSplat{result.seeds.data(), points.data(), candidates.radii.data(),
+                           candidates.shifts.data(), result.disks.data()});
   return result;
 }
 

@@ -15,7 +15,7 @@
 
 namespace adasplats {
 
-/// What tells splats of one kind of surface from those of another.
+/// What distinguishes splats of one kind of surface from those of another.
 enum class PaperVariant : std::uint8_t {
   basic,        ///< nothing: section "Basic Splatting"
   descriptors,  ///< local descriptors: "Adaptive Splatting Using Local Descriptors"

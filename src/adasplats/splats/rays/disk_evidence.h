@@ -29,6 +29,17 @@ struct DiskEvidence {
   }
 };
 
+/// Counts of all disks, wherever they are: [disk * kBins + bin].
+struct EvidenceView {
+  static constexpr std::size_t kBins = DiskEvidence::kBins;
+  std::uint32_t* confirmed = nullptr;
+  std::uint32_t* contradicted = nullptr;
+
+  ADASPLATS_HD DiskEvidence of(std::size_t disk) const {
+    return {{confirmed + disk * kBins, kBins}, {contradicted + disk * kBins, kBins}};
+  }
+};
+
 /// The ring in which a ray crosses a disk at `hit_t`: squared distances from the middle in kBins
 /// parts of the squared radius.
 ADASPLATS_HD inline std::uint32_t evidence_ring(const Disk& disk, const Ray& ray, float hit_t) {
@@ -79,7 +90,7 @@ ADASPLATS_HD inline bool is_borne_out(const DiskEvidence& evidence) {
   return balance >= 0 || best * best >= contradicted;
 }
 
-struct JudgeOptions {
+struct JudgeOptions {             // numbers: docs/fidelity.md
   int core_rings = 2;             ///< the middle of a disk
   std::uint32_t core_rays = 3;    ///< that must confirm the middle...
   double core_share = 0.3;        ///< ...and be so much of those that cross it, to give it a chance

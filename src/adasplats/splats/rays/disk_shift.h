@@ -11,7 +11,7 @@
 
 namespace adasplats {
 
-struct SettleOptions {
+struct SettleOptions {        // numbers: docs/fidelity.md
   double reach_m = 0.4;       ///< rays whose range is farther from the disk say nothing of it
   double scale_m = 0.08;      ///< of the Cauchy weights on range errors
   double prior_rays = 3;      ///< as many rays say that the disk is right as it is

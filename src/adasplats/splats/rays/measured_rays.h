@@ -26,6 +26,7 @@ class MeasuredRays {
   bool empty() const { return points_.empty(); }
   /// Index of ray `i`'s point in the cloud.
   std::uint32_t point(std::size_t i) const { return points_[i]; }
+  const std::vector<std::uint32_t>& points() const { return points_; }
   float range_m(std::size_t i) const;
   /// From the sensor through the point and `beyond_m` farther.
   Ray ray(std::size_t i, float beyond_m) const;
@@ -41,9 +42,11 @@ struct RayEvidence {
   static constexpr int kBins = DiskEvidence::kBins;
   std::vector<std::uint32_t> confirmed;     ///< rays that end at the disk: [disk * kBins + bin]
   std::vector<std::uint32_t> contradicted;  ///< rays that go on behind it
+
+  EvidenceView view() { return {confirmed.data(), contradicted.data()}; }
 };
 
-struct EvidenceOptions {
+struct EvidenceOptions {     // numbers: docs/fidelity.md
   float margin_m = 0.1F;     ///< a ray that ends this near to where it crosses a disk ends at it
   std::uint32_t stride = 4;  ///< every n-th ray
   std::uint32_t phase = 0;   ///< begins with this one

@@ -15,6 +15,8 @@ void add(T& sum, T value) {
   std::atomic_ref<T>(sum).fetch_add(value, std::memory_order_relaxed);
 }
 
+}  // namespace
+
 std::vector<ShiftSums> sum_shifts(std::span<const Disk> disks, const MeasuredRays& rays,
                                   const SettleOptions& options, const Executor& executor) {
   std::vector<ShiftSums> sums(disks.size());
@@ -32,8 +34,6 @@ std::vector<ShiftSums> sum_shifts(std::span<const Disk> disks, const MeasuredRay
   present.cast(rays, casting, executor, add_ray);
   return sums;
 }
-
-}  // namespace
 
 void settle_disks(std::span<Disk> disks, const MeasuredRays& rays, const SettleOptions& options,
                   const Executor& executor) {

@@ -13,20 +13,25 @@
 namespace adasplats {
 namespace {
 
+/// Nodes of the response's tables. Choices: denser near the sensor, where echoes change most with
+/// range; finer ones follow noise and what chanced to stand there, coarser ones miss the bends.
 constexpr std::array<float, 18> kRanges_m = {2,  4,  6,  8,  10, 12, 14, 16, 18,
                                              20, 25, 30, 35, 40, 50, 60, 80, 100};
-constexpr std::size_t kUnitRange = 4;  // whose gain is 1: 10 m
+constexpr std::size_t kUnitRange = 4;  // whose gain is 1, by definition: 10 m (docs/noise.md)
 constexpr std::array<float, 11> kCosines = {0.0F, 0.1F, 0.2F, 0.3F, 0.4F, 0.5F,
                                             0.6F, 0.7F, 0.8F, 0.9F, 1.0F};
 constexpr std::size_t kUnitCosine = kCosines.size() - 1;
-constexpr std::size_t kMostNodes = 18;
+constexpr std::size_t kMostNodes = 18;  // of the two tables
+/// A choice: some 35 rays a node of the tables. Fewer say more of their noise than of the sensor.
 constexpr std::size_t kLeastRays = 1000;
+/// Of both fits. A choice: each takes a pass over all rays.
 constexpr int kTurns = 5;
 
 /// Rays that count where a splat has few: of the splats in the same cell, and of all splats there.
 /// Intensities scatter by a third from ray to ray; with kitti-0005, 1 to 8 do equally well.
 constexpr double kCellRays = 3;
 constexpr double kModelRays = 4;
+/// A choice: larger cells mix materials, smaller ones have no more rays than the splat itself.
 constexpr float kCell_m = 0.4F;
 
 /// The node below `value` and how far it is from there to the next, 0..1.
@@ -77,8 +82,8 @@ class RayCollector {
         executor_(executor) {}
 
   Observations collect() {
-    constexpr std::size_t kBatch = 1 << 20;
-    constexpr double kLeastRange_m = 1e-3;  // a ray has a direction
+    constexpr std::size_t kBatch = 1 << 20;  // rays: bounds the memory, does not change values
+    constexpr double kLeastRange_m = 1e-3;   // a ray has a direction
     const MeasuredRays measured(cloud_, kLeastRange_m, executor_);
     const ProgressPass pass(executor_, 2 * measured.size());  // made, cast
     for (std::size_t begin = 0; begin < measured.size(); begin += kBatch) {
@@ -101,6 +106,8 @@ class RayCollector {
     for (std::size_t k = 0; k < rays.size(); ++k) {
       const float intensity = cloud_.intensities[measured.point(begin + k)];
       const float range_m = measured.range_m(begin + k);
+      // A choice, well beyond the model's errors (a median of 3 cm, docs/fidelity.md): a ray that
+      // ends farther away met something else.
       const float tolerance_m = 0.2F + 0.005F * range_m;
       if (!hits[k].valid() || !std::isfinite(intensity)) continue;
       if (!(std::fabs(hits[k].t - range_m) < tolerance_m)) continue;
@@ -250,6 +257,7 @@ std::vector<float> TableFit::solve(std::size_t nodes, std::size_t unit) const {
   for (std::size_t k = 0; k < nodes; ++k) sum += diagonal[k];
   std::vector<float> values(nodes, 1.0F);
   if (!(sum > 0)) return values;
+  // A choice: less leaves nodes without rays undetermined, more flattens the table.
   const double pull = 2e-4 * sum;
   std::array<double, kMostNodes> d = diagonal, x = right;
   const auto link = [&](std::size_t k) { return beside[k] - pull; };
