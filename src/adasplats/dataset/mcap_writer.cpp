@@ -26,7 +26,7 @@ McapWriter::McapWriter(const std::filesystem::path& path)
 
 void McapWriter::write(const Scan& scan) {
   const std::uint64_t time_ns = ros_time_ns(scan.time_s);
-  // Both before either is added: a scan that cannot be told leaves no half of it.
+  // Both before either is added: a scan that cannot be written leaves no half of it.
   const std::string transform =
       transform_message(scan.world_from_sensor, scan.time_s, kWorldFrame, kSensorFrame);
   const std::string points = point_cloud2_message(scan, kSensorFrame);

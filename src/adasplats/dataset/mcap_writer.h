@@ -19,7 +19,7 @@ class McapWriter {
   /// Errors: cannot_create, io.
   explicit McapWriter(const std::filesystem::path& path);
 
-  /// Scans by ascending time. Errors: io; data (a time that ROS cannot tell: ros_time_ns).
+  /// Scans by ascending time. Errors: io; data (a time that ROS cannot express: ros_time_ns).
   void write(const Scan& scan);
   /// Makes the file whole. Call once, last.
   void finish() { file_.finish(); }

@@ -23,7 +23,7 @@ struct ImageSize {
 ImageSize image_size_of(std::span<const Firing> firings);
 
 /// A scan as the sensor saw it: pixel (ring, column) at ring * columns + column, with the return
-/// that the sensor tells first.
+/// that the sensor reports first.
 struct RangeImage {
   ImageSize size;
   std::vector<float> ranges_m;        ///< 0: no return

@@ -2,11 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <string_view>
+#include <utility>
 
 #include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
+
+/// What scans are written as: a sequence folder, files of one kind, pictures, or messages.
+enum class ScanFormat : std::uint8_t { semantickitti, ply, npy, npz, pcd, las, range_image, mcap };
+inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
+    {"semantickitti", ScanFormat::semantickitti},
+    {"ply", ScanFormat::ply},
+    {"npy", ScanFormat::npy},
+    {"npz", ScanFormat::npz},
+    {"pcd", ScanFormat::pcd},
+    {"las", ScanFormat::las},
+    {"range-image", ScanFormat::range_image},
+    {"mcap", ScanFormat::mcap}};
 
 // One scan as a file, in the sensor frame. All are atomic.
 

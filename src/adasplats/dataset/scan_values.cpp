@@ -4,27 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "adasplats/core/error.h"
 
 namespace adasplats {
-namespace {
-
-template <class T>
-void add_column(std::vector<ColumnView>& columns, std::string_view name, ColumnType type,
-                const std::vector<T>& values, std::size_t points) {
-  if (values.size() == points) columns.push_back({name, type, values.data(), sizeof(T)});
-}
-
-/// The same for attributes that not every scan has: an empty scan has none of them.
-template <class T>
-void add_optional(std::vector<ColumnView>& columns, std::string_view name, ColumnType type,
-                  const std::vector<T>& values, std::size_t points) {
-  if (!values.empty()) add_column(columns, name, type, values, points);
-}
-
-}  // namespace
-
 std::vector<float> points_with_intensity(const Scan& scan) {
   std::vector<float> values;
   values.reserve(4 * scan.size());
@@ -67,21 +51,18 @@ std::vector<std::uint8_t> returns_of_firings(const Scan& scan) {
 }
 
 std::vector<ColumnView> scan_columns(const Scan& scan) {
-  const std::size_t points = scan.size();
   // An empty scan has no first point to take addresses from.
   const Vec3f* const first = scan.positions.data();
   std::vector<ColumnView> columns = {
       {"x", ColumnType::f32, first != nullptr ? &first->x : nullptr, sizeof(Vec3f)},
       {"y", ColumnType::f32, first != nullptr ? &first->y : nullptr, sizeof(Vec3f)},
       {"z", ColumnType::f32, first != nullptr ? &first->z : nullptr, sizeof(Vec3f)}};
-  add_optional(columns, "intensity", ColumnType::f32, scan.intensities, points);
-  add_optional(columns, "label", ColumnType::u16, scan.classes, points);
-  add_optional(columns, "instance", ColumnType::u16, scan.instances, points);
-  add_column(columns, "ring", ColumnType::u16, scan.rings, points);
-  add_column(columns, "column", ColumnType::u32, scan.columns, points);
-  add_column(columns, "time", ColumnType::f32, scan.times_s, points);
-  add_column(columns, "range", ColumnType::f32, scan.ranges_m, points);
-  add_optional(columns, "return_index", ColumnType::u8, scan.return_indices, points);
+  for_each_scan_attribute([&](const auto& attribute) {
+    const auto& values = attribute.of(scan);
+    if (values.size() != scan.size() || (attribute.is_optional && values.empty())) return;
+    using Value = typename std::decay_t<decltype(values)>::value_type;
+    columns.push_back({attribute.column, column_type<Value>(), values.data(), sizeof(Value)});
+  });
   return columns;
 }
 

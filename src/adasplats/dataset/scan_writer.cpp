@@ -7,7 +7,6 @@
 
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/dataset/mcap_writer.h"
-#include "adasplats/dataset/scan_files.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/semantickitti_writer.h"
 

@@ -3,29 +3,15 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <string_view>
-#include <utility>
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/dataset/range_image.h"
+#include "adasplats/dataset/scan_files.h"
 #include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
-
-/// What scans are written as: a sequence folder, files of one kind, pictures, or messages.
-enum class ScanFormat : std::uint8_t { semantickitti, ply, npy, npz, pcd, las, range_image, mcap };
-inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
-    {"semantickitti", ScanFormat::semantickitti},
-    {"ply", ScanFormat::ply},
-    {"npy", ScanFormat::npy},
-    {"npz", ScanFormat::npz},
-    {"pcd", ScanFormat::pcd},
-    {"las", ScanFormat::las},
-    {"range-image", ScanFormat::range_image},
-    {"mcap", ScanFormat::mcap}};
 
 struct ScanWriterOptions {
   ImageSize image_size;                 ///< of range images (image_size_of)
@@ -50,7 +36,7 @@ class ScanWriter {
 /// A writer into `folder`, which exists. semantickitti: FOLDER/sequences/00 as SemanticKittiWriter;
 /// range_image: files of write_range_image(); mcap: FOLDER/scans.mcap as McapWriter; else
 /// NNNNNN.EXT of scan_files.h. All but semantickitti have poses.csv beside them. Errors:
-/// cannot_create, io; mcap: data (times that ROS cannot tell).
+/// cannot_create, io; mcap: data (times that ROS cannot express).
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
                                              const ScanWriterOptions& options = {});
 

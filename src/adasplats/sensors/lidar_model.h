@@ -12,6 +12,9 @@
 
 namespace adasplats {
 
+/// The sensor where a user names none: the HDL-64 as the paper describes it.
+inline constexpr const char* kDefaultSensor = "hdl-64-paper";
+
 /// One emitted ray of one revolution, in the sensor frame.
 struct Firing {
   Vec3f direction;       ///< unit length
@@ -47,13 +50,13 @@ struct LidarModel {
   double min_range_m = 0.0;
   double max_range_m = 120.0;
   double range_noise_m = 0.0;       ///< standard deviation of white noise on the range
-  double angular_noise_rad = 0.0;   ///< the same on the azimuth and elevation that are told
+  double angular_noise_rad = 0.0;   ///< the same on the azimuth and elevation that are reported
   double range_resolution_m = 0.0;  ///< ranges are multiples of it; 0: any
   /// Full angles of the beam between 1/e^2 of the axis' intensity, horizontal and vertical, rad; 0:
   /// not known. Whatever the source states was converted by full_e2_angle_rad().
   double divergence_rad[2] = {0, 0};
   DivergenceKind divergence_kind = DivergenceKind::unknown;  ///< what the source states
-  int most_returns = 1;                   ///< echoes that the sensor tells a firing
+  int most_returns = 1;                   ///< echoes that the sensor reports of a firing
   bool clockwise = false;                 ///< seen from above
   std::vector<Firing> free_pattern;       ///< used instead of beams x columns where not empty
   std::optional<RosettePattern> rosette;  ///< used instead of both where it is there
@@ -78,8 +81,8 @@ LidarModel hdl_64_paper();
 /// both included, 1800 columns, 100 m.
 LidarModel hdl_32_paper();
 
-/// A name of the library (lidar_model_names()) or a file, told by its extension, else by what it
-/// holds; docs/sensors.md has the keys:
+/// A name of the library (lidar_model_names()) or a file, known by its extension, else by what
+/// it holds; docs/sensors.md has the keys:
 /// - TOML: beams or a rosette, or `like` another sensor;
 /// - JSON: metadata of an Ouster sensor as it writes them;
 /// - YAML: a Velodyne calibration of the ROS driver; CSV: Hesai's angles, with the firing times

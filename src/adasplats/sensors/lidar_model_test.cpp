@@ -306,7 +306,7 @@ TEST_F(LidarFiles, BeamsAreSortedWithAllThatIsTheirs) {
   EXPECT_EQ(model.columns, 4U);
 }
 
-// Oracle: the sensor of the library, but for what is told.
+// Oracle: the sensor of the library, but for what is said.
 TEST_F(LidarFiles, ASensorCanBeLikeAnother) {
   const LidarModel vlp = load_lidar_model("velodyne-vlp-16");
   const LidarModel mine =

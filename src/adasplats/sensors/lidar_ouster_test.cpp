@@ -26,7 +26,7 @@ class OusterJson : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// All keys on one level, as firmware 2.x tells them.
+/// All keys on one level, as firmware 2.x gives them.
 const std::string kFlat =
     R"({"beam_altitude_angles": [10, -10.5], "beam_azimuth_angles": [3, -1],
         "lidar_mode": "512x20", "lidar_origin_to_beam_origin_mm": 15,
@@ -63,7 +63,7 @@ TEST_F(OusterJson, AReturnLiesWhereTheMakersFormulaPutsIt) {
     }
 }
 
-// Oracle: the same keys in groups, as firmware 3 tells them, give the same sensor.
+// Oracle: the same keys in groups, as firmware 3 gives them, give the same sensor.
 TEST_F(OusterJson, GroupedKeysAreTheSame) {
   const LidarModel flat = load(kFlat);
   const LidarModel grouped = load(

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The calibration files of Velodyne sensors as the ROS driver velodyne_pointcloud has them: YAML
-// with a list "lasers", each laser in braces or key by key on lines of its own. They tell angles
+// with a list "lasers", each laser in braces or key by key on lines of its own. They give angles
 // and offsets; times, ranges and the rest are those of the sensor in the library that has as many
 // lasers.
 
@@ -206,7 +206,7 @@ void add_laser(const Laser& laser, LidarModel& model) {
   model.beam_origins_m.push_back(origin_of(laser, elevation_rad, offset_rad));
 }
 
-/// The ids of the lasers; 0, 1, 2... where the file tells none.
+/// The ids of the lasers; 0, 1, 2... where the file says none.
 std::vector<int> laser_ids(const Calibration& calibration) {
   const auto count = calibration.lasers.size();
   std::vector<int> ids;

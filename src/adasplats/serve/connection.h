@@ -15,7 +15,8 @@ namespace adasplats {
 using ServerClock = std::chrono::steady_clock;
 
 /// One accepted socket; all of it happens on the server's thread. What has to happen by a time is
-/// not told to timers of its own: the server looks at all deadlines a few times in a stall_limit.
+/// not left to timers of its own: the server looks at all deadlines a few times in a
+/// stall_limit.
 class Connection {
  public:
   virtual ~Connection() = default;

@@ -152,7 +152,7 @@ void HttpServer::Implementation::accepted(ErrorCode error, tcp::socket socket) {
   const std::size_t limit = core_->options.connections_limit;
   const std::size_t open = core_->connections.size();
   // Telling somebody that we are full takes a connection, too; beyond twice the limit nobody is
-  // told.
+  // reported.
   if (!error && open < 2 * limit) {
     socket.set_option(tcp::no_delay(true), error);
     start_http(std::move(socket), core_, open >= limit);

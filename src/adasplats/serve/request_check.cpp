@@ -30,7 +30,7 @@ NumericAddress numeric_address(const std::string& text) {
   return {};
 }
 
-/// Every byte is looked at, so that the time does not tell how many were right.
+/// Every byte is looked at, so that the time does not say how many were right.
 bool equal_in_constant_time(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned char difference = 0;

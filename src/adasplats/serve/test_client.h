@@ -30,7 +30,7 @@
 
 namespace adasplats {
 
-/// A client that sends whatever bytes it is told, over a plain socket.
+/// A client that sends whatever bytes it is given, over a plain socket.
 class RawClient {
  public:
   struct Frame {

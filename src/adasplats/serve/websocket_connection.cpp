@@ -150,7 +150,7 @@ void WebSocketConnection::read() {
 void WebSocketConnection::read_done(ErrorCode error) {
   // With a close frame of ours under way its operation sees the end of the connection.
   if (ended_ || close_sent_) return;
-  // Beast has told the other end what was wrong (RFC 6455, 7.1.7), or answered its close frame.
+  // Beast has sent the other end what was wrong (RFC 6455, 7.1.7), or answered its close frame.
   if (error) return abort();
   if (closing_) return;
   if (stream_->got_binary()) return begin_close(1003, "text messages only", Queued::dropped);

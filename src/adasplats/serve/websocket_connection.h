@@ -9,7 +9,7 @@
 
 namespace adasplats {
 
-/// Answers a request for the WebSocket, and tells the handler what comes.
+/// Answers a request for the WebSocket, and gives the handler what comes.
 void start_websocket(boost::asio::ip::tcp::socket socket, const std::shared_ptr<ServerCore>& core,
                      boost::beast::http::request<boost::beast::http::empty_body> request);
 

@@ -49,7 +49,7 @@ ADASPLATS_HD inline Vec3f color_of(SemanticGroup group) {
 }
 
 /// Share of the light that a surface sends back. A lamp at the camera shows the shape; the sky from
-/// above and a low sun tell ground, facades and the two sides of a street apart. Normals of clouds
+/// above and a low sun distinguish ground, facades and the two sides of a street. Normals of clouds
 /// have no reliable sign, so every term takes both sides.
 ADASPLATS_HD inline float light(Vec3f normal, Vec3f view) {
   constexpr Vec3f kSun = {0.36F, 0.80F, 0.48F};

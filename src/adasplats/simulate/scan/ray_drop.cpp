@@ -174,10 +174,10 @@ RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
                           std::span<const std::uint8_t> dropped) {
   constexpr std::ptrdiff_t kLeast = 100;
   check_sizes(echoes.size(), dropped.size());
-  const std::ptrdiff_t told = std::count(dropped.begin(), dropped.end(), std::uint8_t{0});
-  const std::ptrdiff_t lost = static_cast<std::ptrdiff_t>(dropped.size()) - told;
-  if (told < kLeast || lost < kLeast) {
-    throw Error(ErrorKind::data, std::to_string(told) + " beams came back and " +
+  const std::ptrdiff_t reported = std::count(dropped.begin(), dropped.end(), std::uint8_t{0});
+  const std::ptrdiff_t lost = static_cast<std::ptrdiff_t>(dropped.size()) - reported;
+  if (reported < kLeast || lost < kLeast) {
+    throw Error(ErrorKind::data, std::to_string(reported) + " beams came back and " +
                                      std::to_string(lost) + " did not, expected at least " +
                                      std::to_string(kLeast) + " of each to fit a ray drop");
   }
@@ -187,7 +187,7 @@ RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
   rows.reserve(echoes.size());
   for (const EchoConditions& echo : echoes) rows.push_back(model.features(echo));
   // From the share alone, which is near enough for Newton's method; halved where it overshoots.
-  model.weights[0] = std::log(static_cast<double>(lost) / static_cast<double>(told));
+  model.weights[0] = std::log(static_cast<double>(lost) / static_cast<double>(reported));
   Likelihood at = likelihood_of(rows, dropped, model.weights);
   constexpr int kMostSteps = 50, kMostHalvings = 20;
   for (int step = 0; step < kMostSteps; ++step) {

@@ -13,7 +13,7 @@
 
 namespace adasplats {
 
-/// What decides whether an echo is strong enough to be told.
+/// What decides whether an echo is strong enough to be reported.
 struct EchoConditions {
   float range_m = 0;
   float cos_incidence = 1;  ///< 1: the beam meets the surface head on
@@ -22,14 +22,14 @@ struct EchoConditions {
 };
 
 /// Directions in which the sensor's own carrier is in the way: nothing comes back, or from too
-/// near to be told. No model of a place knows it.
+/// near to be reported. No model of a place knows it.
 struct BlockedSector {
   float elevation_rad = 0;      ///< of the beam that was measured
   float azimuth_begin_rad = 0;  ///< counter-clockwise from +x; -pi <= begin < end <= pi
   float azimuth_end_rad = 0;
 };
 
-/// How likely a real sensor tells nothing though its beam met something: directions that its
+/// How likely a real sensor reports nothing though its beam met something: directions that its
 /// carrier blocks, and a logistic model of the others, both fitted to where real beams found
 /// nothing (evaluate/beam_grid.h).
 struct RayDropModel {

@@ -162,11 +162,12 @@ std::size_t pulses_of(std::span<const Echo> echoes, const BeamOptions& options,
   return count;
 }
 
-/// The place among `left` (ascending) of what is told after the `told` ones.
-std::size_t next_told(std::span<const Return> told, std::span<const Return> left, ReturnMode mode) {
+/// The place among `left` (ascending) of what is reported after the `reported` ones.
+std::size_t next_reported(std::span<const Return> reported, std::span<const Return> left,
+                          ReturnMode mode) {
   if (mode == ReturnMode::first) return 0;
   if (mode == ReturnMode::last) return left.size() - 1;
-  if (told.size() == 1 && left.back().range_m > told[0].range_m) return left.size() - 1;
+  if (reported.size() == 1 && left.back().range_m > reported[0].range_m) return left.size() - 1;
   std::size_t strongest = 0;
   for (std::size_t i = 1; i < left.size(); ++i)
     if (left[i].energy > left[strongest].energy) strongest = i;
@@ -274,24 +275,24 @@ std::vector<float> sub_ray_weights(const BeamOptions& options) {
   return weights;
 }
 
-std::size_t told_returns(std::span<Return> pulses, const BeamOptions& options) {
+std::size_t reported_returns(std::span<Return> pulses, const BeamOptions& options) {
   auto left = pulses;
-  std::size_t told = 0;
-  while (!left.empty() && told < static_cast<std::size_t>(options.returns)) {
-    const std::size_t next = next_told(pulses.first(told), left, options.mode);
+  std::size_t reported = 0;
+  while (!left.empty() && reported < static_cast<std::size_t>(options.returns)) {
+    const std::size_t next = next_reported(pulses.first(reported), left, options.mode);
     std::rotate(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(next),
                 left.begin() + static_cast<std::ptrdiff_t>(next) + 1);
     const Return chosen = left[0];
-    ++told;
+    ++reported;
     left = left.subspan(1);
-    // What the receiver cannot tell from the chosen one is no return of its own.
+    // What the receiver cannot separate from the chosen one is no return of its own.
     const auto kept_end = std::remove_if(left.begin(), left.end(), [&](const Return& other) {
       const auto [near_m, far_m] = std::minmax(chosen.range_m, other.range_m);
       return !apart(near_m, far_m, options.separation_m);
     });
     left = left.first(static_cast<std::size_t>(kept_end - left.begin()));
   }
-  return told;
+  return reported;
 }
 
 std::size_t returns_of(std::span<const Hit> hits, std::span<const float> weights,
@@ -307,9 +308,9 @@ std::size_t returns_of(std::span<const Hit> hits, std::span<const float> weights
   const auto echoes = echoes_of(hits, weights, classes, options, echo_buffer);
   std::array<Return, kMostSubRays> pulses;
   const std::size_t pulse_count = pulses_of(echoes, options, pulses);
-  const std::size_t told = told_returns(std::span(pulses).first(pulse_count), options);
-  std::copy_n(pulses.begin(), told, out.begin());
-  return told;
+  const std::size_t reported = reported_returns(std::span(pulses).first(pulse_count), options);
+  std::copy_n(pulses.begin(), reported, out.begin());
+  return reported;
 }
 
 }  // namespace adasplats

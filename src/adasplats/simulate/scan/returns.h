@@ -16,7 +16,7 @@
 
 namespace adasplats {
 
-/// Which echoes of a firing a sensor tells.
+/// Which echoes of a firing a sensor reports.
 enum class ReturnMode : std::uint8_t { first, last, strongest };
 inline constexpr std::pair<std::string_view, ReturnMode> kReturnModes[] = {
     {"strongest", ReturnMode::strongest}, {"first", ReturnMode::first}, {"last", ReturnMode::last}};
@@ -85,7 +85,7 @@ void visit_settings(BeamOptions& beam, Visit&& visit) {
   visit(Setting{.name = "return_mode", .help = "Which echo comes first or alone"}, beam.mode);
 }
 
-/// One echo that a sensor tells.
+/// One echo that a sensor reports.
 struct Return {
   float range_m = 0;            ///< along the firing's axis
   std::uint32_t primitive = 0;  ///< that most of it is from
@@ -107,19 +107,20 @@ std::vector<Firing> sub_firings(const LidarModel& sensor, std::span<const Firing
 /// shared evenly; their sum is 1.
 std::vector<float> sub_ray_weights(const BeamOptions& options);
 
-/// Those of `pulses` (ascending in range) that a sensor tells, moved to the front in the order in
-/// which it tells them, at most options.returns; gives how many. first: from the nearest on; last:
-/// from the farthest on; strongest: the strongest, then the last or, where that is the strongest,
-/// the second strongest (dual return of the Velodyne VLP-16, user manual 63-9243 rev. D, section
-/// 9.3.2), further ones by energy. Of equal ones the nearer. What lies within the separation of a
-/// told one is not told (of the VLS-128 it is 1 m: manual 63-9483 rev. A, section 6.2.3).
-std::size_t told_returns(std::span<Return> pulses, const BeamOptions& options);
+/// Those of `pulses` (ascending in range) that a sensor reports, moved to the front in the order in
+/// which it reports them, at most options.returns; gives how many. first: from the nearest on;
+/// last: from the farthest on; strongest: the strongest, then the last or, where that is the
+/// strongest, the second strongest (dual return of the Velodyne VLP-16, user manual 63-9243 rev. D,
+/// section 9.3.2), further ones by energy. Of equal ones the nearer. What lies within the
+/// separation of a reported one is none of its own (of the VLS-128 it is 1 m: manual 63-9483 rev.
+/// A, section 6.2.3).
+std::size_t reported_returns(std::span<Return> pulses, const BeamOptions& options);
 
 /// The returns of one firing from its hits, hits[ray * depth + k], ascending in k, in the order in
-/// which the sensor tells them (told_returns()). `classes`: of the primitives, or empty. At most
-/// options.returns; `out` has that size. Never mixes hits of two classes or of two objects that
-/// stand apart: the range of a return is the mean of the echoes within depth_gap_m of its first
-/// one, as a receiver triggers on the rising edge. Gives how many there are. Throws
+/// which the sensor reports them (reported_returns()). `classes`: of the primitives, or empty. At
+/// most options.returns; `out` has that size. Never mixes hits of two classes or of two objects
+/// that stand apart: the range of a return is the mean of the echoes within depth_gap_m of its
+/// first one, as a receiver triggers on the rising edge. Gives how many there are. Throws
 /// std::logic_error where there is no class of a primitive.
 std::size_t returns_of(std::span<const Hit> hits, std::span<const float> weights,
                        std::span<const std::uint16_t> classes, const BeamOptions& options,

@@ -209,13 +209,13 @@ TEST(Returns, MissesTakeTheirEnergyWithThem) {
   EXPECT_EQ(returns[0].energy, sub_ray_weights(options)[3]);
 }
 
-std::vector<float> told_ranges(std::vector<Return> pulses, ReturnMode mode, int returns,
-                               double separation_m = 0.75) {
+std::vector<float> reported_ranges(std::vector<Return> pulses, ReturnMode mode, int returns,
+                                   double separation_m = 0.75) {
   BeamOptions options;
   options.mode = mode;
   options.returns = returns;
   options.separation_m = separation_m;
-  pulses.resize(told_returns(pulses, options));
+  pulses.resize(reported_returns(pulses, options));
   std::vector<float> ranges;
   ranges.reserve(pulses.size());
   for (const Return& pulse : pulses) ranges.push_back(pulse.range_m);
@@ -226,22 +226,22 @@ std::vector<float> told_ranges(std::vector<Return> pulses, ReturnMode mode, int 
 TEST(Returns, ModesTellWhatTheManualSays) {
   const std::vector<Return> pulses{{5, 0, 0.2F}, {10, 1, 0.5F}, {15, 2, 0.1F}, {20, 3, 0.2F}};
   using Ranges = std::vector<float>;
-  EXPECT_EQ(told_ranges(pulses, ReturnMode::first, 1), Ranges({5}));
-  EXPECT_EQ(told_ranges(pulses, ReturnMode::last, 1), Ranges({20}));
-  EXPECT_EQ(told_ranges(pulses, ReturnMode::strongest, 1), Ranges({10}));
-  EXPECT_EQ(told_ranges(pulses, ReturnMode::first, 3), Ranges({5, 10, 15}));
-  EXPECT_EQ(told_ranges(pulses, ReturnMode::last, 2), Ranges({20, 15}));
-  EXPECT_EQ(told_ranges(pulses, ReturnMode::strongest, 2), Ranges({10, 20})) << "the last";
-  EXPECT_EQ(told_ranges(pulses, ReturnMode::strongest, 9), Ranges({10, 20, 5, 15}));
+  EXPECT_EQ(reported_ranges(pulses, ReturnMode::first, 1), Ranges({5}));
+  EXPECT_EQ(reported_ranges(pulses, ReturnMode::last, 1), Ranges({20}));
+  EXPECT_EQ(reported_ranges(pulses, ReturnMode::strongest, 1), Ranges({10}));
+  EXPECT_EQ(reported_ranges(pulses, ReturnMode::first, 3), Ranges({5, 10, 15}));
+  EXPECT_EQ(reported_ranges(pulses, ReturnMode::last, 2), Ranges({20, 15}));
+  EXPECT_EQ(reported_ranges(pulses, ReturnMode::strongest, 2), Ranges({10, 20})) << "the last";
+  EXPECT_EQ(reported_ranges(pulses, ReturnMode::strongest, 9), Ranges({10, 20, 5, 15}));
   const std::vector<Return> far_is_strongest{{5, 0, 0.2F}, {10, 1, 0.3F}, {20, 3, 0.5F}};
-  EXPECT_EQ(told_ranges(far_is_strongest, ReturnMode::strongest, 2), Ranges({20, 10}));
-  EXPECT_TRUE(told_ranges({}, ReturnMode::strongest, 2).empty());
+  EXPECT_EQ(reported_ranges(far_is_strongest, ReturnMode::strongest, 2), Ranges({20, 10}));
+  EXPECT_TRUE(reported_ranges({}, ReturnMode::strongest, 2).empty());
 }
 
 TEST(Returns, TiesGoToTheNearer) {
   const std::vector<Return> equal{{5, 0, 0.25F}, {10, 1, 0.25F}, {15, 2, 0.25F}, {20, 3, 0.25F}};
-  EXPECT_EQ(told_ranges(equal, ReturnMode::strongest, 2), std::vector<float>({5, 20}));
-  EXPECT_EQ(told_ranges({equal.begin(), equal.begin() + 1}, ReturnMode::strongest, 2),
+  EXPECT_EQ(reported_ranges(equal, ReturnMode::strongest, 2), std::vector<float>({5, 20}));
+  EXPECT_EQ(reported_ranges({equal.begin(), equal.begin() + 1}, ReturnMode::strongest, 2),
             std::vector<float>({5}));
   BeamOptions options;
   options.sub_rays = 3;
@@ -253,9 +253,9 @@ TEST(Returns, TiesGoToTheNearer) {
 
 TEST(Returns, WhatCannotBeSeparatedIsNotTold) {
   const std::vector<Return> pulses{{5, 0, 0.3F}, {5.5F, 1, 0.4F}, {9, 2, 0.2F}};
-  EXPECT_EQ(told_ranges(pulses, ReturnMode::strongest, 3), std::vector<float>({5.5F, 9}));
-  EXPECT_EQ(told_ranges(pulses, ReturnMode::first, 3), std::vector<float>({5, 9}));
-  EXPECT_EQ(told_ranges(pulses, ReturnMode::last, 3, 0.25), std::vector<float>({9, 5.5F, 5}));
+  EXPECT_EQ(reported_ranges(pulses, ReturnMode::strongest, 3), std::vector<float>({5.5F, 9}));
+  EXPECT_EQ(reported_ranges(pulses, ReturnMode::first, 3), std::vector<float>({5, 9}));
+  EXPECT_EQ(reported_ranges(pulses, ReturnMode::last, 3, 0.25), std::vector<float>({9, 5.5F, 5}));
 }
 
 TEST(Returns, AMissingClassIsABugThatIsSeen) {

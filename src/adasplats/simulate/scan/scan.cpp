@@ -94,16 +94,16 @@ class ScanMaker {
                                                std::size_t end) const {
     const std::vector<float> weights = sub_ray_weights(options_.beam);
     const std::size_t hits_a_firing = options_.beam.hits_per_firing();
-    std::vector<Return> told(static_cast<std::size_t>(options_.beam.returns));
+    std::vector<Return> reported(static_cast<std::size_t>(options_.beam.returns));
     std::vector<FiringReturn> found;
     found.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t count = returns_of(hits.subspan(i * hits_a_firing, hits_a_firing), weights,
-                                           attributes_.classes, options_.beam, told);
+                                           attributes_.classes, options_.beam, reported);
       std::uint8_t index = 0;
       for (std::size_t k = 0; k < count; ++k) {
-        FiringReturn point{static_cast<std::uint32_t>(i), index, told[k]};
-        if (!is_told(point, k)) continue;
+        FiringReturn point{static_cast<std::uint32_t>(i), index, reported[k]};
+        if (!is_reported(point, k)) continue;
         found.push_back(point);
         ++index;
       }
@@ -111,8 +111,8 @@ class ScanMaker {
     return found;
   }
 
-  /// Whether the sensor tells it; measures its range.
-  bool is_told(FiringReturn& point, std::size_t k) const {
+  /// Whether the sensor reports it; measures its range.
+  bool is_reported(FiringReturn& point, std::size_t k) const {
     if (options_.ray_drop != nullptr) {
       const double probability =
           options_.ray_drop->probability({point.echo.range_m, cos_incidence(point),
@@ -158,7 +158,7 @@ class ScanMaker {
     return std::min(std::fabs(dot(vec_cast<float>(direction), normal)), 1.0F);
   }
 
-  /// Where the sensor tells the point to be.
+  /// Where the sensor reports the point to be.
   Vec3f position(const FiringReturn& point) const {
     const Firing& firing = firings_[point.firing];
     Vec3f direction = firing.direction;
@@ -170,7 +170,7 @@ class ScanMaker {
                            (pose_at(motion_, share) * vec_cast<double>(there)));
   }
 
-  /// The firing's direction with the error of the angles that the sensor tells.
+  /// The firing's direction with the error of the angles that the sensor reports.
   Vec3f noisy(const FiringReturn& point) const {
     const Vec3d d = vec_cast<double>(firings_[point.firing].direction);
     Random random = draw(options_.seed, Draw::angles, scan_index_, point.firing, 0);
@@ -196,7 +196,7 @@ class ScanMaker {
     if (!scan.intensities.empty()) scan.intensities[i] = intensity(point);
   }
 
-  /// Things without a reflectance, as inserted meshes, send back nothing that could be told.
+  /// Things without a reflectance, as inserted meshes, send back nothing that could be reported.
   float intensity(const FiringReturn& point) const {
     const float value = value_of(attributes_.intensities, point);
     if (std::isnan(value)) return 0;
@@ -237,14 +237,8 @@ Scan kept_points(const Scan& scan, std::span<const std::uint8_t> keep) {
   kept.time_s = scan.time_s;
   kept.rays = scan.rays;
   kept.positions = kept_values(scan.positions, keep);
-  kept.ranges_m = kept_values(scan.ranges_m, keep);
-  kept.intensities = kept_values(scan.intensities, keep);
-  kept.classes = kept_values(scan.classes, keep);
-  kept.instances = kept_values(scan.instances, keep);
-  kept.rings = kept_values(scan.rings, keep);
-  kept.columns = kept_values(scan.columns, keep);
-  kept.times_s = kept_values(scan.times_s, keep);
-  kept.return_indices = kept_values(scan.return_indices, keep);
+  for_each_scan_attribute(
+      [&](const auto& attribute) { attribute.of(kept) = kept_values(attribute.of(scan), keep); });
   return kept;
 }
 

@@ -27,7 +27,7 @@ struct PrimitiveAttributes {
 };
 
 /// One revolution of one LiDAR: the returns, by firing in the order of `firings_of`, those of one
-/// firing in the order in which the sensor tells them.
+/// firing in the order in which the sensor reports them.
 struct Scan {
   RigidTransform world_from_sensor;
   double time_s = 0;
@@ -40,28 +40,64 @@ struct Scan {
   std::vector<std::uint16_t> rings;
   std::vector<std::uint32_t> columns;
   std::vector<float> times_s;  ///< since the start of the revolution
-  /// 0 for the first that the sensor tells of a firing; empty where no firing can return twice.
+  /// 0 for the first that the sensor reports of a firing; empty where no firing can return twice.
   std::vector<std::uint8_t> return_indices;
 
   std::size_t size() const { return positions.size(); }
 };
+
+/// One attribute of returns with all its names; of(scan) is its array.
+template <class Of>
+struct ScanAttribute {
+  Of of;
+  const char* name;    ///< in Python and in pickles
+  const char* column;  ///< of scan_columns(); arrays of NPZ files have its plural
+  bool is_optional;    ///< not every scan has it
+  const char* about;   ///< what the numbers are
+};
+template <class Of>
+ScanAttribute(Of, const char*, const char*, bool, const char*) -> ScanAttribute<Of>;
+
+/// Calls visit(ScanAttribute) for every attribute, in the order of files; positions are none. A new
+/// one is a member and an entry here, and whoever computes it.
+template <class Visit>
+void for_each_scan_attribute(Visit&& visit) {
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.intensities); },
+                      "intensities", "intensity", true, "in the unit of the scene's intensities"});
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.classes); }, "classes",
+                      "label", true, "ids of the scene's label scheme"});
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.instances); }, "instances",
+                      "instance", true, "0 for none"});
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.rings); }, "rings", "ring",
+                      false, "0 the topmost"});
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.columns); }, "columns",
+                      "column", false, "azimuth steps"});
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.times_s); }, "times", "time",
+                      false, "s since the revolution began"});
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.ranges_m); }, "ranges",
+                      "range", false, "m"});
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.return_indices); },
+                      "return_indices", "return_index", true,
+                      "0 for the first that the sensor reports of a firing"});
+}
 
 /// The points that keep[i] says, of every attribute.
 Scan kept_points(const Scan& scan, std::span<const std::uint8_t> keep);
 
 /// Which frame the points of a scan are in, where the sensor moves during it.
 enum class PointFrame : std::uint8_t {
-  raw,       ///< the sensor's when each was measured, as sensors tell them
+  raw,       ///< the sensor's when each was measured, as sensors report them
   deskewed,  ///< the sensor's at the scan's reference pose, the motion taken out
 };
 inline constexpr std::pair<std::string_view, PointFrame> kPointFrames[] = {
     {"raw", PointFrame::raw}, {"deskewed", PointFrame::deskewed}};
+inline Words<PointFrame> words_of(PointFrame) { return kPointFrames; }
 
 struct SimulateOptions {
   std::uint64_t seed = 0;  ///< of noise and drop; drawn by (seed, scan index, ray index)
   bool noise = true;       ///< apply the sensor's range and angular noise
   BeamOptions beam;
-  const RayDropModel* ray_drop = nullptr;  ///< none: every echo is told
+  const RayDropModel* ray_drop = nullptr;  ///< none: every echo is reported
   PointFrame frame = PointFrame::raw;
 };
 

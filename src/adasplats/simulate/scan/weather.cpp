@@ -19,10 +19,10 @@ namespace adasplats {
 
 namespace {
 
-/// A surface that a sensor just tells at its greatest range (Velodyne HDL-64E manual: 120 m for
+/// A surface that a sensor just reports at its greatest range (Velodyne HDL-64E manual: 120 m for
 /// 0.80, 50 m for 0.10, where the square of the range gives 0.14).
 constexpr double kNeededReflectance = 0.8;
-/// What no sensor tells, however near: half a step of the reflectivity of Velodynes.
+/// What no sensor reports, however near: half a step of the reflectivity of Velodynes.
 constexpr double kNeededNear = 0.005;
 constexpr double kLeastReflectance = 0.01;  // a step of the reflectivity of Velodynes
 constexpr double kUsualReflectance = 0.3;   // where the intensity is not known
@@ -80,7 +80,7 @@ double fog_extinction_per_m(const Weather& weather) {
   return visibility_m > 0 && std::isfinite(visibility_m) ? 3.912 / visibility_m : 0.0;
 }
 
-/// What a sensor needs to tell a surface in clear air.
+/// What a sensor needs to report a surface in clear air.
 double needed_reflectance(double range_m, const LidarModel& sensor) {
   const double share = range_m / sensor.max_range_m;
   return std::max(kNeededNear, kNeededReflectance * share * share);
@@ -95,11 +95,11 @@ double usable(double reflectance) {
   return std::isnan(reflectance) ? kUsualReflectance : std::max(reflectance, kLeastReflectance);
 }
 
-double told_share(double extinction_per_m, double range_m, double power) {
+double reported_share(double extinction_per_m, double range_m, double power) {
   return std::exp(-std::expm1(2.0 * extinction_per_m * range_m) / power);
 }
 
-/// Something in the air that the sensor could tell.
+/// Something in the air that the sensor could report.
 struct Speck {
   double range_m;
   double power;  ///< that comes back, in units of what the sensor needs: 1 or more
@@ -162,8 +162,8 @@ class Clutter {
   double fog_power(double range_m) const {
     return attenuated(std::numbers::pi * fog_backscatter_ * kHalfPulse_m, range_m);
   }
-  /// What a particle must measure to be told: one that fills the share s of the beam's width sends
-  /// back s^2 of a wall's power. Infinite where filling the beam is not enough.
+  /// What a particle must measure to be reported: one that fills the share s of the beam's width
+  /// sends back s^2 of a wall's power. Infinite where filling the beam is not enough.
   double least_diameter_mm(const Particles& kind, double range_m) const {
     const double share = 1.0 / std::sqrt(attenuated(kind.reflectance, range_m));
     return share <= 1.0 ? 1e3 * beam_width_m(range_m) * share
@@ -181,7 +181,7 @@ class Clutter {
     return rates;
   }
   /// Power of what answers at a range. Sizes of particles and powers of fog are exponential, so
-  /// what they have beyond the least that is told is exponential too.
+  /// what they have beyond the least that is reported is exponential too.
   double power_at(double range_m, Random& random) const {
     const Rates rates = rates_at(range_m);
     const double place = random.uniform() * (rates[0] + rates[1] + rates[2]);
@@ -205,7 +205,7 @@ class Clutter {
 constexpr std::size_t kSpeck = std::numeric_limits<std::size_t>::max();
 
 /// One return in weather.
-struct Told {
+struct Reported {
   std::size_t firing;
   std::size_t source;  ///< return of the clear scan, or kSpeck
   float range_m;
@@ -260,7 +260,7 @@ class WeatherFilter {
 
   /// The returns [begin, end) of the clear scan are those of firing number `firing`.
   void filter(std::size_t firing, std::size_t begin, std::size_t end, Random random) {
-    const std::size_t first = told_.size();
+    const std::size_t first = reported_.size();
     double end_m = begin == end ? sensor_.max_range_m : 0.0;
     for (std::size_t i = begin; i < end; ++i)
       end_m = std::max(end_m, static_cast<double>(clear_.ranges_m[i]));
@@ -268,22 +268,22 @@ class WeatherFilter {
     pulses_.clear();
     for (std::size_t i = begin; i < end; ++i) add_return(firing, i, random);
     if (speck) add_speck(firing, *speck);
-    if (speck && told_.size() > first) reselect(first);
-    for (std::size_t i = first; i < told_.size(); ++i)
-      told_[i].index = static_cast<std::uint8_t>(i - first);
+    if (speck && reported_.size() > first) reselect(first);
+    for (std::size_t i = first; i < reported_.size(); ++i)
+      reported_[i].index = static_cast<std::uint8_t>(i - first);
   }
 
-  std::span<const Told> told() const { return told_; }
+  std::span<const Reported> reported() const { return reported_; }
 
  private:
-  /// As the sensor tells it: a multiple of its resolution, and in its range, or nothing.
+  /// As the sensor reports it: a multiple of its resolution, and in its range, or nothing.
   std::optional<float> measured(double range_m) const {
     const double step_m = sensor_.range_resolution_m;
     if (step_m > 0) range_m = step_m * std::round(range_m / step_m);
-    const auto told_m = static_cast<float>(range_m);
-    const bool in_range = told_m > static_cast<float>(sensor_.min_range_m) &&
-                          told_m <= static_cast<float>(sensor_.max_range_m);
-    return in_range ? std::optional(told_m) : std::nullopt;
+    const auto reported_m = static_cast<float>(range_m);
+    const bool in_range = reported_m > static_cast<float>(sensor_.min_range_m) &&
+                          reported_m <= static_cast<float>(sensor_.max_range_m);
+    return in_range ? std::optional(reported_m) : std::nullopt;
   }
 
   void add_return(std::size_t firing, std::size_t source, Random& random) {
@@ -292,38 +292,38 @@ class WeatherFilter {
     const double intensity = has_intensity ? static_cast<double>(clear_.intensities[source])
                                            : std::numeric_limits<double>::quiet_NaN();
     const double power = power_of(usable(intensity / white_), range_m, sensor_);
-    const bool lost = random.uniform() >= told_share(extinction_, range_m, power);
+    const bool lost = random.uniform() >= reported_share(extinction_, range_m, power);
     const double normal = random.normal();
     if (lost) return;
     const double left = std::exp(-2.0 * extinction_ * range_m);
     // Noise is as the inverse root of the power: sigma exp(alpha r), of which sigma is in already.
     const double sigma_m =
         sensor_.range_noise_m * std::sqrt(std::expm1(2.0 * extinction_ * range_m));
-    const auto told_m =
+    const auto reported_m =
         sigma_m > 0 ? measured(range_m + sigma_m * normal) : std::optional(clear_.ranges_m[source]);
-    if (!told_m) return;
-    pulses_.push_back(
-        {*told_m, static_cast<std::uint32_t>(told_.size()), static_cast<float>(power * left)});
-    told_.push_back({firing, source, *told_m, static_cast<float>(intensity * left), 0});
+    if (!reported_m) return;
+    pulses_.push_back({*reported_m, static_cast<std::uint32_t>(reported_.size()),
+                       static_cast<float>(power * left)});
+    reported_.push_back({firing, source, *reported_m, static_cast<float>(intensity * left), 0});
   }
 
   void add_speck(std::size_t firing, const Speck& speck) {
-    const auto told_m = measured(speck.range_m);
-    if (!told_m) return;
+    const auto reported_m = measured(speck.range_m);
+    if (!reported_m) return;
     const double reflectance = speck.power * needed_reflectance(speck.range_m, sensor_);
-    pulses_.push_back(
-        {*told_m, static_cast<std::uint32_t>(told_.size()), static_cast<float>(speck.power)});
-    told_.push_back({firing, kSpeck, *told_m, static_cast<float>(white_ * reflectance), 0});
+    pulses_.push_back({*reported_m, static_cast<std::uint32_t>(reported_.size()),
+                       static_cast<float>(speck.power)});
+    reported_.push_back({firing, kSpeck, *reported_m, static_cast<float>(white_ * reflectance), 0});
   }
 
-  /// What of told_[first..] the sensor tells.
+  /// What of reported_[first..] the sensor reports.
   void reselect(std::size_t first) {
     std::ranges::stable_sort(pulses_, {}, &Return::range_m);
-    const std::size_t count = told_returns(pulses_, beam_);
+    const std::size_t count = reported_returns(pulses_, beam_);
     chosen_.clear();
-    for (std::size_t i = 0; i < count; ++i) chosen_.push_back(told_[pulses_[i].primitive]);
-    told_.resize(first);
-    told_.insert(told_.end(), chosen_.begin(), chosen_.end());
+    for (std::size_t i = 0; i < count; ++i) chosen_.push_back(reported_[pulses_[i].primitive]);
+    reported_.resize(first);
+    reported_.insert(reported_.end(), chosen_.begin(), chosen_.end());
   }
 
   const Scan& clear_;
@@ -332,35 +332,36 @@ class WeatherFilter {
   double white_;
   double extinction_;
   Clutter clutter_;
-  std::vector<Told> told_;
-  std::vector<Return> pulses_;  ///< of one firing; `primitive` is the place in told_
-  std::vector<Told> chosen_;
+  std::vector<Reported> reported_;
+  std::vector<Return> pulses_;  ///< of one firing; `primitive` is the place in reported_
+  std::vector<Reported> chosen_;
 };
 
 /// The values of the returns' sources; of specks 0. Empty where the clear scan has none.
 template <class T>
-std::vector<T> gathered(const std::vector<T>& values, std::span<const Told> told) {
+std::vector<T> gathered(const std::vector<T>& values, std::span<const Reported> reported) {
   std::vector<T> result;
   if (values.empty()) return result;
-  result.reserve(told.size());
-  for (const Told& one : told) result.push_back(one.source == kSpeck ? T{} : values[one.source]);
+  result.reserve(reported.size());
+  for (const Reported& one : reported)
+    result.push_back(one.source == kSpeck ? T{} : values[one.source]);
   return result;
 }
 
-Vec3f position_of(const Told& told, const Scan& clear, const Firing& firing) {
-  if (told.source == kSpeck) return firing.origin + told.range_m * firing.direction;
-  const float farther_m = told.range_m - clear.ranges_m[told.source];
-  return clear.positions[told.source] + farther_m * firing.direction;
+Vec3f position_of(const Reported& reported, const Scan& clear, const Firing& firing) {
+  if (reported.source == kSpeck) return firing.origin + reported.range_m * firing.direction;
+  const float farther_m = reported.range_m - clear.ranges_m[reported.source];
+  return clear.positions[reported.source] + farther_m * firing.direction;
 }
 
-Scan scan_of(std::span<const Told> told, const Scan& clear, std::span<const Firing> firings,
+Scan scan_of(std::span<const Reported> reported, const Scan& clear, std::span<const Firing> firings,
              const BeamOptions& beam) {
   Scan scan;
   scan.world_from_sensor = clear.world_from_sensor;
   scan.time_s = clear.time_s;
   scan.rays = clear.rays;
   const bool has_indices = beam.returns > 1 || !clear.return_indices.empty();
-  for (const Told& one : told) {
+  for (const Reported& one : reported) {
     const Firing& firing = firings[one.firing];
     scan.positions.push_back(position_of(one, clear, firing));
     scan.ranges_m.push_back(one.range_m);
@@ -370,8 +371,8 @@ Scan scan_of(std::span<const Told> told, const Scan& clear, std::span<const Firi
     if (!clear.intensities.empty()) scan.intensities.push_back(one.intensity);
     if (has_indices) scan.return_indices.push_back(one.index);
   }
-  scan.classes = gathered(clear.classes, told);
-  scan.instances = gathered(clear.instances, told);
+  scan.classes = gathered(clear.classes, reported);
+  scan.instances = gathered(clear.instances, reported);
   return scan;
 }
 
@@ -390,11 +391,11 @@ double extinction_per_m(const Weather& weather) {
          snow_flakes(weather.snow_mm_h).extinction_per_m();
 }
 
-double told_share(const Weather& weather, const LidarModel& sensor, double range_m,
-                  double reflectance) {
+double reported_share(const Weather& weather, const LidarModel& sensor, double range_m,
+                      double reflectance) {
   check_weather(weather, sensor);
-  return told_share(extinction_per_m(weather), range_m,
-                    power_of(usable(reflectance), range_m, sensor));
+  return reported_share(extinction_per_m(weather), range_m,
+                        power_of(usable(reflectance), range_m, sensor));
 }
 
 double clutter_share(const Weather& weather, const LidarModel& sensor, double range_m) {
@@ -419,7 +420,7 @@ Scan in_weather(const Scan& clear, std::span<const Firing> firings, const LidarM
     begin = end;
   }
   search.check_all_found();
-  return scan_of(filter.told(), clear, firings, beam);
+  return scan_of(filter.reported(), clear, firings, beam);
 }
 
 }  // namespace adasplats

@@ -63,24 +63,24 @@ void visit_settings(Weather& weather, Visit&& visit) {
 /// Extinction coefficient of the air, 1/m: the sum of the three.
 double extinction_per_m(const Weather& weather);
 
-/// How likely a return that was told in clear air is told. A sensor needs the reflectance n(r) =
-/// max(0.8 (r / max_range)^2, 0.005); in clear air m = reflectance / n(r) times what it needs comes
-/// back, in weather exp(-2 alpha r) of that, and it fluctuates exponentially (speckle): exp(-(exp(2
-/// alpha r) - 1) / m). Reflectances below 0.01 count as 0.01, NaN as 0.3.
-double told_share(const Weather& weather, const LidarModel& sensor, double range_m,
-                  double reflectance);
+/// How likely a return that was reported in clear air is reported. A sensor needs the reflectance
+/// n(r) = max(0.8 (r / max_range)^2, 0.005); in clear air m = reflectance / n(r) times what it
+/// needs comes back, in weather exp(-2 alpha r) of that, and it fluctuates exponentially (speckle):
+/// exp(-(exp(2 alpha r) - 1) / m). Reflectances below 0.01 count as 0.01, NaN as 0.3.
+double reported_share(const Weather& weather, const LidarModel& sensor, double range_m,
+                      double reflectance);
 
-/// How likely a drop, a flake or fog nearer than `range_m` sends back enough to be told.
+/// How likely a drop, a flake or fog nearer than `range_m` sends back enough to be reported.
 double clutter_share(const Weather& weather, const LidarModel& sensor, double range_m);
 
 /// Errors: usage (a setting out of range, no greatest range).
 void check_weather(const Weather& weather, const LidarModel& sensor);
 
 /// The scan as it is in such weather. Intensities fall by exp(-2 alpha r); returns get lost
-/// (told_share); the sensor's range noise grows by exp(alpha r); particles in the air answer nearer
-/// than the farthest return of their firing (clutter_share): class and instance 0. Which of them
-/// and of the returns are told is up to `beam` (told_returns). What attributes `clear` has none of
-/// are not there either. Without weather the scan itself.
+/// (reported_share); the sensor's range noise grows by exp(alpha r); particles in the air answer
+/// nearer than the farthest return of their firing (clutter_share): class and instance 0. Which of
+/// them and of the returns are reported is up to `beam` (reported_returns). What attributes `clear`
+/// has none of are not there either. Without weather the scan itself.
 ///
 /// `firings`: those of the scan, in the frame of its points (for de-skewed scans moved like these).
 /// Drawn by (seed, scan_index, firing). Where beam.returns > 1, return_indices are there.

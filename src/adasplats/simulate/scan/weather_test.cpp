@@ -110,7 +110,7 @@ TEST(Weather, WithoutItTheScanIsItself) {
   EXPECT_TRUE(Weather{}.is_clear());
   expect_equal(in_weather(scan, firings, test_sensor(), {}, {}, 1, 2), scan);
   expect_equal(in_weather(scan, firings, test_sensor(), {}, {.fog_visibility_m = 0}, 1, 2), scan);
-  EXPECT_EQ(told_share({}, test_sensor(), 90, 0.1), 1.0);
+  EXPECT_EQ(reported_share({}, test_sensor(), 90, 0.1), 1.0);
   EXPECT_EQ(clutter_share({}, test_sensor(), 90), 0.0);
 }
 
@@ -146,8 +146,8 @@ TEST(Weather, IntensityFallsByTheWayThereAndBack) {
   EXPECT_GT(of_wall, 300U);
 }
 
-// Oracle: exp(-(exp(2 alpha r) - 1) / m), here from its words; told far from what could answer in
-// the air in mode "last".
+// Oracle: exp(-(exp(2 alpha r) - 1) / m), here from its words; reported far from what could answer
+// in the air in mode "last".
 TEST(Weather, ReturnsGetLostByTheFormula) {
   const auto firings = fan(20'000);
   const LidarModel sensor = test_sensor();
@@ -162,9 +162,9 @@ TEST(Weather, ReturnsGetLostByTheFormula) {
       const double alpha = extinction_per_m(weather);
       const double m = 0.4 / 0.8 * (100.0 / r) * (100.0 / r);
       const double expected = std::exp(-(std::exp(2 * alpha * r) - 1) / m);
-      EXPECT_NEAR(told_share(weather, sensor, r, 0.4), expected, 1e-6);
-      const auto told = std::ranges::count(scan.classes, std::uint16_t{50});
-      expect_share(static_cast<std::size_t>(told), firings.size(), expected);
+      EXPECT_NEAR(reported_share(weather, sensor, r, 0.4), expected, 1e-6);
+      const auto reported = std::ranges::count(scan.classes, std::uint16_t{50});
+      expect_share(static_cast<std::size_t>(reported), firings.size(), expected);
       expect_sound(scan, sensor);
     }
   }
@@ -173,16 +173,16 @@ TEST(Weather, ReturnsGetLostByTheFormula) {
 TEST(Weather, UnknownAndTinyReflectancesCountAsTheHeaderSays) {
   const Weather rain{.rain_mm_h = 30};
   const LidarModel sensor = test_sensor();
-  EXPECT_EQ(told_share(rain, sensor, 60, kNan), told_share(rain, sensor, 60, 0.3));
-  EXPECT_EQ(told_share(rain, sensor, 60, 0), told_share(rain, sensor, 60, 0.01));
-  EXPECT_LT(told_share(rain, sensor, 60, 0.1), told_share(rain, sensor, 60, 0.3));
+  EXPECT_EQ(reported_share(rain, sensor, 60, kNan), reported_share(rain, sensor, 60, 0.3));
+  EXPECT_EQ(reported_share(rain, sensor, 60, 0), reported_share(rain, sensor, 60, 0.01));
+  EXPECT_LT(reported_share(rain, sensor, 60, 0.1), reported_share(rain, sensor, 60, 0.3));
   const auto firings = fan(20'000);
   Scan scan = wall(firings, 60, 0);
   scan.intensities.clear();
   const Scan wet = in_weather(scan, firings, sensor, {.mode = ReturnMode::last}, rain, 1, 0);
   EXPECT_TRUE(wet.intensities.empty());
   expect_share(static_cast<std::size_t>(std::ranges::count(wet.classes, std::uint16_t{50})),
-               firings.size(), told_share(rain, sensor, 60, 0.3));
+               firings.size(), reported_share(rain, sensor, 60, 0.3));
 }
 
 /// Answers of the air per metre at a range, by the formulas of docs/noise.md.

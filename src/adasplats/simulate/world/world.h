@@ -12,11 +12,10 @@
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/maths/ray.h"
-#include "adasplats/scene/mesh_model.h"
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/simulate/scan/scan_caster.h"
 #include "adasplats/simulate/scan/scan_motion.h"
-#include "adasplats/splats/model/splat_model.h"
+#include "adasplats/splats/model/place.h"
 
 namespace adasplats {
 
@@ -58,10 +57,9 @@ class World {
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
-  /// Geometries are numbered in the order in which they come. `instances`: one a splat, or empty;
-  /// with them a geometry is the points of many objects, which has no box.
-  std::size_t add_geometry(SplatModel splats, std::vector<std::uint16_t> instances = {});
-  std::size_t add_geometry(MeshModel mesh);
+  /// Geometries are numbered in the order in which they come. `instances`: one a primitive, or
+  /// empty; with them a geometry is the points of many objects, which has no box.
+  std::size_t add_geometry(Place geometry, std::vector<std::uint16_t> instances = {});
   /// Errors: usage (no poses, times that do not ascend, a scale that is not positive); data (more
   /// primitives than have numbers); std::logic_error (no such geometry).
   void add_object(WorldObject object);

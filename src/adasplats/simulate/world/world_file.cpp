@@ -254,9 +254,7 @@ void add_objects(World& world, const WorldFile& file, const LabelScheme& scheme)
     if (known != geometries.end()) {
       added.geometry = known->second;
     } else {
-      added.geometry = is_mesh_file(object.geometry)
-                           ? world.add_geometry(load_mesh(object.geometry))
-                           : world.add_geometry(load_model(object.geometry));
+      added.geometry = world.add_geometry(load_place(object.geometry));
       geometries.emplace(object.geometry, added.geometry);
     }
     world.add_object(std::move(added));

@@ -368,7 +368,7 @@ TEST_F(WorldTest, ScaledObjectsHaveTheirSizeAndRange) {
   }
 }
 
-// What the object's unit tells apart may be one float in metres; then the lower number comes first.
+// What the object's unit keeps apart may be one float in metres; then the lower number comes first.
 TEST_F(WorldTest, EqualRangesComeByNumber) {
   World world = this->world();
   SplatModel splats;

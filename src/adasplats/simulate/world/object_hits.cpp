@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/simulate/world/object_hits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kRaysPerBundle = 64;  // of one ring: 10 degrees of an HDL-64
+static_assert(kFineGrain % kRaysPerBundle == 0);
+
+/// Where a ray comes into a sphere, m, not below 0; infinite where it does not within its length.
+double entry_m(const Ray& ray, const WorldSphere& sphere) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const Vec3d to_center = sphere.center - vec_cast<double>(ray.origin);
+  const double along = dot(to_center, vec_cast<double>(ray.direction));
+  const double squared_half =
+      sphere.radius * sphere.radius - (dot(to_center, to_center) - along * along);
+  if (!(squared_half >= 0)) return kNever;
+  const double half = std::sqrt(squared_half);
+  if (along + half < 0 || along - half > static_cast<double>(ray.t_max)) return kNever;
+  return std::max(0.0, along - half);
+}
+
+/// The rays that may meet one object, in its own frame and unit. They begin where they come near
+/// it, so that objects in millimetres, say, do not ask for more digits than floats have.
+struct ObjectRays {
+  std::vector<Ray> rays;
+  std::vector<std::uint32_t> firings;
+  std::vector<double> begins_m;
+
+  void append(const ObjectRays& other) {
+    rays.insert(rays.end(), other.rays.begin(), other.rays.end());
+    firings.insert(firings.end(), other.firings.begin(), other.firings.end());
+    begins_m.insert(begins_m.end(), other.begins_m.begin(), other.begins_m.end());
+  }
+};
+
+Ray ray_in_object(const Ray& ray, double begin_m, Vec3d scene_origin, const PlacedObject& placed,
+                  const RigidTransform& world_from_object) {
+  const double scale = placed.object.scale;
+  const Mat3d object_from_world = world_from_object.rotation.transposed();
+  const Vec3d direction = vec_cast<double>(ray.direction);
+  const Vec3d begin = vec_cast<double>(ray.origin) + begin_m * direction;
+  const Vec3d from_object = (scene_origin - world_from_object.translation) + begin;
+  const Vec3d origin =
+      (object_from_world * from_object) / scale - origin_of(placed.geometry->place);
+  const auto in_object = [&](float t) {
+    return static_cast<float>((static_cast<double>(t) - begin_m) / scale);
+  };
+  return {vec_cast<float>(origin), std::max(0.0F, in_object(ray.t_min)),
+          vec_cast<float>(object_from_world * direction), in_object(ray.t_max)};
+}
+
+ObjectRays rays_in_object(const ScanRays& scan, const PlacedObject& placed,
+                          const WorldSphere& sphere, const Executor& executor) {
+  const WorldSphere local = {sphere.center - scan.scene_origin, sphere.radius};
+  const bool moves = scan.duration_s > 0 && placed.object.trajectory.size() > 1;
+  const RigidTransform standing = placed.world_from_object(scan.begin_s);
+  const auto take = [&](std::size_t i, ObjectRays& part) {
+    const double begin_m = entry_m(scan.rays[i], local);
+    if (!std::isfinite(begin_m)) return;
+    if (moves && !placed.is_there(scan.time_of(i), scan.time_of(i))) return;
+    const RigidTransform pose = moves ? placed.world_from_object(scan.time_of(i)) : standing;
+    part.rays.push_back(ray_in_object(scan.rays[i], begin_m, scan.scene_origin, placed, pose));
+    part.firings.push_back(static_cast<std::uint32_t>(i));
+    part.begins_m.push_back(begin_m);
+  };
+  std::vector<ObjectRays> parts((scan.rays.size() + kFineGrain - 1) / kFineGrain);
+  executor.for_chunks(scan.rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
+    ObjectRays& part = parts[begin / kFineGrain];
+    for (std::size_t first = begin; first < end; first += kRaysPerBundle) {
+      if (!scan.bundles[first / kRaysPerBundle].may_meet(local)) continue;
+      const std::size_t behind = std::min(end, first + kRaysPerBundle);
+      for (std::size_t i = first; i < behind; ++i) take(i, part);
+    }
+  });
+  ObjectRays all;
+  for (const ObjectRays& part : parts) all.append(part);
+  return all;
+}
+
+/// Brings hits in an object's frame to the ray of the scan; those that leave its range by rounding
+/// are none. `found` is in ascending order again.
+void to_scan(std::span<Hit> found, const Ray& ray, double begin_m, const PlacedObject& placed) {
+  for (Hit& hit : found) {
+    if (!hit.valid()) continue;
+    const auto t = static_cast<float>(begin_m + placed.object.scale * static_cast<double>(hit.t));
+    const bool in_range = t > ray.t_min && t <= ray.t_max;
+    hit = in_range ? Hit{t, placed.first_primitive + hit.primitive} : Hit{};
+  }
+  // Different distances in the object may be one in the world.
+  std::sort(found.begin(), found.end());
+}
+
+/// The nearest of both go to `hits`; both ascend.
+void merge_nearest(std::span<Hit> hits, std::span<const Hit> found, std::vector<Hit>& buffer) {
+  buffer.resize(hits.size() + found.size());
+  std::merge(hits.begin(), hits.end(), found.begin(), found.end(), buffer.begin());
+  std::copy_n(buffer.begin(), hits.size(), hits.begin());
+}
+
+}  // namespace
+
+RayBundle::RayBundle(std::span<const Ray> rays) : reach_m(static_cast<double>(rays[0].t_max)) {
+  const Vec3d first = vec_cast<double>(rays[0].origin);
+  WorldBox box = {first, first};
+  Vec3d sum;
+  for (const Ray& ray : rays) {
+    box.add(vec_cast<double>(ray.origin));
+    sum = sum + vec_cast<double>(ray.direction);
+  }
+  origins = {box.center(), 0.5 * length(box.size())};
+  if (!(length(sum) > 0)) return;  // all around: every sphere may be met
+  axis = normalized(sum);
+  cos_half = 1;
+  for (const Ray& ray : rays)
+    cos_half = std::min(cos_half, dot(axis, vec_cast<double>(ray.direction)));
+  // Directions have unit length to 2e-7; near 1 that is much of a small angle.
+  constexpr double kRounding = 1e-6;
+  cos_half -= kRounding;
+}
+
+/// Seen from the cone's tip the sphere has the half angle asin(radius / distance); it is out where
+/// the angle to its centre is larger than that and the cone's half angle together.
+bool RayBundle::may_meet(const WorldSphere& sphere) const {
+  const Vec3d to_center = sphere.center - origins.center;
+  const double radius = sphere.radius + origins.radius;
+  const double distance = length(to_center);
+  if (distance <= radius) return true;
+  if (distance - radius > reach_m) return false;
+  const double sine = radius / distance, cosine = std::sqrt(1.0 - sine * sine);
+  if (cos_half <= -cosine) return true;  // the two angles are 180 degrees or more
+  const double sin_half = std::sqrt(std::max(0.0, 1.0 - cos_half * cos_half));
+  return dot(axis, to_center) >= distance * (cos_half * cosine - sin_half * sine);
+}
+
+std::vector<RayBundle> bundles_of(std::span<const Ray> rays) {
+  std::vector<RayBundle> bundles;
+  bundles.reserve(rays.size() / kRaysPerBundle + 1);
+  for (std::size_t first = 0; first < rays.size(); first += kRaysPerBundle)
+    bundles.emplace_back(rays.subspan(first, std::min(kRaysPerBundle, rays.size() - first)));
+  return bundles;
+}
+
+void add_object_hits(const ScanRays& scan, const PlacedObject& placed, const WorldSphere& sphere,
+                     int depth, std::span<Hit> hits, const Executor& executor) {
+  const ObjectRays local = rays_in_object(scan, placed, sphere, executor);
+  if (local.rays.empty()) return;
+  const auto slots = static_cast<std::size_t>(depth);
+  std::vector<Hit> found(local.rays.size() * slots);
+  if (depth == 1) {
+    placed.geometry->tracer->nearest(local.rays, found, executor);
+  } else {
+    placed.geometry->tracer->nearest_hits(local.rays, depth, found, executor);
+  }
+  executor.for_chunks(local.rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Hit> buffer;
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::span<Hit> of_ray = std::span(found).subspan(i * slots, slots);
+      if (!of_ray.front().valid()) continue;
+      const std::size_t firing = local.firings[i];
+      to_scan(of_ray, scan.rays[firing], local.begins_m[i], placed);
+      merge_nearest(hits.subspan(firing * slots, slots), of_ray, buffer);
+    }
+  });
+}
+
+}  // namespace adasplats

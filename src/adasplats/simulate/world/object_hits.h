@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/core/maths/ray.h"
+#include "adasplats/simulate/scan/scan_ray.h"
+#include "adasplats/simulate/world/placed_object.h"
+
+namespace adasplats {
+
+/// A cone around rays that stand side by side: most objects are out of most cones, which saves
+/// looking at every ray for every object.
+struct RayBundle {
+  WorldSphere origins;
+  Vec3d axis;
+  double cos_half = -1;  ///< of the angle between the axis and the outermost ray
+  double reach_m = 0;
+
+  explicit RayBundle(std::span<const Ray> rays);
+  bool may_meet(const WorldSphere& sphere) const;
+};
+
+/// The rays of one scan, relative to the place's local origin, and when they are cast.
+struct ScanRays {
+  std::vector<Ray> rays;
+  std::vector<FiringRay> firings;
+  std::vector<RayBundle> bundles;  ///< of 64 each
+  Vec3d scene_origin;
+  double begin_s = 0;
+  double duration_s = 0;  ///< 0: a snapshot
+
+  double end_s() const { return begin_s + duration_s; }
+  double time_of(std::size_t ray) const {
+    return begin_s + static_cast<double>(firings[ray].share) * duration_s;
+  }
+};
+
+/// Of every 64 rays.
+std::vector<RayBundle> bundles_of(std::span<const Ray> rays);
+
+/// Merges the hits of one object, which is within `sphere` during the scan, into those of the rays
+/// of a scan: hits[i * depth + k] of firing i, ascending.
+void add_object_hits(const ScanRays& scan, const PlacedObject& placed, const WorldSphere& sphere,
+                     int depth, std::span<Hit> hits, const Executor& executor);
+
+}  // namespace adasplats

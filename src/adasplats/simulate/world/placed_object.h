@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/simulate/world/world.h"
+#include "adasplats/splats/model/place.h"
+#include "adasplats/trace/tracer.h"
+
+namespace adasplats {
+
+struct WorldSphere {
+  Vec3d center;
+  double radius = 0;
+};
+
+struct WorldBox {
+  Vec3d low;
+  Vec3d high;
+
+  Vec3d center() const { return 0.5 * (low + high); }
+  Vec3d size() const { return high - low; }
+  void add(Vec3d p) {
+    low = min(low, p);
+    high = max(high, p);
+  }
+};
+
+/// What objects are made of. It does not move in memory: its tracer keeps views.
+struct ObjectGeometry {
+  /// `instances`: one a primitive, or empty.
+  ObjectGeometry(Place model, std::vector<std::uint16_t> instances, const Executor& executor);
+
+  Place place;
+  std::vector<std::uint16_t> instances;
+  std::unique_ptr<Tracer> tracer;
+  WorldBox box;               ///< in the object's frame, before it is scaled
+  std::uint16_t usual_class;  ///< that most primitives have
+  std::uint32_t primitives;
+};
+
+/// An object and the numbers of its primitives in the world.
+struct PlacedObject {
+  WorldObject object;
+  const ObjectGeometry* geometry;
+  std::uint32_t first_primitive;
+
+  bool is_there(double begin_s, double end_s) const {
+    return !object.only_during || (object.trajectory.front().time_s <= end_s &&
+                                   object.trajectory.back().time_s >= begin_s);
+  }
+  RigidTransform world_from_object(double time_s) const {
+    return interpolate(object.trajectory, time_s);
+  }
+};
+
+/// Holds the whole object at every time from begin_s to end_s, world coordinates.
+WorldSphere swept_sphere(const PlacedObject& placed, double begin_s, double end_s);
+
+/// Errors: those of World::add_object().
+void check_object(const WorldObject& object);
+
+}  // namespace adasplats
