@@ -12,6 +12,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
+#include "adasplats/core/setting.h"
 #include "adasplats/pipeline/output/output_folder.h"
 #include "cli/commands.h"
 #include "cli/help_text.h"
@@ -169,7 +170,7 @@ int run(int argc, char** argv) {
 }
 
 int failed(int code, const std::string& message) {
-  print_message("error: " + message);
+  print_message("error: " + with_settings_as_options(message));
   return code;
 }
 

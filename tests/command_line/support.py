@@ -129,6 +129,7 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(result.returncode, code, (arguments, result.stderr))
         self.assertTrue(result.stderr.startswith("adasplats: error: "), result.stderr)
         self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        self.assertNotIn("`", result.stderr)  # a setting that is not shown as an option
         for text in says:
             self.assertIn(text, result.stderr)
         return result

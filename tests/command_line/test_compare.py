@@ -361,12 +361,15 @@ class Street(CompareTest):
     def test_arguments(self):
         before = states(self.output)
         run_it = ["street", "-o", "other"]
-        for given in ["artist", "artist=", "=file.obj", "a b=file.obj", "../x=file.obj"]:
+        for given in ["artist", "artist=", "=file.obj"]:
             self.refuse(64, *run_it, "--mesh", given, says=["--mesh", "NAME=FILE"])
+        for name in ["a b", "../x"]:
+            self.refuse(64, *run_it, "--mesh", f"{name}=street/mesh.ply",
+                        says=[f"'{name}'", "letters, digits"])
         mesh = "street/mesh.ply"
         for name in ["basic", "poisson", "original", "imls-c2c"]:
             self.refuse(64, *run_it, "--methods", "basic", "--mesh", f"{name}={mesh}",
-                        says=["--mesh", name, "taken"])
+                        says=["mesh", name, "taken"])
         self.refuse(64, *run_it, "--mesh", f"a={mesh}", "--mesh", f"a={mesh}", says=["taken"])
         self.refuse(66, *run_it, "--mesh", "artist=none.obj", says=["none.obj"])
         self.refuse(64, *run_it, "--methods", "basic,descriptor",
@@ -518,10 +521,13 @@ class Presets(CompareTest):
         self.assertEqual((results["data"]["inputs"], results["data"]["labels"]), (["city.ply"], ""))
         self.assertEqual(results["data"]["removed"],
                          {"rule": "none", "points": 0, "by_class": {}, "paper": "none"})
-        for option in [["--remove", "movable"], ["--labels", "semantickitti"],
-                       ["--poisson-depth", "9"], ["--held-out-scans", "0:1"]]:
-            self.refuse(64, "city.ply", "--preset", "paper-mcity", *self.RUN, *option,
-                        says=[option[0]])
+        for option, value, says in [("--remove", "movable", "--remove movable"),
+                                    ("--labels", "semantickitti", "--labels has no effect"),
+                                    ("--poisson-depth", "9", "--poisson-depth has no effect"),
+                                    ("--held-out-scans", "0:1", "--held-out-scans has no effect"),
+                                    ("--scans", "0", "--scans: expected FIRST:COUNT")]:
+            self.refuse(64, "city.ply", "--preset", "paper-mcity", *self.RUN, option, value,
+                        says=[says])
         self.assertNotIn(str(self.folder), json.dumps(results, ensure_ascii=False))
         rows = rows_of(self.output)
         self.assertEqual([(row["state"], row["kind"]) for row in rows.values()],

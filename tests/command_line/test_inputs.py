@@ -184,7 +184,7 @@ class Dropped(ProgramTest):
         self.assertEqual(json.loads(report.read_text())["points_own_body"], near)
         self.run_bad(64, *self.model_of("none.xyz", self.rows()), "--own-body", "2",
                      says=["where it was"])
-        self.run_bad(64, *command, "--own-body", "-1", says=["own body"])
+        self.run_bad(64, *command, "--own-body", "-1", says=["--own-body", "expected 0 or more"])
 
     def test_degrees(self):
         degrees = lambda k, x, y, z: (2.34 + x / 73000, 48.84 + y / 111000, z)

@@ -24,6 +24,8 @@ void install_signal_handlers() {
   sigaction(SIGTERM, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  // Where our parent has it ignored, children vanish without an exit code.
+  std::signal(SIGCHLD, SIG_DFL);
 }
 
 void throw_if_interrupted() {

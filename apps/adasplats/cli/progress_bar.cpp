@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "adasplats/core/setting.h"
 #include "cli/interrupt.h"
 #include "cli/terminal.h"
 
@@ -46,7 +47,7 @@ void ProgressBar::warn(std::string_view message) {
   if (std::find(warnings_.begin(), warnings_.end(), message) != warnings_.end()) return;
   clear();
   warnings_.emplace_back(message);
-  print_message("warning: " + warnings_.back());
+  print_message("warning: " + with_settings_as_options(warnings_.back()));
 }
 
 void ProgressBar::draw(std::uint64_t done) {

@@ -78,8 +78,4 @@ std::string centimetres(double metres) {
   return std::isnan(metres) ? "-" : fixed(100 * metres, 2) + " cm";
 }
 
-std::string comma_text(Vec3d v) {
-  return std::to_string(v.x) + "," + std::to_string(v.y) + "," + std::to_string(v.z);
-}
-
 }  // namespace adasplats::app

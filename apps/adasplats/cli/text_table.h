@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/core/maths/vec3.h"
-
 namespace adasplats::app {
 
 /// Rows of text in columns: the first column flush left, numbers behind it flush right.
@@ -32,7 +30,5 @@ std::string fixed(double number, int digits);
 std::string percent(double share);
 /// Metres as "1.23 cm"; "-" for NaN.
 std::string centimetres(double metres);
-/// "1.500000,0.000000,-2.250000", as options take three numbers.
-std::string comma_text(Vec3d v);
 
 }  // namespace adasplats::app

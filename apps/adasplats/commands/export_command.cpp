@@ -47,7 +47,7 @@ class ExportCommand final : public Command {
   }
 
   void run(Session& session) override {
-    job_.cloud_option = given_load_option(options());
+    job_.cloud_option = given_load_setting(options());
     const ExportResult result = run_export(job_, session);
     session.report[result.unit] = result.count;
     session.report["points_dropped"] = result.dropped;

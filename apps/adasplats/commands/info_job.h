@@ -15,7 +15,7 @@
 
 namespace adasplats::app {
 
-/// What `info` tells of one input.
+/// What `info` says of one input.
 struct FileFacts {
   std::string kind;  ///< "point cloud", "splat model", "mesh", "sequence"
   std::vector<std::pair<std::string, std::string>> rows;       ///< what: value, as shown

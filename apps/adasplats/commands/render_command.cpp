@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "adasplats/recipes/render.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
+#include "cli/options/setting_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
-#include "commands/render_job.h"
 
 namespace adasplats::app {
 namespace {
@@ -51,11 +52,7 @@ class RenderCommand final : public Command {
     app.add_option("--width", job_.view.width, "Pixels, of one model's part")
         ->capture_default_str();
     app.add_option("--height", job_.view.height, "Pixels")->capture_default_str();
-    app.add_option("--samples", job_.samples_per_axis, "Rays a pixel: the square of this")
-        ->capture_default_str();
-    app.add_option("--repeat", job_.repeat, "Render so often and report the median of the time")
-        ->capture_default_str()
-        ->type_name("N");
+    add_settings(app, job_);
     app.add_option("--fov", job_.view.horizontal_fov_deg, "Horizontal field of view, degrees")
         ->capture_default_str();
     add_vector(app, "--eye", job_.view.eye, "Where the camera is, world coordinates");

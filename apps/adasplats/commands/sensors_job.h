@@ -12,7 +12,7 @@
 
 namespace adasplats::app {
 
-/// What `sensors` tells of one LiDAR.
+/// What `sensors` says of one LiDAR.
 struct SensorFacts {
   std::string name;
   std::size_t beams = 0;

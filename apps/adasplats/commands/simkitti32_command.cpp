@@ -32,11 +32,7 @@ class SimKitti32Command final : public Command {
     app.add_option("--sensor", job_.sensor, "Name of a sensor, or a file; see adasplats sensors")
         ->capture_default_str()
         ->type_name("NAME|FILE");
-    app.add_option_function<std::string>(
-           "--scans",
-           [this](const std::string& text) { job_.scans = parse_scan_range("--scans", text); },
-           "Which scans are modelled and simulated")
-        ->type_name("FIRST:COUNT[:STRIDE]");
+    add_scan_range(app, "--scans", job_.scans, "Which scans are modelled and simulated");
     app.add_option("--labels", job_.labels, "What labels mean: semantickitti or a TOML file")
         ->capture_default_str()
         ->type_name("SCHEME");

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "adasplats/recipes/simulate_scans.h"
 #include "cli/commands.h"
@@ -24,8 +23,6 @@ constexpr const char* kSimulateExamples =
     "host memory; assembled, until they were points with noise, classes and times; written, until\n"
     "the scans were on disk. Each one holds those before it.\n";
 
-double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
-
 class SimulateCommand final : public Command {
  public:
   explicit SimulateCommand(CLI::App& program)
@@ -35,7 +32,7 @@ class SimulateCommand final : public Command {
     require(add_path(app, "MODEL", job_.model,
                      "Splat model, triangle mesh (PLY, OBJ, glTF) or world file (TOML)"));
     require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));
-    app.add_option("--sensor", job_.sensor,
+    app.add_option("--sensor", job_.scan.sensor,
                    "A sensor of 'adasplats sensors', or a file: TOML, Ouster JSON, Velodyne YAML, "
                    "CSV of rays")
         ->capture_default_str()
@@ -46,8 +43,7 @@ class SimulateCommand final : public Command {
            "what the model says")
         ->type_name("SCHEME");
     add_drive_options(app);
-    add_beam_options(app);
-    add_settings(app, job_.weather);
+    add_settings(app, job_.scan);
     add_choice<ScanFormat>(
         app, "--format", job_.format, choices_of<ScanFormat>(kScanFormats),
         "Of the scans; semantickitti writes OUTPUT/sequences/00, mcap OUTPUT/scans.mcap");
@@ -57,11 +53,7 @@ class SimulateCommand final : public Command {
 
   void run(Session& session) override {
     check_options();
-    job_.drive.offset_m = offset_.value_or(Vec3d{});
-    job_.drive.mount.translation = mount_.value_or(Vec3d{});
-    const Vec3d turn = rotation_deg_.value_or(Vec3d{});
-    job_.drive.mount.rotation =
-        rotation_from_yaw_pitch_roll(radians(turn.x), radians(turn.y), radians(turn.z));
+    job_.drive.mount = mount_.transform();
     const SimulateResult result = run_simulate(job_, session);
     const nlohmann::ordered_json json = to_json(result);
     session.report.update(json);
@@ -75,55 +67,25 @@ class SimulateCommand final : public Command {
 
  private:
   void check_options() const {
-    if (!job_.noise) refuse({"--range-noise"}, "with --no-noise");
+    if (!job_.scan.noise) refuse({"--range-noise"}, "with --no-noise");
     if (!job_.drive.rolling_shutter) refuse({"--points"}, "without --rolling-shutter");
     const auto require_positive = [this](const char* name, double value) {
       if (is_given(name) && !(value > 0)) {
         throw Error(ErrorKind::usage, std::string(name) + " must be greater than 0");
       }
     };
-    require_positive("--rate", job_.drive.rate_hz);
-    require_positive("--spacing", job_.drive.spacing_m);
-    require_positive("--fog", job_.weather.fog_visibility_m);
+    require_positive("--fog", job_.scan.weather.fog_visibility_m);
   }
 
   void add_drive_options(OptionSet& app) {
-    DriveOptions& drive = job_.drive;
-    require(add_path(app, "--trajectory", drive.trajectory,
+    require(add_path(app, "--trajectory", job_.drive.trajectory,
                      "Poses of the sensor: KITTI poses.txt, CSV, TUM, or a sequence folder"));
-    add_vector(app, "--offset", offset_, "Shift of the trajectory in world axes, m")
-        ->default_str("0,0,0");
-    add_vector(app, "--mount", mount_, "Where the sensor sits in the frame of the poses, m")
-        ->default_str("0,0,0");
-    add_vector(app, "--mount-rotation", rotation_deg_,
-               "Its yaw, pitch and roll there, degrees; a positive pitch looks down")
-        ->default_str("0,0,0");
-    app.add_option("--every", drive.every, "Take every n-th pose")
-        ->capture_default_str()
-        ->type_name("N");
-    app.add_option("--rate", drive.rate_hz, "Poses a second instead of those of the file")
-        ->type_name("HZ");
-    app.add_option("--spacing", drive.spacing_m, "Poses so far apart instead of those of the file")
-        ->type_name("M");
-    app.add_flag("--rolling-shutter", drive.rolling_shutter,
-                 "The sensor moves while it turns; a pose is that of the middle of its scan");
-    add_path(app, "--motion", drive.motion,
-             "How it moves where --trajectory has too few poses to tell (with --rolling-shutter)");
-    add_choice<PointFrame>(app, "--points", job_.frame, choices_of<PointFrame>(kPointFrames),
-                           "With a rolling shutter: as measured, or with the motion taken out");
-  }
-
-  void add_beam_options(OptionSet& app) {
-    add_switch(app, "--noise,!--no-noise,!--no-range-noise", job_.noise,
-               "Noise of the sensor on ranges and angles");
-    add_settings(app, job_.overrides);
-    add_settings(app, job_.beam);
-    add_path(app, "--ray-drop", job_.ray_drop,
-             "Beams that get lost as a real sensor's: a file of 'adasplats fit-drop'");
+    add_settings(app, job_.drive);
+    add_settings(app, mount_);
   }
 
   SimulateJob job_;
-  std::optional<Vec3d> offset_, mount_, rotation_deg_;
+  MountSettings mount_;
 };
 
 }  // namespace

@@ -3,11 +3,11 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/stopwatch.h"
+#include "adasplats/recipes/synth_street.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
-#include "commands/synth_job.h"
 
 namespace adasplats::app {
 namespace {

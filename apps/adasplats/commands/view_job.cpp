@@ -11,6 +11,7 @@
 #include "adasplats/view/live_message.h"
 #include "adasplats/view/live_scans.h"
 #include "adasplats/view/page_files.h"
+#include "adasplats/view/view_pages.h"
 #include "cli/interrupt.h"
 #include "cli/open_browser.h"
 #include "cli/terminal.h"
@@ -62,7 +63,7 @@ class StopOnSignal {
 
 void run_view(const ViewJob& job, Session& session) {
   check_page();
-  live_sensor(job.sensor);  // an unknown name is told before anything is loaded
+  live_sensor(job.sensor);  // an unknown name is refused before anything is loaded
   const LoadedView view = load_view(job, session);
   const ViewPages pages(view.scene);
   LiveScans live(view.scene, session.executor);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/sensors/lidar_model.h"
 #include "cli/session.h"
 
 namespace adasplats::app {
@@ -21,8 +22,8 @@ struct ViewJob {
   std::vector<std::filesystem::path> sequences;     ///< recorded scans and where they were taken
   std::vector<std::filesystem::path> trajectories;  ///< poses
   std::string labels;                               ///< as label_scheme_for takes it
-  std::string sensor = "hdl-64-paper";              ///< of the library
-  double mount_height_m = 1.8;  ///< of the sensor above the ground, where no pose tells
+  std::string sensor = kDefaultSensor;              ///< of the library
+  double mount_height_m = 1.8;  ///< of the sensor above the ground, where no pose says
   LoadOptions load;             ///< of clouds and sequences
   std::string cloud_option;     ///< that was given and is for these alone; empty: none
   bool sensor_is_asked = false;

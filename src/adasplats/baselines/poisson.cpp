@@ -13,6 +13,7 @@
 
 #include "adasplats/baselines/program.h"
 #include "adasplats/baselines/trim.h"
+#include "adasplats/core/child_process.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/ply/ply.h"
 

@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cmath>
 #include <csignal>
-#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <utility>
@@ -141,23 +140,6 @@ TEST(Program, IsKilledOnCancel) {
   ASSERT_GT(process, 1);
   EXPECT_EQ(kill(process, 0), -1);
   EXPECT_EQ(errno, ESRCH);
-}
-
-TEST(Program, FoundOnPath) {
-  const TemporaryFolder folder;
-  const fs::path program = folder.write("bin/tool of ours", "#!/bin/sh\n");
-  const char* const old = std::getenv("PATH");
-  const std::string before = old == nullptr ? "" : old;
-  setenv("PATH", (":/none:" + program.parent_path().string()).c_str(), 1);
-  const auto not_executable = find_on_path("tool of ours");
-  fs::permissions(program, fs::perms::owner_all);
-  const auto found = find_on_path("tool of ours");
-  const auto other = find_on_path("other");
-  setenv("PATH", before.c_str(), 1);
-  EXPECT_FALSE(not_executable);
-  EXPECT_EQ(found, program);
-  EXPECT_FALSE(other);
-  EXPECT_FALSE(find_beside_own("other"));
 }
 
 // Oracle: areas by hand; the square's value is its x.

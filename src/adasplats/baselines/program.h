@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,18 +11,10 @@
 
 namespace adasplats {
 
-/// Private to baselines/: programs that do work for us.
-
-/// The first executable file of that name in the folders of PATH.
-std::optional<std::filesystem::path> find_on_path(const std::string& name);
-
-/// A program of that name beside the one that runs.
-std::optional<std::filesystem::path> find_beside_own(const std::string& name);
-
-/// Runs a program to its end, its output in `log`; gives back its largest resident memory in bytes.
-/// One that uses OpenMP runs on `threads` threads, which sleep where they wait. It is killed where
-/// `progress` throws to cancel, and where this process is killed. Errors: unavailable (it cannot be
-/// started or fails; with the last line of its output).
+/// Private to baselines/. Runs a program to its end, its output in `log`; gives back its largest
+/// resident memory in bytes. One that uses OpenMP runs on `threads` threads, which sleep where they
+/// wait. It is killed where `progress` throws to cancel, and where this process is killed. Errors:
+/// unavailable (it cannot be started or fails; with the last line of its output).
 std::uint64_t run_program(const std::filesystem::path& program,
                           const std::vector<std::string>& arguments, int threads,
                           const std::filesystem::path& log, ProgressSink& progress);

@@ -238,15 +238,15 @@ ExportResult write_export(const ExportJob& job, Session& session) {
     throw Error(ErrorKind::usage, "labels have no effect on " + std::string(name_of(format)) +
                                       ", which holds the numbers of classes as they are");
   }
-  constexpr std::array<std::string_view, 6> kOfScans = {"--scans",    "--strict",    "first_scan",
-                                                        "scan_count", "scan_stride", "strict"};
+  constexpr std::array<std::string_view, 5> kOfScans = {"scans", "strict", "first_scan",
+                                                        "scan_count", "scan_stride"};
   const bool scans = format == ExportFormat::mcap && std::find(kOfScans.begin(), kOfScans.end(),
                                                                job.cloud_option) != kOfScans.end();
   if (!job.cloud_option.empty() && !scans &&
       (kind == InputKind::model || format == ExportFormat::mcap)) {
     throw Error(
         ErrorKind::usage,
-        job.cloud_option + " has no effect on " +
+        "`" + job.cloud_option + "` has no effect on " +
             (kind == InputKind::model ? "a splat model" : "scans, which are written as they are"));
   }
   check_output_file(job.output);

@@ -39,7 +39,7 @@ struct ExportJob {
   /// Else by class where classes and their scheme are known, else by intensity, else by height.
   std::optional<ExportColor> color;
   LoadOptions load;  ///< of clouds and sequences
-  /// That was given and is for these alone, as the user wrote it; empty: none.
+  /// The setting that was given and is for these alone; empty: none.
   std::string cloud_option;
 };
 
@@ -51,7 +51,7 @@ struct ExportResult {
 };
 
 /// Writes the file. Errors: usage (a format that the input cannot have, with those it can; an
-/// ending that tells none), and those of reading and writing.
+/// ending that says none), and those of reading and writing.
 ExportResult run_export(const ExportJob& job, Session& session);
 
 }  // namespace adasplats

@@ -53,13 +53,13 @@ Json matrix_content(const RigidTransform& transform) {
 }
 
 Json drive_content(const DriveOptions& drive) {
-  const auto positive = [](double value) { return value > 0 ? Json(value) : Json(); };
+  const auto given = [](std::optional<double> value) { return value ? Json(*value) : Json(); };
   Json json = {{"trajectory", trajectory_content(drive.trajectory)},
                {"offset_m", {drive.offset_m.x, drive.offset_m.y, drive.offset_m.z}},
                {"mount", matrix_content(drive.mount)},
                {"every", drive.every},
-               {"rate_hz", positive(drive.rate_hz)},
-               {"spacing_m", positive(drive.spacing_m)},
+               {"rate_hz", given(drive.rate_hz)},
+               {"spacing_m", given(drive.spacing_m)},
                {"rolling_shutter", drive.rolling_shutter}};
   if (!drive.motion.empty()) json["motion"] = trajectory_content(drive.motion);
   return json;
@@ -114,7 +114,7 @@ Json simulate_content(const SimulateJob& job, const ScanSettings& settings,
                   {"seed", settings.seed},
                   {"format", word_of(job.format, kScanFormats)}};
   if (const LabelScheme* labels = scene.labels()) content["labels"] = labels_content(*labels);
-  if (!job.ray_drop.empty()) content["ray_drop"] = file_content(job.ray_drop);
+  if (!job.scan.ray_drop.empty()) content["ray_drop"] = file_content(job.scan.ray_drop);
   return content;
 }
 

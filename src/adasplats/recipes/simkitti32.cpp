@@ -144,7 +144,7 @@ class Simulation {
     return shifted(std::move(chosen), job_.offset_m);
   }
 
-  /// An attempt that was interrupted at its very end had told the poses already.
+  /// An attempt that was interrupted at its very end had been given the poses already.
   fs::path prepared_sequence() const {
     fs::path path = folder_.path() / sequence_;
     fs::remove(path / "poses.txt");
@@ -253,7 +253,7 @@ class Simulation {
     return splats;
   }
 
-  /// The place tells reflectances; these are intensities as the sensor at zero measured them.
+  /// The place has reflectances; these are intensities as the sensor at zero measured them.
   static void to_reflectances(SplatModel& splats, const IntensityResponse& response) {
     for (std::size_t i = 0; i < splats.intensities.size(); ++i) {
       const Disk& disk = splats.disks[i];

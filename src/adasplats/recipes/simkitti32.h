@@ -37,7 +37,7 @@ struct SimKitti32Job {
   bool moving = true;              ///< what moves is simulated, too
   double moving_radius_m = 0.14;   ///< of the splats of what moves
   bool keep_model = false;         ///< as model.ply beside the sequences
-  std::filesystem::path ray_drop;  ///< fitted model; empty: every echo is told
+  std::filesystem::path ray_drop;  ///< fitted model; empty: every echo is reported
   Weather weather;
   std::filesystem::path output;
   bool overwrite = false;

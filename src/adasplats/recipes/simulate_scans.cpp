@@ -14,7 +14,6 @@
 #include "adasplats/dataset/kitti_boxes.h"
 #include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/scene/scan_simulator.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/recipes/scan_manifest.h"
 
@@ -28,21 +27,6 @@ void write_boxes(const ModelScene& scene, const std::filesystem::path& folder, s
                  const Scan& scan) {
   const std::vector<ObjectBox> boxes = scene.world()->boxes(index, scan.time_s);
   write_kitti_boxes(folder, index, sensed_boxes(boxes, scan, scene.labels()));
-}
-
-ScanSettings settings_of(const SimulateJob& job, std::uint64_t seed) {
-  ScanSettings settings;
-  settings.sensor = load_lidar_model(job.sensor);
-  LidarModel& sensor = settings.sensor;
-  job.overrides.apply(sensor);
-  settings.beam = job.beam;
-  settings.noise = job.noise;
-  settings.frame = job.frame;
-  settings.weather = job.weather;
-  settings.seed = seed;
-  check(settings);
-  if (!job.ray_drop.empty()) settings.ray_drop = load_ray_drop(job.ray_drop);
-  return settings;
 }
 
 /// "12.3".
@@ -75,7 +59,7 @@ void require_returns(const SimulateResult& result, const ModelScene& scene,
 SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   const Stopwatch total;
   require_input(job.model);
-  const ScanSettings settings = settings_of(job, session.seed);
+  const ScanSettings settings = job.scan.settings(session.seed);
   const std::vector<ScanMotion> scans = scans_along(job.drive, settings.sensor);
   checked_output_folder(job.output, job.overwrite, kCommand);  // before long work
   const ModelScene scene(job.model, job.labels, session, WorldFiles::taken);

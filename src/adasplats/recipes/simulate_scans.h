@@ -10,10 +10,8 @@
 
 #include "adasplats/dataset/scan_writer.h"
 #include "adasplats/pipeline/scene/drive.h"
+#include "adasplats/pipeline/scene/scan_simulator.h"
 #include "adasplats/pipeline/session/session.h"
-#include "adasplats/sensors/sensor_overrides.h"
-#include "adasplats/simulate/scan/scan.h"
-#include "adasplats/simulate/scan/weather.h"
 
 namespace adasplats {
 
@@ -21,14 +19,8 @@ namespace adasplats {
 struct SimulateJob {
   std::filesystem::path model;  ///< splats, a mesh, or a world file
   std::string labels;           ///< scheme of the classes; empty: what the model says
-  std::string sensor = "hdl-64-paper";
+  ScanChoice scan;
   DriveOptions drive;
-  SensorOverrides overrides;
-  BeamOptions beam;
-  bool noise = true;
-  PointFrame frame = PointFrame::raw;
-  std::filesystem::path ray_drop;  ///< fitted model; empty: every echo is told
-  Weather weather;
   std::filesystem::path output;
   ScanFormat format = ScanFormat::semantickitti;
   bool overwrite = false;

@@ -14,5 +14,7 @@ void add_load_options(OptionSet& app, LoadOptions& options);
 
 /// The first of these flags that was given; empty: none.
 std::string given_load_option(const OptionSet& app);
+/// The same as the name of a setting.
+std::string given_load_setting(const OptionSet& app);
 
 }  // namespace adasplats::app

@@ -61,6 +61,15 @@ ScanRange parse_scan_range(const std::string& option, const std::string& text) {
   return range;
 }
 
+Option* add_scan_range(OptionSet& app, const std::string& name, ScanRange& target,
+                       const std::string& help) {
+  return app
+      .add_option_function<std::string>(
+          name, [&target, name](const std::string& text) { target = parse_scan_range(name, text); },
+          help)
+      ->type_name("FIRST:COUNT[:STRIDE]");
+}
+
 Option* add_path(OptionSet& app, const std::string& name, std::filesystem::path& target,
                  const std::string& help) {
   return app
@@ -123,15 +132,6 @@ Option* add_picture_width(OptionSet& app, int& width) {
 Option* add_switch(OptionSet& app, const std::string& names, bool& target,
                    const std::string& help) {
   return app.add_flag(names, target, help)->default_str(target ? "true" : "false");
-}
-
-std::string unknown_word(const std::string& what, const std::string& word,
-                         const std::vector<std::string>& known) {
-  const std::string found = what + " '" + word + "' is not known";
-  if (const std::string meant = did_you_mean(word, known); !meant.empty()) return found + meant;
-  std::string all;
-  for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
-  return found + (known.empty() ? "" : "; known are " + all);
 }
 
 }  // namespace adasplats::app

@@ -22,6 +22,8 @@ namespace adasplats::app {
 /// "FIRST:COUNT[:STRIDE]", the value of `option`. Errors: refuse_value().
 ScanRange parse_scan_range(const std::string& option, const std::string& text);
 
+Option* add_scan_range(OptionSet& app, const std::string& name, ScanRange& target,
+                       const std::string& help);
 Option* add_path(OptionSet& app, const std::string& name, std::filesystem::path& target,
                  const std::string& help);
 Option* add_vector(OptionSet& app, const std::string& name, std::optional<Vec3d>& target,
@@ -33,10 +35,6 @@ Option* add_scale(OptionSet& app, const std::string& name, GroupScale& target,
 Option* add_picture_width(OptionSet& app, int& width);
 /// A flag with its opposite: names as "--denoise,!--no-denoise".
 Option* add_switch(OptionSet& app, const std::string& names, bool& target, const std::string& help);
-
-/// "what 'x' is not known, did you mean 'y'?" or a list of all that are known.
-std::string unknown_word(const std::string& what, const std::string& word,
-                         const std::vector<std::string>& known);
 
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;

@@ -3,7 +3,7 @@
 #include "cli/options/setting_options.h"
 
 #include <cmath>
-#include <string>
+#include <sstream>
 
 namespace adasplats::app {
 
@@ -23,9 +23,10 @@ void OptionsOfSettings::add_number(const Setting& setting, T& value) const {
 
 void OptionsOfSettings::operator()(const Setting& setting, bool& value) const {
   const std::string option = option_of(setting);
-  const std::string opposite =
-      *setting.opposite != 0 ? std::string("--") + setting.opposite : "--no-" + option.substr(2);
-  finish(setting, add_switch(app_, option + ",!" + opposite, value, setting.help));
+  std::string names = option;
+  std::stringstream opposites(*setting.opposite != 0 ? setting.opposite : "no-" + option.substr(2));
+  for (std::string opposite; std::getline(opposites, opposite, ',');) names += ",!--" + opposite;
+  finish(setting, add_switch(app_, names, value, setting.help));
 }
 
 void OptionsOfSettings::operator()(const Setting& setting, int& value) const {
@@ -42,6 +43,20 @@ void OptionsOfSettings::operator()(const Setting& setting, std::size_t& value) c
 
 void OptionsOfSettings::operator()(const Setting& setting, Vec3d& value) const {
   finish(setting, add_vector(app_, option_of(setting), value, setting.help));
+}
+
+void OptionsOfSettings::operator()(const Setting& setting, std::optional<Vec3d>& value) const {
+  finish(setting, add_vector(app_, option_of(setting), value, setting.help));
+}
+
+void OptionsOfSettings::operator()(const Setting& setting, std::string& value) const {
+  Option* option = app_.add_option(option_of(setting), value, setting.help);
+  if (!value.empty()) option->capture_default_str();
+  finish(setting, option);
+}
+
+void OptionsOfSettings::operator()(const Setting& setting, std::filesystem::path& value) const {
+  finish(setting, add_path(app_, option_of(setting), value, setting.help));
 }
 
 void OptionsOfSettings::operator()(const Setting& setting, float& value) const {

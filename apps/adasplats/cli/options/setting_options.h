@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <string>
 #include <type_traits>
 
 #include "adasplats/core/setting.h"
@@ -25,6 +27,9 @@ class OptionsOfSettings {
   void operator()(const Setting& setting, double& value) const;
   void operator()(const Setting& setting, std::optional<double>& value) const;
   void operator()(const Setting& setting, Vec3d& value) const;
+  void operator()(const Setting& setting, std::optional<Vec3d>& value) const;
+  void operator()(const Setting& setting, std::string& value) const;
+  void operator()(const Setting& setting, std::filesystem::path& value) const;
   void operator()(const Setting& setting, GroupScale& value) const;
   template <class T>
   requires std::is_enum_v<T>

@@ -42,11 +42,7 @@ class EvaluateEchoesCommand final : public Command {
     require(model);
     require(sequence);
     add_path(app, "--drop", drop_, "Drop model that fit-drop made from other scans");
-    app.add_option_function<std::string>(
-           "--scans",
-           [this](const std::string& text) { inputs_.scans = parse_scan_range("--scans", text); },
-           "Which scans of the sequence")
-        ->type_name("FIRST:COUNT[:STRIDE]");
+    add_scan_range(app, "--scans", inputs_.scans, "Which scans of the sequence");
     add_device_options();
   }
 

@@ -72,11 +72,7 @@ class EvaluateResimulateCommand final : public Command {
             "Also write the measured points with their range errors (PLY; 'adasplats view' shows "
             "them)"),
         {".ply"});
-    app.add_option_function<std::string>(
-           "--scans",
-           [this](const std::string& text) { job_.scans = parse_scan_range("--scans", text); },
-           "Which scans of the sequence")
-        ->type_name("FIRST:COUNT[:STRIDE]");
+    add_scan_range(app, "--scans", job_.scans, "Which scans of the sequence");
     add_device_options();
   }
 

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/core/child_process.h"
+#include "adasplats/core/setting.h"
+#include "adasplats/pipeline/model/unused_settings.h"
+#include "adasplats/recipes/compare/comparison_data.h"
+#include "adasplats/sensors/lidar_model.h"
+
+namespace adasplats {
+
+/// Of every step.
+struct CompareLimits {
+  double seconds = ChildLimits().seconds;
+  double memory_gib = 0;  ///< 0: 90 % of the machine's
+  bool retry = false;     ///< steps are run again that failed before
+};
+
+template <class Visit>
+void visit_settings(CompareLimits& limits, Visit&& visit) {
+  visit(Setting{.name = "time_limit",
+                .help = "Seconds",
+                .value = "S",
+                .least = 0,
+                .most = std::numeric_limits<double>::infinity(),
+                .above_least = true},
+        limits.seconds);
+  visit(Setting{.name = "memory_limit",
+                .help = "GiB; 0: 90 % of the machine's",
+                .value = "GIB",
+                .least = 0,
+                .most = 1e9},
+        limits.memory_gib);
+  visit(Setting{.name = "retry", .help = "Run steps again that failed"}, limits.retry);
+}
+
+/// Every competitor on the same points with the same rays. What is empty is found in the data.
+struct CompareJob {
+  std::filesystem::path data;
+  std::filesystem::path output;
+  Preset preset = Preset::none;
+  std::vector<std::string> methods;  ///< empty: all that the data allow
+  std::vector<std::pair<std::string, std::filesystem::path>> meshes;  ///< name and file, ready-made
+  std::string labels, sensor = kDefaultSensor;
+  ScanRange scans, held_out_scans;
+  std::optional<DynamicRemoval> remove;  ///< else what the paper removes: paper_removal()
+  std::filesystem::path trajectory, held_out, truth;
+  std::optional<Vec3d> offset_m;
+  std::size_t every = 0;    ///< 0: at most 20 poses
+  int picture_width = 960;  ///< pixels; the height is 9/16 of it
+  int poisson_depth = 13;
+  CompareLimits limits;
+  std::filesystem::path program;  ///< adasplats, which runs the steps; empty: that of PATH
+  // What the steps are given where it is not the default.
+  int threads = 0;
+  std::uint64_t seed = 1;
+  DeviceKind device = DeviceKind::automatic;
+};
+
+template <class Visit>
+void visit_settings(CompareJob& job, Visit&& visit) {
+  visit(Setting{.name = "every",
+                .help = "Take every n-th pose; 0: at most 20 poses",
+                .value = "N",
+                .least = 0},
+        job.every);
+  visit(Setting{.name = "picture_width",
+                .help = "Pixels; the height is 9/16 of it",
+                .value = "N",
+                .least = 64,
+                .most = 8192},
+        job.picture_width);
+  visit(Setting{.name = "poisson_depth",
+                .help = "Depth of the octree",
+                .value = "N",
+                .least = 1,
+                .most = 16},
+        job.poisson_depth);
+}
+
+/// The settings of a method that is not compared.
+std::vector<UnusedSetting> unused_settings(const CompareJob& job);
+
+/// What the paper removes from the data of a preset, with whatever scheme they are labelled: all
+/// that is movable (section "Adaptive Splatting" and both "Results"), from every input. M-City has
+/// no dynamic objects. Without a preset as with PC3D-Paris: the methods are the paper's.
+DynamicRemoval paper_removal(Preset preset);
+
+/// What `methods` can name.
+std::vector<std::string> compare_method_names();
+
+/// Runs what is not done yet, writes compare.json, report.md and report.html into the output
+/// folder and gives back what compare.json holds (its layout: docs/formats.md). A competitor that
+/// fails is a row that says so. Errors: those of finding the data; usage for what no competitor
+/// could work with (limits, sensor, labels, names); no_input where the program is not there;
+/// cannot_create where the folder holds something else or another run works in it.
+nlohmann::ordered_json run_compare(const CompareJob& job, Session& session);
+
+}  // namespace adasplats

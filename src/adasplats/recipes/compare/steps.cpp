@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/recipes/compare/steps.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <system_error>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/pipeline/provenance/provenance.h"
+
+namespace adasplats {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kProgramName = "adasplats";
+constexpr std::array<const char*, 4> kEndNames = {"done", "failed", "timeout", "out of memory"};
+
+/// Sizes and the newest time of the files that lie in a folder itself; what lies deeper belongs to
+/// others (a comparison beside its data, say).
+void stamp_files_in(const fs::path& folder, Json& stamp) {
+  std::uint64_t files = 0, bytes = 0;
+  fs::file_time_type newest = fs::file_time_type::min();
+  std::error_code failure;
+  for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
+       entry.increment(failure)) {
+    std::error_code gone;
+    if (!entry->is_regular_file(gone)) continue;
+    ++files;
+    bytes += entry->file_size(gone);
+    newest = std::max(newest, entry->last_write_time(gone));
+  }
+  stamp["files"] = files;
+  stamp["bytes"] = bytes;
+  if (files > 0) stamp["newest"] = newest.time_since_epoch().count();
+}
+
+/// What changes where a file, a folder of point files or a sequence folder changes.
+Json stamp_of(const fs::path& path) {
+  std::error_code failure;
+  Json stamp = {{"path", path.string()}};
+  const auto time = fs::last_write_time(path, failure);
+  if (failure) return stamp;
+  stamp["time"] = time.time_since_epoch().count();
+  if (fs::is_regular_file(path, failure)) stamp["bytes"] = fs::file_size(path, failure);
+  if (!fs::is_directory(path, failure)) return stamp;
+  stamp_files_in(path, stamp);
+  for (const char* part : {"velodyne", "labels"}) {  // of a sequence
+    if (fs::is_directory(path / part, failure)) stamp_files_in(path / part, stamp[part]);
+  }
+  return stamp;
+}
+
+/// A program of another version or commit has another key: its results are not taken over. So has
+/// one of the same commit that was built again, whose sources may have been changed.
+Json key_of(const Step& step, const std::vector<std::string>& arguments, const StepRules& rules) {
+  std::error_code failure;
+  Json key = {{"program", rules.made_by}, {"arguments", arguments}};
+  key["program"]["file"] = stamp_of(fs::canonical(rules.program, failure));
+  if (!step.device.empty()) key["device"] = step.device;
+  for (const fs::path& input : step.inputs) key["inputs"].push_back(stamp_of(input));
+  return key;
+}
+
+bool all_there(const std::vector<fs::path>& outputs) {
+  return std::all_of(outputs.begin(), outputs.end(), [](const fs::path& output) {
+    std::error_code failure;
+    return fs::exists(output, failure);
+  });
+}
+
+Json to_json(const ChildResult& child, const ChildLimits& limits) {
+  return {{"end", end_name(child.end)},
+          {"exit_code", child.exit_code},
+          {"seconds", child.seconds},
+          {"peak_memory_bytes", child.peak_memory_bytes},
+          {"message", child.message},
+          {"seconds_limit", limits.seconds},
+          {"memory_limit_bytes", limits.memory_bytes}};
+}
+
+/// The opposite of to_json(). Errors: Json::exception; nothing for an end that is not known.
+std::optional<ChildResult> child_from(const Json& json) {
+  ChildResult child;
+  const std::string name = json.at("end");
+  const auto* const found = std::find(kEndNames.begin(), kEndNames.end(), name);
+  if (found == kEndNames.end()) return std::nullopt;
+  child.end = static_cast<ChildEnd>(found - kEndNames.begin());
+  child.exit_code = json.at("exit_code");
+  child.seconds = json.at("seconds");
+  child.peak_memory_bytes = json.at("peak_memory_bytes");
+  child.message = json.at("message");
+  return child;
+}
+
+/// Whether a failure would come again: the limit that ended it is not higher now.
+bool would_fail_again(const Json& child, const ChildLimits& limits) {
+  const std::string end = child.at("end");
+  if (end == "timeout") return limits.seconds <= child.at("seconds_limit").get<double>();
+  if (end == "out of memory") {
+    const auto before = child.at("memory_limit_bytes").get<std::uint64_t>();
+    return limits.memory_bytes != 0 && limits.memory_bytes <= before;
+  }
+  return true;
+}
+
+/// What a state file remembers, where it is of this key and still holds. A file that is foreign or
+/// broken counts as none: the step is run again and the file replaced.
+std::optional<StepResult> remembered(const fs::path& file, const Step& step, const Json& key,
+                                     const StepRules& rules) {
+  std::error_code failure;
+  if (!fs::is_regular_file(file, failure)) return std::nullopt;
+  try {
+    const Json state = Json::parse(read_file(file));
+    if (state.at("key") != key) return std::nullopt;
+    const std::optional<ChildResult> child = child_from(state.at("child"));
+    if (!child) return std::nullopt;
+    StepResult result{*child, state.at("report"), state.at("command"), state.at("made_by")};
+    for (const auto& [part, value] : rules.made_by.items()) {
+      if (result.made_by.at(part) != value) return std::nullopt;
+    }
+    if (result.done() && !all_there(step.outputs)) return std::nullopt;
+    if (!result.done() && (rules.retry || !would_fail_again(state.at("child"), rules.limits))) {
+      return std::nullopt;
+    }
+    return result;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+/// Removes what a killed child has left beside its outputs: files and folders that were to be
+/// renamed when they were whole. The folders are ours alone (see WorkFolder).
+void remove_unfinished(const Step& step) {
+  for (const fs::path& output : step.outputs) {
+    std::error_code failure;
+    std::vector<fs::path> unfinished = {output.parent_path() /
+                                        ("." + output.filename().string() + ".partial")};
+    for (fs::directory_iterator entry(output.parent_path(), failure), end; !failure && entry != end;
+         entry.increment(failure)) {
+      const std::string name = entry->path().filename().string();
+      if (name.rfind(".adasplats-", 0) == 0) unfinished.push_back(entry->path());
+    }
+    for (const fs::path& path : unfinished) fs::remove_all(path, failure);
+  }
+}
+
+/// Runs a child, which leaves nothing unfinished behind however it ends.
+ChildResult run_cleanly(const Step& step, const std::vector<std::string>& arguments,
+                        const ChildLimits& limits, const fs::path& log, ProgressSink& progress) {
+  remove_unfinished(step);  // this program may have been killed before
+  try {
+    ChildResult result = run_child({arguments, {}, log, limits}, progress);
+    if (result.end != ChildEnd::done) remove_unfinished(step);
+    return result;
+  } catch (...) {
+    remove_unfinished(step);
+    throw;
+  }
+}
+
+}  // namespace
+
+fs::path program_of(const fs::path& named) {
+  const std::string name = named.empty() ? kProgramName : named.string();
+  if (name.find('/') != std::string::npos) return named;
+  if (const auto found = find_on_path(name)) return *found;
+  throw Error(ErrorKind::no_input,
+              name +
+                  ": the program that runs the steps of a comparison is not on PATH; install it "
+                  "(cmake --install) or say where it is (program)");
+}
+
+Json build_of_program(const fs::path& program, const fs::path& folder, ProgressSink& progress) {
+  const fs::path file = folder / "program-report.json";
+  std::error_code ignored;
+  fs::remove(file, ignored);
+  // A command that needs neither input nor device.
+  const ChildResult asked = run_child(
+      {{program.string(), "sensors", "--report", file.string()}, {}, folder / "program.log"},
+      progress);
+  if (asked.exit_code == kCannotStart)
+    throw Error(ErrorKind::no_input, program.string() + ": the program " + asked.message);
+  const bool told_all = asked.end == ChildEnd::done && fs::is_regular_file(file, ignored);
+  const Json report = told_all ? Json::parse(read_file(file), nullptr, false) : Json();
+  Json build = report.is_object() ? report.value("provenance", Json()) : Json();
+  const std::string expected = provenance_of(0).version;
+  if (!build.is_object() || build.value("version", Json()) != expected)
+    throw Error(ErrorKind::usage, program.string() + ": the program is not adasplats " + expected +
+                                      (asked.message.empty() ? "" : ": " + asked.message));
+  return {{"version", build["version"]}, {"commit", build["commit"]}, {"dirty", build["dirty"]}};
+}
+
+std::string command_text(const std::vector<std::string>& arguments) {
+  std::string text = kProgramName;
+  for (const std::string& argument : arguments) {
+    text += ' ';
+    text += shell_word(argument);
+  }
+  return text;
+}
+
+std::string end_name(ChildEnd end) { return kEndNames.at(static_cast<std::size_t>(end)); }
+
+StepRunner::StepRunner(fs::path folder, StepRules rules, ProgressSink& progress)
+    : folder_(std::move(folder)), rules_(std::move(rules)), progress_(progress) {
+  std::error_code failure;
+  fs::create_directories(folder_, failure);
+  if (failure) {
+    throw system_error(ErrorKind::cannot_create, folder_, "cannot create the folder",
+                       failure.value());
+  }
+}
+
+StepResult StepRunner::run(const Step& step) const {
+  const fs::path state_file = folder_ / (step.name + ".json");
+  const fs::path report_file = folder_ / (step.name + "-report.json");
+  std::vector<std::string> arguments = step.arguments;
+  arguments.insert(arguments.end(), rules_.common_arguments.begin(), rules_.common_arguments.end());
+  // Before the step: what changes while it runs has not been used.
+  const Json key = key_of(step, arguments, rules_);
+  if (auto result = remembered(state_file, step, key, rules_)) return *std::move(result);
+
+  std::error_code ignored;
+  fs::remove(state_file, ignored);
+  fs::remove(report_file, ignored);
+  StepResult result;
+  result.command = command_text(arguments);
+  result.made_by = rules_.made_by;
+  result.made_by["date"] = provenance_of(0).date;
+  arguments.insert(arguments.begin(), rules_.program.string());
+  arguments.insert(arguments.end(), {"--report", report_file.string()});
+  progress_.begin_step(folder_.filename().string() + ": " + step.name, 0);
+  result.child =
+      run_cleanly(step, arguments, rules_.limits, folder_ / (step.name + ".log"), progress_);
+  progress_.end_step();
+  if (result.done()) result.report = Json::parse(read_file(report_file));
+  const Json state = {{"key", key},
+                      {"command", result.command},
+                      {"made_by", result.made_by},
+                      {"child", to_json(result.child, rules_.limits)},
+                      {"report", result.report}};
+  write_file(state_file, state.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  return result;
+}
+
+}  // namespace adasplats

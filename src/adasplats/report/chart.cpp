@@ -1,0 +1,328 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/report/chart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "adasplats/report/text_format.h"
+
+namespace adasplats::page {
+namespace {
+
+// All lengths are units of the view box: about pixels at the size the page shows charts.
+constexpr double kWidth = 560;
+constexpr double kRight = 544;         // of the plot; a tick's text is centered on it
+constexpr double kLetter = 6.7;        // mean width of a letter of the 12 px text
+constexpr double kLineHeight = 18;     // of legend and texts
+constexpr double kPlotHeight = 210;    // of line charts
+constexpr double kMarker = 4.2;        // radius
+constexpr double kMostForLinear = 50;  // ratio of the highest to the lowest value
+constexpr std::size_t kColors = 8;     // of the style sheet
+constexpr std::size_t kMarkers = 5;
+
+std::string number(double value) {
+  std::string text = fixed_text(value, 1);
+  return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
+}
+
+/// A command of an SVG path: "M1 2".
+std::string path_to(char command, double x, double y) {
+  std::string text(1, command);
+  return text.append(number(x)).append(1, ' ').append(number(y));
+}
+
+double width_of(const std::string& text) {
+  const auto letters = std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;  // not a continuation byte of UTF-8
+  });
+  return kLetter * static_cast<double>(letters);
+}
+
+std::string shortened(std::string text, double width) {
+  if (width_of(text) <= width) return text;
+  while (!text.empty() && width_of(text) > width - kLetter) {
+    while ((static_cast<unsigned char>(text.back()) & 0xC0) == 0x80) text.pop_back();
+    text.pop_back();
+  }
+  return text + "…";
+}
+
+std::string text_mark(double x, double y, const std::string& style, const std::string& text) {
+  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" class=\"" + style + "\">" +
+         html_escape(text) + "</text>";
+}
+
+std::string line_between(double x0, double y0, double x1, double y1, const std::string& style) {
+  return "<line x1=\"" + number(x0) + "\" y1=\"" + number(y0) + "\" x2=\"" + number(x1) +
+         "\" y2=\"" + number(y1) + "\" class=\"" + style + "\"/>";
+}
+
+std::string style_of(const Key& key, const std::string& shape, const std::string& of_variant) {
+  return shape + " s" + std::to_string(key.slot.value_or(0) % kColors) +
+         (key.variant ? " " + of_variant : "");
+}
+
+std::string polygon(double x, double y, std::initializer_list<std::pair<double, double>> corners) {
+  std::string path;
+  for (const auto& [dx, dy] : corners) {
+    path += path_to(path.empty() ? 'M' : 'L', x + kMarker * dx, y + kMarker * dy);
+  }
+  return path + "Z";
+}
+
+std::string marker_path(const Key& key, double x, double y) {
+  switch (key.slot.value_or(0) % kMarkers) {
+    case 1: return polygon(x, y, {{-.9, -.9}, {.9, -.9}, {.9, .9}, {-.9, .9}});
+    case 2: return polygon(x, y, {{0, -1.2}, {1.15, .9}, {-1.15, .9}});
+    case 3: return polygon(x, y, {{0, -1.3}, {1.3, 0}, {0, 1.3}, {-1.3, 0}});
+    case 4: return polygon(x, y, {{0, 1.2}, {1.15, -.9}, {-1.15, -.9}});
+    default: break;
+  }
+  const std::string radius = number(kMarker);
+  const std::string arc = "a" + radius + " " + radius + " 0 1 0 ";
+  return path_to('M', x - kMarker, y) + arc + number(2 * kMarker) + " 0" + arc +
+         number(-2 * kMarker) + " 0Z";
+}
+
+std::string marker(const Key& key, double x, double y, const std::string& tooltip) {
+  std::string svg =
+      "<path class=\"" + style_of(key, "mark", "open") + "\" d=\"" + marker_path(key, x, y) + "\">";
+  if (!tooltip.empty()) svg += "<title>" + html_escape(tooltip) + "</title>";
+  return svg + "</path>";
+}
+
+std::string bar(const Key& key, double x0, double x1, double y, double height,
+                const std::string& tooltip) {
+  return "<rect class=\"" + style_of(key, "bar", "open") + "\" x=\"" + number(x0) + "\" y=\"" +
+         number(y) + "\" width=\"" + number(std::max(x1 - x0, 1.0)) + "\" height=\"" +
+         number(height) + "\"><title>" + html_escape(tooltip) + "</title></rect>";
+}
+
+std::string tooltip_of(const Chart& chart, const Series& series, std::size_t category) {
+  std::string text = series.name;
+  if (!chart.categories[category].empty()) text += ", " + chart.categories[category];
+  return text + ": " + series.points[category].text + "; " + chart.value_title;
+}
+
+/// From values to lengths along an axis.
+struct Scale {
+  double length = 0;
+  bool is_log = false;
+  std::vector<double> ticks;
+
+  double at(double value) const {
+    if (!is_log) return length * std::max(value, 0.0) / ticks.back();
+    const double first = ticks.front();
+    return length * std::log(std::max(value, first) / first) / std::log(ticks.back() / first);
+  }
+  std::string text_of(double tick) const {
+    const double step = is_log ? tick : ticks[1];
+    const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
+    return step >= 10000 ? count_text(tick) : fixed_text(tick, digits);
+  }
+};
+
+/// Logarithmic, where that is allowed, if the values differ so much that most would lie at zero.
+Scale scale_of(const Chart& chart, double length, bool may_be_log) {
+  double highest = 0;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Series& series : chart.series) {
+    for (const Cell& point : series.points) {
+      const double value = point.value.value_or(0);
+      highest = std::max(highest, value);
+      if (value > 0) lowest = std::min(lowest, value);
+    }
+  }
+  Scale scale{length, may_be_log && highest > kMostForLinear * lowest, nice_ticks(highest)};
+  if (!scale.is_log) return scale;
+  const double last = std::ceil(std::log10(highest));
+  // Seven decades show enough; what is smaller lies at the beginning.
+  const double first = std::max(std::floor(std::log10(lowest)), last - 7);
+  scale.ticks.clear();
+  for (double power = first; power <= last; ++power) scale.ticks.push_back(std::pow(10.0, power));
+  return scale;
+}
+
+/// What is drawn from the top: title and legend. `bottom` is where the next thing may begin.
+struct Head {
+  std::string svg;
+  double bottom = 0;
+};
+
+Head head_of(const Chart& chart, bool with_legend, bool with_lines) {
+  Head head{text_mark(0, 15, "title", chart.title), 24};
+  if (!with_legend) return head;
+  double x = 0;
+  double y = head.bottom + kLineHeight - 4;
+  for (const Series& series : chart.series) {
+    const double width = 30 + width_of(series.name) + 16;
+    if (x > 0 && x + width > kWidth) {
+      x = 0;
+      y += kLineHeight;
+    }
+    if (with_lines) {
+      head.svg += line_between(x, y - 4, x + 24, y - 4, style_of(series.key, "line", "dash"));
+    }
+    head.svg += marker(series.key, x + 12, y - 4, "");
+    head.svg += text_mark(x + 30, y, "", shortened(series.name, kWidth - 30));
+    x += width;
+  }
+  head.bottom = y + 8;
+  return head;
+}
+
+std::string svg_of(const Chart& chart, double height, const std::string& content) {
+  return "<svg role=\"img\" aria-label=\"" + html_escape(chart.title) + "\" viewBox=\"0 0 " +
+         number(kWidth) + " " + number(height) + "\">" + content + "</svg>\n";
+}
+
+/// The line of one series, broken where values are missing, and its markers.
+std::string line_of(const Chart& chart, const Series& series, const std::vector<double>& xs,
+                    double bottom, const Scale& scale) {
+  std::string path;
+  std::string markers;
+  bool drawing = false;
+  for (std::size_t c = 0; c < xs.size(); ++c) {
+    const auto& value = series.points[c].value;
+    if (value) {
+      const double y = bottom - scale.at(*value);
+      path += path_to(drawing ? 'L' : 'M', xs[c], y);
+      markers += marker(series.key, xs[c], y, tooltip_of(chart, series, c));
+    }
+    drawing = value.has_value();
+  }
+  return "<path class=\"" + style_of(series.key, "line", "dash") + "\" d=\"" + path + "\"/>" +
+         markers;
+}
+
+enum class Mark { bar, dot };
+
+/// Bars or dots of one category in rows below each other from `y`.
+std::string category_rows(const Chart& chart, std::size_t category, Mark mark, double left,
+                          const Scale& scale, double y, double row_height) {
+  std::string svg;
+  for (const Series& series : chart.series) {
+    const Cell& point = series.points[category];
+    if (point.value) {
+      const double x = left + scale.at(*point.value);
+      const std::string tooltip = tooltip_of(chart, series, category);
+      const double middle = y + row_height / 2;
+      if (mark == Mark::dot) {
+        svg += marker(series.key, x, middle, tooltip);
+      } else {
+        svg += bar(series.key, left, x, y + 1, row_height - 2, tooltip);
+        svg += text_mark(x + 5, middle + 4, "small", point.text);
+      }
+    }
+    y += row_height;
+  }
+  return svg;
+}
+
+struct RowLayout {
+  std::vector<std::string> labels;  ///< one a block
+  double label_step = 0;            ///< between labels
+  double row_height = 0;            ///< of one series
+  double block_height = 0;          ///< of one category
+};
+
+RowLayout row_layout(const Chart& chart, Mark mark, bool single) {
+  RowLayout layout;
+  const double count = static_cast<double>(chart.series.size());
+  layout.row_height = mark == Mark::bar ? (single ? 22 : 16) : std::clamp(20 / count, 3.0, 8.0);
+  layout.block_height = count * layout.row_height + (single ? 0 : 12);
+  layout.labels = chart.categories;
+  layout.label_step = layout.block_height;
+  if (single) {
+    layout.labels.clear();
+    for (const Series& series : chart.series) layout.labels.push_back(series.name);
+    layout.label_step = layout.row_height;
+  }
+  return layout;
+}
+
+std::string row_chart(const Chart& chart, Mark mark) {
+  const bool single = chart.categories.size() == 1 && mark == Mark::bar;
+  const RowLayout layout = row_layout(chart, mark, single);
+  double left = 0;
+  for (const std::string& label : layout.labels) left = std::max(left, width_of(label) + 12);
+  left = std::min(left, 240.0);
+  const Head head = head_of(chart, !single, false);
+  const double top = head.bottom + 4;
+  const double bottom =
+      top + layout.block_height * static_cast<double>(chart.categories.size()) + 2;
+  // Figures behind bars need room to the right of the longest one.
+  const double right = mark == Mark::bar ? kRight - 40 : kRight;
+  const Scale scale = scale_of(chart, right - left, mark == Mark::dot);
+  std::string svg = head.svg;
+  for (const double tick : scale.ticks) {
+    const double x = left + scale.at(tick);
+    svg += line_between(x, top, x, bottom, tick == scale.ticks.front() ? "axis" : "grid");
+    svg += text_mark(x, bottom + 15, "tick middle", scale.text_of(tick));
+  }
+  for (std::size_t k = 0; k < layout.labels.size(); ++k) {
+    const double y = top + layout.label_step * static_cast<double>(k);
+    if (!single && k > 0) svg += line_between(0, y, right, y, "grid");
+    svg += text_mark(left - 8, y + layout.label_step / 2 + 4, "end",
+                     shortened(layout.labels[k], left - 8));
+  }
+  for (std::size_t c = 0; c < chart.categories.size(); ++c) {
+    const double y = top + layout.block_height * static_cast<double>(c) + (single ? 0 : 6);
+    svg += category_rows(chart, c, mark, left, scale, y, layout.row_height);
+  }
+  svg += text_mark((left + right) / 2, bottom + 34, "tick middle",
+                   chart.value_title + (scale.is_log ? ", logarithmic" : ""));
+  return svg_of(chart, bottom + 42, svg);
+}
+
+}  // namespace
+
+std::vector<double> nice_ticks(double highest) {
+  if (!(highest > 0)) return {0, 1};
+  const double rough = highest / 5;
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  double step = 10 * power;
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= rough * (1 - 1e-9)) {
+      step = factor * power;
+      break;
+    }
+  }
+  std::vector<double> ticks = {0};
+  for (double k = 1; ticks.back() < highest * (1 - 1e-9); ++k) ticks.push_back(k * step);
+  return ticks;
+}
+
+std::string key_marker(const Key& key, double x, double y) { return marker(key, x, y, ""); }
+
+std::string line_chart(const Chart& chart) {
+  const Head head = head_of(chart, true, true);
+  const Scale scale = scale_of(chart, kPlotHeight, false);
+  const double top = head.bottom + 32;
+  const double bottom = top + kPlotHeight;
+  double left = 0;
+  for (const double tick : scale.ticks) left = std::max(left, width_of(scale.text_of(tick)) + 8);
+  std::string svg = head.svg + text_mark(0, head.bottom + 15, "tick", chart.value_title);
+  for (const double tick : scale.ticks) {
+    const double y = bottom - scale.at(tick);
+    svg += line_between(left, y, kRight, y, tick == 0 ? "axis" : "grid");
+    svg += text_mark(left - 6, y + 4, "tick end", scale.text_of(tick));
+  }
+  const double slot =
+      (kRight - left) / static_cast<double>(std::max<std::size_t>(chart.categories.size(), 1));
+  std::vector<double> xs;
+  for (const std::string& category : chart.categories) {
+    xs.push_back(left + slot * (static_cast<double>(xs.size()) + 0.5));
+    svg += text_mark(xs.back(), bottom + 17, "tick middle", shortened(category, slot - 4));
+  }
+  for (const Series& series : chart.series) svg += line_of(chart, series, xs, bottom, scale);
+  svg += text_mark((left + kRight) / 2, bottom + 37, "tick middle", chart.category_title);
+  return svg_of(chart, bottom + 45, svg);
+}
+
+std::string bar_chart(const Chart& chart) { return row_chart(chart, Mark::bar); }
+std::string dot_chart(const Chart& chart) { return row_chart(chart, Mark::dot); }
+
+}  // namespace adasplats::page

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "adasplats/report/measures.h"
+#include "adasplats/report/sections.h"
+
+// The tables of the paper, section "Results", with its figures beside ours.
+namespace adasplats::page {
+namespace {
+
+const std::vector<std::string>& thin_classes() {
+  static const std::vector<std::string> names = {"fence", "pole", "traffic-sign"};
+  return names;
+}
+
+Measure generation_time() {
+  return {"Gen T (s)", Better::lower, read({"generate", "seconds"}), measure_text,
+          read({"generate_s"})};
+}
+
+Measure primitives() {
+  return {"Primitives", Better::lower, read({"generate", "primitives"}), count_text,
+          read({"primitives"})};
+}
+
+Measure lidar_frequency() {
+  return {"LiDAR (Hz)", Better::higher, read({"simulate", "scans_per_second", "returned"}),
+          measure_text, read({"lidar_hz"})};
+}
+
+Measure c2c() {
+  return {"C2C (cm)",
+          Better::lower,
+          read({"c2c", "c2c_m"}, kCentimetres),
+          hundredths_text,
+          read({"c2c_m"}, kCentimetres),
+          short_text};
+}
+
+std::vector<Fact> paper_definitions() {
+  return {
+      {"Gen T", "seconds from the point cloud on disk to the finished model on disk."},
+      {"Primitives", "disks of a splat model, triangles of a mesh."},
+      {"Render", "pictures of 2560 × 1440 pixels a second."},
+      {"LiDAR",
+       "revolutions of a simulated HDL-64 a second: rays made, traced and returned as points in "
+       "memory; writing files is not counted, as in the paper."},
+      {"C2C",
+       "cloud to cloud: for each simulated point the distance to the nearest point of the "
+       "original cloud, the mean over all simulated points. It looks in one direction only: "
+       "what a model lacks costs it nothing."}};
+}
+
+/// Without and with resampling, the pairs that were run.
+std::vector<Competitor> resampling_pairs(const std::vector<Competitor>& competitors) {
+  std::vector<Competitor> pairs;
+  for (const Competitor& variant : competitors) {
+    if (!variant.key.variant) continue;
+    for (const Competitor& base : competitors) {
+      if (base.key.variant || base.key.slot != variant.key.slot) continue;
+      pairs.push_back(variant);
+      pairs.push_back(base);
+    }
+  }
+  return pairs;
+}
+
+Table resampling_table(const std::vector<Competitor>& pairs, const Json& results) {
+  std::vector<const Json*> rows;
+  for (const Json* row : paper_rows_of(results)) {
+    const std::string name = text_at(*row, {"name"});
+    if (std::any_of(pairs.begin(), pairs.end(),
+                    [&](const Competitor& competitor) { return competitor.name == name; })) {
+      rows.push_back(row);
+    }
+  }
+  return table_of("Without and with resampling", pairs, rows,
+                  {generation_time(), primitives(), lidar_frequency(), c2c()});
+}
+
+std::optional<double> mean_of(const std::vector<Reader>& readers, const Json& json) {
+  double sum = 0;
+  for (const Reader& reader : readers) {
+    const auto value = reader(json);
+    if (!value) return std::nullopt;
+    sum += *value;
+  }
+  return sum / static_cast<double>(readers.size());
+}
+
+Table thin_table(const std::vector<Competitor>& competitors, const Json& results) {
+  std::vector<Measure> measures;
+  std::vector<Reader> here;
+  std::vector<Reader> paper;
+  for (const std::string& name : thin_classes()) {
+    here.push_back(read({"c2c", "by_class", name, "c2c_m"}, kCentimetres));
+    paper.push_back(read({"thin", name}, kCentimetres));
+    measures.push_back({name + " (cm)", Better::lower, here.back(), hundredths_text, paper.back(),
+                        short_text, [name](const Json& json) {
+                          const auto points = number_at(json, {"c2c", "by_class", name, "points"});
+                          return points ? count_text(*points) + " pts" : std::string();
+                        }});
+  }
+  measures.push_back({"mean (cm)", Better::lower,
+                      [here](const Json& json) { return mean_of(here, json); }, hundredths_text,
+                      [paper](const Json& row) {
+                        const auto printed = read({"thin", "mean"}, kCentimetres)(row);
+                        return printed ? printed : mean_of(paper, row);
+                      },
+                      short_text});
+  Table table = table_of("C2C of thin structures", competitors, paper_rows_of(results), measures);
+  table.definitions = {
+      {"C2C of a class",
+       "C2C of the simulated points of the class to the original points of the same class. The "
+       "small figure is the number of simulated points: few of them make a weak figure."},
+      {"mean",
+       "of the three classes, each with the same weight, only where all three are there; the "
+       "paper’s "
+       "printed average where the results have it."}};
+  ChartPlan plan{ChartKind::bars, "C2C of thin structures, measured here", "", "C2C (cm)", {}};
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (table.columns[c].name != "paper") plan.columns.push_back(c);
+  }
+  table.charts.push_back(std::move(plan));
+  return table;
+}
+
+bool has_thin_classes(const std::vector<Competitor>& competitors) {
+  return std::any_of(competitors.begin(), competitors.end(), [](const Competitor& competitor) {
+    return std::any_of(thin_classes().begin(), thin_classes().end(), [&](const std::string& name) {
+      return number_at(*competitor.json, {"c2c", "by_class", name, "c2c_m"}).has_value();
+    });
+  });
+}
+
+}  // namespace
+
+Section paper_section(const Json& results, const std::vector<Competitor>& competitors) {
+  Section section;
+  section.id = "paper";
+  section.title = "The paper’s tables";
+  const auto paper_rows = paper_rows_of(results);
+  if (!paper_rows.empty()) {
+    std::string cpu = text_at(results, {"machine", "cpu"});
+    if (cpu.empty()) cpu = "this machine";
+    section.paragraphs.push_back(
+        "Columns “here” were measured on " + text_at(results, {"title"}) + " with " + cpu +
+        ". Columns “paper” are printed in the paper’s table for " +
+        text_at(results, {"paper", "table"}) +
+        "; they were measured on the paper’s own data with an NVIDIA GeForce RTX 2070 SUPER. Other "
+        "data and another machine: the order of the models can be compared, the figures cannot.");
+  }
+  std::vector<Measure> measures = {
+      generation_time(),
+      primitives(),
+      {"Render (Hz)", Better::higher, read({"render", "images_per_second"}), measure_text,
+       read({"render_hz"})},
+      lidar_frequency(),
+      c2c()};
+  section.tables.push_back(table_of("Models, speed and C2C", competitors, paper_rows, measures));
+  section.tables.back().definitions = paper_definitions();
+  const auto pairs = resampling_pairs(competitors);
+  if (!pairs.empty()) section.tables.push_back(resampling_table(pairs, results));
+  if (has_thin_classes(competitors)) section.tables.push_back(thin_table(competitors, results));
+  return section;
+}
+
+}  // namespace adasplats::page
