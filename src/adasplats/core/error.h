@@ -65,4 +65,8 @@ std::optional<std::string> nearest_word(const std::string& word,
 /// ", did you mean 'x'?" or ", did you mean 'x', 'y' or 'z'?" of similar_words(); "" for none.
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
 
+/// "what 'x' is not known, did you mean 'y'?" or a list of all that are known.
+std::string unknown_word(const std::string& what, const std::string& word,
+                         const std::vector<std::string>& known);
+
 }  // namespace adasplats

@@ -21,7 +21,7 @@ namespace {
 
 using oneapi::tbb::global_control;
 
-/// TBB runs no more threads than cores unless told so: 3 threads on 2 cores are to be 3.
+/// TBB runs no more threads than cores unless asked to: 3 threads on 2 cores are to be 3.
 std::unique_ptr<global_control> allow(int threads) {
   if (threads <= oneapi::tbb::info::default_concurrency()) return nullptr;
   return std::make_unique<global_control>(global_control::max_allowed_parallelism,

@@ -41,7 +41,7 @@ void ProgressMeter::end_pass() {
 }
 
 void ProgressMeter::tell() {
-  // A chunk on another thread may be telling of its own: this figure can wait.
+  // A chunk on another thread may be reporting its own: this figure can wait.
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;
   const std::uint64_t elements = elements_;

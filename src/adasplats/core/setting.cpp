@@ -32,6 +32,31 @@ std::string option_of(const Setting& setting) {
   return "--" + name;
 }
 
+std::string with_settings_as(std::string_view message,
+                             const std::function<std::string(std::string name)>& word) {
+  std::string text;
+  std::size_t begin = 0;
+  for (std::size_t open = 0; (open = message.find('`', open)) != message.npos;) {
+    const std::size_t close =
+        message.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789", open + 1);
+    if (close == message.npos || message[close] != '`' || close == open + 1) {
+      ++open;  // no name of a setting: a part of a path, say
+      continue;
+    }
+    text.append(message.substr(begin, open - begin));
+    text += word(std::string(message.substr(open + 1, close - open - 1)));
+    begin = open = close + 1;
+  }
+  return text.append(message.substr(begin));
+}
+
+std::string with_settings_as_options(std::string_view message) {
+  return with_settings_as(message, [](std::string name) {
+    std::ranges::replace(name, '_', '-');
+    return "--" + name;
+  });
+}
+
 bool is_in_range(const Setting& setting, double value) {
   return (setting.above_least ? value > setting.least : value >= setting.least) &&
          value <= setting.most;
@@ -49,7 +74,7 @@ std::string range_text(const Setting& setting) {
 
 void check_setting(const Setting& setting, double value) {
   if (is_in_range(setting, value)) return;
-  throw Error(ErrorKind::usage, std::string(setting.name) + " is " + shortest(value) +
+  throw Error(ErrorKind::usage, "`" + std::string(setting.name) + "` is " + shortest(value) +
                                     ", expected " + range_text(setting));
 }
 

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -22,16 +24,16 @@ namespace adasplats {
 ///             beam.sub_rays);
 ///     }
 ///
-/// and everything that takes, tells or checks settings walks it: cli/options/setting_options,
-/// pipeline/session/settings_json, python/src/keywords, check_settings(). A new setting is one
-/// entry. Members are truth values, numbers, std::optional numbers, enumerations that have words
-/// (words_of(), found beside the enumeration) and GroupScale.
+/// and everything that takes, reports or checks settings walks it: cli/options/setting_options,
+/// pipeline/session/settings_json, python/src/values/keywords, check_settings(). A new setting is
+/// one entry. Members are truth values, numbers, vectors, either of them optional, texts, paths,
+/// enumerations that have words (words_of(), found beside the enumeration) and GroupScale.
 struct Setting {
   const char* name;           ///< in snake_case; the option is that with dashes
   const char* help;           ///< one line, no full stop
   const char* value = "";     ///< word for the value in help: "M", "N"
   const char* key = name;     ///< in JSON, with the unit: "separation_m"
-  const char* opposite = "";  ///< of a truth value: the option that turns it off; "": "no-NAME"
+  const char* opposite = "";  ///< of a truth value: options that turn it off; "": "no-NAME"
   const char* group = "";     ///< heading in help
   double least = -std::numeric_limits<double>::max();
   double most = std::numeric_limits<double>::max();
@@ -41,11 +43,18 @@ struct Setting {
 /// "--sub-rays".
 std::string option_of(const Setting& setting);
 
+/// Messages of the library name settings in backquotes, "`max_distance` keeps them", for who shows
+/// a message to name them as its users do: word(name) is what stands there instead.
+std::string with_settings_as(std::string_view message,
+                             const std::function<std::string(std::string name)>& word);
+/// "--max-distance keeps them".
+std::string with_settings_as_options(std::string_view message);
+
 /// Whether a value is in range; never for NaN.
 bool is_in_range(const Setting& setting, double value);
 /// "0 or more", "1 to 64", "more than 0", "more than 0, at most 1".
 std::string range_text(const Setting& setting);
-/// Errors: usage ("sub_rays is 65, expected 1 to 64").
+/// Errors: usage ("`sub_rays` is 65, expected 1 to 64").
 void check_setting(const Setting& setting, double value);
 
 /// Checks the ranges of all settings of a subject. Errors: usage, of the first that is out of
@@ -58,7 +67,7 @@ void check_settings(const Settings& settings) {
     if constexpr (std::is_arithmetic_v<Value>) {
       if constexpr (!std::is_same_v<Value, bool>)
         check_setting(setting, static_cast<double>(value));
-    } else if constexpr (requires { value.has_value(); }) {
+    } else if constexpr (requires { static_cast<double>(*value); }) {
       if (value) check_setting(setting, static_cast<double>(*value));
     } else if constexpr (requires { value.factors(); }) {
       for (const double factor : value.factors()) check_setting(setting, factor);

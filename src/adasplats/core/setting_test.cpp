@@ -49,12 +49,12 @@ std::string refusal(const Oven& oven) {
 TEST(Setting, RangesAreCheckedByName) {
   EXPECT_EQ(refusal({}), "");
   EXPECT_EQ(refusal({.rounds = 1, .heat = 0, .hours = 1}), "");
-  EXPECT_EQ(refusal({.rounds = 65}), "rounds is 65, expected 1 to 64");
-  EXPECT_EQ(refusal({.heat = -0.5}), "top_heat is -0.5, expected 0 or more");
-  EXPECT_EQ(refusal({.heat = std::nan("")}), "top_heat is nan, expected 0 or more");
-  EXPECT_EQ(refusal({.heat = HUGE_VAL}), "top_heat is inf, expected 0 or more");
-  EXPECT_EQ(refusal({.hours = 0}), "hours is 0, expected more than 0, at most 1");
-  EXPECT_EQ(refusal({.triple = {1, 1, 0}}), "triple is 0, expected more than 0");
+  EXPECT_EQ(refusal({.rounds = 65}), "`rounds` is 65, expected 1 to 64");
+  EXPECT_EQ(refusal({.heat = -0.5}), "`top_heat` is -0.5, expected 0 or more");
+  EXPECT_EQ(refusal({.heat = std::nan("")}), "`top_heat` is nan, expected 0 or more");
+  EXPECT_EQ(refusal({.heat = HUGE_VAL}), "`top_heat` is inf, expected 0 or more");
+  EXPECT_EQ(refusal({.hours = 0}), "`hours` is 0, expected more than 0, at most 1");
+  EXPECT_EQ(refusal({.triple = {1, 1, 0}}), "`triple` is 0, expected more than 0");
 }
 
 TEST(Setting, NumbersAreWrittenPlainly) {
@@ -62,6 +62,17 @@ TEST(Setting, NumbersAreWrittenPlainly) {
   EXPECT_EQ(range_text({.name = "n", .help = "", .least = 0.001, .most = 1e4}), "0.001 to 10000");
   EXPECT_EQ(range_text({.name = "n", .help = "", .most = 0.25}), "at most 0.25");
   EXPECT_EQ(range_text({.name = "n", .help = ""}), "a finite number");
+}
+
+TEST(Setting, MessagesNameSettingsAsTheirUsersDo) {
+  const char* message = "`max_distance` M keeps them, `strict` does not; `open";
+  EXPECT_EQ(with_settings_as_options(message),
+            "--max-distance M keeps them, --strict does not; `open");
+  EXPECT_EQ(with_settings_as(message, [](std::string name) { return "<" + name + ">"; }),
+            "<max_distance> M keeps them, <strict> does not; `open");
+  EXPECT_EQ(with_settings_as_options("/a`b c`/`x.ply: `strict`"), "/a`b c`/`x.ply: --strict");
+  EXPECT_EQ(with_settings_as_options(""), "");
+  EXPECT_EQ(with_settings_as_options("none"), "none");
 }
 
 TEST(Setting, HasAnOptionAKeyAndAPlaceInItsTable) {

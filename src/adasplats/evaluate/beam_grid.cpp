@@ -17,15 +17,20 @@
 namespace adasplats {
 namespace {
 
-constexpr int kSteps = 4000;  // of the encoder, 0.09 degrees each
+constexpr int kSteps = 4000;  // of the encoder, 0.09 degrees each: HDL-64E S2 user's manual
 constexpr double kStep_rad = 2 * std::numbers::pi / kSteps;
+/// Points lie on their cones to millimetres (cloud/sequence/scan_beams.cpp), and cones are farther
+/// apart than twice this from 9 m on. A choice: less loses points, more takes some of no ring.
 constexpr double kMostOffCone_m = 0.02;
-constexpr std::size_t kLeastPoints = 100;  // of a ring
+/// Of a ring. So many phases by chance have a mean of length 0.1, far from kLeastOrder.
+constexpr std::size_t kLeastPoints = 100;
+/// A choice, an eighth of an HDL-64E: a few rings fit by chance, and all need not be there.
 constexpr std::size_t kLeastRings = 8;
 /// Length of the mean of unit vectors at the phases of a ring's azimuths: 1 on a lattice; KITTI's
 /// rings have 0.95 and more, compensated ones 0.6 and less.
 constexpr double kLeastOrder = 0.8;
-/// Of a ring's points on the firings of the fullest ring; by chance it is half of them.
+/// Of a ring's points on the firings of the fullest ring; by chance it is half of them. A choice:
+/// halfway from there to all.
 constexpr double kLeastOnFirings = 0.75;
 
 using Steps = std::bitset<kSteps>;
@@ -85,7 +90,7 @@ std::vector<Ring> rings_of(const KittiScan& scan, const LidarModel& sensor) {
 
 /// Mean of the phases of a ring's azimuths on the lattice, as unit vectors.
 std::complex<double> mean_phase(const KittiScan& scan, const Ring& ring, double beside_m) {
-  constexpr std::size_t kEnough = 400;  // points
+  constexpr std::size_t kEnough = 400;  // points: the mean is good to 1/20, far from kLeastOrder
   const std::size_t every = std::max<std::size_t>(1, ring.points.size() / kEnough);
   std::complex<double> sum = 0;
   double count = 0;
@@ -99,7 +104,7 @@ std::complex<double> mean_phase(const KittiScan& scan, const Ring& ring, double 
 
 /// Finds where a ring's lattice lies and its points' places on it. False: they are on none.
 bool fit_lattice(const KittiScan& scan, Ring& ring) {
-  constexpr int kMostBeside_mm = 60;
+  constexpr int kMostBeside_mm = 60;  // about twice what sensors/velodyne-hdl-64e-*.toml have
   double best = 0;
   for (int distance_mm = 0; distance_mm <= kMostBeside_mm; ++distance_mm) {
     for (const int side : {1, -1}) {
@@ -129,7 +134,7 @@ Steps turned(const Steps& steps, int by) {
 
 /// Turns `ring` onto the firings of `fullest`. False: it does not fit.
 bool align(Ring& ring, const Ring& fullest) {
-  constexpr int kMostShift = 300;  // 27 degrees; lasers point less than 18 degrees apart
+  constexpr int kMostShift = 300;  // 27 degrees; 18.5 at most in sensors/velodyne-hdl-64e-*.toml
   std::size_t best = 0;
   for (int size = 0; size <= kMostShift; ++size) {
     for (const int shift : {size, -size}) {

@@ -36,7 +36,7 @@ struct BeamGrid {
 /// apart, up to the sensor's clock), so a firing is where any ring has a point once the rings are
 /// turned onto each other.
 /// For points as they were measured: motion compensation bends the lattice. Rings with fewer than
-/// 100 points are left out: nothing tells where their beams went. Errors: usage (no elevations),
+/// 100 points are left out: nothing says where their beams went. Errors: usage (no elevations),
 /// data (fewer than 8 rings on such a lattice).
 BeamGrid find_beam_grid(const KittiScan& scan, const LidarModel& sensor);
 

@@ -61,7 +61,7 @@ BeamEchoes collect_beam_echoes(const EchoScene& scene, const KittiSequence& sequ
                                std::span<const ScanMotion> motions, const Executor& executor,
                                ProgressSink& progress);
 
-/// Fits where a real sensor tells nothing of what its beams hit: blocked sectors first, the
+/// Fits where a real sensor reports nothing of what its beams hit: blocked sectors first, the
 /// logistic model to the rest. Errors: those of fit_ray_drop.
 RayDropModel fit_ray_drop(const BeamEchoes& beams);
 

@@ -88,7 +88,7 @@ LabelAgreementResult compare_labels(const KittiSequence& simulated, const KittiS
                                     const Executor& executor, ProgressSink& progress) {
   check(simulated);
   check(original);
-  if (options.every == 0) throw Error(ErrorKind::usage, "--every must be at least 1");
+  if (options.every == 0) throw Error(ErrorKind::usage, "`every` must be at least 1");
   LabelAgreementResult result;
   progress.begin_step("compare labels", simulated.scans.size());
   for (std::size_t i = 0; i < simulated.scans.size(); i += options.every) {

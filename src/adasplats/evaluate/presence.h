@@ -37,7 +37,7 @@ struct PresenceResult {
 };
 
 /// At which of the points that were measured does a model have a surface? The ray that measured a
-/// point must meet the model within `within_m` of it. Tells what a model lacks (of what is still)
+/// point must meet the model within `within_m` of it. Says what a model lacks (of what is still)
 /// and what it should not have (of what moved). `labels`: what the classes mean, or null.
 /// Errors: usage (distances that are not positive, ranges that hold nothing); data (no sensor
 /// positions, no points within the ranges, a class that `labels` does not have).

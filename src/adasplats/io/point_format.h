@@ -12,11 +12,11 @@
 
 namespace adasplats {
 
-/// What a file holds as far as its extension tells.
-enum class ExtensionTells : std::uint8_t {
+/// What a file holds as far as its extension says.
+enum class ExtensionMeans : std::uint8_t {
   points,
-  geometry,  ///< points or a surface: the header tells
-  text,      ///< points, poses or prose: the lines tell
+  geometry,  ///< points or a surface: the header says
+  text,      ///< points, poses or prose: the lines say
 };
 
 /// A format of point files. All of them stand in one list (point_format.cpp): reading, the kinds of
@@ -24,8 +24,8 @@ enum class ExtensionTells : std::uint8_t {
 struct PointFormat {
   std::string_view name;                         ///< "LAS or LAZ", as help has it
   std::span<const std::string_view> extensions;  ///< ".las", ".laz"
-  std::span<const std::string_view> beginnings;  ///< first bytes, any of them; none: not told
-  ExtensionTells tells = ExtensionTells::points;
+  std::span<const std::string_view> beginnings;  ///< first bytes, any of them; none: not known
+  ExtensionMeans means = ExtensionMeans::points;
   std::string_view remark;  ///< behind the last extension in messages
   Table (*read)(const std::filesystem::path& path, const LasReadOptions& options) = nullptr;
   std::string_view cure;  ///< where `read` is null: what to do with such a file

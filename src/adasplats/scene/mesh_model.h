@@ -29,9 +29,9 @@ void save_mesh(const std::filesystem::path& path, const MeshModel& model);
 /// Reads a triangle mesh: PLY (faces; classes from the face property class, label, semantic or
 /// category, where there is one), glTF 2.0 (docs/worlds.md), or OBJ (v and f; faces of more than
 /// three corners become fans; indices from the end are understood; materials, normals and texture
-/// coordinates are skipped). The kind is told by the content. Triangles without area stay: no ray
-/// hits them. Errors: no_input, io; data with line or offset (a vertex that is not finite or not
-/// there, a face with fewer than three corners).
+/// coordinates are skipped). The kind is known by the content. Triangles without area stay: no
+/// ray hits them. Errors: no_input, io; data with line or offset (a vertex that is not finite or
+/// not there, a face with fewer than three corners).
 MeshModel load_mesh(const std::filesystem::path& path);
 
 /// Whether load_mesh would take the file: an OBJ, or a PLY that declares faces.

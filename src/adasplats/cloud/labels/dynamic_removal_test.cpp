@@ -56,13 +56,13 @@ TEST(DynamicRemoval, SaysWhyNothingCanBeRemoved) {
   };
   EXPECT_EQ(why(&paris_carla_3d_labels(), DynamicRemoval::moving),
             "the label scheme 'paris-carla-3d' has no class that is moving, only movable ones "
-            "(--remove movable)");
+            "(`remove` movable)");
   EXPECT_TRUE(
       points_to_remove(cloud, &paris_carla_3d_labels(), DynamicRemoval::moving).ids.empty());
   EXPECT_EQ(why(&paris_carla_3d_labels(), DynamicRemoval::movable), "");
   EXPECT_EQ(why(&semantickitti_labels(), DynamicRemoval::moving), "");
   EXPECT_EQ(why(nullptr, DynamicRemoval::none), "");
-  EXPECT_NE(why(nullptr, DynamicRemoval::movable).find("--labels"), std::string::npos);
+  EXPECT_NE(why(nullptr, DynamicRemoval::movable).find("`labels`"), std::string::npos);
   EXPECT_EQ(why_nothing_is_removed({}, nullptr, DynamicRemoval::moving),
             "the points have no labels");
   const LabelScheme still("still", {{1, "wall", SemanticGroup::surface, Mobility::fixed, {}}});

@@ -102,7 +102,7 @@ std::vector<CloudInput> files_of(const Folder& folder) {
     throw Error(ErrorKind::data,
                 folder.path.string() +
                     ": holds scans in the sensor frame (poses.csv is beside them); simulate with "
-                    "--format semantickitti to use them as points");
+                    "`format` semantickitti to use them as points");
   const std::size_t others = folder.count(FileKind::mesh) + folder.count(FileKind::splat_model) +
                              folder.count(FileKind::trajectory);
   if (folder.count(FileKind::points) == 0) {
@@ -180,7 +180,7 @@ void require_points(const fs::path& file) {
           "evaluate take models");
     case FileKind::trajectory:
       return refuse(
-          "is a trajectory (a line is a pose), not points; --trajectory takes it where a line "
+          "is a trajectory (a line is a pose), not points; `trajectory` takes it where a line "
           "before "
           "the poses names the columns (time,x,y,z,qw,qx,qy,qz or # timestamp tx ty tz qx qy qz "
           "qw) "

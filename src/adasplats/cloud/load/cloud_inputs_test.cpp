@@ -185,7 +185,7 @@ TEST(CloudInputs, WhatIsNoPoints) {
                [&] { require_points(folder.write("m.ply", kMesh)); });
   expect_error(ErrorKind::data, {"s.ply", "splat model"},
                [&] { require_points(folder.write("s.ply", kModel)); });
-  expect_error(ErrorKind::data, {"t.csv", "trajectory", "--trajectory"},
+  expect_error(ErrorKind::data, {"t.csv", "trajectory", "`trajectory`"},
                [&] { require_points(folder.write("t.csv", kPoses)); });
 }
 

@@ -28,8 +28,8 @@ std::string share_text(std::size_t part, std::size_t all) {
 
 }  // namespace
 
-void tell_dropped(const std::string& input, const LoadReport& report, const LoadOptions& options,
-                  ProgressSink& progress) {
+void report_dropped(const std::string& input, const LoadReport& report, const LoadOptions& options,
+                    ProgressSink& progress) {
   const std::size_t all = report.points_read;
   const double most = options.max_dropped * static_cast<double>(all);
   const auto tell = [&](std::size_t points, const std::string& why, const std::string& cure) {
@@ -37,7 +37,7 @@ void tell_dropped(const std::string& input, const LoadReport& report, const Load
     const std::string what = input + ": " + share_text(points, all) + " " + why;
     if (!cure.empty() && static_cast<double>(points) > most)
       throw Error(ErrorKind::data, what + ", more than " + percent_text(options.max_dropped) +
-                                       ": " + cure + "--max-dropped SHARE goes on without them");
+                                       ": " + cure + "`max_dropped` SHARE goes on without them");
     progress.warn(what + ", dropped");
   };
   tell(report.no_returns, "are no returns (x, y and z are NaN)", "");
@@ -45,18 +45,18 @@ void tell_dropped(const std::string& input, const LoadReport& report, const Load
        "look into what wrote them; ");
   tell(report.dropped_far,
        "are farther than " + short_text(options.max_distance_m, 9) + " m from the median of all",
-       "are these two places, or coordinates of two systems? --max-distance M keeps them, ");
+       "are these two places, or coordinates of two systems? `max_distance` M keeps them, ");
 }
 
-void tell_own_body(const std::string& input, const LoadReport& report, const LoadOptions& options,
-                   ProgressSink& progress) {
+void report_own_body(const std::string& input, const LoadReport& report, const LoadOptions& options,
+                     ProgressSink& progress) {
   if (report.own_body == 0) return;
   progress.warn(input + ": " + share_text(report.own_body, report.points_read) +
                 (options.own_body_m
                      ? " are nearer to their sensor than " + short_text(*options.own_body_m, 9) +
                            " m, left out"
                      : " go along with the sensor: the recording vehicle itself, left out "
-                       "(--own-body 0 keeps them)"));
+                       "(`own_body` 0 keeps them)"));
 }
 
 void require_metres(const std::string& input, Vec3d low, Vec3d high) {

@@ -13,12 +13,12 @@ namespace adasplats {
 /// figures. Errors: data where more than options.max_dropped of them were far or not finite; points
 /// whose three coordinates are NaN do not count, as organised clouds hold so where no beam
 /// returned.
-void tell_dropped(const std::string& input, const LoadReport& report, const LoadOptions& options,
-                  ProgressSink& progress);
+void report_dropped(const std::string& input, const LoadReport& report, const LoadOptions& options,
+                    ProgressSink& progress);
 
 /// Warns of points on the vehicle that carried the sensor, which were left out.
-void tell_own_body(const std::string& input, const LoadReport& report, const LoadOptions& options,
-                   ProgressSink& progress);
+void report_own_body(const std::string& input, const LoadReport& report, const LoadOptions& options,
+                     ProgressSink& progress);
 
 /// Throws data where the box of all points can only be one of degrees: within 180 and 90 without
 /// holding 0, 0, and more than a thousand times as high as it is wide. (Degrees are 111 km, so that

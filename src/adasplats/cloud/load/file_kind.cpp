@@ -169,9 +169,9 @@ FileKind kind_of_file(const std::filesystem::path& file) {
   if (is_one_of(lower_case(file.extension().string()), kMeshes)) return FileKind::mesh;
   const PointFormat* const format = format_of_extension(file);
   // Whoever reads a format that is not understood says so.
-  if (format != nullptr && format->tells == ExtensionTells::points) return FileKind::points;
+  if (format != nullptr && format->means == ExtensionMeans::points) return FileKind::points;
   const auto lines = first_lines(file);
-  if (format != nullptr && format->tells == ExtensionTells::text)
+  if (format != nullptr && format->means == ExtensionMeans::text)
     return lines ? kind_of_text(*lines) : FileKind::points;
   const bool is_ply = lines && !lines->empty() && lines->front() == "ply";
   const FileKind kind = is_ply ? kind_of_ply(*lines) : FileKind::points;

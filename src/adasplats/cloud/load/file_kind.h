@@ -8,7 +8,7 @@
 
 namespace adasplats {
 
-/// What a file is, as far as its name and its first bytes tell.
+/// What a file is, as far as its name and its first bytes say.
 enum class FileKind : std::uint8_t {
   points,       ///< of a format of points, and nothing says otherwise; text with a point in it
   mesh,         ///< OBJ, glTF, a PLY that declares faces

@@ -61,11 +61,7 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Input>
     throw usage("a sensor position is given, but every input has its own");
   if (options.viewpoint && !is_place(*options.viewpoint))
     throw usage("the viewpoint is not finite, or beyond 1e12 m");
-  if (!(options.max_distance_m > 0)) throw usage("a largest distance that is not positive");
-  if (!(options.max_dropped >= 0 && options.max_dropped <= 1))
-    throw usage("the largest share of points that may be dropped is 0 to 1");
-  if (options.own_body_m && !(*options.own_body_m >= 0 && std::isfinite(*options.own_body_m)))
-    throw usage("the radius of the recording vehicle's own body is negative or not finite");
+  check_settings(options);
 }
 
 std::vector<CloudPart> read_parts(std::span<const Input> inputs, const LoadOptions& options,
@@ -229,12 +225,7 @@ void keep_only(std::vector<T>& values, const Kept& kept) {
 
 void keep_only(PointCloud& cloud, const Kept& kept) {
   keep_only(cloud.positions, kept);
-  keep_only(cloud.sensor_positions, kept);
-  keep_only(cloud.origin_kinds, kept);
-  keep_only(cloud.intensities, kept);
-  keep_only(cloud.classes, kept);
-  keep_only(cloud.instances, kept);
-  keep_only(cloud.scan_indices, kept);
+  for_each_attribute([&](const auto& attribute) { keep_only(attribute.of(cloud), kept); });
 }
 
 /// Throws data for a sensor position that is no place: a float of it would be infinite.
@@ -306,28 +297,25 @@ void unify_origins(std::vector<PointCloud>& clouds) {
 }
 
 /// Empties an attribute that some clouds have and others lack.
-template <class T>
-void unify_attribute(std::vector<PointCloud>& clouds, std::vector<T> PointCloud::*attribute,
-                     const std::string& name, ProgressSink& progress) {
+template <class Attribute>
+void unify_attribute(std::vector<PointCloud>& clouds, const Attribute& attribute,
+                     ProgressSink& progress) {
   std::size_t with = 0, filled = 0;
   for (const PointCloud& cloud : clouds) {
     if (cloud.empty()) continue;
     ++filled;
-    if (!(cloud.*attribute).empty()) ++with;
+    if (!attribute.of(cloud).empty()) ++with;
   }
   if (with == filled) return;
-  for (PointCloud& cloud : clouds) (cloud.*attribute) = {};
+  for (PointCloud& cloud : clouds) attribute.of(cloud) = {};
   if (with != 0)
-    progress.warn(name + " dropped: " + std::to_string(with) + " of " + std::to_string(filled) +
-                  " inputs have them");
+    progress.warn(std::string(attribute.title) + " dropped: " + std::to_string(with) + " of " +
+                  std::to_string(filled) + " inputs have them");
 }
 
 PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, ProgressSink& progress) {
   unify_origins(clouds);
-  unify_attribute(clouds, &PointCloud::intensities, "intensities", progress);
-  unify_attribute(clouds, &PointCloud::classes, "classes", progress);
-  unify_attribute(clouds, &PointCloud::instances, "instances", progress);
-  unify_attribute(clouds, &PointCloud::scan_indices, "scan numbers", progress);
+  for_each_attribute([&](const auto& attribute) { unify_attribute(clouds, attribute, progress); });
   PointCloud all;
   all.origin = origin;
   for (PointCloud& cloud : clouds)
@@ -376,7 +364,7 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   std::size_t dropped = 0;
   for (const Kept& kept : gathered.kept) dropped += count_dropped(kept);
   report.dropped_far = dropped - report.dropped_not_finite;
-  tell_dropped(name_of(inputs), report, options, progress);
+  report_dropped(name_of(inputs), report, options, progress);
   require_metres(name_of(inputs), extents.low, extents.high);
   const Vec3d origin = choose_origin(extents.low, extents.high);
 
@@ -389,7 +377,7 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   }
   PointCloud cloud = joined(std::move(clouds), origin, progress);
   report.own_body = drop_own_body(cloud, options.own_body_m, executor);
-  tell_own_body(name_of(inputs), report, options, progress);
+  report_own_body(name_of(inputs), report, options, progress);
   report.origins = count_origins(cloud);
   return {std::move(cloud), report};
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
+#include "adasplats/core/setting.h"
 
 namespace adasplats {
 
@@ -53,6 +55,75 @@ struct LoadOptions {
   std::optional<double> own_body_m;
 };
 
+/// What of the points is dropped, and when that is an error.
+template <class Visit>
+void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
+  visit(Setting{.name = "max_distance",
+                .help = "Points farther than this from the median of all are dropped, m",
+                .key = "max_distance_m",
+                .group = group,
+                .least = 0,
+                .most = std::numeric_limits<double>::infinity(),
+                .above_least = true},
+        load.max_distance_m);
+  visit(Setting{.name = "max_dropped",
+                .help = "Share of the points that may be dropped as far or not finite before it is "
+                        "an error",
+                .value = "SHARE",
+                .group = group,
+                .least = 0,
+                .most = 1},
+        load.max_dropped);
+  visit(Setting{.name = "own_body",
+                .help = "Points nearer than this to their sensor are the recording vehicle itself "
+                        "and left out, m; 0 keeps all (default: those that go along with the "
+                        "sensor)",
+                .value = "M",
+                .key = "own_body_m",
+                .group = group,
+                .least = 0},
+        load.own_body_m);
+  visit(Setting{.name = "trust_origins",
+                .help = "Take sensor positions though points lie behind others as seen from there, "
+                        "as later returns do",
+                .group = group},
+        load.trust_origins);
+  visit(
+      Setting{.name = "strict", .help = "Points that are not finite are an error", .group = group},
+      load.strict);
+  visit(Setting{.name = "salvage",
+                .help = "Read the whole records of truncated LAS files",
+                .group = group},
+        load.salvage);
+}
+
+/// All but which scans, and the columns of the sensor's position.
+template <class Visit>
+void visit_settings(LoadOptions& load, Visit&& visit) {
+  constexpr const char* kGroup = "Input";
+  visit(Setting{.name = "label_field",
+                .help = "Column of the semantic class",
+                .value = "NAME",
+                .group = kGroup},
+        load.label_field);
+  visit(Setting{.name = "viewpoint",
+                .help = "The station that measured all points that have no sensor position, world "
+                        "coordinates",
+                .group = kGroup},
+        load.viewpoint);
+  visit(Setting{.name = "trajectory",
+                .help = "Poses: the nearest one turns the normals of points that have no sensor "
+                        "position; a guess, nothing is checked with it",
+                .group = kGroup},
+        load.trajectory);
+  visit(Setting{.name = "beams_from_poses",
+                .help = "Beams of sequences start at their poses, even where the sensor is "
+                        "recognised",
+                .group = kGroup},
+        load.beams_from_poses);
+  visit_drop_settings(load, kGroup, visit);
+}
+
 /// What was dropped on the way.
 struct LoadReport {
   std::size_t points_read = 0;
@@ -85,11 +156,11 @@ struct LoadReport {
 /// Memory: sequences 1.1x the cloud; files the reader's plus 24 bytes a point. Whichever scans of a
 /// sequence are chosen, up to five are read to recognise its sensor and up to eight to check its
 /// poses (require_poses_that_fit), without labels; there one that cannot be read is skipped. What
-/// is dropped is told as warnings. Errors: those of the readers; data for sensor positions that are
-/// impossible (usage for options that state one); data for too much dropped (max_dropped) and for
-/// longitudes and latitudes instead of metres (require_metres); usage for options that fit nothing
-/// and for named columns that are not there; data for labels that are no whole numbers from 0 to
-/// 2^32 - 1.
+/// is dropped is reported as warnings. Errors: those of the readers; data for sensor positions that
+/// are impossible (usage for options that state one); data for too much dropped (max_dropped) and
+/// for longitudes and latitudes instead of metres (require_metres); usage for options that fit
+/// nothing and for named columns that are not there; data for labels that are no whole numbers from
+/// 0 to 2^32 - 1.
 std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
                                              const LoadOptions& options, const Executor& executor,
                                              ProgressSink& progress);

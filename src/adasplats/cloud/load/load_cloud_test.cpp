@@ -200,7 +200,7 @@ TEST(LoadCloud, PointsThatAreNotFiniteAreCounted) {
   EXPECT_EQ(report.points_read, 5U);
   EXPECT_EQ(report.dropped_not_finite, 2U);
   EXPECT_EQ(report.unknown_intensities, 1U);
-  expect_error(ErrorKind::data, {"a.bin", "2 of 5 points (40 %)", "not finite", "--max-dropped"},
+  expect_error(ErrorKind::data, {"a.bin", "2 of 5 points (40 %)", "not finite", "`max_dropped`"},
                [&] { load({file}); });
   LoadOptions strict;
   strict.strict = true;
@@ -246,7 +246,7 @@ TEST(LoadCloud, TwoPlacesAreAnError) {
   const TemporaryFolder folder;
   const auto half = folder.write("half.xyz", two_places(52, 48));
   expect_error(ErrorKind::data,
-               {"half.xyz", "48 of 100 points (48 %)", "100000 m", "--max-distance"},
+               {"half.xyz", "48 of 100 points (48 %)", "100000 m", "`max_distance`"},
                [&] { load({half}); });
   LoadOptions options;
   options.max_dropped = 0.5;

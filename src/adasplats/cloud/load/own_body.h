@@ -18,7 +18,7 @@ struct OwnBodyOptions {
   double reach_m = 4;               ///< of a body from its sensor
   double ring_m = 0.1;              ///< width and height of rings around the sensor's vertical axis
   double station_m = 0.2;           ///< side of the cells of sensor positions that are one station
-  std::size_t least_stations = 20;  ///< of fewer nothing can be told
+  std::size_t least_stations = 20;  ///< fewer decide nothing
   double least_path_m = 8;          ///< nor where the sensor moved less
   double least_share = 0.1;         ///< of the stations that have points in a ring of the body
   std::size_t looking = 64;         ///< stations that look for it, evenly chosen
@@ -30,9 +30,9 @@ struct OwnBodyOptions {
 
 /// The points on the vehicle, mast or person that carried the sensor, 1 or 0 each; empty: none
 /// found. They keep their place beside the sensor while it moves, and beams from elsewhere go
-/// through where they are. Rings instead of cells in the sensor's frame, since a point tells where
+/// through where they are. Rings instead of cells in the sensor's frame, since a point says where
 /// its sensor was, but not how it was turned. Only measured origins count. Nothing is found where
-/// no other beams tell: a sensor at rest, rooms of a building, profiles of a mobile scanner.
+/// no other beams know: a sensor at rest, rooms of a building, profiles of a mobile scanner.
 /// Time: a few passes over the points.
 std::vector<std::uint8_t> find_own_body(const PointCloud& cloud, const OwnBodyOptions& options,
                                         const Executor& executor);

@@ -23,7 +23,7 @@ std::string place_text(Vec3d place) {
   std::string text;
   for (int axis = 0; axis < 3; ++axis) {
     std::string number = std::to_string(place[axis]);
-    number.erase(number.find('.') + 3);  // centimetres tell places apart
+    number.erase(number.find('.') + 3);  // centimetres distinguish places
     text += (axis == 0 ? "" : ",") + number;
   }
   return text;

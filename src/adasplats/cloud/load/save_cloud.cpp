@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <type_traits>
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/io/ply/ply.h"
@@ -29,12 +30,6 @@ void add_vectors(std::vector<ColumnView>& columns, const Names& names, ColumnTyp
   columns.push_back({names[2], type, &values.front().z, sizeof(Vec3<T>)});
 }
 
-template <class T>
-void add_values(std::vector<ColumnView>& columns, std::string_view name, ColumnType type,
-                const std::vector<T>& values) {
-  if (!values.empty()) columns.push_back({name, type, values.data(), sizeof(T)});
-}
-
 }  // namespace
 
 void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud) {
@@ -52,11 +47,14 @@ void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud) 
     add_vectors(columns, kPositionColumns, ColumnType::f64, world_positions);
     add_vectors(columns, kSensorColumns, ColumnType::f64, world_sensors);
   }
-  add_values(columns, "origin_kind", ColumnType::u8, cloud.origin_kinds);
-  add_values(columns, "intensity", ColumnType::f32, cloud.intensities);
-  add_values(columns, "label", ColumnType::u16, cloud.classes);
-  add_values(columns, "instance", ColumnType::u16, cloud.instances);
-  add_values(columns, "scan_index", ColumnType::u32, cloud.scan_indices);
+  for_each_attribute([&](const auto& attribute) {
+    const auto& values = attribute.of(cloud);
+    using Value = typename std::decay_t<decltype(values)>::value_type;
+    if constexpr (!std::is_same_v<Value, Vec3f>) {
+      if (values.empty()) return;
+      columns.push_back({attribute.column, column_type<Value>(), values.data(), sizeof(Value)});
+    }
+  });
   write_ply(path, cloud.size(), columns);
 }
 

@@ -111,7 +111,7 @@ std::string station_objection(const StationView& view) {
     return in_percent(view.share_behind) +
            " of the points lie behind others as seen from there; of what one station measured, at "
            "most " +
-           in_percent(kMostBehind) + " do (but for later returns: --trust-origins)";
+           in_percent(kMostBehind) + " do (but for later returns: `trust_origins`)";
   }
   return {};
 }

@@ -32,11 +32,11 @@ void append_values(std::vector<T>& values, std::vector<T>&& more) {
 }
 
 bool same_attributes(const PointCloud& a, const PointCloud& b) {
-  return a.sensor_positions.empty() == b.sensor_positions.empty() &&
-         a.origin_kinds.empty() == b.origin_kinds.empty() &&
-         a.intensities.empty() == b.intensities.empty() && a.classes.empty() == b.classes.empty() &&
-         a.instances.empty() == b.instances.empty() &&
-         a.scan_indices.empty() == b.scan_indices.empty();
+  bool same = true;
+  for_each_attribute([&](const auto& attribute) {
+    same = same && attribute.of(a).empty() == attribute.of(b).empty();
+  });
+  return same;
 }
 
 double choose_origin_along_axis(double low, double high) {
@@ -83,14 +83,13 @@ std::string describe_origins(const OriginCounts& counts) {
 }
 
 PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices) {
-  return {cloud.origin,
-          gathered(cloud.positions, indices),
-          gathered(cloud.sensor_positions, indices),
-          gathered(cloud.origin_kinds, indices),
-          gathered(cloud.intensities, indices),
-          gathered(cloud.classes, indices),
-          gathered(cloud.instances, indices),
-          gathered(cloud.scan_indices, indices)};
+  PointCloud result;
+  result.origin = cloud.origin;
+  result.positions = gathered(cloud.positions, indices);
+  for_each_attribute([&](const auto& attribute) {
+    attribute.of(result) = gathered(attribute.of(cloud), indices);
+  });
+  return result;
 }
 
 void append(PointCloud& cloud, PointCloud&& other) {
@@ -103,12 +102,9 @@ void append(PointCloud& cloud, PointCloud&& other) {
   if (!same_attributes(cloud, other))
     throw std::logic_error("append: clouds of two attribute sets");
   append_values(cloud.positions, std::move(other.positions));
-  append_values(cloud.sensor_positions, std::move(other.sensor_positions));
-  append_values(cloud.origin_kinds, std::move(other.origin_kinds));
-  append_values(cloud.intensities, std::move(other.intensities));
-  append_values(cloud.classes, std::move(other.classes));
-  append_values(cloud.instances, std::move(other.instances));
-  append_values(cloud.scan_indices, std::move(other.scan_indices));
+  for_each_attribute([&](const auto& attribute) {
+    append_values(attribute.of(cloud), std::move(attribute.of(other)));
+  });
 }
 
 Vec3d choose_origin(Vec3d low, Vec3d high) {

@@ -40,6 +40,47 @@ struct PointCloud {
   Vec3d world(std::size_t i) const { return origin + vec_cast<double>(positions[i]); }
 };
 
+/// One attribute of points with all its names. of(cloud) is its array in a PointCloud, or in
+/// another struct with members of the same names.
+template <class Of>
+struct PointAttribute {
+  Of of;
+  const char* name;    ///< of the member, in Python and in pickles
+  const char* column;  ///< of the files of save_cloud_ply(); empty: saved with the positions
+  const char* title;   ///< in messages
+  int tie_rank;        ///< of points at one place the attribute of the least rank decides first
+  const char* about;   ///< what the numbers are
+};
+template <class Of>
+PointAttribute(Of, const char*, const char*, const char*, int, const char*) -> PointAttribute<Of>;
+
+/// Calls visit(PointAttribute) for every attribute, in the order of files; positions are none. What
+/// treats attributes alike goes through it, so that a new one is a member and an entry here.
+template <class Visit>
+void for_each_attribute(Visit&& visit) {
+  visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.sensor_positions); },
+                       "sensor_positions", "", "sensor positions", 4, "m, relative to origin"});
+  visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.origin_kinds); },
+                       "origin_kinds", "origin_kind", "kinds of origins", 5,
+                       "how sensor_positions are known: 0 not, 1 guessed, 2 stated, 3 measured"});
+  visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.intensities); },
+                       "intensities", "intensity", "intensities", 3,
+                       "in the unit of the file, NaN where it is not known"});
+  visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.classes); }, "classes",
+                       "label", "classes", 0, "ids of a label scheme"});
+  visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.instances); }, "instances",
+                       "instance", "instances", 1, "0 for none"});
+  visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.scan_indices); },
+                       "scan_indices", "scan_index", "scan numbers", 2,
+                       "the scan that a point is from"});
+}
+
+/// The address of an attribute's values; null for one that a cloud lacks.
+template <class Values>
+auto data_or_null(const Values& values) {
+  return values.empty() ? nullptr : values.data();
+}
+
 /// How many points have an origin of each kind, by its number.
 using OriginCounts = std::array<std::size_t, 4>;
 OriginCounts count_origins(const PointCloud& cloud);

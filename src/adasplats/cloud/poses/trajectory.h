@@ -26,7 +26,7 @@ using Trajectory = std::vector<TimedPose>;
 ///   unless a folder `velodyne` is beside them: a sequence must say which frame its poses are in
 ///   (the identity as Tr: the LiDAR's). Times from `times.txt` beside it, else 0.1 s apart.
 /// - CSV with a first line time,x,y,z,qw,qx,qy,qz, or TUM: values between blanks, and before them a
-///   line '# timestamp tx ty tz qx qy qz qw'. The names (of either) tell the order; other columns
+///   line '# timestamp tx ty tz qx qy qz qw'. The names (of either) say the order; other columns
 ///   are skipped. Without them it is an error: the order of a quaternion cannot be guessed.
 /// Lines that begin with '#' are comments.
 /// Errors (ErrorKind::data with the line): a sequence without Tr, wrong number of values, columns

@@ -255,7 +255,7 @@ Trajectory read_timed_poses(const std::filesystem::path& path, const PoseColumns
 }
 
 /// Lines that may be timed poses say which value is which: of the quaternion the usual orders
-/// differ, and nothing in the numbers tells them apart.
+/// differ, and nothing in the numbers distinguishes them.
 void require_rows_of_matrices(const std::filesystem::path& path, const NumberedLine& first) {
   constexpr std::size_t kTimedPose = 8;
   const bool has_commas = first.text.find(',') != std::string::npos;

@@ -21,7 +21,7 @@ constexpr double kLeastApart_m = 3, kMostApart_m = 15;
 constexpr double kSourceReach_m = 20;                             // of the points that are moved
 constexpr double kTargetReach_m = kSourceReach_m + kMostApart_m;  // where they can come to
 constexpr double kColumn_m = 1, kUpright_m = 1;
-// Beams of 2 degrees are 0.7 m apart at 20 m: finer cells would tell the pattern of the beams.
+// Beams of 2 degrees are 0.7 m apart at 20 m: finer cells would show the pattern of the beams.
 constexpr double kVoxel_m = 0.5;
 constexpr std::size_t kMostPoints = 1000, kLeastPoints = 200;  // of a pair
 

@@ -105,7 +105,7 @@ TEST(PoseCheck, WhatTellsNothingIsBelieved) {
   EXPECT_EQ(weigh_poses(KittiSequence{}).pairs, 0U);
 }
 
-// A scan that nobody chose must not stop what reads others; labels tell nothing of poses.
+// A scan that nobody chose must not stop what reads others; labels say nothing of poses.
 TEST(PoseCheck, ScansThatCannotBeReadAreSkipped) {
   const TemporaryFolder folder;
   KittiSequence sequence = drive(folder, street(), 12, kHonest);

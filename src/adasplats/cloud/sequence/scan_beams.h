@@ -51,7 +51,7 @@ struct ScanBeams {
 void set_raw_motions(ScanBeams& beams, const Trajectory& poses, const Trajectory& motion,
                      double revolution_s = 0.1033);
 
-/// Tells by the points of up to five scans whether a Velodyne HDL-64E measured them: they lie on
+/// Finds from the points of up to five scans whether a Velodyne HDL-64E measured them: they lie on
 /// the 64 cones that its beams sweep, to a few millimetres (two centimetres by chance), when the
 /// motion compensation is undone where there was one. Other sensors: default, all beams from the
 /// frame's origin. Errors: those of read_kitti_scan.

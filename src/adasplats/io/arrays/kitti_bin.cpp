@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kKittiFloats = 4;
 constexpr std::size_t kNuScenesFloats = 5;
-// Sensors and file formats tell intensities as shares of 1, in bytes or in 16 bits.
+// Sensors and file formats give intensities as shares of 1, in bytes or in 16 bits.
 constexpr float kMostIntensity = 65535;
 // No sensor has more beams; the whole numbers of a column of rings lie below it.
 constexpr float kMostRings = 256;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -45,6 +46,25 @@ struct MeshTable {
 };
 
 enum class ColumnType : std::uint8_t { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
+
+/// Of numbers as C++ has them, and of enums by their numbers.
+template <class T>
+constexpr ColumnType column_type() {
+  if constexpr (std::is_enum_v<T>) {
+    return column_type<std::underlying_type_t<T>>();
+  } else {
+    static_assert(std::is_arithmetic_v<T>);
+    if constexpr (std::is_floating_point_v<T>)
+      return sizeof(T) == 4 ? ColumnType::f32 : ColumnType::f64;
+    constexpr bool kSigned = std::is_signed_v<T>;
+    switch (sizeof(T)) {
+      case 1: return kSigned ? ColumnType::i8 : ColumnType::u8;
+      case 2: return kSigned ? ColumnType::i16 : ColumnType::u16;
+      case 4: return kSigned ? ColumnType::i32 : ColumnType::u32;
+      default: return kSigned ? ColumnType::i64 : ColumnType::u64;
+    }
+  }
+}
 
 /// A column to be written: values of one type at a fixed stride, wherever they are.
 struct ColumnView {

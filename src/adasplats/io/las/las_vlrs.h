@@ -23,7 +23,7 @@ struct LasExtraField {
   double offset = 0;
 };
 
-/// What the variable length records of a file tell of its points.
+/// What the variable length records of a file say of its points.
 struct LasDescription {
   /// Scalar attributes ("LAS specification 1.4 - R15", table 24); what is not described, arrays and
   /// what does not fit the record are left out.

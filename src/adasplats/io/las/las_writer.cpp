@@ -30,7 +30,7 @@ constexpr std::size_t kHeaderBytes = 375;       // table 3
 constexpr std::size_t kExtraRecordBytes = 192;  // table 24
 constexpr std::uint16_t kExtraRecordId = 4;
 constexpr std::size_t kMostReturns = 15;
-// Point formats 6 to 10 must set it (table 4): a coordinate system, if any, is told as WKT.
+// Point formats 6 to 10 must set it (table 4): a coordinate system, if any, is reported as WKT.
 constexpr std::uint16_t kWktBit = 1 << 4;
 
 template <class T>
@@ -131,7 +131,7 @@ class PointColumns {
   std::vector<ColumnView> extras_;
 };
 
-/// What the header tells of all points.
+/// What the header says of all points.
 struct Summary {
   std::array<std::int32_t, 3> low, high;
   std::array<std::uint64_t, kMostReturns> by_return = {};

@@ -14,7 +14,7 @@
 namespace adasplats {
 namespace {
 
-/// Measured scans of a sequence, and whether they tell which beams found nothing.
+/// Measured scans of a sequence, and whether they say which beams found nothing.
 class EchoSequence {
  public:
   explicit EchoSequence(const EchoInputs& inputs)
@@ -23,19 +23,19 @@ class EchoSequence {
         motion_(inputs.motion.empty() ? sequence_.trajectory : load_trajectory(inputs.motion)) {
     require_poses_that_fit(sequence_);
     sequence_.beams = recognize_beams(sequence_);
-    if (tells_empty_beams()) {
+    if (knows_empty_beams()) {
       set_raw_motions(sequence_.beams, sequence_.trajectory, motion_);
     } else if (!inputs.motion.empty()) {
-      require_raw("--motion");
+      require_raw("`motion`");
     }
   }
 
   /// Compensated scans are bent off the grid of beams.
-  bool tells_empty_beams() const {
+  bool knows_empty_beams() const {
     return sequence_.beams.from_hdl64 && sequence_.beams.sweeps_m.empty();
   }
   void require_raw(const std::string& what) const {
-    if (tells_empty_beams()) return;
+    if (knows_empty_beams()) return;
     throw Error(ErrorKind::usage,
                 what + " needs scans of an HDL-64E as they were measured; those of " +
                     sequence_.folder.string() + " are " +
@@ -83,13 +83,13 @@ EchoResult evaluate_echoes(const EchoInputs& inputs, const std::filesystem::path
   std::optional<RayDropModel> drop_model;
   if (!drop.empty()) drop_model = load_ray_drop(drop);
   const EchoSequence measured(inputs);
-  if (drop_model) measured.require_raw("--drop");
-  if (inputs.sensor_is_asked) measured.require_raw("--sensor");
+  if (drop_model) measured.require_raw("`drop`");
+  if (inputs.sensor_is_asked) measured.require_raw("`sensor`");
   ModelScene scene(inputs.model, "", session);
   EchoResult result;
   result.intensity = intensity_accuracy(EchoSequence::echo_scene(scene), measured.sequence(),
                                         measured.scans(), session.executor, session.progress);
-  if (!measured.tells_empty_beams()) return result;
+  if (!measured.knows_empty_beams()) return result;
   const BeamEchoes beams = measured.beams(scene, inputs.sensor, session);
   result.misses = drop_accuracy(beams, nullptr);
   if (!drop_model) return result;

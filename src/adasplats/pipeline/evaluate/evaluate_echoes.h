@@ -18,7 +18,7 @@ struct EchoInputs {
   std::filesystem::path model;
   std::filesystem::path sequence;
   ScanRange scans;               ///< of the sequence
-  std::filesystem::path motion;  ///< poses that tell how the sensor of raw scans moved; empty: the
+  std::filesystem::path motion;  ///< poses that say how the sensor of raw scans moved; empty: the
                                  ///< sequence's own
   std::string sensor = "velodyne-hdl-64e-kitti";  ///< whose beams are looked for in raw scans
   bool sensor_is_asked = false;                   ///< then the scans have to be raw
@@ -26,7 +26,7 @@ struct EchoInputs {
 
 struct EchoResult {
   IntensityAccuracy intensity;
-  /// Where the scans tell which beams found nothing: as they were measured, of an HDL-64E.
+  /// Where the scans say which beams found nothing: as they were measured, of an HDL-64E.
   std::optional<DropAccuracy> misses;     ///< without a drop model
   std::optional<DropAccuracy> drop;       ///< with it; all beams
   std::optional<DropAccuracy> unblocked;  ///< with it; without the beams that it says are blocked

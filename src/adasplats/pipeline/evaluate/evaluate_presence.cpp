@@ -17,7 +17,7 @@ PresenceResult evaluate_presence(const PresenceJob& job, Session& session) {
   const auto scheme = label_scheme_for(job.labels, inputs);
   const PointCloud cloud = load_cloud(inputs, job.load, session.executor, session.progress).first;
   if (cloud.classes.empty() && !job.labels.empty()) {
-    throw Error(ErrorKind::usage, "--labels has no effect: the points have no labels");
+    throw Error(ErrorKind::usage, "`labels` has no effect: the points have no labels");
   }
   const ModelScene scene(job.model, "", session);
   session.progress.begin_step("cast", kPassUnits);

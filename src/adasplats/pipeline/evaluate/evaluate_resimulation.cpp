@@ -33,7 +33,7 @@ KittiSequence open_held_out(const HeldOutScans& scans) {
   if (!scans.beams_from_poses) all.beams = recognize_beams(all);
   if (!scans.motion.empty()) {
     if (!all.beams.sweeps_m.empty())
-      throw Error(ErrorKind::usage, "--motion is for scans as they were measured; those of " +
+      throw Error(ErrorKind::usage, "`motion` is for scans as they were measured; those of " +
                                         all.folder.string() + " are motion-compensated");
     set_raw_motions(all.beams, all.trajectory, load_trajectory(scans.motion));
   }

@@ -19,7 +19,7 @@ struct HeldOutScans {
   std::filesystem::path sequence;
   ScanRange scans;                ///< of the sequence
   bool beams_from_poses = false;  ///< even where the sensor is recognised
-  std::filesystem::path motion;   ///< poses that tell how the sensor of raw scans moved, or empty
+  std::filesystem::path motion;   ///< poses that say how the sensor of raw scans moved, or empty
 };
 
 /// The chosen scans with where their beams started. Errors: usage (a motion for compensated scans;

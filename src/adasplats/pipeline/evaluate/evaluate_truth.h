@@ -7,6 +7,7 @@
 
 #include "adasplats/evaluate/truth.h"
 #include "adasplats/pipeline/session/session.h"
+#include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {
 
@@ -14,7 +15,7 @@ namespace adasplats {
 struct TruthJob {
   std::filesystem::path model;
   std::filesystem::path truth;  ///< triangle mesh
-  std::string sensor = "hdl-64-paper";
+  std::string sensor = kDefaultSensor;
   std::filesystem::path trajectory;  ///< pose file or sequence folder
   Vec3d offset_m;
   std::size_t every = 1;  ///< takes every n-th pose

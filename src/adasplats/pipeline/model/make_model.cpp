@@ -32,12 +32,12 @@ void require_splats(const SplatModel& model, const BuildReport& built) {
 
 /// Makes one model; the points come from `load_points`, as often as they are asked for: building
 /// takes the memory that they stand in, so that they are loaded again rather than kept.
-class Making {
+class ModelMaker {
  public:
   using LoadPoints = std::function<PointCloud()>;
 
-  Making(const ModelOptions& options, std::optional<LabelScheme> scheme, LoadPoints load_points,
-         Session& session)
+  ModelMaker(const ModelOptions& options, std::optional<LabelScheme> scheme, LoadPoints load_points,
+             Session& session)
       : options_(options),
         scheme_(std::move(scheme)),
         load_points_(std::move(load_points)),
@@ -52,13 +52,13 @@ class Making {
     PointCloud cloud = load(result);
     check_label_use({options_.labels, options_.build.remove, options_.removal_is_asked}, cloud,
                     scheme_ ? &*scheme_ : nullptr, session_.progress);
-    const bool tells_reflectance = cloud.has_beams() && !cloud.intensities.empty();
+    const bool has_reflectance = cloud.has_beams() && !cloud.intensities.empty();
     auto [model, built] = build_on_device(std::move(cloud), result);
     require_splats(model, built);
     if (scheme_) model.label_scheme = scheme_reference(options_.labels, *scheme_);
     result.steps.insert(result.steps.end(), built.steps.begin(), built.steps.end());
     result.built = std::move(built);
-    if (options_.reflectance && tells_reflectance && !model.intensities.empty())
+    if (options_.reflectance && has_reflectance && !model.intensities.empty())
       result.reflectance_measured = add_reflectances(model, result);
     return std::move(model);
   }
@@ -90,7 +90,7 @@ class Making {
     return build(std::move(cloud), nullptr);
   }
 
-  /// Makes reflectances of the model's intensities; false: too few points tell them.
+  /// Makes reflectances of the model's intensities; false: too few points show them.
   bool add_reflectances(SplatModel& model, ModelResult& result) {
     const PointCloud cloud = load(result);
     const Stopwatch watch;
@@ -122,8 +122,8 @@ std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& sess
     result.loaded = loaded;
     return std::move(cloud);
   };
-  Making making(job, label_scheme_for(job.labels, job.inputs), load_points, session);
-  SplatModel model = making.run(result);
+  ModelMaker maker(job, label_scheme_for(job.labels, job.inputs), load_points, session);
+  SplatModel model = maker.run(result);
   result.seconds = total.seconds();
   return {std::move(model), std::move(result)};
 }
@@ -133,9 +133,9 @@ std::pair<SplatModel, ModelResult> make_model(const PointCloud& cloud, const Mod
   const Stopwatch total;
   ModelResult result;
   result.loaded.points_read = cloud.size();
-  Making making(
+  ModelMaker maker(
       options, label_scheme_for(options.labels, {}), [&cloud] { return cloud; }, session);
-  SplatModel model = making.run(result);
+  SplatModel model = maker.run(result);
   result.seconds = total.seconds();
   return {std::move(model), std::move(result)};
 }

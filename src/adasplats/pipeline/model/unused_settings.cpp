@@ -21,13 +21,17 @@ void add(const Settings& settings, std::initializer_list<std::string_view> names
   }
 }
 
-void add_consistent(const ConsistentOptions& consistent, List& unused) {
+/// Of a method's own settings; most have none.
+template <class Options>
+void add_own(const Options& /*own*/, List& /*unused*/) {}
+
+void add_own(const ConsistentOptions& consistent, List& unused) {
   if (consistent.balance_rounds > 0) return;
   add(consistent, {"strict_rounds", "settle_rounds", "fill"},
       "without balance rounds, where no ray is looked at", unused);
 }
 
-void add_paper(const PaperOptions& paper, List& unused) {
+void add_own(const PaperOptions& paper, List& unused) {
   if (!paper.denoise) add(paper, {"denoise_sigmas", "denoise_votes"}, "without denoising", unused);
   if (!paper.resample)
     add(paper, {"resample_density", "resample_base"}, "without resampling", unused);
@@ -53,15 +57,19 @@ void add_paper(const PaperOptions& paper, List& unused) {
 
 List unused_settings(const RecipeChoice& choice) {
   const ModelRecipe recipe = choice.recipe();
-  if (const auto* paper = std::get_if<PaperOptions>(&recipe)) {
-    List unused =
-        all_unused(choice.consistent, "with the paper's methods; it is for the method consistent");
-    add_paper(*paper, unused);
-    return unused;
-  }
-  List unused =
-      all_unused(choice.paper, "with the method consistent; it is for the paper's methods");
-  add_consistent(choice.consistent, unused);
+  std::string chosen;
+  visit_methods(choice, [&]<class Options>(const Options&, const char* method) {
+    if (std::holds_alternative<Options>(recipe)) chosen = method;
+  });
+  List unused;
+  visit_methods(choice, [&]<class Options>(const Options& options, const char* method) {
+    if (const auto* held = std::get_if<Options>(&recipe)) {
+      add_own(*held, unused);
+    } else {
+      const List others = all_unused(options, "with " + chosen + "; it is for " + method);
+      unused.insert(unused.end(), others.begin(), others.end());
+    }
+  });
   return unused;
 }
 

@@ -61,7 +61,7 @@ void check_replaceable(const fs::path& folder, bool overwrite, const std::string
   if (!fs::is_directory(status)) throw cannot_create(folder, "exists and is not a folder");
   if (fs::is_empty(folder, failure)) return;
   if (!overwrite) {
-    throw cannot_create(folder, "the folder is not empty; --overwrite replaces earlier output");
+    throw cannot_create(folder, "the folder is not empty; `overwrite` replaces earlier output");
   }
   // Replacing removes all that is there: it must be what this command makes again.
   if (writer_of(folder) != command) {

@@ -35,10 +35,9 @@ void put_in_place(const std::filesystem::path& partial, const std::filesystem::p
 class OutputFolder {
  public:
   /// `content` goes into the file adasplats.json of the folder, with the program's version and the
-  /// command; it tells output of ours from other folders. A folder that is not empty is refused;
-  /// with `overwrite` one that the same command wrote is replaced. A folder that another process
-  /// fills now is refused; what a killed process left is removed.
-  /// Errors: cannot_create.
+  /// command; it distinguishes output of ours from other folders. A folder that is not empty is
+  /// refused; with `overwrite` one that the same command wrote is replaced. A folder that another
+  /// process fills now is refused; what a killed process left is removed. Errors: cannot_create.
   OutputFolder(const std::filesystem::path& folder, bool overwrite, const std::string& command,
                const nlohmann::ordered_json& content);
   ~OutputFolder();

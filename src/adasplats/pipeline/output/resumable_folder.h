@@ -13,7 +13,7 @@ namespace adasplats {
 
 /// An output folder that appears whole or not at all, whose making can be interrupted at any moment
 /// and goes on where it stopped. It is filled beside its place under the name ".NAME.unfinished",
-/// where a journal tells which files are whole, with their SHA-256; commit() renames it.
+/// where a journal says which files are whole, with their SHA-256; commit() renames it.
 class ResumableFolder {
  public:
   /// `content` says what the folder is made of and how: all that its files depend on. It goes into

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "adasplats/core/setting.h"
+
 namespace adasplats {
 namespace {
 
@@ -86,7 +88,7 @@ Json device_json(const DeviceChoice& device) {
   } else {
     json["name"] = cpu_name();
     json["driver"] = nullptr;
-    if (!device.reason.empty()) json["reason"] = device.reason;
+    if (!device.reason.empty()) json["reason"] = with_settings_as_options(device.reason);
   }
   return json;
 }

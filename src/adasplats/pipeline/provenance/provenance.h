@@ -14,7 +14,7 @@ namespace adasplats {
 /// manifests carry none of it: their bytes depend on data and settings alone.
 struct Provenance {
   std::string version;        ///< of the library
-  std::string commit;         ///< it was built from; "unknown" where the build could not tell
+  std::string commit;         ///< it was built from; "unknown" where the build could not say
   std::optional<bool> dirty;  ///< the sources differed from the commit; nothing: unknown
   std::string date;           ///< of now, UTC: 2026-01-31T12:00:00Z
   std::string command;        ///< of this process
@@ -33,7 +33,7 @@ nlohmann::ordered_json to_json(const Provenance& provenance);
 std::string shell_word(const std::string& word);
 
 /// How this process was started, the program without its folder; empty where the system does not
-/// tell.
+/// say.
 std::string own_command_line();
 
 }  // namespace adasplats

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 TEST(Provenance, TellsWhatAFigureComesFrom) {
   const Json json = to_json(provenance_of(3));
   EXPECT_FALSE(json["version"].get<std::string>().empty());
-  // tests/command_line/test_provenance.py tells which commit it has to be.
+  // tests/command_line/test_provenance.py says which commit it has to be.
   EXPECT_FALSE(json["commit"].get<std::string>().empty());
   EXPECT_TRUE(json["dirty"].is_null() || json["dirty"].is_boolean());
   EXPECT_TRUE(std::regex_match(json["date"].get<std::string>(),

@@ -2,18 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/scene/drive.h"
 
+#include <numbers>
+
+#include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/error.h"
 #include "adasplats/pipeline/session/inputs.h"
 
 namespace adasplats {
 
+RigidTransform MountSettings::transform() const {
+  const Vec3d turn_rad = (std::numbers::pi / 180) * rotation_deg;
+  return {rotation_from_yaw_pitch_roll(turn_rad.x, turn_rad.y, turn_rad.z), translation_m};
+}
+
 Trajectory sensor_poses(const DriveOptions& drive) {
-  if (drive.every == 0) throw Error(ErrorKind::usage, "--every must be at least 1");
-  if (drive.rate_hz > 0 && drive.spacing_m > 0)
-    throw Error(ErrorKind::usage, "--rate and --spacing cannot stand together");
+  check_settings(drive);
+  if (drive.rate_hz && drive.spacing_m)
+    throw Error(ErrorKind::usage, "`rate` and `spacing` cannot stand together");
   Trajectory all = load_trajectory(drive.trajectory);
-  if (drive.rate_hz > 0) all = resampled_by_time(all, drive.rate_hz);
-  if (drive.spacing_m > 0) all = resampled_by_distance(all, drive.spacing_m);
+  if (drive.rate_hz) all = resampled_by_time(all, *drive.rate_hz);
+  if (drive.spacing_m) all = resampled_by_distance(all, *drive.spacing_m);
   Trajectory taken;
   for (std::size_t i = 0; i < all.size(); i += drive.every) taken.push_back(all[i]);
   if (taken.empty()) throw Error(ErrorKind::data, drive.trajectory.string() + ": no poses");
@@ -24,7 +32,7 @@ std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel&
   const Trajectory poses = sensor_poses(drive);
   if (!drive.rolling_shutter) {
     if (!drive.motion.empty())
-      throw Error(ErrorKind::usage, "--motion is of use with --rolling-shutter alone");
+      throw Error(ErrorKind::usage, "`motion` is of use with `rolling_shutter` alone");
     return still_scans(poses);
   }
   const Trajectory motion = load_trajectory(drive.motion.empty() ? drive.trajectory : drive.motion);

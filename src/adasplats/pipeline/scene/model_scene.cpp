@@ -34,7 +34,7 @@ ModelScene::ModelScene(const std::filesystem::path& file, const std::string& lab
   if (file.extension() == ".toml") world_file = place_with_objects(file, world_files);
   if (!labels.empty()) labels_ = load_label_scheme(labels);
   session.progress.begin_step("load " + file.filename().string(), 0);
-  load(world_file ? world_file->model : file);
+  place_ = load_place(world_file ? world_file->model : file);
   prepare(file.string(), session);
   if (world_file) {
     add_objects([&](World& world) {
@@ -44,26 +44,17 @@ ModelScene::ModelScene(const std::filesystem::path& file, const std::string& lab
   session.progress.end_step();
 }
 
-ModelScene::ModelScene(SplatModel splats, std::optional<LabelScheme> labels, Session& session)
-    : executor_(session.executor), splats_(std::move(splats)), labels_(std::move(labels)) {
-  prepare("the model", session);
-  session.progress.end_step();
-}
-
-ModelScene::ModelScene(MeshModel mesh, std::optional<LabelScheme> labels, Session& session)
-    : executor_(session.executor),
-      is_mesh_(true),
-      mesh_(std::move(mesh)),
-      labels_(std::move(labels)) {
-  prepare("the mesh", session);
+ModelScene::ModelScene(Place place, std::optional<LabelScheme> labels, Session& session)
+    : executor_(session.executor), place_(std::move(place)), labels_(std::move(labels)) {
+  prepare(splats() != nullptr ? "the model" : "the mesh", session);
   session.progress.end_step();
 }
 
 /// What every scene needs once its geometry is there.
 void ModelScene::prepare(const std::string& name, Session& session) {
   if (view().primitive_count() == 0)
-    throw Error(ErrorKind::data, name + (is_mesh_ ? ": no triangles" : ": no splats"));
-  const std::string& known = is_mesh_ ? mesh_.label_scheme : splats_.label_scheme;
+    throw Error(ErrorKind::data, name + ": no " + std::string(primitives_of(place_)));
+  const std::string& known = label_scheme_of(place_);
   if (!labels_ && !known.empty()) {
     try {
       labels_ = load_label_scheme(known);
@@ -94,23 +85,13 @@ void ModelScene::make_tracers(Session& session) {
   caster_ = make_cpu_scan_caster(*tracer_, origin(), executor_);
 }
 
-void ModelScene::load(const std::filesystem::path& file) {
-  is_mesh_ = is_mesh_file(file);
-  if (is_mesh_) {
-    mesh_ = load_mesh(file);
-  } else {
-    splats_ = load_model(file);
-  }
-}
-
-SceneView ModelScene::view() const { return is_mesh_ ? mesh_.view() : splats_.view(); }
-
 PrimitiveAttributes ModelScene::place_attributes() const {
   PrimitiveAttributes attributes;
-  attributes.classes = is_mesh_ ? mesh_.mesh.classes : splats_.classes;
-  attributes.intensities = splats_.intensities;
+  attributes.classes = classes_of(place_);
+  attributes.intensities = intensities_of(place_);
   attributes.view = view();
-  if (!splats_.response.empty()) attributes.response = &splats_.response;
+  if (const SplatModel* model = splats(); model != nullptr && !model->response.empty())
+    attributes.response = &model->response;
   return attributes;
 }
 
@@ -118,14 +99,15 @@ ImageScene ModelScene::image_scene() const {
   ImageScene scene;
   scene.view = view();
   scene.attributes = place_attributes();
-  scene.groups = splats_.groups;
+  if (const SplatModel* model = splats()) scene.groups = model->groups;
   scene.labels = labels_ ? &*labels_ : nullptr;
   scene.origin = origin();
   return scene;
 }
 
 ImageColor ModelScene::default_color() const {
-  const bool bare = place_attributes().classes.empty() && splats_.groups.empty();
+  const ImageScene scene = image_scene();
+  const bool bare = scene.attributes.classes.empty() && scene.groups.empty();
   return bare ? ImageColor::shading : ImageColor::semantic;
 }
 
@@ -141,11 +123,13 @@ Image ModelScene::render(const Camera& camera, const ImageOptions& options) cons
 }
 
 std::pair<Vec3d, Vec3d> ModelScene::middle_box() const {
-  if (is_mesh_) return adasplats::middle_box(mesh_.mesh.vertices, mesh_.origin);
+  if (const auto* mesh = std::get_if<MeshModel>(&place_))
+    return adasplats::middle_box(mesh->mesh.vertices, origin());
+  const auto& model = std::get<SplatModel>(place_);
   std::vector<Vec3f> centers;
-  centers.reserve(splats_.size());
-  for (const Disk& disk : splats_.disks) centers.push_back(disk.center);
-  return adasplats::middle_box(centers, splats_.origin);
+  centers.reserve(model.size());
+  for (const Disk& disk : model.disks) centers.push_back(disk.center);
+  return adasplats::middle_box(centers, origin());
 }
 
 }  // namespace adasplats

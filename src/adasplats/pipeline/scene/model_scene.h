@@ -12,12 +12,11 @@
 #include "adasplats/core/function_ref.h"
 #include "adasplats/gpu/simulate/gpu_scene.h"
 #include "adasplats/pipeline/session/session.h"
-#include "adasplats/scene/mesh_model.h"
 #include "adasplats/simulate/image/image.h"
 #include "adasplats/simulate/scan/scan_caster.h"
 #include "adasplats/simulate/world/world.h"
 #include "adasplats/simulate/world/world_file.h"
-#include "adasplats/splats/model/splat_model.h"
+#include "adasplats/splats/model/place.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {
@@ -34,8 +33,7 @@ class ModelScene {
   ModelScene(const std::filesystem::path& file, const std::string& labels, Session& session,
              WorldFiles world_files = WorldFiles::refused);
   /// A model in memory; `labels`: what its classes mean.
-  ModelScene(SplatModel splats, std::optional<LabelScheme> labels, Session& session);
-  ModelScene(MeshModel mesh, std::optional<LabelScheme> labels, Session& session);
+  ModelScene(Place place, std::optional<LabelScheme> labels, Session& session);
   ModelScene(const ModelScene&) = delete;  // the tracer and the views look into it
   ModelScene& operator=(const ModelScene&) = delete;
 
@@ -43,9 +41,9 @@ class ModelScene {
   void add_objects(FunctionRef<void(World&)> fill);
 
   /// Splats or triangles.
-  SceneView view() const;
+  SceneView view() const { return view_of(place_); }
   /// World coordinates of the view's local origin, m.
-  Vec3d origin() const { return is_mesh_ ? mesh_.origin : splats_.origin; }
+  Vec3d origin() const { return origin_of(place_); }
   const Tracer& tracer() const { return gpu_ ? gpu_->tracer() : *tracer_; }
   /// Of the place without its objects.
   const ScanCaster& scan_caster() const { return gpu_ ? gpu_->scan_caster() : *caster_; }
@@ -54,7 +52,7 @@ class ModelScene {
   /// What was put into the place; null where nothing was.
   const World* world() const { return world_ ? &*world_ : nullptr; }
   /// Null where it is a mesh.
-  const SplatModel* splats() const { return is_mesh_ ? nullptr : &splats_; }
+  const SplatModel* splats() const { return std::get_if<SplatModel>(&place_); }
   bool on_gpu() const { return gpu_.has_value(); }
   /// Null where it is on the CPU.
   const GpuScene* gpu() const { return gpu_ ? &*gpu_ : nullptr; }
@@ -71,15 +69,12 @@ class ModelScene {
   std::pair<Vec3d, Vec3d> middle_box() const;
 
  private:
-  void load(const std::filesystem::path& file);
   void prepare(const std::string& name, Session& session);
   void make_tracers(Session& session);
   PrimitiveAttributes place_attributes() const;
 
   const Executor& executor_;
-  bool is_mesh_ = false;
-  SplatModel splats_;
-  MeshModel mesh_;
+  Place place_;
   std::optional<LabelScheme> labels_;
   std::optional<GpuScene> gpu_;
   mutable std::unique_ptr<GpuRenderer> renderer_;  ///< of the last options on a GPU

@@ -40,6 +40,24 @@ void check(const ScanSettings& settings) {
   check_weather(settings.weather, settings.sensor);
 }
 
+ScanSettings ScanChoice::settings(std::uint64_t seed) const {
+  return settings_of(load_lidar_model(sensor), seed);
+}
+
+ScanSettings ScanChoice::settings_of(LidarModel model, std::uint64_t seed) const {
+  ScanSettings settings;
+  settings.sensor = std::move(model);
+  overrides.apply(settings.sensor);
+  settings.beam = beam;
+  settings.noise = noise;
+  settings.frame = frame;
+  settings.weather = weather;
+  settings.seed = seed;
+  check(settings);
+  if (!ray_drop.empty()) settings.ray_drop = load_ray_drop(ray_drop);
+  return settings;
+}
+
 ScanSimulator::ScanSimulator(const ModelScene& scene, ScanSettings settings,
                              const Executor& executor)
     : scene_(scene),

@@ -4,14 +4,17 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/function_ref.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/sensors/lidar_model.h"
+#include "adasplats/sensors/sensor_overrides.h"
 #include "adasplats/simulate/scan/ray_drop.h"
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/simulate/scan/weather.h"
@@ -24,13 +27,47 @@ struct ScanSettings {
   BeamOptions beam;
   bool noise = true;  ///< of the sensor, on ranges and angles
   PointFrame frame = PointFrame::raw;
-  std::optional<RayDropModel> ray_drop;  ///< none: every echo is told
+  std::optional<RayDropModel> ray_drop;  ///< none: every echo is reported
   Weather weather;
   std::uint64_t seed = 1;
 };
 
 /// Errors: usage (those of check_beam and check_weather).
 void check(const ScanSettings& settings);
+
+/// ScanSettings as users give them: by names, and as differences from the sensor's own.
+struct ScanChoice {
+  std::string sensor = kDefaultSensor;  ///< as load_lidar_model takes it
+  PointFrame frame = PointFrame::raw;
+  bool noise = true;
+  SensorOverrides overrides;
+  BeamOptions beam;
+  std::filesystem::path ray_drop;  ///< fitted model; empty: every echo is reported
+  Weather weather;
+
+  /// Errors: those of load_lidar_model, load_ray_drop and check().
+  ScanSettings settings(std::uint64_t seed) const;
+  /// With another sensor than `sensor`.
+  ScanSettings settings_of(LidarModel model, std::uint64_t seed) const;
+};
+
+/// All but the sensor.
+template <class Visit>
+void visit_settings(ScanChoice& scan, Visit&& visit) {
+  visit(Setting{.name = "points",
+                .help = "With a rolling shutter: as measured, or with the motion taken out"},
+        scan.frame);
+  visit(Setting{.name = "noise",
+                .help = "Noise of the sensor on ranges and angles",
+                .opposite = "no-noise,no-range-noise"},
+        scan.noise);
+  visit_settings(scan.overrides, visit);
+  visit_settings(scan.beam, visit);
+  visit(Setting{.name = "ray_drop",
+                .help = "Beams that get lost as a real sensor's: a file of 'adasplats fit-drop'"},
+        scan.ray_drop);
+  visit_settings(scan.weather, visit);
+}
 
 /// What scans took. Where devices and copies overlap, the sums of parts are larger than the whole.
 struct SimulationTimes {
@@ -70,7 +107,7 @@ class ScanSimulator {
   ScanSettings settings_;
   const Executor& executor_;
   PrimitiveAttributes attributes_;
-  std::vector<Firing> firings_;       ///< what it tells points of
+  std::vector<Firing> firings_;       ///< what it reports points of
   std::vector<Firing> cast_firings_;  ///< sub-rays of those
 };
 

@@ -25,7 +25,7 @@ Camera overview(Vec3d low, Vec3d high) {
 Camera camera_at_pose(const ViewChoice& view) {
   const Trajectory trajectory = load_trajectory(view.trajectory);
   if (view.pose >= trajectory.size()) {
-    throw Error(ErrorKind::usage, "--pose " + std::to_string(view.pose) + ": the trajectory has " +
+    throw Error(ErrorKind::usage, "`pose` " + std::to_string(view.pose) + ": the trajectory has " +
                                       std::to_string(trajectory.size()) + " poses");
   }
   Camera camera;
@@ -37,16 +37,16 @@ Camera camera_at_pose(const ViewChoice& view) {
 
 void check(const ViewChoice& view) {
   if (!(view.width > 0 && view.height > 0 && view.width <= kMostPixels / view.height)) {
-    throw Error(ErrorKind::usage, "--width and --height are out of range");
+    throw Error(ErrorKind::usage, "`width` and `height` are out of range");
   }
   if (!(view.horizontal_fov_deg > 0 && view.horizontal_fov_deg < 180)) {
-    throw Error(ErrorKind::usage, "--fov must be above 0 and below 180 degrees");
+    throw Error(ErrorKind::usage, "`fov` must be above 0 and below 180 degrees");
   }
-  if (view.target && !view.eye) throw Error(ErrorKind::usage, "--target needs --eye");
+  if (view.target && !view.eye) throw Error(ErrorKind::usage, "`target` needs `eye`");
   const int places =
       (view.eye ? 1 : 0) + (view.birds_eye ? 1 : 0) + (view.trajectory.empty() ? 0 : 1);
   if (places > 1) {
-    throw Error(ErrorKind::usage, "give one of --eye, --birds-eye and --trajectory");
+    throw Error(ErrorKind::usage, "give one of `eye`, `birds_eye` and `trajectory`");
   }
 }
 

@@ -64,7 +64,7 @@ Trajectory load_trajectory(const fs::path& path) {
 }
 
 Trajectory poses_along(const fs::path& path, Vec3d offset_m, std::size_t every) {
-  if (every == 0) throw Error(ErrorKind::usage, "--every must be at least 1");
+  if (every == 0) throw Error(ErrorKind::usage, "`every` must be at least 1");
   const Trajectory all = shifted(load_trajectory(path), offset_m);
   Trajectory taken;
   for (std::size_t i = 0; i < all.size(); i += every) taken.push_back(all[i]);

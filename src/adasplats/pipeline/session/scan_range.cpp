@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/session/scan_range.h"
 
-#include <string>
-
 #include "adasplats/core/error.h"
 
 namespace adasplats {
+
+std::string text_of(const ScanRange& range) {
+  if (range == ScanRange()) return "";
+  return std::to_string(range.first) + ":" + std::to_string(range.count) +
+         (range.stride == 1 ? "" : ":" + std::to_string(range.stride));
+}
 
 std::vector<std::size_t> chosen_scans(const ScanRange& range, std::size_t scans,
                                       const std::filesystem::path& folder) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace adasplats {
@@ -13,7 +14,11 @@ struct ScanRange {
   std::size_t first = 0;
   std::size_t count = static_cast<std::size_t>(-1);
   std::size_t stride = 1;
+  bool operator==(const ScanRange&) const = default;
 };
+
+/// "FIRST:COUNT[:STRIDE]"; empty for all scans.
+std::string text_of(const ScanRange& range);
 
 /// Numbers of the scans that a range takes of `scans`, of the sequence in `folder`.
 /// Errors: usage (none).
