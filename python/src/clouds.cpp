@@ -15,12 +15,7 @@ template <class Archive>
 void fields(Archive& archive, PointCloud& cloud) {
   archive("origin", cloud.origin);
   archive("positions", cloud.positions);
-  archive("sensor_positions", cloud.sensor_positions);
-  archive("origin_kinds", cloud.origin_kinds);
-  archive("intensities", cloud.intensities);
-  archive("classes", cloud.classes);
-  archive("instances", cloud.instances);
-  archive("scan_indices", cloud.scan_indices);
+  for_each_attribute([&](const auto& attribute) { archive(attribute.name, attribute.of(cloud)); });
 }
 
 }  // namespace adasplats
@@ -125,14 +120,6 @@ py::array world_positions(const PointCloud& cloud) {
   return owned_array(std::move(numbers), {count, 3});
 }
 
-template <class T>
-auto attribute(std::vector<T> PointCloud::*member) {
-  return [member](const py::object& self) {
-    const auto& cloud = self.cast<const PointCloud&>();
-    return optional_view(cloud.*member, cloud.size(), self);
-  };
-}
-
 }  // namespace
 
 LocalVectors local_vectors(const Rows& world, py::handle origin) {
@@ -153,33 +140,24 @@ LocalVectors local_vectors(const Rows& world, py::handle origin) {
   return local;
 }
 
-void take_scan_range(Keywords& keywords, ScanRange& range) {
+void take_scan_range(Keywords& keywords, ScanRange& range, const std::string& prefix) {
   std::optional<double> count;
-  keywords.take("first_scan", range.first);
-  keywords.take("scan_count", count);
-  keywords.take("scan_stride", range.stride);
+  keywords.take((prefix + "first_scan").c_str(), range.first);
+  keywords.take((prefix + "scan_count").c_str(), count);
+  keywords.take((prefix + "scan_stride").c_str(), range.stride);
   if (count) range.count = static_cast<std::size_t>(std::max(0.0, *count));
 }
 
 void take_load_options(Keywords& keywords, LoadOptions& options) {
-  keywords.take("label_field", options.label_field);
+  take_settings(keywords, options, &Setting::key);
   keywords.take("sensor_x_field", options.sensor_x_field);
   keywords.take("sensor_y_field", options.sensor_y_field);
   keywords.take("sensor_z_field", options.sensor_z_field);
-  keywords.take("viewpoint", options.viewpoint);
-  keywords.take("trajectory", options.trajectory);
   ScanRange scans{options.first_scan, options.scan_count, options.scan_stride};
   take_scan_range(keywords, scans);
   options.first_scan = scans.first;
   options.scan_count = scans.count;
   options.scan_stride = scans.stride;
-  keywords.take("strict", options.strict);
-  keywords.take("beams_from_poses", options.beams_from_poses);
-  keywords.take("salvage", options.salvage);
-  keywords.take("max_distance_m", options.max_distance_m);
-  keywords.take("max_dropped", options.max_dropped);
-  keywords.take("own_body_m", options.own_body_m);
-  keywords.take("trust_origins", options.trust_origins);
 }
 
 bool is_path(py::handle value) {
@@ -217,36 +195,23 @@ namespace {
 using CloudClass = py::class_<PointCloud, std::shared_ptr<PointCloud>>;
 
 void bind_attributes(CloudClass& type) {
+  for_each_attribute([&](const auto& attribute) {
+    const auto of = attribute.of;
+    using Values = std::decay_t<decltype(of(std::declval<const PointCloud&>()))>;
+    type.def_property_readonly(
+        attribute.name,
+        [of](const py::object& self) {
+          const auto& cloud = self.cast<const PointCloud&>();
+          return optional_view(of(cloud), cloud.size(), self);
+        },
+        (shape_and_type<typename Values::value_type>() + attribute.about + "; or None.").c_str());
+  });
   type.def_property_readonly(
           "positions",
           [](const py::object& self) {
             return array_view(self.cast<const PointCloud&>().positions, self);
           },
           "(N, 3) float32, m, relative to origin.")
-      .def_property_readonly("sensor_positions", attribute(&PointCloud::sensor_positions),
-                             "(N, 3) float32, m, relative to origin, or None.")
-      .def_property_readonly(
-          "origin_kinds",
-          [](const PointCloud& cloud) -> py::object {
-            if (cloud.origin_kinds.empty()) return py::none();
-            std::vector<std::uint8_t> kinds;
-            for (const OriginKind kind : cloud.origin_kinds)
-              kinds.push_back(static_cast<std::uint8_t>(kind));
-            const auto count = static_cast<py::ssize_t>(kinds.size());
-            return owned_array(std::move(kinds), {count});
-          },
-          "(N,) uint8, how sensor_positions are known: 0 not, 1 guessed, 2 stated, 3 measured; "
-          "None: "
-          "all measured.")
-      .def_property_readonly(
-          "intensities", attribute(&PointCloud::intensities),
-          "(N,) float32 in the unit of the file, NaN where it is not known, or None.")
-      .def_property_readonly("classes", attribute(&PointCloud::classes),
-                             "(N,) uint16, ids of a label scheme, or None.")
-      .def_property_readonly("instances", attribute(&PointCloud::instances),
-                             "(N,) uint16, 0 for none, or None.")
-      .def_property_readonly("scan_indices", attribute(&PointCloud::scan_indices),
-                             "(N,) uint32, the scan that a point is from, or None.")
       .def_property_readonly(
           "origin", [](const PointCloud& cloud) { return array_of(cloud.origin); },
           "(3,) float64, world coordinates of the local origin, m.")

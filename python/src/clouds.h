@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "adasplats/cloud/load/load_cloud.h"
@@ -21,8 +22,8 @@ struct LocalVectors {
 /// `origin`: None for the one that choose_origin() gives. Errors: ValueError (not finite).
 LocalVectors local_vectors(const Rows& world, py::handle origin);
 
-/// The keywords of a range of scans: first_scan, scan_count, scan_stride.
-void take_scan_range(Keywords& keywords, ScanRange& range);
+/// The keywords of a range of scans: first_scan, scan_count, scan_stride, each behind `prefix`.
+void take_scan_range(Keywords& keywords, ScanRange& range, const std::string& prefix = "");
 
 /// The keywords of LoadOptions.
 void take_load_options(Keywords& keywords, LoadOptions& options);

@@ -49,18 +49,6 @@ py::object reported(const WorkOptions& options, F&& f) {
   return python_of(work.run([&](Session& session) { return to_json(f(session)); }));
 }
 
-void take_scans(Keywords& keywords, ScanRange& range) {
-  std::uint64_t first = range.first;
-  std::uint64_t stride = range.stride;
-  std::optional<double> count;
-  keywords.take("first_scan", first);
-  keywords.take("scan_count", count);
-  keywords.take("scan_stride", stride);
-  range.first = first;
-  range.stride = stride;
-  if (count) range.count = static_cast<std::size_t>(std::max(0.0, *count));
-}
-
 struct CloudArguments {
   bool by_class = false;
   std::string labels;
@@ -104,7 +92,7 @@ struct ResimulateArguments {
   WorkOptions work;
 
   void take(Keywords& keywords) {
-    take_scans(keywords, scans.scans);
+    take_scan_range(keywords, scans.scans);
     keywords.take("beams_from_poses", scans.beams_from_poses);
     keywords.take("motion", scans.motion);
     keywords.take("labels", labels);
@@ -185,7 +173,7 @@ struct EchoArguments {
   WorkOptions work;
 
   void take(Keywords& keywords) {
-    take_scans(keywords, inputs.scans);
+    take_scan_range(keywords, inputs.scans);
     keywords.take("motion", inputs.motion);
     keywords.take("sensor", inputs.sensor);
     keywords.take("drop", drop);

@@ -10,7 +10,7 @@
 
 namespace adasplats::python {
 
-/// A splat model with what its making told.
+/// A splat model with what was reported while it was made.
 struct ModelObject {
   SplatModel model;
   py::object report = py::none();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "adasplats/recipes/compare/compare.h"
 #include "adasplats/recipes/export.h"
 #include "adasplats/recipes/make_mesh.h"
 #include "adasplats/recipes/simkitti32.h"
@@ -41,6 +42,17 @@ constexpr const char* kSimKitti32Doc =
     "a\n"
     "ray that are averaged; moving: simulate what moves, too. Gives the report as a dict. Raises\n"
     "ValueError, OSError.";
+
+constexpr const char* kCompareDoc =
+    "Compare all methods on the same data with the same rays.\n\n"
+    "data: what synth_street wrote, a SemanticKITTI folder or a point file. output: a folder for "
+    "the\n"
+    "reports and the work; interrupted, the same call goes on where it stopped. methods: a list "
+    "of\n"
+    "names; None: all that the data allow. meshes: ready-made ones, {name: file}. What is None is\n"
+    "found in data. time_limit (s) and memory_limit (GiB; 0: 90 % of the machine's) are for every\n"
+    "step, which the program adasplats runs: program, else that of PATH. Gives compare.json as a\n"
+    "dict. Raises ValueError, OSError (FileNotFoundError: also where the program is not there).";
 
 struct MeshCall {
   MeshJob job;
@@ -125,11 +137,11 @@ py::dict export_file(py::handle input, py::handle output, const py::kwargs& kwar
   Work work(call.work);
   const ExportResult result =
       work.run([&](Session& session) { return run_export(call.job, session); });
-  py::dict told;
-  told[result.unit] = result.count;
-  told["points_dropped"] = result.dropped;
-  told["bytes"] = result.written_bytes;
-  return told;
+  py::dict report;
+  report[result.unit] = result.count;
+  report["points_dropped"] = result.dropped;
+  report["bytes"] = result.written_bytes;
+  return report;
 }
 
 struct SimKitti32Call {
@@ -163,6 +175,75 @@ py::object simkitti32(py::handle sequence, py::handle output, const py::kwargs& 
   return python_of(report);
 }
 
+struct CompareCall {
+  CompareJob job;
+  py::object methods = py::none(), meshes = py::none();
+  WorkOptions work;
+
+  void take(Keywords& keywords) {
+    keywords.take("methods", methods);
+    keywords.take("meshes", meshes);
+    keywords.take<Preset>("preset", job.preset, kPresets);
+    keywords.take("labels", job.labels);
+    take_scan_range(keywords, job.scans);
+    keywords.take("trajectory", job.trajectory);
+    keywords.take("offset", job.offset_m);
+    keywords.take("held_out", job.held_out);
+    take_scan_range(keywords, job.held_out_scans, "held_out_");
+    keywords.take("truth", job.truth);
+    keywords.take("sensor", job.sensor);
+    take_word(keywords, "remove", job.remove, kDynamicRemovals);
+    take_settings(keywords, job);
+    take_settings(keywords, job.limits);
+    keywords.take("program", job.program);
+    keywords.take<DeviceKind>("device", work.device.kind, device_words());
+    work.has_device = false;  // of one GPU
+    work.has_seed = true;
+    work.take(keywords);
+    work.has_device = true;
+  }
+
+  /// The job with what Keywords does not know.
+  CompareJob finished() {
+    if (!methods.is_none()) job.methods = list_of_words(methods);
+    if (!meshes.is_none() && !py::isinstance<py::dict>(meshes))
+      throw py::type_error("compare(): meshes must be None or a dict of names and paths");
+    if (!meshes.is_none())
+      for (const auto& [name, file] : meshes.cast<py::dict>())
+        job.meshes.emplace_back(py::str(name), path_of(file, "meshes"));
+    job.threads = work.threads;
+    job.seed = work.seed;
+    job.device = work.device.kind;
+    return job;
+  }
+
+  static std::vector<std::string> list_of_words(const py::object& words) {
+    std::vector<std::string> list;
+    const bool is_list = py::isinstance<py::sequence>(words) && !PyUnicode_Check(words.ptr());
+    for (const py::handle word : is_list ? words : py::make_tuple(py::none())) {
+      if (!PyUnicode_Check(word.ptr()))
+        throw py::type_error("compare(): methods must be None or a list of strings");
+      list.push_back(word.cast<std::string>());
+    }
+    return list;
+  }
+};
+
+py::object compare(py::handle data, py::handle output, const py::kwargs& kwargs) {
+  Keywords keywords("compare", kwargs);
+  CompareCall call;
+  call.take(keywords);
+  keywords.finish();
+  CompareJob job = call.finished();
+  refuse_unused(unused_settings(job), kwargs);
+  job.data = path_of(data, "data");
+  job.output = path_of(output, "output");
+  Work work(call.work);
+  const nlohmann::ordered_json results =
+      work.run([&](Session& session) { return run_compare(job, session); });
+  return python_of(results);
+}
+
 template <class Call>
 std::string doc_of(const char* name, const char* leading, const char* text) {
   return documented(
@@ -176,6 +257,8 @@ void bind_recipes(py::module_& module) {
              doc_of<MeshCall>("mesh", "points", kMeshDoc).c_str());
   module.def("export", &export_file, py::arg("input"), py::arg("output"),
              doc_of<ExportCall>("export", "input, output", kExportDoc).c_str());
+  module.def("compare", &compare, py::arg("data"), py::arg("output"),
+             doc_of<CompareCall>("compare", "data, output", kCompareDoc).c_str());
   module.def("simkitti32", &simkitti32, py::arg("sequence"), py::arg("output"),
              doc_of<SimKitti32Call>("simkitti32", "sequence, output", kSimKitti32Doc).c_str());
 }

@@ -16,14 +16,8 @@ void fields(Archive& archive, Scan& scan) {
   archive("time_s", scan.time_s);
   archive("rays", scan.rays);
   archive("positions", scan.positions);
-  archive("ranges_m", scan.ranges_m);
-  archive("intensities", scan.intensities);
-  archive("classes", scan.classes);
-  archive("instances", scan.instances);
-  archive("rings", scan.rings);
-  archive("columns", scan.columns);
-  archive("times_s", scan.times_s);
-  archive("return_indices", scan.return_indices);
+  for_each_scan_attribute(
+      [&](const auto& attribute) { archive(attribute.name, attribute.of(scan)); });
 }
 
 }  // namespace adasplats
@@ -62,19 +56,20 @@ constexpr const char* kSaveDoc =
     "'range-image' or 'mcap' (FOLDER/scans.mcap): docs/formats.md.\n"
     "Raises OSError, ValueError.";
 
-template <class T>
-auto required(std::vector<T> Scan::*member) {
-  return [member](const py::object& self) {
-    return array_view(self.cast<const Scan&>().*member, self);
-  };
-}
-
-template <class T>
-auto optional(std::vector<T> Scan::*member) {
-  return [member](const py::object& self) {
-    const auto& scan = self.cast<const Scan&>();
-    return optional_view(scan.*member, scan.size(), self);
-  };
+/// An attribute of every scan, or one that a scan may lack.
+template <class Attribute>
+void bind_attribute(py::class_<Scan, std::shared_ptr<Scan>>& type, const Attribute& attribute) {
+  const auto of = attribute.of;
+  const bool is_optional = attribute.is_optional;
+  using Value = typename std::decay_t<decltype(of(std::declval<const Scan&>()))>::value_type;
+  type.def_property_readonly(
+      attribute.name,
+      [of, is_optional](const py::object& self) -> py::object {
+        const auto& scan = self.cast<const Scan&>();
+        if (is_optional) return optional_view(of(scan), scan.size(), self);
+        return array_view(of(scan), self);
+      },
+      (shape_and_type<Value>() + attribute.about + (is_optional ? "; or None." : ".")).c_str());
 }
 
 void bind_scan(py::module_& module) {
@@ -84,24 +79,18 @@ void bind_scan(py::module_& module) {
            [](const Scan& scan) {
              return "<adasplats.Scan of " + std::to_string(scan.size()) + " points>";
            })
-      .def_property_readonly("positions", required(&Scan::positions),
-                             "(N, 3) float32, m, in the sensor's frame.")
-      .def_property_readonly("ranges", required(&Scan::ranges_m), "(N,) float32, m.")
-      .def_property_readonly("rings", required(&Scan::rings), "(N,) uint16, 0 the topmost.")
-      .def_property_readonly("columns", required(&Scan::columns), "(N,) uint32, azimuth steps.")
-      .def_property_readonly("times", required(&Scan::times_s),
-                             "(N,) float32, s since the revolution began.")
-      .def_property_readonly("intensities", optional(&Scan::intensities), "(N,) float32 or None.")
-      .def_property_readonly("classes", optional(&Scan::classes), "(N,) uint16 or None.")
-      .def_property_readonly("instances", optional(&Scan::instances), "(N,) uint16 or None.")
-      .def_property_readonly("return_indices", optional(&Scan::return_indices),
-                             "(N,) uint8, 0 for the first told of a firing; None where no firing "
-                             "can return twice.")
+      .def_property_readonly(
+          "positions",
+          [](const py::object& self) {
+            return array_view(self.cast<const Scan&>().positions, self);
+          },
+          "(N, 3) float32, m, in the sensor's frame.")
       .def_property_readonly(
           "pose", [](const Scan& scan) { return matrix_of(scan.world_from_sensor); },
           "(4, 4) float64, world_from_sensor.")
       .def_readonly("time", &Scan::time_s, "Of the pose, s.")
       .def_readonly("rays", &Scan::rays, "How many firings the revolution had.");
+  for_each_scan_attribute([&](const auto& attribute) { bind_attribute(type, attribute); });
   add_pickling<Scan>(type, "Scan");
 }
 

@@ -32,13 +32,12 @@ struct SceneArguments {
 
 std::unique_ptr<ModelScene> scene_of(py::handle model, const std::string& labels,
                                      SceneObject& object, PythonProgress& progress) {
-  std::optional<SplatModel> splats;
-  std::optional<MeshModel> mesh;
+  std::optional<Place> place;
   std::filesystem::path file;
   if (py::isinstance<ModelObject>(model)) {
-    splats = model.cast<const ModelObject&>().model;
+    place = model.cast<const ModelObject&>().model;
   } else if (py::isinstance<MeshModel>(model)) {
-    mesh = model.cast<const MeshModel&>();
+    place = model.cast<const MeshModel&>();
   } else {
     file = path_of(model, "model");
   }
@@ -46,8 +45,7 @@ std::unique_ptr<ModelScene> scene_of(py::handle model, const std::string& labels
   std::optional<LabelScheme> scheme;
   if (!labels.empty() && file.empty()) scheme = load_label_scheme(labels);
   Session session{object.executor, progress, 1, object.device};
-  if (splats) return std::make_unique<ModelScene>(*std::move(splats), std::move(scheme), session);
-  if (mesh) return std::make_unique<ModelScene>(*std::move(mesh), std::move(scheme), session);
+  if (place) return std::make_unique<ModelScene>(*std::move(place), std::move(scheme), session);
   return std::make_unique<ModelScene>(file, labels, session, WorldFiles::taken);
 }
 

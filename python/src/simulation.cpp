@@ -38,22 +38,16 @@ constexpr const char* kIterDoc =
 constexpr std::size_t kGpuBatch = 16;
 
 struct SimulateArguments {
-  ScanSettings settings;
+  ScanChoice scan;
   DriveArguments drive;
-  SensorOverrides overrides;
-  std::filesystem::path ray_drop;
+  std::uint64_t seed = 1;
   std::uint64_t first_number = 0;
   py::object progress = py::none();
 
   void take(Keywords& keywords) {
     drive.take(keywords);
-    keywords.take<PointFrame>("points", settings.frame, kPointFrames);
-    keywords.take("noise", settings.noise);
-    take_settings(keywords, overrides);
-    take_settings(keywords, settings.beam);
-    keywords.take("ray_drop", ray_drop);
-    take_settings(keywords, settings.weather);
-    keywords.take("seed", settings.seed);
+    take_settings(keywords, scan);
+    keywords.take("seed", seed);
     keywords.take("first_number", first_number);
     keywords.take("progress", progress);
   }
@@ -62,17 +56,14 @@ struct SimulateArguments {
 /// Sensor, keywords and poses of a call.
 struct Drive {
   SimulateArguments arguments;
+  ScanSettings settings;
   std::vector<ScanMotion> scans;
 
   Drive(const char* function, py::handle sensor, py::handle poses, const py::kwargs& kwargs) {
     Keywords keywords(function, kwargs);
     arguments.take(keywords);
     keywords.finish();
-    ScanSettings& settings = arguments.settings;
-    settings.sensor = sensor_of(sensor);
-    arguments.overrides.apply(settings.sensor);
-    if (!arguments.ray_drop.empty()) settings.ray_drop = load_ray_drop(arguments.ray_drop);
-    check(settings);
+    settings = arguments.scan.settings_of(sensor_of(sensor), arguments.seed);
     scans = arguments.drive.scans_at(poses, settings.sensor);
   }
 };
@@ -84,7 +75,7 @@ std::shared_ptr<ScanList> simulate(const std::shared_ptr<SceneObject>& object, p
   auto list = std::make_shared<ScanList>();
   const py::gil_scoped_release released;
   const auto lock = object->lock();
-  ScanSimulator simulator(*object->scene, std::move(drive.arguments.settings), object->executor);
+  ScanSimulator simulator(*object->scene, std::move(drive.settings), object->executor);
   list->image_size = image_size_of(simulator.firings());
   if (const LabelScheme* labels = object->scene->labels())
     list->labels = std::make_shared<LabelScheme>(*labels);
@@ -105,7 +96,7 @@ class ScanIterator {
         scans_(std::move(drive.scans)),
         first_number_(drive.arguments.first_number),
         progress_(drive.arguments.progress),
-        simulator_(*object_->scene, std::move(drive.arguments.settings), object_->executor) {
+        simulator_(*object_->scene, std::move(drive.settings), object_->executor) {
     progress_.begin_step("simulate", scans_.size());
   }
 

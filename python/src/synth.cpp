@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
-#include "adasplats/synth/street.h"
+#include "adasplats/recipes/synth_street.h"
 #include "bindings.h"
 #include "clouds.h"
+#include "json.h"
 #include "work.h"
 
 namespace adasplats::python {
@@ -38,7 +40,7 @@ struct StreetArguments {
   }
 };
 
-py::dict synth_street(py::handle folder, const py::kwargs& kwargs) {
+py::object synth_street(py::handle folder, const py::kwargs& kwargs) {
   Keywords keywords("synth_street", kwargs);
   StreetArguments arguments;
   arguments.take(keywords);
@@ -49,14 +51,7 @@ py::dict synth_street(py::handle folder, const py::kwargs& kwargs) {
     std::filesystem::create_directories(path);
     return write_street(path, arguments.street, arguments.scan, session.executor, session.progress);
   });
-  py::dict values;
-  values["length_m"] = report.length_m;
-  values["mesh_triangles"] = report.mesh_triangles;
-  values["moving_objects"] = report.moving_objects;
-  values["mapping_points"] = report.mapping_points;
-  values["mapping_scans"] = report.mapping_scans;
-  values["driving_scans"] = report.driving_scans;
-  return values;
+  return python_of(to_json(report));
 }
 
 }  // namespace

@@ -146,3 +146,12 @@ def test_wrong_arguments_are_told_in_words(call, says):
         call()
     for word in ("incompatible", "pybind11", "handle", "std::", "arg0"):
         assert word not in str(told.value)
+
+
+def test_messages_name_the_keywords_that_take_them(street):
+    """Those of the library name settings; as the command line's options they would help nobody."""
+    with pytest.raises(ValueError, match="^max_distance_m is -1, expected more than 0$"):
+        adasplats.read(street.cloud, max_distance_m=-1)
+    with pytest.raises(ValueError, match="^own_body_m is inf, expected 0 or more$"):
+        adasplats.read(street.cloud, own_body_m=float("inf"))
+    assert len(adasplats.read(street.cloud, max_distance_m=float("inf"))) > 0

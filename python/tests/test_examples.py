@@ -3,6 +3,7 @@
 """Every script of examples/ runs without arguments, in seconds."""
 import importlib.util
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -52,6 +53,8 @@ def test_what_the_documentation_shows(tmp_path, monkeypatch):
     blocks = [part.split("```")[0] for part in text.split("```python\n")[1:]]
     assert len(blocks) >= 4
     monkeypatch.chdir(tmp_path)
+    program = shutil.which(os.environ.get("ADASPLATS_PROGRAM", "adasplats"))
+    monkeypatch.setenv("PATH", str(Path(program).resolve().parent), prepend=os.pathsep)
     names = {}
     for block in blocks:
         exec(compile(block, "docs/python.md", "exec"), names)  # noqa: S102

@@ -1,9 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 """Whole recipes from Python: the same bytes as the command line's, the same refusals."""
+import json
+
 import numpy as np
 import pytest
-from conftest import report_of, run_program
+from conftest import PROGRAM, report_of, run_program
 from test_pipeline import files_of, without_times
 
 import adasplats
@@ -101,3 +103,63 @@ def test_ranges_of_a_sensor(scene, poses, options, text):
     with pytest.raises(ValueError, match=text):
         scene.simulate("velodyne-vlp-16", poses, **options)
 
+
+
+# What differs from run to run, and what names the own folder or process.
+OF_ONE_RUN = {"command", "provenance", "made_by", "date", "seconds", "step_seconds",
+              "peak_memory_bytes", "images_per_second", "scans_per_second", "trajectory"}
+
+
+def of_any_run(results):
+    """compare.json without times and commands."""
+    if isinstance(results, list):
+        return [of_any_run(each) for each in results]
+    if isinstance(results, dict):
+        return {key: of_any_run(value) for key, value in results.items() if key not in OF_ONE_RUN}
+    return results
+
+
+def test_compare(street, tmp_path):
+    run_program("compare", street.folder / "street", "-o", tmp_path / "cli", "--methods", "basic",
+                "--picture-width", 64, "--every", 40, "--held-out-scans", "0:2", "--device", "cpu")
+    told = adasplats.compare(street.folder / "street", tmp_path / "here", methods=["basic"],
+                             picture_width=64, every=40, held_out_scan_count=2, device="cpu",
+                             program=PROGRAM)
+    here, cli = (json.loads((tmp_path / name / "compare.json").read_text(encoding="utf-8"))
+                 for name in ("here", "cli"))
+    assert told == here
+    assert of_any_run(here) == of_any_run(cli)
+    entry = here["competitors"][0]
+    assert (entry["name"], entry["state"]) == ("basic", "done")
+    assert "--device cpu" in entry["generate"]["command"]
+    for step, made_by in cli["competitors"][0]["made_by"].items():
+        assert entry["made_by"][step]["commit"] == made_by["commit"]
+    for report in ("report.md", "report.html"):
+        assert (tmp_path / "here" / report).stat().st_size > 1000
+    # Again: nothing is run, so that the dates of the steps stay.
+    again = adasplats.compare(street.folder / "street", tmp_path / "here", methods=["basic"],
+                              picture_width=64, every=40, held_out_scan_count=2, device="cpu",
+                              program=PROGRAM)
+    assert again["competitors"] == here["competitors"]
+
+
+def test_compare_refuses(street, tmp_path, monkeypatch):
+    def refuse(error, text, **options):
+        with pytest.raises(error, match=text):
+            adasplats.compare(street.folder / "street", tmp_path / "none",
+                              **{"program": PROGRAM, **options})
+        assert not (tmp_path / "none" / "compare.json").exists()
+
+    refuse(ValueError, "'basics' is not known, did you mean 'basic'", methods=["basics"])
+    refuse(TypeError, "methods must be None or a list of strings", methods="basic")
+    refuse(TypeError, "meshes must be None or a dict", meshes=["a.ply"])
+    refuse(ValueError, "'a b' is not one of letters", meshes={"a b": street.mesh})
+    refuse(FileNotFoundError, "none.ply", meshes={"artist": tmp_path / "none.ply"})
+    refuse(ValueError, "time_limit is 0, expected more than 0", time_limit=0)
+    refuse(ValueError, "poisson_depth has no effect without the method poisson",
+           methods=["basic"], poisson_depth=9)
+    refuse(ValueError, "preset must be 'none', 'paper-pc3d'", preset="kitti")
+    refuse(FileNotFoundError, "cannot be started", program=tmp_path / "no program")
+    refuse(ValueError, "is not adasplats", program="true")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    refuse(FileNotFoundError, "adasplats: the program .* not on PATH; install", program=None)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "arrays.h"
 
@@ -200,6 +201,15 @@ void Keywords::finish() const {
     throw py::type_error(function_ + "() got an unexpected keyword argument '" + name + "'" +
                          did_you_mean(name, names_));
   }
+}
+
+std::string with_keywords(std::string_view message) {
+  return with_settings_as(message, [](const std::string& name) -> std::string {
+    // Those of loading are taken by their keys, with the unit.
+    for (const Setting& setting : settings_of<LoadOptions>())
+      if (name == setting.name) return setting.key;
+    return name;
+  });
 }
 
 void refuse_unused(const std::vector<UnusedSetting>& unused, const py::kwargs& given) {

@@ -26,7 +26,7 @@ namespace adasplats::python {
 namespace py = pybind11;
 
 /// The keyword arguments of one call. A function takes them one by one by name; what nobody took
-/// is a TypeError that names the nearest. The same taking, without a call, tells the signature: so
+/// is a TypeError that names the nearest. The same taking, without a call, gives the signature: so
 /// names and defaults are written once.
 class Keywords {
  public:
@@ -35,7 +35,7 @@ class Keywords {
   /// Without a call: notes what is taken, with its default.
   Keywords() = default;
 
-  /// Replaces `value` by the argument of that name, if it was given. Errors: TypeError that tells
+  /// Replaces `value` by the argument of that name, if it was given. Errors: TypeError that says
   /// what is expected, ValueError (out of range, an unknown word).
   void take(const char* name, bool& value);
   void take(const char* name, int& value);
@@ -82,17 +82,21 @@ class Keywords {
   std::string signature_;
 };
 
-/// Takes all settings of a subject by their names.
+/// Takes all settings of a subject by their names, or by their keys.
 template <class Settings>
-void take_settings(Keywords& keywords, Settings& settings) {
-  visit_settings(settings, [&keywords]<class T>(const Setting& setting, T& value) {
+void take_settings(Keywords& keywords, Settings& settings,
+                   const char* Setting::*word = &Setting::name) {
+  visit_settings(settings, [&keywords, word]<class T>(const Setting& setting, T& value) {
     if constexpr (std::is_enum_v<T>) {
-      keywords.take<T>(setting.name, value, words_of(value));
+      keywords.take<T>(setting.*word, value, words_of(value));
     } else {
-      keywords.take(setting.name, value);
+      keywords.take(setting.*word, value);
     }
   });
 }
+
+/// A message of the library with the names of settings as the keywords that take them.
+std::string with_keywords(std::string_view message);
 
 /// Errors: ValueError, of a keyword that was given and changes nothing beside the others.
 void refuse_unused(const std::vector<UnusedSetting>& unused, const py::kwargs& given);

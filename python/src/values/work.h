@@ -19,7 +19,7 @@
 namespace adasplats::python {
 
 /// Hears of progress without the GIL; takes it at most every 50 ms to see to signals (Ctrl-C) and
-/// to tell a Python callable, progress(step, done, total). What these raise ends the work.
+/// to inform a Python callable, progress(step, done, total). What these raise ends the work.
 class PythonProgress final : public ProgressSink {
  public:
   /// `callable`: None for none. Errors: TypeError.

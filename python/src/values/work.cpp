@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "keywords.h"
+
 namespace adasplats::python {
 namespace {
 
@@ -58,7 +60,8 @@ void PythonProgress::warn(std::string_view message) {
 void PythonProgress::issue_warnings() {
   const std::vector<std::string> warnings = std::exchange(warnings_, {});
   for (const std::string& warning : warnings)
-    if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();
+    if (PyErr_WarnEx(PyExc_UserWarning, with_keywords(warning).c_str(), 1) != 0)
+      throw py::error_already_set();
 }
 
 void WorkOptions::take(Keywords& keywords) {

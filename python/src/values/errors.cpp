@@ -5,6 +5,7 @@
 
 #include "adasplats/core/error.h"
 #include "bindings.h"
+#include "keywords.h"
 
 namespace adasplats::python {
 namespace {
@@ -55,7 +56,7 @@ void bind_errors(py::module_& module) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Error& error) {
-      PyErr_SetString(class_of(error.kind()), error.what());
+      PyErr_SetString(class_of(error.kind()), with_keywords(error.what()).c_str());
     } catch (const std::filesystem::filesystem_error& error) {
       PyErr_SetString(class_of(ErrorKind::cannot_create), error.what());
     }

@@ -9,6 +9,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "adasplats/core/maths/rigid_transform.h"
@@ -22,10 +23,30 @@ namespace py = pybind11;
 py::array array_view(const py::dtype& type, const void* data, std::vector<py::ssize_t> shape,
                      std::vector<py::ssize_t> strides, py::handle owner);
 
-/// Shape (N,).
+/// What stands in an array of T: the numbers of an enum.
+template <class T, bool is_enum = std::is_enum_v<T>>
+struct NumberOf {
+  using type = T;
+};
+template <class T>
+struct NumberOf<T, true> : std::underlying_type<T> {};
+template <class T>
+using Number = typename NumberOf<T>::type;
+
+/// "(N,) uint16, ", with which the description of an array of T begins.
+template <class T>
+std::string shape_and_type() {
+  if constexpr (std::is_same_v<T, Vec3f>)
+    return "(N, 3) float32, ";
+  else
+    return "(N,) " + std::string(py::str(py::dtype::of<Number<T>>())) + ", ";
+}
+
+/// Shape (N,); of enums their numbers.
 template <class T>
 py::array array_view(std::span<const T> values, py::handle owner) {
-  return array_view(py::dtype::of<T>(), values.data(), {static_cast<py::ssize_t>(values.size())},
+  return array_view(py::dtype::of<Number<T>>(), values.data(),
+                    {static_cast<py::ssize_t>(values.size())},
                     {static_cast<py::ssize_t>(sizeof(T))}, owner);
 }
 template <class T>

@@ -66,7 +66,7 @@ Signature signature_of(const std::string& function, const std::string& text) {
   return signature;
 }
 
-std::string type_name(py::handle value) { return py::str(py::type::of(value).attr("__name__")); }
+std::string shown_type(py::handle value) { return py::str(py::type::of(value).attr("__name__")); }
 
 /// What is wrong with arguments that no overload took; `given` without self.
 std::string fault_of(const Signature& signature, const std::vector<py::handle>& given,
@@ -92,9 +92,9 @@ std::string fault_of(const Signature& signature, const std::vector<py::handle>& 
       return " misses the argument '" + parameter.name + "'";
   }
   std::string types;
-  for (const py::handle value : given) types += (types.empty() ? "" : ", ") + type_name(value);
+  for (const py::handle value : given) types += (types.empty() ? "" : ", ") + shown_type(value);
   for (const auto& [key, value] : keywords)
-    types += (types.empty() ? "" : ", ") + std::string(py::str(key)) + ": " + type_name(value);
+    types += (types.empty() ? "" : ", ") + std::string(py::str(key)) + ": " + shown_type(value);
   return signature.text + " does not take (" + types + ")";
 }
 
