@@ -4,7 +4,7 @@
 // median of several runs, as one line of JSON.
 //   bench_gpu_generate POINTS|INPUT [METHOD] [resample|no-resample] [RUNS] [cpu]
 // POINTS makes a procedural street of about so many points. "cpu" does the same on the CPU after
-// that, once, and tells how many splats have other bytes.
+// that, once, and says how many splats have other bytes.
 
 #include <algorithm>
 #include <chrono>

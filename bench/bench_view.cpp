@@ -23,7 +23,7 @@
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/provenance/provenance.h"
 #include "adasplats/splats/model/splat_model.h"
-#include "adasplats/view/level_tree.h"
+#include "adasplats/view/levels/level_tree.h"
 #include "adasplats/view/scan_packet.h"
 
 namespace adasplats {

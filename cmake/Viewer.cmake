@@ -63,7 +63,7 @@ if(NOT ADASPLATS_PAGE)
   return()
 endif()
 
-file(GLOB page_sources CONFIGURE_DEPENDS ${viewer}/src/*)
+file(GLOB_RECURSE page_sources CONFIGURE_DEPENDS ${viewer}/src/*)
 add_custom_command(
   OUTPUT ${page}/page_data.cpp
   # Packages are looked for beside the sources that import them.

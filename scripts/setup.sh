@@ -37,6 +37,7 @@ test  libgtest-dev         -             tests
 test  libeigen3-dev        -             oracle of the tests
 test  libnanoflann-dev     -             baseline of the benchmarks
 test  shellcheck           shellcheck    checks the scripts
+test  doxygen              doxygen       checks the comments of headers
 test  pybind11-dev         -             the Python package
 test  python3-dev          -             likewise
 test  python3-numpy        -             likewise

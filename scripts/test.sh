@@ -6,13 +6,13 @@
 # "N passed, N failed", where each check and each test program counts once. What skips itself must be
 # in tests/allowed_skips.tsv, and for the reason that stands there; all of it is printed at the end.
 # usage: scripts/test.sh [--help] [CHECK...]
-#   CHECK: names layers scripts format packages build tidy tests asan install (default: all, in this order)
+#   CHECK: names layers scripts format doxygen packages build tidy tests asan install (default: all)
 # The build folders are build/release and build/asan; logs of the checks are in build/test-logs.
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 70
-readonly kChecks="names layers scripts format packages build tidy tests asan install"
+readonly kChecks="names layers scripts format doxygen packages build tidy tests asan install"
 readonly logs=$root/build/test-logs
 readonly skipped_checks=$logs/skipped_checks.tsv # name, tab, what the check said
 
@@ -122,14 +122,23 @@ run_tests() {
   fi
 }
 
-# Installs into a folder of its own and builds the example against that, as a stranger would.
+# Installs into a folder of its own and builds the examples against that, as a stranger would.
 build_example() {
+  # README.md shows the short one, without its licence.
+  # shellcheck disable=SC2016
+  diff <(sed -n '/^```cpp$/,/^```$/{//!p}' README.md) <(sed 1,3d examples/find_package/cloud_to_scan.cpp)
   rm -rf build/install build/example
   cmake --install build/release --prefix build/install >/dev/null
   cmake -S examples/find_package -B build/example -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DCMAKE_PREFIX_PATH="$root/build/install"
   cmake --build build/example
   build/example/find_package_example
+  local street=build/example/street
+  build/install/bin/adasplats synth street -o $street --points 20000 --driving-spacing 10
+  build/example/cloud_to_scan $street/mapping.ply $street/sequences/00/poses.txt \
+    build/example/model.ply build/example/scan.ply
+  grep -a -m 1 '^element vertex [1-9]' build/example/model.ply
+  grep -a -m 1 '^element vertex [1-9]' build/example/scan.ply
 }
 
 # Prints what skipped itself, and fails where that must not be.
@@ -157,6 +166,7 @@ else
   fi
   wanted scripts && check scripts check_scripts
   wanted format && check format tools/check_format.sh
+  wanted doxygen && check doxygen tools/check_doxygen.sh
   wanted packages && check packages fetch_packages
   if wanted build; then
     check build build_release || built=false
