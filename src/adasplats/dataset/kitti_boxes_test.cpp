@@ -9,7 +9,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
 
 namespace adasplats {

@@ -7,7 +7,7 @@
 
 #include <stdexcept>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
 
 namespace adasplats {

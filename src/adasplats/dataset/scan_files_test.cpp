@@ -8,7 +8,7 @@
 #include <cstring>
 #include <limits>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/dataset/numbered_scan_test.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/io/base/atomic_file.h"

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/dataset/numbered_scan_test.h"
 
 namespace adasplats {

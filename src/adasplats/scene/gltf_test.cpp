@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/scene/mesh_model.h"
 
 namespace adasplats {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {

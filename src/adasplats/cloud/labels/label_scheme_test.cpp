@@ -6,7 +6,7 @@
 
 #include <stdexcept>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
 namespace {

@@ -9,8 +9,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
 
 namespace adasplats {

@@ -85,6 +85,7 @@ std::string describe_origins(const OriginCounts& counts) {
 PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices) {
   PointCloud result;
   result.origin = cloud.origin;
+  result.scan_poses = cloud.scan_poses;
   result.positions = gathered(cloud.positions, indices);
   for_each_attribute([&](const auto& attribute) {
     attribute.of(result) = gathered(attribute.of(cloud), indices);
@@ -101,6 +102,10 @@ void append(PointCloud& cloud, PointCloud&& other) {
   if (!(cloud.origin == other.origin)) throw std::logic_error("append: clouds of two origins");
   if (!same_attributes(cloud, other))
     throw std::logic_error("append: clouds of two attribute sets");
+  if (cloud.scan_poses.empty() || other.scan_poses.empty())
+    cloud.scan_poses = {};
+  else
+    append_values(cloud.scan_poses, std::move(other.scan_poses));
   append_values(cloud.positions, std::move(other.positions));
   for_each_attribute([&](const auto& attribute) {
     append_values(attribute.of(cloud), std::move(attribute.of(other)));

@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/cloud/points/laser_offsets.h"
 #include "adasplats/cloud/points/origin_kind.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
@@ -25,6 +27,9 @@ struct PointCloud {
   std::vector<std::uint16_t> classes;    ///< semantic class ids of the label scheme
   std::vector<std::uint16_t> instances;  ///< instance ids, 0 = none
   std::vector<std::uint32_t> scan_indices;  ///< number of the scan the point is from
+  std::vector<std::uint16_t> lasers;  ///< of the sensor, topmost 0; kNoLaser where it is not known
+  /// Of the scans by their numbers, world_from_sensor; empty: not known. No attribute of points.
+  Trajectory scan_poses;
 
   std::size_t size() const { return positions.size(); }
   bool empty() const { return positions.empty(); }
@@ -73,6 +78,9 @@ void for_each_attribute(Visit&& visit) {
   visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.scan_indices); },
                        "scan_indices", "scan_index", "scan numbers", 2,
                        "the scan that a point is from"});
+  visit(PointAttribute{[](auto& cloud) -> decltype(auto) { return (cloud.lasers); }, "lasers",
+                       "laser", "lasers", 6,
+                       "the laser that measured a point, topmost 0; 65535 where it is not known"});
 }
 
 /// The address of an attribute's values; null for one that a cloud lacks.
@@ -92,7 +100,8 @@ std::string describe_origins(const OriginCounts& counts);
 PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices);
 
 /// Adds `other` behind `cloud`. Both need the same origin and the same set of attributes
-/// (std::logic_error otherwise; an empty `cloud` takes all from `other`).
+/// (std::logic_error otherwise; an empty `cloud` takes all from `other`). The poses of other's
+/// scans follow; where one of them has none, there are none.
 void append(PointCloud& cloud, PointCloud&& other);
 
 /// The origin for coordinates within [low, high]: zero where floats hold them to 0.1 mm (1 km

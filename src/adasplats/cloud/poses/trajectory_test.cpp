@@ -9,9 +9,9 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/maths/random.h"
+#include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
 namespace {

@@ -21,6 +21,7 @@ struct DeviceCloud {
   DeviceBuffer<std::uint16_t> classes;
   DeviceBuffer<std::uint16_t> instances;
   DeviceBuffer<std::uint32_t> scan_indices;
+  DeviceBuffer<std::uint16_t> lasers;
 
   std::size_t size() const { return positions.size(); }
 };

@@ -1,0 +1,341 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/calibrate/calibrate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "adasplats/calibrate/plane_system.h"
+#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/symmetric_eigen.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kLeftOut = 8;         // every so many-th point
+constexpr double kFlatnessOfJudging = 0.1;  // m
+
+bool is_left_out(std::size_t i) { return i % kLeftOut == 0; }
+
+double weight_of(double residual_m, double width_m) {
+  const double squared = width_m * width_m;
+  const double share = squared / (squared + residual_m * residual_m);
+  return share * share;  // Geman-McClure
+}
+
+double between(double first, double last, int round, int rounds) {
+  const double share = rounds > 1 ? static_cast<double>(round) / (rounds - 1) : 1;
+  return first * std::pow(last / first, share);
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The ray of a point, in local coordinates.
+struct PointRay {
+  Vec3d direction, upward;
+  double range_m = 0;
+};
+
+class Calibrator {
+ public:
+  Calibrator(const PointCloud& cloud, const CalibrateOptions& options, const Executor& executor)
+      : cloud_(cloud), options_(options), executor_(executor) {
+    for (const TimedPose& pose : cloud.scan_poses) {
+      const RigidTransform& world_from_sensor = pose.world_from_sensor;
+      places_.push_back(world_from_sensor.translation - cloud.origin);
+      axes_.push_back(world_from_sensor.rotation * Vec3d{0, 0, 1});
+    }
+    for (const std::uint16_t laser : cloud.lasers)
+      if (laser != kNoLaser) lasers_ = std::max(lasers_, std::size_t{laser} + 1);
+    corrected_from_given_.resize(places_.size());
+    offsets_.range_m.resize(lasers_);
+    offsets_.elevation_rad.resize(lasers_);
+    choose_points();
+  }
+
+  std::pair<Calibration, CalibrationReport> run() {
+    CalibrationReport report;
+    correct_points();
+    report.given_m = left_out_residual();
+    for (int round = 0; round < options_.rounds && report.objection.empty(); ++round) {
+      const ScanPlanes planes = find_planes(
+          between(options_.first_flatness_m, options_.last_flatness_m, round, options_.rounds));
+      report.planes = planes.planes.size();
+      report.points = planes.points.size();
+      report.weakest_share = weakest_share(planes, report.weakest);
+      report.objection = objection_to(report);
+      const double width_m =
+          between(options_.first_width_m, options_.last_width_m, round, options_.rounds);
+      for (int step = 0; step < options_.steps && report.objection.empty(); ++step) {
+        make_step(planes, width_m);
+        correct_points();
+      }
+    }
+    if (!report.objection.empty()) return {{}, report};
+    align_to_given();
+    correct_points();
+    report.calibrated_m = left_out_residual();
+    if (!(report.calibrated_m < options_.least_gain * report.given_m)) {
+      report.objection = "points that took no part lie no better on the planes of the others";
+      return {{}, report};
+    }
+    return {calibration(), report};
+  }
+
+ private:
+  /// Every so many-th point with a known beam, so that the scans have as many as are wanted in the
+  /// mean.
+  void choose_points() {
+    const std::size_t wanted = options_.points_a_scan * std::max<std::size_t>(1, places_.size());
+    const std::size_t stride = std::max<std::size_t>(1, cloud_.size() / wanted);
+    for (std::size_t i = 0; i < cloud_.size(); i += stride) {
+      if (!is_beam(cloud_.origin_kind(i))) continue;
+      chosen_.push_back(static_cast<std::uint32_t>(i));
+      scans_.push_back(cloud_.scan_indices[i]);
+    }
+  }
+
+  std::uint16_t laser_of(std::uint32_t i) const {
+    return cloud_.lasers.empty() ? kNoLaser : cloud_.lasers[i];
+  }
+
+  PointRay ray_of(std::uint32_t i) const {
+    PointRay ray;
+    const Vec3d way =
+        vec_cast<double>(cloud_.positions[i]) - vec_cast<double>(cloud_.sensor_positions[i]);
+    ray.range_m = length(way);
+    if (!(ray.range_m > 0)) return ray;
+    ray.direction = way / ray.range_m;
+    ray.upward = upward_of(ray.direction, axes_[cloud_.scan_indices[i]]);
+    return ray;
+  }
+
+  void correct_points() {
+    corrected_.resize(chosen_.size());
+    executor_.for_chunks(chosen_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) corrected_[k] = corrected(chosen_[k]);
+    });
+  }
+
+  Vec3d corrected(std::uint32_t i) const {
+    const std::uint32_t scan = cloud_.scan_indices[i];
+    return corrected_from_given_[scan] *
+           offsets_.corrected(vec_cast<double>(cloud_.sensor_positions[i]),
+                              vec_cast<double>(cloud_.positions[i]), axes_[scan], laser_of(i));
+  }
+
+  ScanPlanes find_planes(double flatness_m) const {
+    ScanPlaneOptions planes = options_.planes;
+    planes.flatness_m = flatness_m;
+    return find_scan_planes(corrected_, scans_, planes, executor_);
+  }
+
+  PlaneResidual residual_of(std::size_t k, const ScanPlane& plane) const {
+    PlaneResidual row;
+    const std::uint32_t i = chosen_[k];
+    row.scan = scans_[k];
+    const RigidTransform& correction = corrected_from_given_[row.scan];
+    const Vec3d from_center = corrected_[k] - plane.center;
+    row.residual_m = dot(plane.normal, from_center);
+    row.by_plane = {1, dot(plane.axes[0], from_center), dot(plane.axes[1], from_center)};
+    const Vec3d arm = corrected_[k] - correction * places_[row.scan];
+    const Vec3d turning = cross(arm, plane.normal);
+    if (options_.poses)
+      row.by_pose = {turning.x,      turning.y,      turning.z,
+                     plane.normal.x, plane.normal.y, plane.normal.z};
+    const std::uint16_t laser = laser_of(i);
+    if (laser == kNoLaser) return row;
+    row.laser = laser;
+    const PointRay ray = ray_of(i);
+    if (options_.ranges) row.by_laser[0] = dot(plane.normal, correction.rotation * ray.direction);
+    if (options_.elevations)
+      row.by_laser[1] = ray.range_m * dot(plane.normal, correction.rotation * ray.upward);
+    return row;
+  }
+
+  void residuals_of(const ScanPlanes& planes, const ScanPlane& plane, double width_m,
+                    std::vector<PlaneResidual>& residuals) const {
+    const auto members = planes.points_of(plane);
+    const std::size_t stride = (members.size() + options_.most_points - 1) / options_.most_points;
+    double total = 0;
+    for (std::size_t k = 0; k < members.size(); k += stride) {
+      if (is_left_out(members[k])) continue;
+      residuals.push_back(residual_of(members[k], plane));
+      residuals.back().weight = weight_of(residuals.back().residual_m, width_m);
+      total += residuals.back().weight;
+    }
+    const double scale = total > options_.most_weight ? options_.most_weight / total : 1;
+    for (PlaneResidual& residual : residuals) residual.weight *= scale;
+  }
+
+  void add_priors(PlaneSystem& system) const {
+    const auto weight = [&](double sigma) {
+      return std::pow(options_.residual_sigma_m / sigma, 2);
+    };
+    for (std::size_t scan = 0; scan < places_.size(); ++scan) {
+      const RigidTransform& correction = corrected_from_given_[scan];
+      const Vec3d turned = rotation_vector(correction.rotation);
+      const Vec3d place = places_[scan];
+      const Vec3d shifted = correction * place - place;
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto unknown = static_cast<std::size_t>(axis);
+        system.add_pose_prior(scan, unknown, weight(options_.rotation_sigma_rad), -turned[axis]);
+        system.add_pose_prior(scan, unknown + 3, weight(options_.translation_sigma_m),
+                              -shifted[axis]);
+      }
+    }
+    for (std::size_t laser = 0; laser < lasers_; ++laser) {
+      system.add_laser_prior(laser, 0, weight(options_.range_sigma_m), options_.range_share,
+                             -offsets_.range_m[laser]);
+      system.add_laser_prior(laser, 1, weight(options_.elevation_sigma_rad),
+                             options_.elevation_share, -offsets_.elevation_rad[laser]);
+    }
+  }
+
+  void make_step(const ScanPlanes& planes, double width_m) {
+    PlaneSystem system(places_.size(), lasers_, executor_);
+    system.add_planes(planes.planes.size(),
+                      [&](std::size_t plane, std::vector<PlaneResidual>& residuals) {
+                        residuals_of(planes, planes.planes[plane], width_m, residuals);
+                      });
+    add_priors(system);
+    apply(system.solve(options_.tolerance, options_.most_iterations));
+  }
+
+  void apply(const PlaneSystem::Step& step) {
+    for (std::size_t scan = 0; options_.poses && scan < places_.size(); ++scan) {
+      RigidTransform& correction = corrected_from_given_[scan];
+      const Vec3d pivot = correction * places_[scan];
+      const auto& x = step.poses[scan];
+      correction = moved_about(pivot, {x[0], x[1], x[2]}, {x[3], x[4], x[5]}) * correction;
+    }
+    if (options_.ranges) add_centred(offsets_.range_m, step.lasers, 0);
+    if (options_.elevations) add_centred(offsets_.elevation_rad, step.lasers, 1);
+  }
+
+  /// Share of the planes' weight that holds the poses along the direction that it holds least.
+  double weakest_share(const ScanPlanes& planes, Vec3d& direction) const {
+    SymmetricMat3d normals;
+    double total = 0;
+    for (const ScanPlane& plane : planes.planes) {
+      const double weight = std::min(options_.most_weight, double(plane.end - plane.begin));
+      const Vec3d n = plane.normal;
+      total += weight;
+      normals.xx += weight * n.x * n.x;
+      normals.xy += weight * n.x * n.y;
+      normals.xz += weight * n.x * n.z;
+      normals.yy += weight * n.y * n.y;
+      normals.yz += weight * n.y * n.z;
+      normals.zz += weight * n.z * n.z;
+    }
+    const SymmetricEigen eigen = symmetric_eigen(normals);
+    direction = eigen.vectors[2];
+    return total > 0 ? std::max(0.0, eigen.values[2]) / total : 0;
+  }
+
+  std::string objection_to(const CalibrationReport& report) const {
+    if (report.planes < options_.least_planes)
+      return "too few planes that several scans saw (" + std::to_string(report.planes) + ")";
+    if (report.weakest_share < options_.least_share) {
+      std::array<char, 128> text{};
+      std::snprintf(text.data(), text.size(),
+                    "no planes hold the poses along (%.2f, %.2f, %.2f), as in a straight tunnel",
+                    report.weakest.x, report.weakest.y, report.weakest.z);
+      return text.data();
+    }
+    return {};
+  }
+
+  /// What all lasers have in common is no calibration of one against the other.
+  static void add_centred(std::vector<double>& offsets,
+                          const std::vector<PlaneSystem::LaserStep>& steps, std::size_t which) {
+    double mean = 0;
+    for (std::size_t k = 0; k < offsets.size(); ++k) {
+      offsets[k] += steps[k][which];
+      mean += offsets[k] / static_cast<double>(offsets.size());
+    }
+    for (double& offset : offsets) offset -= mean;
+  }
+
+  /// Turns and shifts the whole so that the poses lie on the given ones.
+  void align_to_given() {
+    if (places_.empty()) return;
+    const double n = static_cast<double>(places_.size());
+    Vec3d turn, given, corrected;
+    for (std::size_t scan = 0; scan < places_.size(); ++scan) {
+      const RigidTransform& correction = corrected_from_given_[scan];
+      turn = turn + rotation_vector(correction.rotation) / n;
+      given = given + places_[scan] / n;
+      corrected = corrected + (correction * places_[scan]) / n;
+    }
+    const RigidTransform back = moved_about(corrected, -turn, given - corrected);
+    for (RigidTransform& correction : corrected_from_given_) correction = back * correction;
+  }
+
+  /// Median distance of the points that were left out from the planes of the others.
+  double left_out_residual() const {
+    const ScanPlanes found = find_planes(kFlatnessOfJudging);
+    std::vector<double> residuals;
+    for (const ScanPlane& plane : found.planes) {
+      Vec3d mean;
+      double count = 0;
+      for (const std::uint32_t i : found.points_of(plane)) {
+        if (is_left_out(i)) continue;
+        mean = mean + corrected_[i];
+        ++count;
+      }
+      if (count < 3) continue;
+      for (const std::uint32_t i : found.points_of(plane))
+        if (is_left_out(i))
+          residuals.push_back(std::fabs(dot(plane.normal, corrected_[i] - mean / count)));
+    }
+    return median(std::move(residuals));
+  }
+
+  Calibration calibration() const {
+    Calibration result;
+    for (std::size_t scan = 0; scan < places_.size(); ++scan) {
+      const RigidTransform& correction = corrected_from_given_[scan];
+      const TimedPose& given = cloud_.scan_poses[scan];
+      result.poses.push_back({given.time_s, given.world_from_sensor.translation,
+                              rotation_vector(correction.rotation),
+                              correction * places_[scan] - places_[scan]});
+    }
+    result.lasers = offsets_;
+    return result;
+  }
+
+  const PointCloud& cloud_;
+  const CalibrateOptions& options_;
+  const Executor& executor_;
+  std::vector<Vec3d> places_;  ///< of the sensor, one a scan as given, local coordinates
+  std::vector<Vec3d> axes_;    ///< of its rotation, upwards
+  std::size_t lasers_ = 0;
+  std::vector<std::uint32_t> chosen_;                 ///< points
+  std::vector<std::uint32_t> scans_;                  ///< theirs
+  std::vector<RigidTransform> corrected_from_given_;  ///< local coordinates
+  LaserOffsets offsets_;
+  std::vector<Vec3d> corrected_;  ///< chosen points
+};
+
+}  // namespace
+
+std::pair<Calibration, CalibrationReport> calibrate(const PointCloud& cloud,
+                                                    const CalibrateOptions& options,
+                                                    const Executor& executor) {
+  if (const char* missing = missing_for_calibration(cloud)) return {{}, {.objection = missing}};
+  return Calibrator(cloud, options, executor).run();
+}
+
+}  // namespace adasplats

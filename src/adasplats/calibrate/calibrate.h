@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "adasplats/calibrate/calibration.h"
+#include "adasplats/calibrate/scan_planes.h"
+#include "adasplats/core/executor.h"
+
+namespace adasplats {
+
+struct CalibrateOptions {
+  bool poses = true;       ///< one correction a scan
+  bool ranges = true;      ///< one offset a laser
+  bool elevations = true;  ///< one offset a laser
+  int rounds = 8;          ///< planes are found again in each...
+  int steps = 2;           ///< ...and so many steps of Gauss-Newton are made
+  /// Of the first and of the last round: most thickness of a plane, width of the residuals that
+  /// count.
+  double first_flatness_m = 0.25, last_flatness_m = 0.05;
+  double first_width_m = 0.15, last_width_m = 0.03;
+  double most_weight = 200;       ///< of a plane, in points: near ground must not outweigh facades
+  std::size_t most_points = 400;  ///< of a plane that are looked at
+  std::size_t points_a_scan = 40'000;  ///< that are looked at, in the mean
+  double tolerance = 1e-3;             ///< of a step's conjugate gradients, and...
+  int most_iterations = 200;           ///< ...their most
+  /// How far the given values are believed: standard deviations of weak priors, beside residuals of
+  /// `residual_sigma_m`. They hold what the planes do not.
+  double residual_sigma_m = 0.02;
+  double rotation_sigma_rad = 0.01, translation_sigma_m = 0.3;
+  double range_sigma_m = 0.05, elevation_sigma_rad = 0.001;
+  double range_share = 0, elevation_share = 0.05;
+  /// Nothing is applied where planes are fewer, hold the poses along some direction by less than
+  /// this share of their weight, or bring the residual of points left out not below this share.
+  std::size_t least_planes = 100;
+  double least_share = 0.002, least_gain = 0.98;
+  ScanPlaneOptions planes;  ///< but for the flatness
+};
+
+struct CalibrationReport {
+  std::size_t planes = 0;  ///< of the last round
+  std::size_t points = 0;  ///< on these
+  /// Median distance of points that were left out of the fit from the planes of the others, m; with
+  /// the given values and with the calibration.
+  double given_m = 0, calibrated_m = 0;
+  double weakest_share = 0;  ///< of the planes' weight, along...
+  Vec3d weakest;             ///< ...the direction in which they hold the poses least
+  std::string objection;     ///< why nothing is to be applied; empty: the evidence is clear
+};
+
+/// Estimates what a recording gets wrong from planes that its scans saw together. The corrected
+/// poses are aligned to the given ones as a whole: nothing observes where the place is. Every
+/// eighth point is left out of the fit, to judge it: where they do not lie better on the planes of
+/// the others, or nothing can be estimated, the calibration is empty and the report says why.
+std::pair<Calibration, CalibrationReport> calibrate(const PointCloud& cloud,
+                                                    const CalibrateOptions& options,
+                                                    const Executor& executor);
+
+}  // namespace adasplats

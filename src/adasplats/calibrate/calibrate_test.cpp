@@ -1,0 +1,317 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/calibrate/calibrate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "adasplats/core/maths/random.h"
+
+namespace adasplats {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::size_t kLasers = 16;
+constexpr std::size_t kColumns = 360;
+
+/// How far a ray goes in a hall of 24 x 14 x 5 m with two pillars.
+double range_in_hall(Vec3d origin, Vec3d direction) {
+  double range_m = std::numeric_limits<double>::infinity();
+  const Vec3d low = {-12, -7, 0}, high = {12, 7, 5};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (direction[axis] == 0) continue;
+    const double wall = direction[axis] > 0 ? high[axis] : low[axis];
+    range_m = std::min(range_m, (wall - origin[axis]) / direction[axis]);
+  }
+  for (const Vec3d pillar : {Vec3d{4, 3, 0}, Vec3d{-5, -3.5, 0}}) {
+    double enter = 0, leave = range_m;
+    for (int axis = 0; axis < 2; ++axis) {
+      const double a = (pillar[axis] - 0.6 - origin[axis]) / direction[axis];
+      const double b = (pillar[axis] + 0.6 - origin[axis]) / direction[axis];
+      enter = std::max(enter, std::min(a, b));
+      leave = std::min(leave, std::max(a, b));
+    }
+    if (enter > 0 && enter < leave) range_m = enter;
+  }
+  return range_m;
+}
+
+/// Scans of a hall along a bent way, as a sensor with offsets tells them and with poses that drift.
+struct Recording {
+  PointCloud cloud;
+  std::vector<RigidTransform> true_poses;
+  LaserOffsets offsets;
+};
+
+struct Faults {
+  double turn_deg = 0, shift_m = 0, range_m = 0, elevation_deg = 0, noise_m = 0.005;
+};
+
+double elevation_of(std::size_t laser) {
+  return (15.0 - 40.0 * static_cast<double>(laser) / (kLasers - 1)) * kDegree;
+}
+
+Recording record(const Faults& faults, std::size_t scan_count = 10) {
+  Recording made;
+  double mean_range = 0, mean_elevation = 0;
+  for (std::size_t laser = 0; laser < kLasers; ++laser) {
+    Random random(7, 1, laser);
+    made.offsets.range_m.push_back(faults.range_m * random.uniform(-1.7, 1.7));
+    made.offsets.elevation_rad.push_back(faults.elevation_deg * kDegree *
+                                         random.uniform(-1.7, 1.7));
+    mean_range += made.offsets.range_m.back() / kLasers;
+    mean_elevation += made.offsets.elevation_rad.back() / kLasers;
+  }
+  for (std::size_t laser = 0; laser < kLasers; ++laser) {
+    made.offsets.range_m[laser] -= mean_range;
+    made.offsets.elevation_rad[laser] -= mean_elevation;
+  }
+  for (std::uint32_t scan = 0; scan < scan_count; ++scan) {
+    const double along = static_cast<double>(scan) / static_cast<double>(scan_count - 1);
+    const RigidTransform pose = {
+        rotation_from_yaw_pitch_roll(0.8 * along, 0.03 * std::sin(5 * along), 0.02 * along),
+        {-6 + 12 * along, 2 * std::sin(3 * along), 1.8}};
+    const double wave = std::sin(2 * std::numbers::pi * along);
+    const double turn = faults.turn_deg * kDegree;
+    const RigidTransform drift = {
+        rotation_from_yaw_pitch_roll(turn * wave, 0.7 * turn * std::cos(4 * along), -turn * wave),
+        faults.shift_m * Vec3d{wave, -0.8 * wave, 0.5 * std::cos(6 * along)}};
+    const Mat3d rotation = drift.rotation * pose.rotation;
+    const RigidTransform given = {rotation, pose.translation + drift.translation};
+    made.true_poses.push_back(pose);
+    made.cloud.scan_poses.push_back({0.1 * scan, given});
+    for (std::size_t laser = 0; laser < kLasers; ++laser) {
+      for (std::size_t column = 0; column < kColumns; ++column) {
+        const double azimuth =
+            2 * std::numbers::pi * static_cast<double>(column) / kColumns + 0.001;
+        const auto beam = [&](double elevation) {
+          return Vec3d{std::cos(elevation) * std::cos(azimuth),
+                       std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
+        };
+        Random random(3, scan, laser * kColumns + column);
+        const double range_m =
+            range_in_hall(pose.translation, pose.rotation * beam(elevation_of(laser))) +
+            faults.noise_m * random.normal() - made.offsets.range_m[laser];
+        const Vec3d told = beam(elevation_of(laser) - made.offsets.elevation_rad[laser]);
+        made.cloud.positions.push_back(vec_cast<float>(given * (range_m * told)));
+        made.cloud.sensor_positions.push_back(vec_cast<float>(given.translation));
+        made.cloud.scan_indices.push_back(scan);
+        made.cloud.lasers.push_back(static_cast<std::uint16_t>(laser));
+      }
+    }
+  }
+  return made;
+}
+
+double rms(const std::vector<double>& found, const std::vector<double>& expected) {
+  double sum = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    sum += std::pow(found[i] - expected[i], 2) / static_cast<double>(expected.size());
+  return std::sqrt(sum);
+}
+
+/// Of elevation offsets, but for what would stretch the place: in a hall of walls and floors
+/// nothing observes that part, which is proportional to cos * sin of the elevation.
+double rms_but_for_stretch(const std::vector<double>& found, const std::vector<double>& expected) {
+  double product = 0, square = 0;
+  std::vector<double> difference(kLasers), stretch(kLasers);
+  double mean = 0;
+  for (std::size_t laser = 0; laser < kLasers; ++laser) {
+    const double elevation = elevation_of(laser);
+    stretch[laser] = std::sin(elevation) * std::cos(elevation);
+    mean += stretch[laser] / kLasers;
+  }
+  for (std::size_t laser = 0; laser < kLasers; ++laser) {
+    stretch[laser] -= mean;
+    difference[laser] = found[laser] - expected[laser];
+    product += stretch[laser] * difference[laser];
+    square += stretch[laser] * stretch[laser];
+  }
+  for (std::size_t laser = 0; laser < kLasers; ++laser)
+    difference[laser] -= product / square * stretch[laser];
+  return rms(difference, std::vector<double>(kLasers));
+}
+
+/// Largest errors of the poses relative to that of the first scan.
+struct PoseErrors {
+  double turn_deg = 0, shift_m = 0;
+};
+PoseErrors errors_of(const Calibration& found, const Recording& recording) {
+  const auto pose = [&](std::size_t scan) {
+    return found.poses[scan].corrected_from_given() *
+           recording.cloud.scan_poses[scan].world_from_sensor;
+  };
+  PoseErrors worst;
+  for (std::size_t scan = 1; scan < recording.true_poses.size(); ++scan) {
+    const RigidTransform step = pose(0).inverse() * pose(scan);
+    const RigidTransform expected = recording.true_poses[0].inverse() * recording.true_poses[scan];
+    worst.turn_deg =
+        std::max(worst.turn_deg, angle_between(step.rotation, expected.rotation) / kDegree);
+    worst.shift_m = std::max(worst.shift_m, length(step.translation - expected.translation));
+  }
+  return worst;
+}
+
+// Oracle: the faults that were put in.
+TEST(Calibrate, FindsPosesAndLasersThatAreOff) {
+  const Recording recording = record({0.3, 0.1, 0.03, 0.05});
+  const auto [found, report] = calibrate(recording.cloud, {}, Executor(2));
+  EXPECT_EQ(report.objection, "");
+  EXPECT_LT(report.calibrated_m, 0.25 * report.given_m);
+  EXPECT_LT(rms(found.lasers.range_m, recording.offsets.range_m), 0.003);
+  EXPECT_LT(rms_but_for_stretch(found.lasers.elevation_rad, recording.offsets.elevation_rad),
+            0.025 * kDegree);
+  const PoseErrors errors = errors_of(found, recording);
+  EXPECT_LT(errors.turn_deg, 0.04);
+  EXPECT_LT(errors.shift_m, 0.01);
+}
+
+// Oracle: the same beams without the faults.
+TEST(Calibrate, CorrectedPointsAndSensorsAreWhereTheyWere) {
+  Recording recording = record({0.2, 0.05, 0.03, 0});
+  const PointCloud expected = record({0, 0, 0, 0}).cloud;
+  const double before_m = length(vec_cast<double>(recording.cloud.positions[999]) -
+                                 vec_cast<double>(expected.positions[999]));
+  const Calibration found = calibrate(recording.cloud, {}, Executor(2)).first;
+  apply(found, recording.cloud, Executor(2));
+  double worst_m = 0, mean_m = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    mean_m += length(vec_cast<double>(recording.cloud.positions[i] - expected.positions[i])) /
+              static_cast<double>(expected.size());
+    worst_m = std::max(worst_m, length(vec_cast<double>(recording.cloud.sensor_positions[i] -
+                                                        expected.sensor_positions[i])));
+  }
+  EXPECT_GT(before_m, 0.02);
+  EXPECT_LT(mean_m, 0.04);  // the whole is held by the given poses, which drift
+  EXPECT_LT(worst_m, 0.06);
+  EXPECT_EQ(length(vec_cast<double>(recording.cloud.sensor_positions[0]) -
+                   recording.cloud.scan_poses[0].world_from_sensor.translation) < 1e-5,
+            true);
+}
+
+TEST(Calibrate, WhatIsRightStaysAsItIs) {
+  const auto [found, report] = calibrate(record({}).cloud, {}, Executor(1));
+  EXPECT_TRUE(found.empty());
+  EXPECT_NE(report.objection.find("lie no better"), std::string::npos) << report.objection;
+}
+
+TEST(Calibrate, PosesAloneNeedNoLasers) {
+  Recording recording = record({0.3, 0.1, 0, 0});
+  recording.cloud.lasers.clear();
+  const Calibration found = calibrate(recording.cloud, {}, Executor(2)).first;
+  EXPECT_TRUE(found.lasers.empty());
+  EXPECT_LT(errors_of(found, recording).shift_m, 0.01);
+}
+
+TEST(Calibrate, TheSameOnAnyNumberOfThreads) {
+  const PointCloud cloud = record({0.2, 0.05, 0.02, 0.03}, 6).cloud;
+  const auto [one, report_of_one] = calibrate(cloud, {}, Executor(1));
+  const auto [three, report_of_three] = calibrate(cloud, {}, Executor(3));
+  ASSERT_FALSE(one.empty());
+  EXPECT_EQ(one.lasers.range_m, three.lasers.range_m);
+  EXPECT_EQ(one.lasers.elevation_rad, three.lasers.elevation_rad);
+  EXPECT_EQ(one.poses.back().shift_m, three.poses.back().shift_m);
+  EXPECT_EQ(report_of_one.calibrated_m, report_of_three.calibrated_m);
+}
+
+PointCloud ball_of_points() {
+  PointCloud cloud;
+  for (std::uint32_t i = 0; i < 20000; ++i) {
+    Random random(5, 0, i);
+    const auto number = [&] { return static_cast<float>(random.uniform(-10, 10)); };
+    cloud.positions.push_back({number(), number(), number()});
+    cloud.sensor_positions.push_back({0, 0, 0});
+    cloud.scan_indices.push_back(i % 2);
+  }
+  cloud.scan_poses = {{0, {}}, {0.1, {}}};
+  return cloud;
+}
+
+TEST(Calibrate, WithoutPlanesNothingIsApplied) {
+  const auto [found, report] = calibrate(ball_of_points(), {}, Executor(1));
+  EXPECT_TRUE(found.empty());
+  EXPECT_NE(report.objection.find("too few planes"), std::string::npos) << report.objection;
+}
+
+/// A tube along x with the profile of an arch, seen by scans along it.
+TEST(Calibrate, AStraightTunnelHoldsNoPoses) {
+  PointCloud cloud;
+  for (std::uint32_t scan = 0; scan < 8; ++scan) {
+    const double x = 1.5 * scan;
+    cloud.scan_poses.push_back({0.1 * scan, {{}, {x, 0.03 * (scan % 3), 1.8}}});
+    for (std::uint32_t i = 0; i < 8000; ++i) {
+      Random random(6, scan, i);
+      const double along = random.uniform(-15, 15), angle = random.uniform(0, std::numbers::pi);
+      const double radius_m = 4 + 0.005 * random.normal();
+      const bool is_road = i % 3 == 0;
+      cloud.positions.push_back(vec_cast<float>(
+          is_road ? Vec3d{x + along, random.uniform(-4, 4), 0.005 * random.normal()}
+                  : Vec3d{x + along, radius_m * std::cos(angle), radius_m * std::sin(angle)}));
+      cloud.sensor_positions.push_back({static_cast<float>(x), 0, 1.8F});
+      cloud.scan_indices.push_back(scan);
+    }
+  }
+  const auto [found, report] = calibrate(cloud, {}, Executor(2));
+  EXPECT_TRUE(found.empty());
+  EXPECT_NE(report.objection.find("straight tunnel"), std::string::npos) << report.objection;
+  EXPECT_GT(std::fabs(report.weakest.x), 0.99);
+}
+
+TEST(Calibrate, WhatACloudLacksIsNamed) {
+  PointCloud cloud = record({}, 3).cloud;
+  PointCloud no_poses = cloud;
+  no_poses.scan_poses.clear();
+  EXPECT_STREQ(missing_for_calibration(no_poses), "no scans with a pose each");
+  PointCloud no_sensors = cloud;
+  no_sensors.sensor_positions.clear();
+  EXPECT_STREQ(missing_for_calibration(no_sensors), "no sensor positions");
+  cloud.scan_poses.pop_back();
+  EXPECT_STREQ(missing_for_calibration(cloud), "scans without a pose");
+  EXPECT_TRUE(calibrate(cloud, {}, Executor(1)).first.empty());
+}
+
+Calibration drive_along_x() {
+  Calibration calibration;
+  for (int k = 0; k < 4; ++k)
+    calibration.poses.push_back(
+        {10 + 0.2 * k, {2.0 * k, 0, 0}, {0, 0, 0.001 * k}, {0.01 * k, 0, 0}});
+  return calibration;
+}
+
+TEST(Calibration, IsInterpolatedBetweenTheScansAround) {
+  const auto found = drive_along_x().at(10.3, {3.1, 0.2, 0});
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->shift_m.x, 0.015, 1e-12);
+  EXPECT_NEAR(found->rotation_rad.z, 0.0015, 1e-12);
+  EXPECT_EQ(found->position, (Vec3d{3.1, 0.2, 0}));
+}
+
+TEST(Calibration, IsHeldForOneScanBeyondItsEndsAndNotExtrapolated) {
+  EXPECT_NEAR(drive_along_x().at(10.7, {7, 0, 0})->shift_m.x, 0.03, 1e-12);
+  EXPECT_NEAR(drive_along_x().at(9.9, {-1, 0, 0})->shift_m.x, 0, 1e-12);
+  EXPECT_FALSE(drive_along_x().at(11.0, {10, 0, 0}));
+  EXPECT_FALSE(drive_along_x().at(9.7, {-3, 0, 0}));
+}
+
+TEST(Calibration, ScansOfAnotherDriveAreNotCorrected) {
+  EXPECT_FALSE(drive_along_x().at(10.3, {3.1, 8, 0}));
+  EXPECT_FALSE(drive_along_x().at(1e9, {3.1, 0, 0}));
+}
+
+TEST(Calibration, EveryDriveHasItsOwnTimes) {
+  Calibration calibration = drive_along_x();
+  for (PoseCorrection pose : drive_along_x().poses) {
+    pose.position.y = 100;
+    pose.shift_m.x += 1;
+    calibration.poses.push_back(pose);
+  }
+  EXPECT_NEAR(calibration.at(10.3, {3, 100, 0})->shift_m.x, 1.015, 1e-12);
+  EXPECT_NEAR(calibration.at(10.3, {3, 0, 0})->shift_m.x, 0.015, 1e-12);
+}
+
+}  // namespace
+}  // namespace adasplats

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/core/maths/vec3.h"
+
+namespace adasplats {
+
+/// A flat piece of the place that several scans saw.
+struct ScanPlane {
+  Vec3d center;
+  Vec3d normal;                      ///< unit
+  Vec3d axes[2];                     ///< unit, in the plane
+  std::uint32_t begin = 0, end = 0;  ///< of its points in ScanPlanes::points
+};
+
+struct ScanPlanes {
+  std::vector<ScanPlane> planes;
+  std::vector<std::uint32_t> points;  ///< indices, plane by plane
+
+  std::span<const std::uint32_t> points_of(const ScanPlane& plane) const {
+    return std::span(points).subspan(plane.begin, plane.end - plane.begin);
+  }
+};
+
+struct ScanPlaneOptions {
+  double largest_cell_m = 1.6;  ///< halved where the points are not flat, three times at most
+  double flatness_m = 0.25;     ///< most standard deviation across a plane
+  double shape = 0.25;          ///< and most of the second largest along it, so that it is a plane
+  std::uint32_t least_points = 12;
+  std::uint32_t least_scans = 2;
+};
+
+/// Finds planes in cells of a grid. `scans`: of the points. The result depends on the points alone.
+ScanPlanes find_scan_planes(std::span<const Vec3d> positions, std::span<const std::uint32_t> scans,
+                            const ScanPlaneOptions& options, const Executor& executor);
+
+}  // namespace adasplats
