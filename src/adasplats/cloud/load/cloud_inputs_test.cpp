@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "adasplats/cloud/load/file_kind.h"
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
 namespace {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/scan_beams.h"
 #include "adasplats/core/maths/rigid_transform.h"
 
@@ -41,6 +42,8 @@ struct CloudPart {
   PointCloud cloud;
   std::vector<Vec3d> world_positions;  ///< of files
   std::vector<Vec3d> world_sensors;    ///< of files that have them
+  std::vector<double> times_s;         ///< of files that have them, in whatever clock
+  std::vector<Vec3f> scan_origins;     ///< of sequences whose scans say them, sensor frames
   std::vector<PartRun> runs;
   bool is_sequence = false;
   ScanBeams beams;  ///< of a sequence
@@ -63,9 +66,12 @@ struct CloudPart {
 };
 
 /// Reads the scans of a sequence that `options` choose; `first_scan_index` numbers the first.
-CloudPart read_sequence_part(const std::filesystem::path& folder, const LoadOptions& options,
+CloudPart read_sequence_part(const KittiSequence& sequence, const LoadOptions& options,
                              std::uint32_t first_scan_index, const Executor& executor,
                              ProgressSink& progress);
+/// A sequence folder with recognised beams (where options want it). Errors: those of
+/// open_kitti_sequence and require_poses_that_fit.
+KittiSequence open_sequence(const std::filesystem::path& folder, const LoadOptions& options);
 
 /// Reads a file of points.
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/dropped_points.h"
+#include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/cloud/load/own_body.h"
 #include "adasplats/cloud/load/point_origins.h"
 #include "adasplats/core/error.h"
@@ -23,6 +25,12 @@ namespace {
 
 using Input = CloudInput;
 
+/// Something to read: a file, or a drive that is open already.
+struct Source {
+  Input input;
+  std::optional<KittiSequence> drive;
+};
+
 std::vector<Input> list_inputs(std::span<const std::filesystem::path> paths) {
   if (paths.empty()) throw Error(ErrorKind::usage, "no inputs to load");
   std::vector<Input> inputs, sequences;
@@ -33,6 +41,25 @@ std::vector<Input> list_inputs(std::span<const std::filesystem::path> paths) {
   std::ranges::copy_if(inputs, std::back_inserter(sequences), &Input::is_sequence);
   if (sequences.size() > 1) require_one_world(sequences);
   return inputs;
+}
+
+/// The inputs, folders of scans with times as one drive each.
+std::vector<Source> open_sources(std::span<const std::filesystem::path> paths,
+                                 const LoadOptions& options, const Executor& executor,
+                                 ProgressSink& progress) {
+  std::vector<Source> sources;
+  for (const std::filesystem::path& path : paths) {
+    if (!options.trajectory.empty() && has_timed_frames(path)) {
+      auto drive =
+          open_frame_drive({path, options.trajectory, options.boxes, true}, executor, progress);
+      if (drive) {
+        sources.push_back({{path, true}, std::move(drive)});
+        continue;
+      }
+    }
+    for (const Input& input : list_inputs(std::span(&path, 1))) sources.push_back({input, {}});
+  }
+  return sources;
 }
 
 void require_options_that_fit(const LoadOptions& options, std::span<const Input> inputs) {
@@ -59,25 +86,32 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Input>
     throw usage("a viewpoint and a trajectory both give the sensor position");
   if ((options.viewpoint || !options.trajectory.empty()) && !any_file)
     throw usage("a sensor position is given, but every input has its own");
+  if (!options.boxes.empty() && options.trajectory.empty())
+    throw usage("boxes are given, but no trajectory: they are for scans with times");
   if (options.viewpoint && !is_place(*options.viewpoint))
     throw usage("the viewpoint is not finite, or beyond 1e12 m");
   check_settings(options);
 }
 
-std::vector<CloudPart> read_parts(std::span<const Input> inputs, const LoadOptions& options,
+std::vector<CloudPart> read_parts(std::span<const Source> sources, const LoadOptions& options,
                                   const Executor& executor, ProgressSink& progress) {
   std::vector<CloudPart> parts;
   std::size_t points = 0;
   std::uint32_t scans = 0;
-  for (const Input& input : inputs) {
-    parts.push_back(input.is_sequence
-                        ? read_sequence_part(input.path, options, scans, executor, progress)
-                        : read_file_part(input.path, options, progress));
-    if (input.is_sequence) scans += static_cast<std::uint32_t>(parts.back().runs.size());
+  for (const Source& source : sources) {
+    const std::filesystem::path& path = source.input.path;
+    if (source.drive)
+      parts.push_back(read_sequence_part(*source.drive, options, scans, executor, progress));
+    else if (source.input.is_sequence)
+      parts.push_back(
+          read_sequence_part(open_sequence(path, options), options, scans, executor, progress));
+    else
+      parts.push_back(read_file_part(path, options, progress));
+    if (source.input.is_sequence) scans += static_cast<std::uint32_t>(parts.back().runs.size());
     points += parts.back().size();
     if (points > std::numeric_limits<std::uint32_t>::max())
       throw Error(ErrorKind::data,
-                  input.path.string() + ": with it the cloud has more than 4294967295 points");
+                  path.string() + ": with it the cloud has more than 4294967295 points");
   }
   return parts;
 }
@@ -318,8 +352,14 @@ PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, ProgressSink& 
   for_each_attribute([&](const auto& attribute) { unify_attribute(clouds, attribute, progress); });
   PointCloud all;
   all.origin = origin;
-  for (PointCloud& cloud : clouds)
+  const bool has_poses = std::ranges::all_of(
+      clouds, [](const PointCloud& cloud) { return cloud.empty() || !cloud.scan_poses.empty(); });
+  Trajectory poses;  // of inputs without points, too: scans are numbered over all
+  for (PointCloud& cloud : clouds) {
+    if (has_poses) poses.insert(poses.end(), cloud.scan_poses.begin(), cloud.scan_poses.end());
     if (!cloud.empty()) append(all, std::move(cloud));
+  }
+  all.scan_poses = std::move(poses);
   return all;
 }
 
@@ -345,10 +385,18 @@ std::size_t drop_own_body(PointCloud& cloud, std::optional<double> radius_m,
 std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
                                              const LoadOptions& options, const Executor& executor,
                                              ProgressSink& progress) {
-  const std::vector<Input> listed = list_inputs(inputs);
-  require_options_that_fit(options, listed);
+  std::vector<Input> listed = list_inputs(inputs);
+  const bool has_drives =
+      !options.trajectory.empty() && std::ranges::any_of(inputs, has_timed_frames);
+  if (!has_drives) require_options_that_fit(options, listed);
+  const std::vector<Source> sources = open_sources(inputs, options, executor, progress);
+  if (has_drives) {
+    listed.clear();
+    for (const Source& source : sources) listed.push_back(source.input);
+    check_settings(options);
+  }
   const PointOrigins origins(options);
-  Gathered gathered{read_parts(listed, options, executor, progress), {}};
+  Gathered gathered{read_parts(sources, options, executor, progress), {}};
 
   LoadReport report;
   for (CloudPart& part : gathered.parts) {

@@ -31,6 +31,8 @@ struct LoadOptions {
   /// A trajectory whose nearest position (in the plane) becomes the sensor position of points that
   /// have none. That is a guess, metres off: OriginKind::guessed, which turns normals alone.
   std::filesystem::path trajectory;
+  /// Boxes of moving objects (MovingBoxes), whose points are left out of scans with times.
+  std::filesystem::path boxes;
   /// Of a sequence: `count` scans (or as many as there are) from `first` on, every `stride`-th.
   std::size_t first_scan = 0;
   std::size_t scan_count = static_cast<std::size_t>(-1);
@@ -111,11 +113,20 @@ void visit_settings(LoadOptions& load, Visit&& visit) {
                         "coordinates",
                 .group = kGroup},
         load.viewpoint);
-  visit(Setting{.name = "trajectory",
-                .help = "Poses: the nearest one turns the normals of points that have no sensor "
-                        "position; a guess, nothing is checked with it",
+  visit(
+      Setting{.name = "trajectory",
+              .help = "Poses of the recording. For a folder of scans whose points have times: with "
+                      "them, and the sensor and its mount as they are recognised, every beam's "
+                      "beginning. Else the nearest pose turns the normals of points that have no "
+                      "sensor position; a guess, nothing is checked with it",
+              .group = kGroup},
+      load.trajectory);
+  visit(Setting{.name = "boxes",
+                .help = "Boxes of objects by time (CSV: time,id,stationary,x,y,z,size_x,size_y,"
+                        "size_z,yaw): what those that move hold is left out of scans with times",
+                .value = "FILE",
                 .group = kGroup},
-        load.trajectory);
+        load.boxes);
   visit(Setting{.name = "beams_from_poses",
                 .help = "Beams of sequences start at their poses, even where the sensor is "
                         "recognised",

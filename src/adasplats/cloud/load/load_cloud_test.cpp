@@ -9,9 +9,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/recordings_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/las/las_writer.h"
 
 namespace adasplats {

@@ -13,10 +13,11 @@
 namespace adasplats {
 namespace {
 
-/// Where the beam that measured a point of a scan started, world coordinates.
-Vec3d beam_origin(const ScanBeams& beams, const PartRun& run, Vec3d world) {
+/// Where the beam that measured point `i` of a sequence started, world coordinates.
+Vec3d beam_origin(const CloudPart& part, std::size_t i, const PartRun& run, Vec3d world) {
   const RigidTransform& pose = run.world_from_local;
-  return pose * beams.origin_of(run.scan, pose.inverse() * world);
+  if (!part.scan_origins.empty()) return pose * vec_cast<double>(part.scan_origins[i]);
+  return pose * part.beams.origin_of(run.scan, pose.inverse() * world);
 }
 
 std::string place_text(Vec3d place) {
@@ -83,7 +84,7 @@ PointOrigins::PointOrigins(const LoadOptions& options) : viewpoint_(options.view
 
 PointOrigin PointOrigins::of(const CloudPart& part, std::size_t i, Vec3d world,
                              const PartRun& run) const {
-  if (part.is_sequence) return {beam_origin(part.beams, run, world), OriginKind::measured};
+  if (part.is_sequence) return {beam_origin(part, i, run, world), OriginKind::measured};
   if (!part.world_sensors.empty() && is_finite(part.world_sensors[i])) {
     const OriginKind kind =
         part.cloud.origin_kinds.empty() ? OriginKind::measured : part.cloud.origin_kinds[i];

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "adasplats/cloud/load/station_check.h"
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
 namespace {

@@ -44,6 +44,8 @@ const std::initializer_list<std::string_view> kIntensityNames = {"intensity",
                                                                  "scalar_reflectivity",
                                                                  "scalar_luma"};
 const std::initializer_list<std::string_view> kInstanceNames = {"instance", "scalar_instance"};
+const std::initializer_list<std::string_view> kTimeNames = {
+    "time", "timestamp", "gps_time", "scalar_time", "scalar_timestamp", "scalar_gps_time"};
 const std::initializer_list<std::string_view> kScanNames = {"scan_index", "scalar_scan_index"};
 
 /// A table and the file it is from, for messages.
@@ -227,6 +229,12 @@ CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& o
   part.runs.push_back({0, table.rows, path, {}});
   part.world_positions = read_positions(file);
   part.world_sensors = read_sensor_positions(file, options);
+  if (const Column* column = file.first_of(kTimeNames)) {
+    part.times_s.resize(table.rows);
+    for_each_value(*column, [&part](std::size_t i, auto value) {
+      part.times_s[i] = static_cast<double>(value);
+    });
+  }
   PointCloud& cloud = part.cloud;
   if (const Column* column = file.find("origin_kind"); column && !part.world_sensors.empty())
     read_origin_kinds(file, *column, cloud);

@@ -61,39 +61,103 @@ void store_scan(const PartRun& run, const KittiScan& scan, PointCloud& cloud) {
 
 }  // namespace
 
-CloudPart read_sequence_part(const std::filesystem::path& folder, const LoadOptions& options,
-                             std::uint32_t first_scan_index, const Executor& executor,
-                             ProgressSink& progress) {
-  const KittiSequence sequence = open_kitti_sequence(folder);
+KittiSequence open_sequence(const std::filesystem::path& folder, const LoadOptions& options) {
+  KittiSequence sequence = open_kitti_sequence(folder);
   require_poses_that_fit(sequence);
-  const std::vector<std::size_t> chosen = chosen_scans(sequence, options);
-  CloudPart part;
-  part.is_sequence = true;
-  if (!options.beams_from_poses) part.beams = recognize_beams(sequence);
+  if (!options.beams_from_poses) sequence.beams = recognize_beams(sequence);
+  return sequence;
+}
+
+namespace {
+
+/// Calls body(k) for every run, in parallel, and tells how far it is.
+template <class Body>
+void for_each_scan(std::size_t count, const Executor& executor, ProgressSink& progress,
+                   const Body& body) {
+  progress.begin_step("reading scans", count);
+  std::mutex progress_mutex;
+  std::size_t done = 0;
+  executor.for_chunks(count, 1, [&](std::size_t k, std::size_t) {
+    body(k);
+    const std::lock_guard lock(progress_mutex);
+    progress.advance(++done);
+  });
+  progress.end_step();
+}
+
+void number_scans(CloudPart& part, std::uint32_t first_scan_index) {
+  std::vector<std::uint32_t>& scans = part.cloud.scan_indices;
+  scans.resize(part.size());
+  for (std::size_t k = 0; k < part.runs.size(); ++k)
+    std::fill(scans.begin() + static_cast<std::ptrdiff_t>(part.runs[k].begin),
+              scans.begin() + static_cast<std::ptrdiff_t>(part.runs[k].end),
+              first_scan_index + static_cast<std::uint32_t>(k));
+}
+
+template <class T>
+void append_to(std::vector<T>& values, const std::vector<T>& part) {
+  values.insert(values.end(), part.begin(), part.end());
+}
+
+/// Scans of a reader: how many points they have is known when they are read.
+void read_with_reader(const KittiSequence& sequence, const std::vector<std::size_t>& chosen,
+                      CloudPart& part, const Executor& executor, ProgressSink& progress) {
+  std::vector<KittiScan> scans(chosen.size());
+  for_each_scan(chosen.size(), executor, progress,
+                [&](std::size_t k) { scans[k] = read_kitti_points(sequence, chosen[k]); });
+  std::size_t begin = 0;
+  PointCloud& cloud = part.cloud;
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    const std::size_t end = begin + scans[k].positions.size();
+    part.runs.push_back({begin, end, sequence.scans[chosen[k]],
+                         sequence.trajectory[chosen[k]].world_from_sensor, chosen[k]});
+    append_to(cloud.positions, scans[k].positions);
+    append_to(cloud.intensities, scans[k].intensities);
+    append_to(cloud.classes, scans[k].classes);
+    append_to(cloud.lasers, scans[k].lasers);
+    append_to(part.scan_origins, scans[k].origins);
+    scans[k] = {};
+    begin = end;
+  }
+  if (cloud.intensities.size() != begin) cloud.intensities.clear();
+  if (cloud.classes.size() != begin) cloud.classes.clear();
+}
+
+void read_files(const KittiSequence& sequence, const std::vector<std::size_t>& chosen,
+                CloudPart& part, const Executor& executor, ProgressSink& progress) {
   part.runs = runs_of(sequence, chosen);
   const std::size_t points = part.size();
   PointCloud& cloud = part.cloud;
   cloud.positions.resize(points);
   cloud.intensities.resize(points);
-  cloud.scan_indices.resize(points);
+  if (part.beams.from_hdl64) cloud.lasers.resize(points);
   if (!sequence.labels.empty()) {
     cloud.classes.resize(points);
     cloud.instances.resize(points);
   }
-
-  progress.begin_step("reading scans", chosen.size());
-  std::mutex progress_mutex;
-  std::size_t done = 0;
-  executor.for_chunks(chosen.size(), 1, [&](std::size_t k, std::size_t) {
+  for_each_scan(chosen.size(), executor, progress, [&](std::size_t k) {
     const PartRun& run = part.runs[k];
     store_scan(run, read_kitti_scan(sequence, chosen[k]), cloud);
-    std::fill(cloud.scan_indices.begin() + static_cast<std::ptrdiff_t>(run.begin),
-              cloud.scan_indices.begin() + static_cast<std::ptrdiff_t>(run.end),
-              first_scan_index + static_cast<std::uint32_t>(k));
-    const std::lock_guard lock(progress_mutex);
-    progress.advance(++done);
+    for (std::size_t i = run.begin; i < run.end && !cloud.lasers.empty(); ++i)
+      cloud.lasers[i] = part.beams.laser_of(run.scan, vec_cast<double>(cloud.positions[i]));
   });
-  progress.end_step();
+}
+
+}  // namespace
+
+CloudPart read_sequence_part(const KittiSequence& sequence, const LoadOptions& options,
+                             std::uint32_t first_scan_index, const Executor& executor,
+                             ProgressSink& progress) {
+  const std::vector<std::size_t> chosen = chosen_scans(sequence, options);
+  CloudPart part;
+  part.is_sequence = true;
+  part.beams = sequence.beams;
+  if (sequence.reader)
+    read_with_reader(sequence, chosen, part, executor, progress);
+  else
+    read_files(sequence, chosen, part, executor, progress);
+  number_scans(part, first_scan_index);
+  for (const std::size_t scan : chosen) part.cloud.scan_poses.push_back(sequence.trajectory[scan]);
   return part;
 }
 

@@ -124,8 +124,18 @@ KittiSequence open_kitti_sequence(const std::filesystem::path& folder) {
   return sequence;
 }
 
+MeasuredBeam beam_of(const KittiSequence& sequence, std::size_t index, const KittiScan& scan,
+                     std::size_t i) {
+  const Vec3d point = vec_cast<double>(scan.positions[i]);
+  if (scan.origins.empty()) return sequence.beams.beam_of(index, point);
+  const Vec3d origin = vec_cast<double>(scan.origins[i]);
+  const std::uint16_t laser = scan.lasers[i];
+  return {origin, sequence.beams.offsets.corrected(origin, point, {0, 0, 1}, laser), laser};
+}
+
 KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index) {
   const std::filesystem::path& path = sequence.scans.at(index);
+  if (sequence.reader) return sequence.reader->read(path);
   KittiScan scan;
   // A scan in which nothing returned is an empty file.
   std::error_code problem;

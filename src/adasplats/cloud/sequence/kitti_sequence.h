@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,16 @@
 
 namespace adasplats {
 
+struct KittiScan;
+
+/// Reads scans that are not in KITTI's layout.
+class ScanReader {
+ public:
+  virtual ~ScanReader() = default;
+  /// One of the sequence's `scans`.
+  virtual KittiScan read(const std::filesystem::path& file) const = 0;
+};
+
 /// A SemanticKITTI sequence folder: velodyne/NNNNNN.bin, labels/NNNNNN.label (optional),
 /// poses.txt, calib.txt, times.txt (optional).
 struct KittiSequence {
@@ -21,6 +32,7 @@ struct KittiSequence {
   std::vector<std::filesystem::path> labels;  ///< empty, or one a scan
   Trajectory trajectory;                      ///< world_from_velodyne, one a scan
   ScanBeams beams;  ///< unless recognize_beams says more: from the frame's origin
+  std::shared_ptr<const ScanReader> reader;  ///< null: the files are KITTI's
 };
 
 /// True for a folder with a `velodyne` folder in it.
@@ -36,7 +48,15 @@ struct KittiScan {
   std::vector<float> intensities;
   std::vector<std::uint16_t> classes;    ///< low 16 bits of the label; empty without labels
   std::vector<std::uint16_t> instances;  ///< high 16 bits
+  /// Where each beam began, sensor frame, m, and its laser; empty: the sequence's beams say.
+  std::vector<Vec3f> origins;
+  std::vector<std::uint16_t> lasers;
 };
+
+/// The beam that measured point `i` of scan number `index`, in the scan's frame, corrected by the
+/// offsets of the sequence's beams.
+MeasuredBeam beam_of(const KittiSequence& sequence, std::size_t index, const KittiScan& scan,
+                     std::size_t i);
 
 /// Reads scan number `index`. Points that are not finite are kept here (the caller counts them).
 /// Errors: data where the label file has another number of entries ("n labels, m points").

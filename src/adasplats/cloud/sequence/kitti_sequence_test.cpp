@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
 namespace {

@@ -8,8 +8,8 @@
 #include <functional>
 #include <string>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/core/maths/random.h"
+#include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
 namespace {

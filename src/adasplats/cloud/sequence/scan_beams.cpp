@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 
@@ -54,19 +55,38 @@ std::vector<Vec3d> sweeps_of(const Trajectory& trajectory) {
   return sweeps_m;
 }
 
-/// Distance of a point from the nearest of the beams' cones, m.
-double distance_from_fan(Vec3d point) {
-  const double rho_m = std::hypot(point.x, point.y);
-  double nearest_m = std::numeric_limits<double>::infinity();
-  for (const double elevation_deg : kElevations_deg) {
-    const double above_m =
-        point.z - block_height_m(elevation_deg) - std::tan(elevation_deg * kRadians) * rho_m;
-    nearest_m = std::min(nearest_m, std::fabs(above_m) * std::cos(elevation_deg * kRadians));
+/// A beam of the fan: the cone z = slope * rho + height that it sweeps.
+struct Cone {
+  double slope, height_m, cosine;
+};
+
+std::array<Cone, kElevations_deg.size()> cones_of_fan() {
+  std::array<Cone, kElevations_deg.size()> cones{};
+  for (std::size_t k = 0; k < cones.size(); ++k) {
+    const double elevation_rad = kElevations_deg[k] * kRadians;
+    cones[k] = {std::tan(elevation_rad), block_height_m(kElevations_deg[k]),
+                std::cos(elevation_rad)};
   }
-  return nearest_m;
+  return cones;
 }
 
-double median(std::vector<double> values) {
+/// The cone nearest to a point, and how far it is, m.
+std::pair<std::uint16_t, double> nearest_cone(Vec3d point) {
+  static const auto kCones = cones_of_fan();
+  const double rho_m = std::hypot(point.x, point.y);
+  std::pair<std::uint16_t, double> nearest{kNoLaser, std::numeric_limits<double>::infinity()};
+  for (std::size_t k = 0; k < kCones.size(); ++k) {
+    const Cone& cone = kCones[k];
+    const double distance_m = std::fabs(point.z - cone.height_m - cone.slope * rho_m) * cone.cosine;
+    if (distance_m < nearest.second) nearest = {static_cast<std::uint16_t>(k), distance_m};
+  }
+  return nearest;
+}
+
+/// Distance of a point from the nearest of the beams' cones, m.
+double distance_from_fan(Vec3d point) { return nearest_cone(point).second; }
+
+double median_of_all(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -75,27 +95,37 @@ double median(std::vector<double> values) {
 }  // namespace
 
 MeasuredBeam ScanBeams::beam_of(std::size_t scan, Vec3d point) const {
-  MeasuredBeam beam{{}, point};
+  MeasuredBeam beam{{}, point, kNoLaser};
   if (from_hdl64) {
     // From the middle between the blocks the two parts of the fan are told apart well enough.
     constexpr double kBetween_m = 0.165;
     const double elevation_deg =
         std::atan2(point.z - kBetween_m, std::hypot(point.x, point.y)) / kRadians;
     beam.origin.z = block_height_m(elevation_deg);
+    beam.laser = laser_of(scan, point);
   }
   const double phase = sweep_phase(point);
   if (scan < sweeps_m.size()) beam.origin = beam.origin + phase * sweeps_m[scan];
+  beam.end = offsets.corrected(beam.origin, beam.end, {0, 0, 1}, beam.laser);
   if (scan < raw_motions.size()) {
     const SweepMotion& motion = raw_motions[scan];
     const Trajectory sweep = {
         {-0.5, motion.frame_from_begin}, {0, {}}, {0.5, motion.frame_from_end}};
     const RigidTransform frame_from_sensor = interpolate(sweep, phase);
-    beam = {frame_from_sensor * beam.origin, frame_from_sensor * beam.end};
+    beam.origin = frame_from_sensor * beam.origin;
+    beam.end = frame_from_sensor * beam.end;
   }
   return beam;
 }
 
+std::uint16_t ScanBeams::laser_of(std::size_t scan, Vec3d point) const {
+  if (!from_hdl64) return kNoLaser;
+  if (scan < sweeps_m.size()) point = point - sweep_phase(point) * sweeps_m[scan];
+  return nearest_cone(point).first;
+}
+
 std::string ScanBeams::description() const {
+  if (!recognised.empty()) return recognised;
   const std::string origin = from_hdl64 ? "HDL-64E blocks" : "frame origin";
   if (!raw_motions.empty()) return origin + ", rolling";
   return from_hdl64 && !sweeps_m.empty() ? origin + ", moving" : origin;
@@ -120,7 +150,7 @@ ScanBeams recognize_beams(const KittiSequence& sequence) {
   constexpr std::size_t kLeastPoints = 500;
   constexpr double kMostDistance_m = 0.01;
 
-  ScanBeams moving{true, sweeps_of(sequence.trajectory), {}};
+  ScanBeams moving{true, sweeps_of(sequence.trajectory), {}, {}, {}};
   std::vector<double> as_measured_m, compensated_m;
   const std::size_t scans = std::min(kScans, sequence.scans.size());
   for (std::size_t k = 0; k < scans; ++k) {
@@ -137,8 +167,8 @@ ScanBeams recognize_beams(const KittiSequence& sequence) {
     }
   }
   if (as_measured_m.size() < kLeastPoints) return {};
-  const double as_measured = median(std::move(as_measured_m));
-  const double compensated = median(std::move(compensated_m));
+  const double as_measured = median_of_all(std::move(as_measured_m));
+  const double compensated = median_of_all(std::move(compensated_m));
   if (!(std::min(as_measured, compensated) < kMostDistance_m)) return {};
   if (as_measured <= compensated) moving.sweeps_m.clear();
   return moving;

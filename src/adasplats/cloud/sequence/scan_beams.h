@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "adasplats/cloud/points/laser_offsets.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/maths/vec3.h"
 
@@ -22,7 +24,8 @@ struct SweepMotion {
 /// A measured beam in its scan's frame.
 struct MeasuredBeam {
   Vec3d origin;
-  Vec3d end;  ///< the measured point
+  Vec3d end;                       ///< the measured point
+  std::uint16_t laser = kNoLaser;  ///< topmost 0
 };
 
 /// Where the beams of a sequence's scans left the sensor. Files in KITTI's layout do not say it;
@@ -37,10 +40,16 @@ struct ScanBeams {
   std::vector<Vec3d> sweeps_m;
   /// Of each scan whose points are as they were measured; empty: as if the sensor stood still.
   std::vector<SweepMotion> raw_motions;
+  /// What the recognised sensor's lasers measure beside its table; beam_of() corrects it.
+  LaserOffsets offsets;
+  /// What was recognised where scans say themselves where beams began; else empty.
+  std::string recognised;
 
   /// In the scan's frame, of the beam that measured `point` (as it stands in the file).
   Vec3d origin_of(std::size_t scan, Vec3d point) const { return beam_of(scan, point).origin; }
   MeasuredBeam beam_of(std::size_t scan, Vec3d point) const;
+  /// Which laser measured it; kNoLaser where the sensor is not recognised.
+  std::uint16_t laser_of(std::size_t scan, Vec3d point) const;
   /// "frame origin", "HDL-64E blocks" or "HDL-64E blocks, moving" (or ", rolling").
   std::string description() const;
 };

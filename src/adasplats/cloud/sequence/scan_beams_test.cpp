@@ -9,9 +9,9 @@
 #include <numbers>
 
 #include "adasplats/cloud/load/load_cloud.h"
-#include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/maths/random.h"
+#include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
 namespace {

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/frame_drive.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/io/ply/ply.h"
+#include "adasplats/sensors/lidar_model.h"
+
+namespace adasplats {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// How far a ray goes in a hall of 30 x 20 x 6 m around the origin, its floor at z = 0.
+double range_in_hall(Vec3d origin, Vec3d direction) {
+  const Vec3d low = {-15, -10, 0}, high = {15, 10, 6};
+  double range_m = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (direction[axis] == 0) continue;
+    const double wall = direction[axis] > 0 ? high[axis] : low[axis];
+    range_m = std::min(range_m, (wall - origin[axis]) / direction[axis]);
+  }
+  return range_m;
+}
+
+RigidTransform vehicle_at(double time_s) {
+  return {rotation_from_yaw_pitch_roll(0.5 * time_s, 0, 0), {-4 + 4 * time_s, time_s, 1.9}};
+}
+
+// The trajectory is the sensor's own; mounts that differ are recognize_sensor_test's.
+const RigidTransform kMount = {{}, {0, 0, 0}};
+
+/// Frames of a Pandar64 that drives through the hall, 10 a second, and the vehicle's poses.
+class Drive {
+ public:
+  Drive() {
+    const LidarModel sensor = load_lidar_model("hesai-pandar64");
+    for (int scan = 0; scan < kScans; ++scan) write_scan(sensor, scan);
+    std::string poses = "time,x,y,z,qw,qx,qy,qz\n";
+    for (int k = 0; k <= 10; ++k) {
+      const double time_s = 0.1 * k;
+      const RigidTransform pose = vehicle_at(time_s);
+      std::array<char, 160> line{};
+      std::snprintf(line.data(), line.size(), "%.6f,%.9f,%.9f,%.9f,%.12f,0,0,%.12f\n", time_s,
+                    pose.translation.x, pose.translation.y, pose.translation.z,
+                    std::cos(0.25 * time_s), std::sin(0.25 * time_s));
+      poses += line.data();
+    }
+    folder_.write("poses.csv", poses);
+  }
+
+  std::filesystem::path frames() const { return folder_.path() / "frames"; }
+  std::filesystem::path poses() const { return folder_.path() / "poses.csv"; }
+  const TemporaryFolder& folder() const { return folder_; }
+
+  static constexpr int kScans = 6;
+
+ private:
+  void write_scan(const LidarModel& sensor, int scan) {
+    const std::vector<Firing> firings = firings_of(sensor);
+    std::vector<double> x, y, z, time;
+    for (std::size_t i = 0; i < firings.size(); i += 7) {
+      const double time_s = 0.1 * scan + 0.1 * static_cast<double>(firings[i].column) /
+                                             static_cast<double>(sensor.columns);
+      const RigidTransform pose = vehicle_at(time_s) * kMount;
+      const Vec3d direction = pose.rotation * vec_cast<double>(firings[i].direction);
+      const Vec3d p = pose.translation + range_in_hall(pose.translation, direction) * direction;
+      x.push_back(p.x);
+      y.push_back(p.y);
+      z.push_back(p.z);
+      time.push_back(time_s);
+    }
+    std::filesystem::create_directories(frames());
+    const auto view = [](const char* name, const std::vector<double>& values) {
+      return ColumnView{name, ColumnType::f64, values.data(), sizeof(double)};
+    };
+    const std::vector<ColumnView> columns = {view("x", x), view("y", y), view("z", z),
+                                             view("time", time)};
+    write_ply(frames() / (std::to_string(scan) + ".ply"), x.size(), columns);
+  }
+
+  TemporaryFolder folder_;
+};
+
+// Oracle: where the sensor was when each point was made.
+TEST(FrameDrive, BeamsBeginWhereTheSensorWasAtTheirTime) {
+  const Drive drive;
+  ProgressSink quiet;
+  LoadOptions options;
+  options.trajectory = drive.poses();
+  options.own_body_m = 0;
+  const std::filesystem::path frames = drive.frames();
+  const auto [cloud, report] = load_cloud(std::span(&frames, 1), options, Executor(2), quiet);
+  ASSERT_EQ(cloud.scan_poses.size(), 6U);
+  ASSERT_EQ(cloud.sensor_positions.size(), cloud.size());
+  ASSERT_EQ(cloud.lasers.size(), cloud.size());
+  EXPECT_EQ(cloud.origin_kind(5), OriginKind::measured);
+  EXPECT_NE(report.beams.front().find("hesai-pandar64"), std::string::npos);
+  const RigidTransform expected = vehicle_at(0.05) * kMount;
+  EXPECT_LT(length(cloud.scan_poses[0].world_from_sensor.translation - expected.translation), 0.03);
+  const std::vector<Firing> firings = firings_of(load_lidar_model("hesai-pandar64"));
+  std::size_t of_laser = 0;
+  for (std::size_t i = 0; i < 500; ++i) {
+    const Firing& firing = firings[7 * i];
+    const RigidTransform pose = vehicle_at(0.1 * firing.column / 1800.0) * kMount;
+    EXPECT_LT(length(cloud.origin + vec_cast<double>(cloud.sensor_positions[i]) - pose.translation),
+              0.03);
+    of_laser += cloud.lasers[i] == firing.ring;
+  }
+  EXPECT_GT(of_laser, 480U);
+}
+
+TEST(FrameDrive, AnotherClockIsAnError) {
+  const Drive drive;
+  ProgressSink quiet;
+  const auto late = drive.folder().write(
+      "late.csv",
+      std::string("time,x,y,z,qw,qx,qy,qz\n1e9,0,0,0,1,0,0,0\n1000000001,1,0,0,1,0,0,0\n"));
+  expect_error(ErrorKind::data, {"0.ply", "the clocks differ", "late.csv"}, [&] {
+    open_frame_drive({drive.frames(), late, {}, true}, Executor(1), quiet);
+  });
+}
+
+TEST(FrameDrive, FilesWithoutTimesAreNone) {
+  const TemporaryFolder folder;
+  folder.write("a.xyz", std::string("x y z\n1 2 3\n"));
+  folder.write("b.xyz", std::string("x y z\n1 2 3\n"));
+  EXPECT_FALSE(has_timed_frames(folder.path()));
+  EXPECT_FALSE(has_timed_frames(folder.path() / "a.xyz"));
+}
+
+}  // namespace
+}  // namespace adasplats

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/moving_boxes.h"
+
+#include <gtest/gtest.h>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
+
+namespace adasplats {
+namespace {
+
+constexpr const char* kHeader = "frame,time,id,label,stationary,x,y,z,size_x,size_y,size_z,yaw\n";
+
+// A car of 4 x 2 x 1.5 m that goes 1 m in 0.1 s along x, and a parked one.
+TEST(MovingBoxes, HoldWhatMovesAtItsTime) {
+  const TemporaryFolder folder;
+  const MovingBoxes boxes(folder.write("boxes.csv", std::string(kHeader) +
+                                                        "0,1.0,7,Car,0,0,0,1,4,2,1.5,0\n"
+                                                        "0,1.0,8,Car,1,0,20,1,4,2,1.5,0\n"
+                                                        "1,1.1,7,Car,0,1,0,1,4,2,1.5,0\n"));
+  EXPECT_TRUE(boxes.hold(1.0, {2.1, 0, 1}));
+  EXPECT_FALSE(boxes.hold(1.0, {2.6, 0, 1}));
+  EXPECT_TRUE(boxes.hold(1.05, {2.6, 0, 1}));  // half way
+  EXPECT_FALSE(boxes.hold(1.05, {-1.8, 0, 1}));
+  EXPECT_TRUE(boxes.hold(1.15, {3.1, 0, 1}));  // stays for 0.1 s after the last
+  EXPECT_FALSE(boxes.hold(1.25, {1, 0, 1}));
+  EXPECT_FALSE(boxes.hold(1.0, {0, 20, 1}));  // parked
+  EXPECT_FALSE(boxes.hold(1.0, {0, 0, 2.1}));
+}
+
+TEST(MovingBoxes, TurnByTheirYawTheShortWay) {
+  const TemporaryFolder folder;
+  const MovingBoxes boxes(folder.write("boxes.csv", std::string(kHeader) +
+                                                        "0,0,1,Car,0,0,0,0,4,1,1,3.1\n"
+                                                        "1,1,1,Car,0,0,0,0,4,1,1,-3.1\n"));
+  EXPECT_TRUE(boxes.hold(0.5, {1.9, 0, 0}));  // at pi, not at 0 turned the long way round
+  EXPECT_FALSE(boxes.hold(0.25, {0, 1.9, 0}));
+}
+
+TEST(MovingBoxes, WhatIsWrongIsNamed) {
+  const TemporaryFolder folder;
+  expect_error(ErrorKind::data, {"has no column 'stationary'"}, [&] {
+    MovingBoxes(folder.write("a.csv", std::string("time,id,x,y,z\n0,1,0,0,0\n")));
+  });
+  expect_error(ErrorKind::data, {"b.csv:3", "'yaw' is no number"}, [&] {
+    MovingBoxes(folder.write("b.csv", std::string(kHeader) + "0,0,1,Car,0,0,0,0,4,1,1,0\n"
+                                                             "0,0,1,Car,0,0,0,0,4,1,1,left\n"));
+  });
+  expect_error(ErrorKind::no_input, {"cannot be read"},
+               [&] { MovingBoxes(folder.path() / "none.csv"); });
+}
+
+}  // namespace
+}  // namespace adasplats

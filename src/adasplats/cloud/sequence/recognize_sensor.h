@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/sensors/lidar_model.h"
+
+namespace adasplats {
+
+/// The cones that the beams of a turning sensor sweep about its axis, z of the sensor's frame.
+struct SensorCones {
+  struct Cone {
+    double elevation_rad;
+    double height_m;  ///< of its tip on the axis
+  };
+
+  std::string sensor;       ///< name of the model
+  std::vector<Cone> cones;  ///< topmost first
+
+  /// The laser whose cone is nearest in elevation, topmost 0, and how far above it `point` (in the
+  /// sensor's frame) is seen from the cone's tip, rad. Needs a cone.
+  std::pair<std::uint16_t, double> nearest(Vec3d point) const;
+};
+
+/// Without cones where a beam changes its elevation as the sensor turns (rosettes).
+SensorCones cones_of(const LidarModel& model);
+
+/// Of the library's sensors that have cones and that a maker sells, by name.
+std::vector<SensorCones> library_cones();
+
+/// Which sensor measured points, and where it was.
+struct Recognition {
+  SensorCones cones;
+  /// Without a turn about the sensor's axis: cones do not show it.
+  RigidTransform vehicle_from_sensor;
+  double residual_rad;  ///< mean angle from a point to its cone, each at most half a degree
+  double chance_rad;    ///< the same of points that know nothing of the cones
+  double share;         ///< of points nearer to a cone than an eighth of the gap; 0.25 by chance
+
+  /// 1: all points are on the cones; 0: no nearer than by chance.
+  double confidence() const;
+};
+
+/// Finds the sensor and its mount from the pattern of elevations alone: seen from the right place,
+/// points lie on the cones of the right table and leave the gaps empty. `points`: in the frame of
+/// the vehicle (or of the sensor), each as at its own time; z up; a few thousand of a few scans
+/// suffice. Mounts up to 2 m off in the plane, from 0.5 m below to 2.5 m above the origin, tilted
+/// by up to 1.25 degrees. Points in the sensor's own frame are tried first. Nothing where no sensor
+/// fits clearly, or one of another kind fits about as well.
+std::optional<Recognition> recognize_sensor(std::span<const Vec3d> points,
+                                            std::span<const SensorCones> candidates,
+                                            const Executor& executor);
+
+}  // namespace adasplats
