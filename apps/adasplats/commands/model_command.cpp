@@ -21,6 +21,24 @@ constexpr const char* kModelExamples =
     "  adasplats model sequences/00 -o place.ply --scans 0:100:2 --remove moving\n"
     "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n";
 
+/// What was corrected, or why nothing was.
+std::string calibration_text(const ModelResult& result) {
+  if (!result.calibrated) return {};
+  const CalibrationReport& report = *result.calibrated;
+  if (!report.objection.empty()) return "Nothing calibrated: " + report.objection + "\n";
+  const CalibrationSizes sizes = sizes_of(result.calibration);
+  constexpr double kDegrees = 57.29577951308232;
+  std::string text = "Calibrated by " + grouped(report.planes) + " planes: poses by up to " +
+                     centimetres(sizes.largest_shift_m) + " and " +
+                     fixed(sizes.largest_rotation_rad * kDegrees, 2) + " deg";
+  if (!result.calibration.lasers.empty())
+    text += ", lasers by " + centimetres(sizes.range_rms_m) + " and " +
+            fixed(sizes.elevation_rms_rad * kDegrees, 3) + " deg (RMS)";
+  return text + "; points left out of it lie " + centimetres(report.calibrated_m) +
+         " from planes (" + centimetres(report.given_m) +
+         " before); as a whole the place stays where the given poses have it\n";
+}
+
 /// What the method itself counts and measures.
 std::string figures_of(const BuildReport& built) {
   if (!built.consistent) {
@@ -58,6 +76,9 @@ class ModelCommand final : public Command {
     add_switch(app, "--reflectance,!--no-reflectance", job_.reflectance,
                "Make reflectances of intensities: without what range and incidence did to them, "
                "which simulate applies again");
+    add_switch(app, "--calibrate,!--no-calibrate", job_.calibrate,
+               "Estimate from the points what their poses and lasers get wrong and correct it, "
+               "where the evidence is clear");
     add_load_options(app, job_.load);
     add_device_options();
   }
@@ -79,7 +100,7 @@ class ModelCommand final : public Command {
     print(table.text() + "\n" + job_.output.string() + ": " + grouped(built.primitives) +
           " splats from " + grouped(built.points_in) + " points, " + grouped(built.points_dynamic) +
           " of them dynamic and removed" + text_of(built.removed_classes) + "\n" +
-          figures_of(built) + "\n");
+          figures_of(built) + "\n" + calibration_text(result));
   }
 
  private:

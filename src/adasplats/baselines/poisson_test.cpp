@@ -15,7 +15,7 @@
 #include "adasplats/baselines/program.h"
 #include "adasplats/baselines/shapes_test.h"
 #include "adasplats/baselines/trim.h"
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
 namespace {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -24,6 +25,9 @@ BeamAccuracy accuracy_of(const std::vector<float>& errors_m);
 double median_of(std::vector<float>& values);
 /// The smallest value that `percent` of all (one or more) do not exceed. Reorders them.
 double percentile_of(std::vector<float>& values, std::size_t percent);
+
+/// Unit normal of a primitive, either side.
+Vec3f unit_normal(const SceneView& scene, std::uint32_t primitive);
 
 /// Whether a beam on an object of this mobility counts.
 inline bool takes_part(Mobility mobility, bool drop_moving, bool drop_movable) {

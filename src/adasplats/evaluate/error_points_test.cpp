@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "adasplats/cloud/load/load_cloud.h"
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/evaluate/cloud_metrics.h"
 
 namespace adasplats {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/dataset/semantickitti_writer.h"
 
 namespace adasplats {

@@ -63,16 +63,9 @@ Bins range_bins(const ResimulateOptions& options) {
 
 Bins incidence_bins() { return {{kIncidenceEdges_deg.begin(), kIncidenceEdges_deg.end()}, "deg"}; }
 
-/// Unit normal of a primitive, either side.
-Vec3f normal_of(const SceneView& scene, std::uint32_t primitive) {
-  if (primitive < scene.disk_count()) return scene.disks[primitive].normal;
-  const Triangle triangle = scene.mesh->triangle(primitive - scene.disk_count());
-  return normalized(cross(triangle.b - triangle.a, triangle.c - triangle.a));
-}
-
 double incidence_deg(const SceneView& scene, const Ray& ray, std::uint32_t primitive) {
   const double cosine =
-      std::fabs(static_cast<double>(dot(ray.direction, normal_of(scene, primitive))));
+      std::fabs(static_cast<double>(dot(ray.direction, unit_normal(scene, primitive))));
   return std::acos(std::min(cosine, 1.0)) * kDegreesPerRadian;
 }
 
@@ -146,8 +139,7 @@ CastScan cast_scan(const CastPlace& setting, const KittiSequence& sequence, std:
   std::vector<Hit> hits(selected.size());
   executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const Vec3d point = vec_cast<double>(scan.positions[selected[k]]);
-      measured[k] = sequence.beams.beam_of(index, point);
+      measured[k] = beam_of(sequence, index, scan, selected[k]);
       result.measured.positions[k] = vec_cast<float>(measured[k].end);
       cast[k] = beam_to_cast(measured[k], scene_from_sensor);
       rays[k] = cast[k].ray;

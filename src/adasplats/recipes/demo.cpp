@@ -52,9 +52,9 @@ DemoRow run_method(const std::string& name, SplatMethod method, const fs::path& 
 
   ResimulateOptions held_out;
   held_out.drop_movable = true;  // parked cars are not in the models
-  row.held_out = evaluate_resimulation(ModelScene(model.output, "", session),
-                                       open_held_out({.sequence = simulation.drive.trajectory}),
-                                       model.labels, held_out, session);
+  KittiSequence scans = open_held_out({.sequence = simulation.drive.trajectory}, session);
+  row.held_out = evaluate_resimulation(ModelScene(model.output, "", session), scans, model.labels,
+                                       held_out, false, session);
   return row;
 }
 

@@ -186,6 +186,7 @@ class Simulation {
     model.load.scan_stride = job_.scans.stride * job_.model_every;
     model.build.recipe = RecipeChoice{.method = job_.method}.recipe();
     model.build.remove = DynamicRemoval::moving;
+    model.calibrate = false;  // scans stand at the sequence's own poses, as its other data do
     result.model = run_model(model, session_);
     folder_.record(kModelFile);
   }

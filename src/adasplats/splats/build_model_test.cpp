@@ -8,12 +8,14 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <numeric>
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/recorded_progress_test.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/splats/paper/grow.h"
 
 namespace adasplats {
@@ -271,6 +273,38 @@ TEST(SelectGreedily, MostDiscardsFirstTakesTheWidestCandidate) {
             (std::vector<std::uint32_t>{0, 2, 3}));
 }
 
+TEST(SplatModelFile, KeepsTheCalibration) {
+  const auto path = std::filesystem::temp_directory_path() / "adasplats_calibration_test.ply";
+  SplatModel model;
+  model.disks = {{{1, 2, 3}, 0.5F, {0, 0, 1}}};
+  model.calibration.lasers = {{0.01, -0.01}, {1e-4, -1e-4}};
+  model.calibration.poses = {{1.5, {448000.1, 2, 3}, {1e-3, 0, 0}, {0.01, 0, 1.0 / 3}},
+                             {1.6, {448001.1, 2, 3}, {2e-3, 0, 0}, {0.02, 0, 0}}};
+  save_model(path, model);
+  const Calibration read = load_model(path).calibration;
+  EXPECT_EQ(read.lasers.range_m, model.calibration.lasers.range_m);
+  EXPECT_EQ(read.lasers.elevation_rad, model.calibration.lasers.elevation_rad);
+  ASSERT_EQ(read.poses.size(), 2U);
+  EXPECT_EQ(read.poses[0].time_s, 1.5);
+  EXPECT_EQ(read.poses[0].position, model.calibration.poses[0].position);
+  EXPECT_EQ(read.poses[0].shift_m, model.calibration.poses[0].shift_m);
+  EXPECT_EQ(read.poses[1].rotation_rad, model.calibration.poses[1].rotation_rad);
+
+  const std::string text = read_file(path);
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    changed.replace(changed.find(from), from.size(), to);
+    std::ofstream(path, std::ios::binary) << changed;
+  };
+  with("calibration_range_offsets_m 0.01 -0.01", "calibration_range_offsets_m 0.01");
+  EXPECT_THROW(load_model(path), Error);
+  with("calibration_pose 1.5 ", "calibration_pose ");
+  EXPECT_THROW(load_model(path), Error);
+  with("calibration_pose 1.5 ", "calibration_pose nan ");
+  EXPECT_THROW(load_model(path), Error);
+  std::filesystem::remove(path);
+}
+
 TEST(SplatModelFile, RoundTrip) {
   const auto path = std::filesystem::temp_directory_path() / "adasplats_model_test.ply";
   PaperOptions options;
@@ -281,6 +315,7 @@ TEST(SplatModelFile, RoundTrip) {
   EXPECT_TRUE(same_bytes(model, near));
   EXPECT_EQ(near.label_scheme, "semantickitti");
   EXPECT_EQ(near.method, "semantic");
+  EXPECT_TRUE(near.calibration.empty());
   model.origin = {448000, 5411000, 0};  // UTM: doubles in the file, millimetres kept
   save_model(path, model);
   const SplatModel far = load_model(path);

@@ -30,19 +30,19 @@ CloudComparison run_cloud_comparison(const CloudComparisonJob& job, Session& ses
   return comparison;
 }
 
-ResimulateResult run_resimulate(const ResimulateJob& job, Session& session) {
+HeldOutResult run_resimulate(const ResimulateJob& job, Session& session) {
   require_input(job.model);
   if (!job.picture.empty()) check_output_file(job.picture);
   if (!job.errors.empty()) check_output_file(job.errors);
   const LabelScheme labels = load_label_scheme(job.labels);
-  const KittiSequence sequence = open_held_out(job);
+  KittiSequence sequence = open_held_out(job, session);
   if (sequence.labels.empty() && job.options.drop_movable) {
     throw Error(ErrorKind::usage,
                 "--drop-movable has no effect: " + sequence.folder.string() + " has no labels");
   }
   const ModelScene scene(job.model, "", session);
-  ResimulateResult result =
-      evaluate_resimulation(scene, sequence, job.labels, job.options, session);
+  HeldOutResult result =
+      evaluate_resimulation(scene, sequence, job.labels, job.options, job.all_poses, session);
   if (!job.picture.empty()) {
     const std::size_t middle = sequence.scans.size() / 2;
     write_beam_picture(job.picture,

@@ -27,12 +27,13 @@ struct ResimulateJob : HeldOutScans {
   std::filesystem::path model;
   std::string labels = "semantickitti";
   ResimulateOptions options;
+  bool all_poses = false;         ///< also as given and registered
   std::filesystem::path picture;  ///< PNG of the middle scan's beams by error; empty: none
   int picture_width = 1920;
   std::filesystem::path errors;  ///< PLY of the measured points with their range error; empty: none
 };
 
 /// Casts and draws.
-ResimulateResult run_resimulate(const ResimulateJob& job, Session& session);
+HeldOutResult run_resimulate(const ResimulateJob& job, Session& session);
 
 }  // namespace adasplats::app

@@ -25,18 +25,20 @@ void add_row(TextTable& table, const std::string& name, const BeamAccuracy& a) {
                  percent(a.late_50cm)});
 }
 
-std::string table_of(const ResimulateResult& result) {
+std::string table_of(const HeldOutResult& result) {
   TextTable table({"beams", "rays", "no hit", "median", "MAE m", "RMSE m", "<5 cm", "<10 cm",
                    "<50 cm", "early", "late"});
   add_row(table, "all", result.all);
+  if (result.with_given) add_row(table, "all, as given", result.with_given->all);
+  if (result.registered) add_row(table, "all, registered to the model", result.registered->all);
   for (const auto* parts : {&result.by_range, &result.by_incidence, &result.by_class}) {
     if (!parts->empty()) table.add_row({});
     for (const auto& [name, accuracy] : *parts) add_row(table, name, accuracy);
   }
   const CloudDistance& clouds = result.clouds;
-  return table.text() + "\nBeams from " + result.beams + "; Chamfer " +
-         centimetres(clouds.chamfer_m) + ", " + fixed(clouds.chamfer_m2, 4) +
-         " m2; shares are of all rays, errors of hits\n";
+  return table.text() + "\nPoses: " + std::string(word_of(result.poses, words_of(result.poses))) +
+         "; beams from " + result.beams + "; Chamfer " + centimetres(clouds.chamfer_m) + ", " +
+         fixed(clouds.chamfer_m2, 4) + " m2; shares are of all rays, errors of hits\n";
 }
 
 class EvaluateResimulateCommand final : public Command {
@@ -46,7 +48,13 @@ class EvaluateResimulateCommand final : public Command {
                 kEvaluateResimulateExamples) {
     OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model, "Splat model or mesh"));
-    require(add_path(app, "SEQUENCE", job_.sequence, "SemanticKITTI sequence folder"));
+    require(add_path(app, "SEQUENCE", job_.sequence,
+                     "SemanticKITTI sequence folder, or with --trajectory a folder of scans whose "
+                     "points have times"));
+    add_path(app, "--trajectory", job_.trajectory,
+             "Where the vehicle was, in the clock of the points' times");
+    add_path(app, "--boxes", job_.boxes,
+             "Boxes of objects by time; what those that move hold is left out");
     app.add_option("--labels", job_.labels, "What labels mean: a name or a TOML file")
         ->capture_default_str()
         ->type_name("SCHEME");
@@ -59,6 +67,8 @@ class EvaluateResimulateCommand final : public Command {
     add_path(app, "--motion", job_.motion,
              "How the sensor moved, for scans that are not motion-compensated: poses in the "
              "sequence's time (CSV, TUM, KITTI poses)");
+    app.add_flag("--all-poses", job_.all_poses,
+                 "Also with the poses as given, and with each scan registered to the model");
     app.add_flag("--keep-moving", keep_moving_, "Count beams on moving objects");
     app.add_flag("--drop-movable", job_.options.drop_movable,
                  "Leave out beams on movable objects (parked cars)");
@@ -83,7 +93,7 @@ class EvaluateResimulateCommand final : public Command {
       throw Error(ErrorKind::usage, "--keep-moving and --drop-movable exclude each other");
     }
     job_.options.drop_moving = !keep_moving_;
-    const ResimulateResult result = run_resimulate(job_, session);
+    const HeldOutResult result = run_resimulate(job_, session);
     session.report.update(to_json(result));
     session.report["seconds"]["total"] = watch.seconds();
     print(table_of(result));

@@ -8,6 +8,7 @@
 
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
+#include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/session/inputs.h"
 
@@ -28,6 +29,12 @@ class EchoSequence {
     } else if (!inputs.motion.empty()) {
       require_raw("`motion`");
     }
+  }
+
+  /// As the model was (calibrate_held_out).
+  void correct(const ModelScene& scene, bool own_motion, ProgressSink& progress) {
+    calibrate_held_out(scene, sequence_, progress);
+    if (own_motion) motion_ = sequence_.trajectory;
   }
 
   /// Compensated scans are bent off the grid of beams.
@@ -82,10 +89,11 @@ EchoResult evaluate_echoes(const EchoInputs& inputs, const std::filesystem::path
   require_input(inputs.model);
   std::optional<RayDropModel> drop_model;
   if (!drop.empty()) drop_model = load_ray_drop(drop);
-  const EchoSequence measured(inputs);
+  EchoSequence measured(inputs);
   if (drop_model) measured.require_raw("`drop`");
   if (inputs.sensor_is_asked) measured.require_raw("`sensor`");
   ModelScene scene(inputs.model, "", session);
+  measured.correct(scene, inputs.motion.empty(), session.progress);
   EchoResult result;
   result.intensity = intensity_accuracy(EchoSequence::echo_scene(scene), measured.sequence(),
                                         measured.scans(), session.executor, session.progress);
@@ -100,9 +108,10 @@ EchoResult evaluate_echoes(const EchoInputs& inputs, const std::filesystem::path
 
 FitDropResult fit_drop(const EchoInputs& inputs, Session& session) {
   require_input(inputs.model);
-  const EchoSequence measured(inputs);
+  EchoSequence measured(inputs);
   measured.require_raw("fit-drop");
   ModelScene scene(inputs.model, "", session);
+  measured.correct(scene, inputs.motion.empty(), session.progress);
   const BeamEchoes beams = measured.beams(scene, inputs.sensor, session);
   FitDropResult result;
   result.model = fit_ray_drop(beams);

@@ -15,11 +15,17 @@ PresenceResult evaluate_presence(const PresenceJob& job, Session& session) {
   require_input(job.model);
   const auto inputs = std::span(&job.points, 1);
   const auto scheme = label_scheme_for(job.labels, inputs);
-  const PointCloud cloud = load_cloud(inputs, job.load, session.executor, session.progress).first;
+  PointCloud cloud = load_cloud(inputs, job.load, session.executor, session.progress).first;
   if (cloud.classes.empty() && !job.labels.empty()) {
     throw Error(ErrorKind::usage, "`labels` has no effect: the points have no labels");
   }
   const ModelScene scene(job.model, "", session);
+  const SplatModel* const splats = scene.splats();
+  if (splats != nullptr && !splats->calibration.empty() &&
+      !apply(splats->calibration, cloud, session.executor))
+    session.progress.warn(job.points.string() +
+                          ": not of the drive that the model was calibrated with (by times and "
+                          "places of its scans), so its points are taken as given");
   session.progress.begin_step("cast", kPassUnits);
   PresenceResult result = presence(scene.tracer(), scene.origin(), cloud,
                                    scheme ? &*scheme : nullptr, job.options, session.executor);

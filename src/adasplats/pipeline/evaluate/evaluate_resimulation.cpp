@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
 
+#include <nlohmann/json.hpp>
+
+#include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
+#include "adasplats/evaluate/register_scans.h"
+#include "adasplats/pipeline/provenance/metrics_json.h"
 #include "adasplats/pipeline/session/inputs.h"
 
 namespace adasplats {
@@ -14,6 +19,8 @@ KittiSequence with_scans(KittiSequence all, const ScanRange& range) {
   KittiSequence chosen;
   chosen.folder = all.folder;
   chosen.beams.from_hdl64 = all.beams.from_hdl64;
+  chosen.beams.recognised = all.beams.recognised;
+  chosen.reader = all.reader;
   for (const std::size_t i : chosen_scans(range, all.scans.size(), all.folder)) {
     chosen.scans.push_back(all.scans[i]);
     if (!all.labels.empty()) chosen.labels.push_back(all.labels[i]);
@@ -27,7 +34,21 @@ KittiSequence with_scans(KittiSequence all, const ScanRange& range) {
 
 }  // namespace
 
-KittiSequence open_held_out(const HeldOutScans& scans) {
+/// A drive of scans with times. Their classes are of no known scheme, so none take part.
+KittiSequence open_frames(const HeldOutScans& scans, Session& session) {
+  if (!scans.motion.empty())
+    throw Error(ErrorKind::usage, "`motion` is for raw scans; these have times and a trajectory");
+  auto drive = open_frame_drive({scans.sequence, scans.trajectory, scans.boxes, false},
+                                session.executor, session.progress);
+  if (!drive)
+    throw Error(ErrorKind::data, scans.sequence.string() +
+                                     ": where its beams began is not known, since no sensor is "
+                                     "recognised, so they cannot be cast again");
+  return std::move(*drive);
+}
+
+KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
+  if (!scans.trajectory.empty()) return with_scans(open_frames(scans, session), scans.scans);
   KittiSequence all = open_kitti_sequence(resolve_cloud_input(scans.sequence));
   require_poses_that_fit(all);
   if (!scans.beams_from_poses) all.beams = recognize_beams(all);
@@ -40,11 +61,44 @@ KittiSequence open_held_out(const HeldOutScans& scans) {
   return with_scans(std::move(all), scans.scans);
 }
 
-ResimulateResult evaluate_resimulation(const ModelScene& scene, const KittiSequence& sequence,
-                                       const std::string& labels, const ResimulateOptions& options,
-                                       Session& session) {
-  return resimulate(scene.tracer(), scene.view(), scene.origin(), sequence,
-                    load_label_scheme(labels), options, session.executor, session.progress);
+HeldOutPoses calibrate_held_out(const ModelScene& scene, KittiSequence& sequence,
+                                ProgressSink& progress) {
+  const SplatModel* model = scene.splats();
+  if (model == nullptr || model->calibration.empty()) return HeldOutPoses::as_given;
+  if (apply(model->calibration, sequence)) return HeldOutPoses::interpolated;
+  progress.warn(sequence.folder.string() +
+                ": its scans are not of the drive that the model was calibrated with (by their "
+                "times and places), so their poses are taken as given");
+  return HeldOutPoses::not_covered;
+}
+
+HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequence,
+                                    const std::string& labels, const ResimulateOptions& options,
+                                    bool all_poses, Session& session) {
+  const LabelScheme scheme = load_label_scheme(labels);
+  const auto cast = [&](const KittiSequence& scans) {
+    return resimulate(scene.tracer(), scene.view(), scene.origin(), scans, scheme, options,
+                      session.executor, session.progress);
+  };
+  HeldOutResult result;
+  if (all_poses) result.with_given = cast(sequence);
+  result.poses = calibrate_held_out(scene, sequence, session.progress);
+  static_cast<ResimulateResult&>(result) = cast(sequence);
+  if (all_poses) {
+    KittiSequence registered = sequence;
+    register_scans(scene.tracer(), scene.view(), scene.origin(), registered, scheme, options,
+                   session.executor, session.progress);
+    result.registered = cast(registered);
+  }
+  return result;
+}
+
+nlohmann::ordered_json to_json(const HeldOutResult& result) {
+  nlohmann::ordered_json json = to_json(static_cast<const ResimulateResult&>(result));
+  json["poses"] = word_of(result.poses, words_of(result.poses));
+  if (result.with_given) json["as_given"] = to_json(*result.with_given);
+  if (result.registered) json["registered"] = to_json(*result.registered);
+  return json;
 }
 
 }  // namespace adasplats

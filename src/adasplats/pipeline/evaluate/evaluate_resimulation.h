@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "adasplats/core/words.h"
 #include "adasplats/evaluate/resimulate.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/session/scan_range.h"
@@ -19,16 +24,50 @@ struct HeldOutScans {
   std::filesystem::path sequence;
   ScanRange scans;                ///< of the sequence
   bool beams_from_poses = false;  ///< even where the sensor is recognised
-  std::filesystem::path motion;   ///< poses that say how the sensor of raw scans moved, or empty
+  /// Of a folder of scans whose points have times: where the vehicle was, and boxes of what moves
+  /// (FrameDrive).
+  std::filesystem::path trajectory, boxes;
+  std::filesystem::path motion;  ///< poses that say how the sensor of raw scans moved, or empty
 };
 
 /// The chosen scans with where their beams started. Errors: usage (a motion for compensated scans;
 /// no scans), those of open_kitti_sequence.
-KittiSequence open_held_out(const HeldOutScans& scans);
+KittiSequence open_held_out(const HeldOutScans& scans, Session& session);
 
-/// Casts their beams into the model. `labels` as load_label_scheme takes it.
-ResimulateResult evaluate_resimulation(const ModelScene& scene, const KittiSequence& sequence,
-                                       const std::string& labels, const ResimulateOptions& options,
-                                       Session& session);
+/// Where scans of which a model was not made had their sensor.
+enum class HeldOutPoses : std::uint8_t {
+  as_given,      ///< the model holds no calibration
+  interpolated,  ///< corrected as the model's calibration has it of the scans around them
+  not_covered    ///< as given, though the model is calibrated: they are not of its drive
+};
+inline constexpr std::pair<std::string_view, HeldOutPoses> kHeldOutPoses[] = {
+    {"as given", HeldOutPoses::as_given},
+    {"calibration interpolated", HeldOutPoses::interpolated},
+    {"as given, not of the calibrated drive", HeldOutPoses::not_covered}};
+inline Words<HeldOutPoses> words_of(HeldOutPoses) { return kHeldOutPoses; }
+
+/// Corrects held-out scans with what the model was corrected with; model and beams must share it.
+/// Where the model is calibrated and the scans are not of its drive, they stay as they are, and
+/// that is said.
+HeldOutPoses calibrate_held_out(const ModelScene& scene, KittiSequence& sequence,
+                                ProgressSink& progress);
+
+/// What held-out beams say of a model.
+struct HeldOutResult : ResimulateResult {
+  HeldOutPoses poses = HeldOutPoses::as_given;
+  /// On demand: with the poses (and lasers) as given, and with each scan moved to where it fits the
+  /// model best (register_scans).
+  std::optional<ResimulateResult> with_given, registered;
+};
+
+/// Casts the beams of held-out scans into the model, and leaves the scans corrected as they were
+/// cast (calibrate_held_out). `labels` as load_label_scheme takes it; `all_poses`: all three ways.
+HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequence,
+                                    const std::string& labels, const ResimulateOptions& options,
+                                    bool all_poses, Session& session);
+
+/// The keys of --report: those of the default, `poses` and, where asked for, the same keys under
+/// `as_given` and `registered`.
+nlohmann::ordered_json to_json(const HeldOutResult& result);
 
 }  // namespace adasplats

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
@@ -50,11 +51,13 @@ class ModelMaker {
 
   SplatModel run(ModelResult& result) {
     PointCloud cloud = load(result);
+    if (options_.calibrate) estimate_calibration(cloud, result);
     check_label_use({options_.labels, options_.build.remove, options_.removal_is_asked}, cloud,
                     scheme_ ? &*scheme_ : nullptr, session_.progress);
     const bool has_reflectance = cloud.has_beams() && !cloud.intensities.empty();
     auto [model, built] = build_on_device(std::move(cloud), result);
     require_splats(model, built);
+    model.calibration = result.calibration;
     if (scheme_) model.label_scheme = scheme_reference(options_.labels, *scheme_);
     result.steps.insert(result.steps.end(), built.steps.begin(), built.steps.end());
     result.built = std::move(built);
@@ -68,7 +71,27 @@ class ModelMaker {
     const Stopwatch watch;
     PointCloud cloud = load_points_();
     result.steps.push_back({"load", watch.seconds()});
+    correct(cloud, result);
     return cloud;
+  }
+
+  /// Before anything is calibrated: nothing.
+  void correct(PointCloud& cloud, const ModelResult& result) {
+    if (result.calibration.empty()) return;
+    if (!apply(result.calibration, cloud, session_.executor))
+      throw std::logic_error("make_model: a calibration of other scans");
+    cloud.lasers = {};  // all that they are for
+  }
+
+  void estimate_calibration(PointCloud& cloud, ModelResult& result) {
+    const Stopwatch watch;
+    session_.progress.begin_step("calibrate", 1);
+    auto [calibration, report] = calibrate(cloud, {}, session_.executor);
+    session_.progress.end_step();
+    result.calibration = std::move(calibration);
+    result.calibrated = std::move(report);
+    correct(cloud, result);
+    result.steps.push_back({"calibrate", watch.seconds()});
   }
 
   /// `engine`: nothing for the CPU.
@@ -140,6 +163,27 @@ std::pair<SplatModel, ModelResult> make_model(const PointCloud& cloud, const Mod
   return {std::move(model), std::move(result)};
 }
 
+namespace {
+
+nlohmann::ordered_json calibration_json(const CalibrationReport& report,
+                                        const Calibration& calibration) {
+  const CalibrationSizes sizes = sizes_of(calibration);
+  nlohmann::ordered_json json;
+  json["applied"] = !calibration.empty();
+  if (!report.objection.empty()) json["objection"] = report.objection;
+  json["planes"] = report.planes;
+  json["residual_given_m"] = report.given_m;
+  json["residual_calibrated_m"] = report.calibrated_m;
+  json["weakest_share"] = report.weakest_share;
+  json["largest_rotation_rad"] = sizes.largest_rotation_rad;
+  json["largest_shift_m"] = sizes.largest_shift_m;
+  json["range_offset_rms_m"] = sizes.range_rms_m;
+  json["elevation_offset_rms_rad"] = sizes.elevation_rms_rad;
+  return json;
+}
+
+}  // namespace
+
 nlohmann::ordered_json to_json(const ModelResult& result) {
   nlohmann::ordered_json json;
   const BuildReport& built = result.built;
@@ -177,6 +221,8 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
   json["oriented"] = built.oriented;
   json["ray_checked"] = built.ray_checked;
   json["reflectance_measured"] = result.reflectance_measured;
+  if (result.calibrated)
+    json["calibration"] = calibration_json(*result.calibrated, result.calibration);
   json["seconds"]["total"] = result.seconds;
   for (const StepTime& step : result.steps) {
     // The second generation has the same steps: their times add up.

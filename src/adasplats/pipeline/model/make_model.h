@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/calibrate/calibrate.h"
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/pipeline/session/session.h"
 #include "adasplats/splats/build_model.h"
@@ -25,6 +26,9 @@ struct ModelOptions {
   /// Intensities become reflectances with the sensor's response, where points have known beams
   /// and intensities (measure_reflectances); else they stay as measured.
   bool reflectance = true;
+  /// What the recording gets wrong is estimated from the points themselves and corrected, where the
+  /// evidence is clear (calibrate()).
+  bool calibrate = true;
 };
 
 /// Of point files.
@@ -37,7 +41,9 @@ struct ModelResult {
   LoadReport loaded;  ///< points_read alone, where nothing was loaded
   BuildReport built;
   bool reflectance_measured = false;
-  std::vector<StepTime> steps;  ///< of loading, building and what the caller adds
+  std::optional<CalibrationReport> calibrated;  ///< nothing: it was not asked for
+  Calibration calibration;                      ///< what was applied
+  std::vector<StepTime> steps;                  ///< of loading, building and what the caller adds
   double seconds = 0;
 };
 

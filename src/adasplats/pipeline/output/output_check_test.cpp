@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
 namespace {

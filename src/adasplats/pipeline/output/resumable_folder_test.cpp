@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/sha256.h"
 

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/recorded_progress_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
 namespace {

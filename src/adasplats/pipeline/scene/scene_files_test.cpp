@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
+#include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
 namespace {

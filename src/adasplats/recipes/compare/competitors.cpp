@@ -150,6 +150,8 @@ class Run {
     for (const fs::path& input : rules_.data.inputs) words.push_back(input.string());
     add(words, {"-o", model_.string()});
     add(words, competitor_.arguments);
+    // Meshes are of the points as given, and so are the clouds that all are compared with.
+    if (!competitor_.is_mesh) add(words, {"--no-calibrate"});
     if (competitor_.name == "poisson") {
       add(words, {"--depth", std::to_string(rules_.job.poisson_depth)});
     }

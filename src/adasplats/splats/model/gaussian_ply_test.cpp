@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "adasplats/cloud/points/temporary_folder_test.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/ply/ply.h"
 
 namespace adasplats {

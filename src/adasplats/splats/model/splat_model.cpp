@@ -7,7 +7,9 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <sstream>
+#include <string_view>
 
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/error.h"
@@ -23,6 +25,9 @@ constexpr const char* kMethodComment = "adasplats.method ";
 constexpr std::array<const char*, 4> kResponseComments = {
     "adasplats.response_ranges_m ", "adasplats.response_range_gains ",
     "adasplats.response_cosines ", "adasplats.response_cosine_gains "};
+constexpr const char* kRangeOffsetsComment = "adasplats.calibration_range_offsets_m ";
+constexpr const char* kElevationOffsetsComment = "adasplats.calibration_elevation_offsets_rad ";
+constexpr const char* kPoseComment = "adasplats.calibration_pose ";
 constexpr const char* kFormatComment = "adasplats.splats 1";
 
 const Column& required(const Table& table, const std::filesystem::path& path,
@@ -75,8 +80,9 @@ auto response_tables(Response& response) {
                     &response.incidence_gains};
 }
 
-/// The shortest text that reads back as the same float.
-std::string float_text(float value) {
+/// The shortest text that reads back as the same number.
+template <class Float>
+std::string number_text(Float value) {
   std::array<char, 32> buffer;
   return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
 }
@@ -86,7 +92,7 @@ void add_response_comments(const IntensityResponse& response, std::vector<std::s
   const auto tables = response_tables(response);
   for (std::size_t k = 0; k < tables.size(); ++k) {
     std::string comment = kResponseComments[k];
-    for (const float value : *tables[k]) comment += float_text(value) + " ";
+    for (const float value : *tables[k]) comment += number_text(value) + " ";
     comment.pop_back();
     comments.push_back(comment);
   }
@@ -103,6 +109,61 @@ std::vector<float> numbers_of(const std::filesystem::path& path, const std::stri
     numbers.push_back(*value);
   }
   return numbers;
+}
+
+std::string comment_of(const char* key, std::span<const double> values) {
+  std::string comment = key;
+  for (const double value : values) comment += number_text(value) + " ";
+  comment.pop_back();
+  return comment;
+}
+
+void add_calibration_comments(const Calibration& calibration, std::vector<std::string>& comments) {
+  if (!calibration.lasers.empty()) {
+    comments.push_back(comment_of(kRangeOffsetsComment, calibration.lasers.range_m));
+    comments.push_back(comment_of(kElevationOffsetsComment, calibration.lasers.elevation_rad));
+  }
+  for (const PoseCorrection& pose : calibration.poses) {
+    const auto& [time_s, p, r, s] = pose;
+    comments.push_back(
+        comment_of(kPoseComment, std::array{time_s, p.x, p.y, p.z, r.x, r.y, r.z, s.x, s.y, s.z}));
+  }
+}
+
+std::vector<double> calibration_numbers(const std::filesystem::path& path,
+                                        const std::string& text) {
+  std::vector<double> numbers;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::optional<double> value = parse_number<double>(word);
+    if (!value || !std::isfinite(*value))
+      throw data_error({path, {}, {}},
+                       std::string("the calibration has ") + shown(word) + ", expected a number");
+    numbers.push_back(*value);
+  }
+  return numbers;
+}
+
+Calibration calibration_of(const Table& table, const std::filesystem::path& path) {
+  Calibration calibration;
+  LaserOffsets& lasers = calibration.lasers;
+  lasers.range_m = calibration_numbers(path, comment_value(table, kRangeOffsetsComment));
+  lasers.elevation_rad = calibration_numbers(path, comment_value(table, kElevationOffsetsComment));
+  if (lasers.range_m.size() != lasers.elevation_rad.size())
+    throw data_error({path, {}, {}}, "the calibration has offsets of " +
+                                         std::to_string(lasers.range_m.size()) + " ranges and " +
+                                         std::to_string(lasers.elevation_rad.size()) +
+                                         " elevations");
+  for (const std::string& comment : table.comments) {
+    if (!comment.starts_with(kPoseComment)) continue;
+    const std::vector<double> v =
+        calibration_numbers(path, comment.substr(std::string_view(kPoseComment).size()));
+    if (v.size() != 10)
+      throw data_error({path, {}, {}}, "a pose of the calibration has " + std::to_string(v.size()) +
+                                           " numbers, expected 10");
+    calibration.poses.push_back({v[0], {v[1], v[2], v[3]}, {v[4], v[5], v[6]}, {v[7], v[8], v[9]}});
+  }
+  return calibration;
 }
 
 IntensityResponse response_of(const Table& table, const std::filesystem::path& path) {
@@ -172,6 +233,7 @@ void save_model(const std::filesystem::path& path, const SplatModel& model) {
   if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
   if (!model.label_scheme.empty()) comments.push_back(kLabelsComment + model.label_scheme);
   add_response_comments(model.response, comments);
+  add_calibration_comments(model.calibration, comments);
   write_ply(path, model.size(), columns, comments);
 }
 
@@ -210,6 +272,7 @@ SplatModel load_model(const std::filesystem::path& path) {
   model.method = comment_value(table, kMethodComment);
   model.label_scheme = comment_value(table, kLabelsComment);
   model.response = response_of(table, path);
+  model.calibration = calibration_of(table, path);
   return model;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/calibrate/calibration.h"
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/scene/scene.h"
@@ -27,6 +28,7 @@ struct SplatModel {
   IntensityResponse response;  ///< of the sensor that measured the intensities; empty: not known
   std::string label_scheme;    ///< name or path as load_label_scheme takes it; may be empty
   std::string method;          ///< how it was made
+  Calibration calibration;     ///< that the points were corrected with; empty: they are as given
 
   std::size_t size() const { return disks.size(); }
   SceneView view() const { return {disks, nullptr}; }
@@ -38,12 +40,14 @@ std::pair<Vec3f, Vec3f> bounds(const SplatModel& model);
 /// Writes a PLY, one vertex a splat: x y z nx ny nz radius [class] [group] [intensity] (x y z as
 /// doubles in world coordinates where the origin is not zero). The rest is in comments
 /// "adasplats.KEY VALUE"; the response in "response_ranges_m", "response_range_gains",
-/// "response_cosines" and "response_cosine_gains".
+/// "response_cosines" and "response_cosine_gains"; the calibration in
+/// "calibration_range_offsets_m", "calibration_elevation_offsets_rad" and, one a scan,
+/// "calibration_pose": time, given position, rotation vector, shift.
 void save_model(const std::filesystem::path& path, const SplatModel& model);
 
 /// Reads what save_model wrote, and any PLY with x y z nx ny nz radius. Errors: data (no radius
-/// column, values not finite, radius <= 0, normal not of unit length to 1e-3, a response that is
-/// not complete). Without a response comment the response is empty.
+/// column, values not finite, radius <= 0, normal not of unit length to 1e-3, a response or
+/// calibration that is not complete). Without a response comment the response is empty.
 SplatModel load_model(const std::filesystem::path& path);
 
 }  // namespace adasplats
