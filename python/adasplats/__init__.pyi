@@ -41,6 +41,7 @@ def read(
     label_field: str | None = None,
     viewpoint: ArrayLike | None = None,
     trajectory: Path | None = None,
+    boxes: Path | None = None,
     beams_from_poses: bool = False,
     max_distance_m: float = 100000.0,
     max_dropped: float = 0.01,
@@ -90,9 +91,11 @@ def model(
     fill: bool = True,
     remove: Literal["none", "moving", "movable"] = "movable",
     reflectance: bool = True,
+    calibrate: bool = True,
     label_field: str | None = None,
     viewpoint: ArrayLike | None = None,
     trajectory: Path | None = None,
+    boxes: Path | None = None,
     beams_from_poses: bool = False,
     max_distance_m: float = 100000.0,
     max_dropped: float = 0.01,
@@ -130,6 +133,7 @@ def mesh(
     label_field: str | None = None,
     viewpoint: ArrayLike | None = None,
     trajectory: Path | None = None,
+    boxes: Path | None = None,
     beams_from_poses: bool = False,
     max_distance_m: float = 100000.0,
     max_dropped: float = 0.01,
@@ -156,6 +160,7 @@ def export(
     label_field: str | None = None,
     viewpoint: ArrayLike | None = None,
     trajectory: Path | None = None,
+    boxes: Path | None = None,
     beams_from_poses: bool = False,
     max_distance_m: float = 100000.0,
     max_dropped: float = 0.01,
@@ -293,6 +298,9 @@ class PointCloud:
     @property
     def scan_indices(self) -> NDArray[np.uint32] | None:
         """(N,) uint32, the scan that a point is from, or None."""
+    @property
+    def lasers(self) -> NDArray[np.uint16] | None:
+        """(N,) uint16, the laser that measured a point, topmost 0; 65535 where it is not known; or None."""
     @property
     def origin(self) -> NDArray[np.float64]:
         """(3,) float64, world coordinates of the local origin, m."""

@@ -16,6 +16,7 @@ void fields(Archive& archive, PointCloud& cloud) {
   archive("origin", cloud.origin);
   archive("positions", cloud.positions);
   for_each_attribute([&](const auto& attribute) { archive(attribute.name, attribute.of(cloud)); });
+  archive("scan_poses", cloud.scan_poses);
 }
 
 }  // namespace adasplats

@@ -89,17 +89,21 @@ struct ResimulateArguments {
   HeldOutScans scans;
   std::string labels = "semantickitti";
   ResimulateOptions options;
+  bool all_poses = false;
   WorkOptions work;
 
   void take(Keywords& keywords) {
     take_scan_range(keywords, scans.scans);
     keywords.take("beams_from_poses", scans.beams_from_poses);
     keywords.take("motion", scans.motion);
+    keywords.take("trajectory", scans.trajectory);
+    keywords.take("boxes", scans.boxes);
     keywords.take("labels", labels);
     keywords.take("min_range", options.min_range_m);
     keywords.take("max_range", options.max_range_m);
     keywords.take("drop_moving", options.drop_moving);
     keywords.take("drop_movable", options.drop_movable);
+    keywords.take("all_poses", all_poses);
     work.take(keywords);
   }
 
@@ -112,12 +116,12 @@ struct ResimulateArguments {
         in_memory ? std::filesystem::path() : path_of(model, "model");
     return reported(work, [&](Session& session) {
       if (!in_memory) require_input(file);
-      const KittiSequence held_out = open_held_out(scans);
+      KittiSequence held_out = open_held_out(scans, session);
       if (!in_memory)
         return evaluate_resimulation(ModelScene(file, "", session), held_out, labels, options,
-                                     session);
+                                     all_poses, session);
       const auto lock = object->lock();
-      return evaluate_resimulation(*object->scene, held_out, labels, options, session);
+      return evaluate_resimulation(*object->scene, held_out, labels, options, all_poses, session);
     });
   }
 };

@@ -27,6 +27,18 @@ void fields(Archive& archive, IntensityResponse& response) {
 }
 
 template <class Archive>
+void fields(Archive& archive, LaserOffsets& lasers) {
+  archive("range_m", lasers.range_m);
+  archive("elevation_rad", lasers.elevation_rad);
+}
+
+template <class Archive>
+void fields(Archive& archive, Calibration& calibration) {
+  archive("poses", calibration.poses);
+  archive("lasers", calibration.lasers);
+}
+
+template <class Archive>
 void fields(Archive& archive, SplatModel& model) {
   archive("origin", model.origin);
   archive("disks", model.disks);
@@ -36,6 +48,7 @@ void fields(Archive& archive, SplatModel& model) {
   archive("response", model.response);
   archive("label_scheme", model.label_scheme);
   archive("method", model.method);
+  archive("calibration", model.calibration);
 }
 
 }  // namespace adasplats
@@ -80,6 +93,7 @@ void take_model(Keywords& keywords, ModelJob& job, RecipeChoice& recipe, WorkOpt
   take_settings(keywords, recipe);
   keywords.take<DynamicRemoval>("remove", job.build.remove, kDynamicRemovals);
   keywords.take("reflectance", job.reflectance);
+  keywords.take("calibrate", job.calibrate);
   take_load_options(keywords, job.load);
   work.has_seed = true;
   work.take(keywords);
