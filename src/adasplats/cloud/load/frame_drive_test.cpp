@@ -132,6 +132,47 @@ TEST(FrameDrive, AnotherClockIsAnError) {
   });
 }
 
+/// Points of no sensor, with times.
+std::filesystem::path frames_of_nothing(const TemporaryFolder& folder) {
+  for (const char* name : {"frames/a.xyz", "frames/b.xyz"}) {
+    std::string text = "x y z time\n";
+    for (int i = 0; i < 700; ++i) {
+      std::array<char, 64> line{};
+      std::snprintf(line.data(), line.size(), "%d %d %d 0.5\n", i % 20 - 10, i % 17 - 8, i % 5);
+      text += line.data();
+    }
+    folder.write(name, text);
+  }
+  folder.write("poses.csv",
+               std::string("time,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,1,0,0,1,0,0,0\n"));
+  return folder.path() / "frames";
+}
+
+TEST(FrameDrive, WithoutARecognisedSensorNothingIsMeasuredAndThatIsSaid) {
+  const TemporaryFolder folder;
+  const std::filesystem::path frames = frames_of_nothing(folder);
+  class Listener : public ProgressSink {
+   public:
+    void warn(std::string_view message) override { text += message; }
+    std::string text;
+  } listener;
+  LoadOptions options;
+  options.trajectory = folder.path() / "poses.csv";
+  const PointCloud cloud = load_cloud(std::span(&frames, 1), options, Executor(2), listener).first;
+  EXPECT_EQ(cloud.size(), 1400U);
+  EXPECT_EQ(cloud.origin_kind(0), OriginKind::guessed);
+  EXPECT_TRUE(cloud.scan_poses.empty());
+  EXPECT_NE(listener.text.find("no sensor of the library is recognised"), std::string::npos);
+  // What is for scans alone must not be dropped in silence.
+  ProgressSink quiet;
+  options.scan_stride = 2;
+  expect_error(ErrorKind::usage, {"scans are chosen"},
+               [&] { load_cloud(std::span(&frames, 1), options, Executor(2), quiet); });
+  options.scan_stride = 0;
+  expect_error(ErrorKind::usage, {"stride of 0"},
+               [&] { load_cloud(std::span(&frames, 1), options, Executor(2), quiet); });
+}
+
 TEST(FrameDrive, FilesWithoutTimesAreNone) {
   const TemporaryFolder folder;
   folder.write("a.xyz", std::string("x y z\n1 2 3\n"));

@@ -47,50 +47,60 @@ std::vector<Input> list_inputs(std::span<const std::filesystem::path> paths) {
 std::vector<Source> open_sources(std::span<const std::filesystem::path> paths,
                                  const LoadOptions& options, const Executor& executor,
                                  ProgressSink& progress) {
+  std::vector<std::filesystem::path> others;
   std::vector<Source> sources;
   for (const std::filesystem::path& path : paths) {
-    if (!options.trajectory.empty() && has_timed_frames(path)) {
-      auto drive =
-          open_frame_drive({path, options.trajectory, options.boxes, true}, executor, progress);
-      if (drive) {
-        sources.push_back({{path, true}, std::move(drive)});
-        continue;
-      }
-    }
-    for (const Input& input : list_inputs(std::span(&path, 1))) sources.push_back({input, {}});
+    std::optional<KittiSequence> drive;
+    if (!options.trajectory.empty() && has_timed_frames(path))
+      drive = open_frame_drive({path, options.trajectory, options.boxes, true}, executor, progress);
+    if (drive)
+      sources.push_back({{path, true}, std::move(drive)});
+    else
+      others.push_back(path);
   }
+  if (!others.empty() || paths.empty())
+    for (const Input& input : list_inputs(others)) sources.push_back({input, {}});
   return sources;
 }
 
-void require_options_that_fit(const LoadOptions& options, std::span<const Input> inputs) {
-  const auto usage = [](const std::string& message) { return Error(ErrorKind::usage, message); };
-  const bool any_sequence = std::ranges::any_of(inputs, &Input::is_sequence);
-  const bool any_file = !std::ranges::all_of(inputs, &Input::is_sequence);
-  const LoadOptions defaults;
-  const bool chooses_scans = options.first_scan != defaults.first_scan ||
-                             options.scan_count != defaults.scan_count ||
-                             options.scan_stride != defaults.scan_stride;
-  if (chooses_scans && !any_sequence)
-    throw usage("scans are chosen, but no input is a sequence folder");
+Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
+
+/// What is wrong with options whatever the inputs are.
+void require_sound(const LoadOptions& options) {
   if (options.scan_stride == 0) throw usage("a scan stride of 0");
   if (options.scan_count == 0) throw usage("a scan count of 0");
   const int sensor_fields = !options.sensor_x_field.empty() + !options.sensor_y_field.empty() +
                             !options.sensor_z_field.empty();
   if (sensor_fields != 0 && sensor_fields != 3)
     throw usage("the columns of the sensor position are three or none");
-  if ((sensor_fields != 0 || !options.label_field.empty()) && !any_file)
-    throw usage("columns are named, but no input is a file of points");
-  if (options.beams_from_poses && !any_sequence)
-    throw usage("beams are to start at poses, but no input is a sequence folder");
   if (options.viewpoint && !options.trajectory.empty())
     throw usage("a viewpoint and a trajectory both give the sensor position");
-  if ((options.viewpoint || !options.trajectory.empty()) && !any_file)
-    throw usage("a sensor position is given, but every input has its own");
-  if (!options.boxes.empty() && options.trajectory.empty())
-    throw usage("boxes are given, but no trajectory: they are for scans with times");
   if (options.viewpoint && !is_place(*options.viewpoint))
     throw usage("the viewpoint is not finite, or beyond 1e12 m");
   check_settings(options);
+}
+
+void require_options_that_fit(const LoadOptions& options, std::span<const Source> sources) {
+  const auto is_sequence = [](const Source& source) { return source.input.is_sequence; };
+  const bool any_drive =
+      std::ranges::any_of(sources, [](const Source& source) { return source.drive.has_value(); });
+  const bool any_sequence = std::ranges::any_of(sources, is_sequence);
+  const bool any_file = !std::ranges::all_of(sources, is_sequence);
+  const LoadOptions defaults;
+  const bool chooses_scans = options.first_scan != defaults.first_scan ||
+                             options.scan_count != defaults.scan_count ||
+                             options.scan_stride != defaults.scan_stride;
+  if (chooses_scans && !any_sequence)
+    throw usage("scans are chosen, but no input is a sequence folder");
+  if ((!options.sensor_x_field.empty() || !options.label_field.empty()) && !any_file)
+    throw usage("columns are named, but no input is a file of points");
+  if (options.beams_from_poses && !any_sequence)
+    throw usage("beams are to start at poses, but no input is a sequence folder");
+  if (!options.boxes.empty() && !any_drive)
+    throw usage("boxes are given, but no input is a folder of scans with times and a trajectory");
+  const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
+  if (states_origins && !any_file)
+    throw usage("a sensor position is given, but every input has its own");
 }
 
 std::vector<CloudPart> read_parts(std::span<const Source> sources, const LoadOptions& options,
@@ -385,16 +395,9 @@ std::size_t drop_own_body(PointCloud& cloud, std::optional<double> radius_m,
 std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
                                              const LoadOptions& options, const Executor& executor,
                                              ProgressSink& progress) {
-  std::vector<Input> listed = list_inputs(inputs);
-  const bool has_drives =
-      !options.trajectory.empty() && std::ranges::any_of(inputs, has_timed_frames);
-  if (!has_drives) require_options_that_fit(options, listed);
+  require_sound(options);
   const std::vector<Source> sources = open_sources(inputs, options, executor, progress);
-  if (has_drives) {
-    listed.clear();
-    for (const Source& source : sources) listed.push_back(source.input);
-    check_settings(options);
-  }
+  require_options_that_fit(options, sources);
   const PointOrigins origins(options);
   Gathered gathered{read_parts(sources, options, executor, progress), {}};
 
@@ -421,7 +424,8 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
     require_sensor_places(gathered.parts[p], gathered.kept[p]);
     clouds.push_back(
         localized(std::move(gathered.parts[p]), gathered.kept[p], origin, origins, executor));
-    if (!listed[p].is_sequence) check_origins(clouds.back(), listed[p].path, options, executor);
+    const Input& input = sources[p].input;
+    if (!input.is_sequence) check_origins(clouds.back(), input.path, options, executor);
   }
   PointCloud cloud = joined(std::move(clouds), origin, progress);
   report.own_body = drop_own_body(cloud, options.own_body_m, executor);

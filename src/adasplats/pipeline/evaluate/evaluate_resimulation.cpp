@@ -38,6 +38,10 @@ KittiSequence with_scans(KittiSequence all, const ScanRange& range) {
 KittiSequence open_frames(const HeldOutScans& scans, Session& session) {
   if (!scans.motion.empty())
     throw Error(ErrorKind::usage, "`motion` is for raw scans; these have times and a trajectory");
+  if (is_kitti_sequence(scans.sequence))
+    throw Error(ErrorKind::usage, scans.sequence.string() +
+                                      ": has poses of its own; `trajectory` is for a folder of "
+                                      "scans whose points have times");
   auto drive = open_frame_drive({scans.sequence, scans.trajectory, scans.boxes, false},
                                 session.executor, session.progress);
   if (!drive)
@@ -48,6 +52,8 @@ KittiSequence open_frames(const HeldOutScans& scans, Session& session) {
 }
 
 KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
+  if (scans.trajectory.empty() && !scans.boxes.empty())
+    throw Error(ErrorKind::usage, "`boxes` are for scans with times and a `trajectory`");
   if (!scans.trajectory.empty()) return with_scans(open_frames(scans, session), scans.scans);
   KittiSequence all = open_kitti_sequence(resolve_cloud_input(scans.sequence));
   require_poses_that_fit(all);
