@@ -36,6 +36,7 @@ template <class Archive>
 void fields(Archive& archive, Calibration& calibration) {
   archive("poses", calibration.poses);
   archive("lasers", calibration.lasers);
+  archive("smooth_s", calibration.smooth_s);
 }
 
 template <class Archive>

@@ -313,6 +313,7 @@ class Calibrator {
                               correction * places_[scan] - places_[scan]});
     }
     result.lasers = offsets_;
+    result.smooth_s = best_smoothing(result);
     return result;
   }
 

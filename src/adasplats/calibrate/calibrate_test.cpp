@@ -302,6 +302,31 @@ TEST(Calibration, ScansOfAnotherDriveAreNotCorrected) {
   EXPECT_FALSE(drive_along_x().at(1e9, {3.1, 0, 0}));
 }
 
+TEST(Calibration, DriftIsToldByNeighboursAndNoiseByMany) {
+  Calibration drift, noise;
+  for (int k = 0; k < 40; ++k) {
+    Random random(8, 0, static_cast<std::uint64_t>(k));
+    const double wave = std::sin(0.35 * k);
+    drift.poses.push_back({0.1 * k, {1.0 * k, 0, 0}, {0, 0, 0.003 * wave}, {0.1 * wave, 0, 0}});
+    noise.poses.push_back({0.1 * k,
+                           {1.0 * k, 0, 0},
+                           {0, 0, 0.002 * random.normal()},
+                           {0.05 * random.normal(), 0, 0}});
+  }
+  drift.smooth_s = best_smoothing(drift);
+  noise.smooth_s = best_smoothing(noise);
+  EXPECT_LE(drift.smooth_s, 0.1001);
+  EXPECT_GE(noise.smooth_s, 0.3999);
+  EXPECT_NEAR(drift.at(2.05, {20.5, 0, 0})->shift_m.x, 0.1 * std::sin(0.35 * 20.5), 0.005);
+  // Poses that took no part and are right stay nearer to that: 0.035 m between two neighbours.
+  double square = 0;
+  for (int k = 0; k < 39; ++k)
+    square += std::pow(noise.at(0.1 * k + 0.05, {k + 0.5, 0, 0})->shift_m.x, 2) / 39;
+  EXPECT_LT(std::sqrt(square), 0.03);
+  // A scan that took part has its own.
+  EXPECT_EQ(noise.at(0.1 * 7, {7, 0, 0})->shift_m, noise.poses[7].shift_m);
+}
+
 TEST(Calibration, EveryDriveHasItsOwnTimes) {
   Calibration calibration = drive_along_x();
   for (PoseCorrection pose : drive_along_x().poses) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "adasplats/core/maths/small_motion.h"
@@ -15,10 +16,63 @@ namespace {
 /// vehicle that brakes or turns does to the straight line, and the noise of poses.
 constexpr double kShareOfWay = 0.25, kLeastAside_m = 0.5;
 
-PoseCorrection between(const PoseCorrection& a, const PoseCorrection& b, double share,
-                       double time_s, Vec3d position) {
-  return {time_s, position, a.rotation_rad + share * (b.rotation_rad - a.rotation_rad),
-          a.shift_m + share * (b.shift_m - a.shift_m)};
+/// Scans [begin, end) of one drive.
+struct DriveSpan {
+  std::size_t begin, end;
+};
+
+DriveSpan drive_of(const std::vector<PoseCorrection>& poses, std::size_t scan) {
+  DriveSpan drive{scan, scan + 1};
+  while (drive.begin > 0 && poses[drive.begin].time_s > poses[drive.begin - 1].time_s)
+    --drive.begin;
+  while (drive.end < poses.size() && poses[drive.end].time_s > poses[drive.end - 1].time_s)
+    ++drive.end;
+  return drive;
+}
+
+/// A line through the corrections of a drive by time, weighted about `time_s`; without the scan
+/// `left_out`. Where all that has weight is one scan: that.
+PoseCorrection smoothed_at(const std::vector<PoseCorrection>& poses, DriveSpan drive, double time_s,
+                           double smooth_s, std::size_t left_out) {
+  double w = 0, wt = 0, wtt = 0;
+  Vec3d rotation, shift, rotation_t, shift_t;
+  for (std::size_t k = drive.begin; k < drive.end; ++k) {
+    if (k == left_out) continue;
+    const double t = poses[k].time_s - time_s;
+    const double weight = std::exp(-0.5 * t * t / (smooth_s * smooth_s)) + 1e-9;
+    w += weight;
+    wt += weight * t;
+    wtt += weight * t * t;
+    rotation = rotation + weight * poses[k].rotation_rad;
+    shift = shift + weight * poses[k].shift_m;
+    rotation_t = rotation_t + (weight * t) * poses[k].rotation_rad;
+    shift_t = shift_t + (weight * t) * poses[k].shift_m;
+  }
+  const double determinant = w * wtt - wt * wt;
+  PoseCorrection result;
+  result.time_s = time_s;
+  if (determinant > 1e-6 * w * wtt) {
+    result.rotation_rad = (1 / determinant) * (wtt * rotation - wt * rotation_t);
+    result.shift_m = (1 / determinant) * (wtt * shift - wt * shift_t);
+  } else {
+    result.rotation_rad = (1 / w) * rotation;
+    result.shift_m = (1 / w) * shift;
+  }
+  return result;
+}
+
+/// Between two scans; `smooth_s` over more of them.
+PoseCorrection between(const std::vector<PoseCorrection>& poses, std::size_t first,
+                       std::size_t second, double time_s, double smooth_s, std::size_t left_out) {
+  const PoseCorrection& a = poses[first];
+  const PoseCorrection& b = poses[second];
+  const double held_s = std::clamp(time_s, a.time_s, b.time_s);
+  if (smooth_s > 0) return smoothed_at(poses, drive_of(poses, first), held_s, smooth_s, left_out);
+  const double share = (held_s - a.time_s) / (b.time_s - a.time_s);
+  PoseCorrection result;
+  result.rotation_rad = a.rotation_rad + share * (b.rotation_rad - a.rotation_rad);
+  result.shift_m = a.shift_m + share * (b.shift_m - a.shift_m);
+  return result;
 }
 
 bool leads_past(const PoseCorrection& a, const PoseCorrection& b, double share, Vec3d position) {
@@ -45,10 +99,43 @@ std::optional<PoseCorrection> Calibration::at(double time_s, Vec3d position) con
     const bool is_last = k + 2 == poses.size() || !(poses[k + 2].time_s > b.time_s);
     const double share = (time_s - a.time_s) / apart_s;
     if (share < (is_first ? -1.0 : 0.0) || share > (is_last ? 2.0 : 1.0)) continue;
-    if (leads_past(a, b, share, position))
-      return between(a, b, std::clamp(share, 0.0, 1.0), time_s, position);
+    if (!leads_past(a, b, share, position)) continue;
+    PoseCorrection found = between(poses, k, k + 1, time_s, smooth_s, poses.size());
+    found.time_s = time_s;
+    found.position = position;
+    return found;
   }
   return std::nullopt;
+}
+
+double best_smoothing(const Calibration& calibration) {
+  constexpr double kArm_m = 10;  // what a rotation moves counts at so many metres
+  const std::vector<PoseCorrection>& poses = calibration.poses;
+  std::vector<double> apart_s;
+  for (std::size_t k = 1; k < poses.size(); ++k)
+    if (poses[k].time_s > poses[k - 1].time_s)
+      apart_s.push_back(poses[k].time_s - poses[k - 1].time_s);
+  if (apart_s.empty()) return 0;
+  const auto middle = apart_s.begin() + static_cast<std::ptrdiff_t>(apart_s.size() / 2);
+  std::nth_element(apart_s.begin(), middle, apart_s.end());
+  double best_s = 0, least = std::numeric_limits<double>::infinity();
+  for (const double scans : {0.0, 1.0, 2.0, 4.0, 8.0, 16.0}) {
+    const double smooth_s = scans * *middle;
+    double sum = 0;
+    for (std::size_t k = 1; k + 1 < poses.size(); ++k) {
+      if (!(poses[k].time_s > poses[k - 1].time_s && poses[k + 1].time_s > poses[k].time_s))
+        continue;
+      const PoseCorrection told = between(poses, k - 1, k + 1, poses[k].time_s, smooth_s, k);
+      const double turn_m = kArm_m * length(told.rotation_rad - poses[k].rotation_rad);
+      const double shift_m = length(told.shift_m - poses[k].shift_m);
+      sum += turn_m * turn_m + shift_m * shift_m;
+    }
+    if (sum < least) {
+      least = sum;
+      best_s = smooth_s;
+    }
+  }
+  return best_s;
 }
 
 CalibrationSizes sizes_of(const Calibration& calibration) {

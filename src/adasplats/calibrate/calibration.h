@@ -28,14 +28,22 @@ struct PoseCorrection {
 struct Calibration {
   std::vector<PoseCorrection> poses;  ///< scan by scan; where times do not ascend a drive begins
   LaserOffsets lasers;
+  /// Over how long corrections are averaged for scans that took no part, s (standard deviation of
+  /// weights by time): drifts go on from scan to scan, noise of single poses does not. 0: nothing
+  /// but the two scans around count.
+  double smooth_s = 0;
 
   bool empty() const { return poses.empty() && lasers.empty(); }
 
-  /// What a pose needs that was not estimated: between the two scans around its time, where the
-  /// given poses lead past its position. Nothing elsewhere: nothing is extrapolated, but the first
-  /// and the last correction hold for as long as scans are apart.
+  /// What a pose needs that was not estimated: that of the two scans around its time, or of the
+  /// scans within `smooth_s`, where the given poses lead past its position. Nothing elsewhere:
+  /// nothing is extrapolated, but the first and the last correction hold for as long as scans are
+  /// apart.
   std::optional<PoseCorrection> at(double time_s, Vec3d position) const;
 };
+
+/// The `smooth_s` with which the correction of each scan is told best from those of the others.
+double best_smoothing(const Calibration& calibration);
 
 /// How much a calibration corrects.
 struct CalibrationSizes {

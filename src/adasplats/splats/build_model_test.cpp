@@ -280,10 +280,12 @@ TEST(SplatModelFile, KeepsTheCalibration) {
   model.calibration.lasers = {{0.01, -0.01}, {1e-4, -1e-4}};
   model.calibration.poses = {{1.5, {448000.1, 2, 3}, {1e-3, 0, 0}, {0.01, 0, 1.0 / 3}},
                              {1.6, {448001.1, 2, 3}, {2e-3, 0, 0}, {0.02, 0, 0}}};
+  model.calibration.smooth_s = 0.4;
   save_model(path, model);
   const Calibration read = load_model(path).calibration;
   EXPECT_EQ(read.lasers.range_m, model.calibration.lasers.range_m);
   EXPECT_EQ(read.lasers.elevation_rad, model.calibration.lasers.elevation_rad);
+  EXPECT_EQ(read.smooth_s, 0.4);
   ASSERT_EQ(read.poses.size(), 2U);
   EXPECT_EQ(read.poses[0].time_s, 1.5);
   EXPECT_EQ(read.poses[0].position, model.calibration.poses[0].position);

@@ -177,6 +177,7 @@ nlohmann::ordered_json calibration_json(const CalibrationReport& report,
   json["weakest_share"] = report.weakest_share;
   json["largest_rotation_rad"] = sizes.largest_rotation_rad;
   json["largest_shift_m"] = sizes.largest_shift_m;
+  json["smooth_s"] = calibration.smooth_s;
   json["range_offset_rms_m"] = sizes.range_rms_m;
   json["elevation_offset_rms_rad"] = sizes.elevation_rms_rad;
   return json;

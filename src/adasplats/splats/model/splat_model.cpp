@@ -27,6 +27,7 @@ constexpr std::array<const char*, 4> kResponseComments = {
     "adasplats.response_cosines ", "adasplats.response_cosine_gains "};
 constexpr const char* kRangeOffsetsComment = "adasplats.calibration_range_offsets_m ";
 constexpr const char* kElevationOffsetsComment = "adasplats.calibration_elevation_offsets_rad ";
+constexpr const char* kSmoothComment = "adasplats.calibration_smooth_s ";
 constexpr const char* kPoseComment = "adasplats.calibration_pose ";
 constexpr const char* kFormatComment = "adasplats.splats 1";
 
@@ -123,6 +124,8 @@ void add_calibration_comments(const Calibration& calibration, std::vector<std::s
     comments.push_back(comment_of(kRangeOffsetsComment, calibration.lasers.range_m));
     comments.push_back(comment_of(kElevationOffsetsComment, calibration.lasers.elevation_rad));
   }
+  if (!calibration.poses.empty())
+    comments.push_back(comment_of(kSmoothComment, std::array{calibration.smooth_s}));
   for (const PoseCorrection& pose : calibration.poses) {
     const auto& [time_s, p, r, s] = pose;
     comments.push_back(
@@ -154,6 +157,11 @@ Calibration calibration_of(const Table& table, const std::filesystem::path& path
                                          std::to_string(lasers.range_m.size()) + " ranges and " +
                                          std::to_string(lasers.elevation_rad.size()) +
                                          " elevations");
+  const std::vector<double> smooth =
+      calibration_numbers(path, comment_value(table, kSmoothComment));
+  if (smooth.size() > 1 || (!smooth.empty() && smooth.front() < 0))
+    throw data_error({path, {}, {}}, "the calibration's smooth_s is no number of 0 or more");
+  if (!smooth.empty()) calibration.smooth_s = smooth.front();
   for (const std::string& comment : table.comments) {
     if (!comment.starts_with(kPoseComment)) continue;
     const std::vector<double> v =
