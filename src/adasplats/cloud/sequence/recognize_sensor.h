@@ -26,7 +26,8 @@ struct SensorCones {
   std::vector<Cone> cones;  ///< topmost first
 
   /// The laser whose cone is nearest in elevation, topmost 0, and how far above it `point` (in the
-  /// sensor's frame) is seen from the cone's tip, rad. Needs a cone.
+  /// sensor's frame) is seen from the cone's tip, rad. For points 3 m away or farther. Needs a
+  /// cone.
   std::pair<std::uint16_t, double> nearest(Vec3d point) const;
 };
 
