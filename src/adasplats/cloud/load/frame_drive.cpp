@@ -148,6 +148,17 @@ void require_covered(const FrameDrive& drive, const std::vector<std::filesystem:
   }
 }
 
+/// Throws data where boxes are of other times than the scans, and so would hold nothing.
+void require_boxes_of(const FrameDrive& drive, const MovingBoxes& boxes, const Overview& overview) {
+  const auto covered = [&](const std::pair<double, double>& times_s) {
+    return boxes.cover(times_s.first, times_s.second);
+  };
+  if (std::ranges::any_of(overview.times_s, covered)) return;
+  throw Error(ErrorKind::data, drive.boxes.string() +
+                                   ": no box is of the times of the scans: the clocks differ, or "
+                                   "the boxes are of another drive");
+}
+
 std::string description_of(const Recognition& found) {
   const Vec3d at = found.vehicle_from_sensor.translation;
   constexpr double kDegrees = 57.29577951308232;
@@ -176,6 +187,11 @@ std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Exe
   Trajectory vehicle = read_trajectory(drive.trajectory);
   const Overview overview = look_into(files, vehicle, executor, progress);
   require_covered(drive, files, overview, vehicle);
+  MovingBoxes boxes;
+  if (!drive.boxes.empty()) {
+    boxes = MovingBoxes(drive.boxes);
+    require_boxes_of(drive, boxes, overview);
+  }
   progress.begin_step("recognise the sensor", 0);
   const auto found = recognize_sensor(overview.vehicle_points, library_cones(), executor);
   progress.end_step();
@@ -185,9 +201,8 @@ std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Exe
                   "but guessed from the trajectory: no ray checks the model");
     return std::nullopt;
   }
-  const auto reader = std::make_shared<FrameReader>(
-      std::move(vehicle), *found, drive.boxes.empty() ? MovingBoxes() : MovingBoxes(drive.boxes),
-      drive.with_classes);
+  const auto reader = std::make_shared<FrameReader>(std::move(vehicle), *found, std::move(boxes),
+                                                    drive.with_classes);
   KittiSequence sequence;
   sequence.folder = drive.folder;
   sequence.beams.recognised = description_of(*found);

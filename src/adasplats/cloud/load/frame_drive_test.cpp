@@ -173,6 +173,17 @@ TEST(FrameDrive, WithoutARecognisedSensorNothingIsMeasuredAndThatIsSaid) {
                [&] { load_cloud(std::span(&frames, 1), options, Executor(2), quiet); });
 }
 
+TEST(FrameDrive, BoxesOfAnotherClockAreAnError) {
+  const Drive drive;
+  ProgressSink quiet;
+  const auto boxes = drive.folder().write(
+      "boxes.csv", std::string("time,id,stationary,x,y,z,size_x,size_y,size_z,yaw\n"
+                               "1e9,1,0,0,0,0,1,1,1,0\n"));
+  expect_error(ErrorKind::data, {"boxes.csv", "the clocks differ"}, [&] {
+    open_frame_drive({drive.frames(), drive.poses(), boxes, true}, Executor(1), quiet);
+  });
+}
+
 TEST(FrameDrive, FilesWithoutTimesAreNone) {
   const TemporaryFolder folder;
   folder.write("a.xyz", std::string("x y z\n1 2 3\n"));

@@ -67,6 +67,9 @@ MovingBoxes::MovingBoxes(const std::filesystem::path& path) {
                                          std::string(kColumns[k]) + "' is no number");
       v[k] = *value;
     }
+    const bool is_first = end_s_ < begin_s_;
+    begin_s_ = is_first ? v[0] : std::min(begin_s_, v[0]);
+    end_s_ = is_first ? v[0] : std::max(end_s_, v[0]);
     if (v[2] != 0) continue;
     tracks[v[1]].push_back({v[0], {v[3], v[4], v[5]}, {v[6] / 2, v[7] / 2, v[8] / 2}, v[9]});
   }

@@ -19,7 +19,10 @@ class MovingBoxes {
   /// that stand still. Errors: data with the line.
   explicit MovingBoxes(const std::filesystem::path& path);
 
-  bool empty() const { return tracks_.empty(); }
+  /// Whether any box, moving or not, has a time between these.
+  bool cover(double begin_s, double end_s) const {
+    return begin_s_ <= end_s_ && begin_s <= end_s_ && end_s >= begin_s_;
+  }
   /// Whether one holds a world point at a time, with a margin of 0.2 m. Between two times an object
   /// moves evenly; before its first and after its last one it stays for as long as they are apart.
   bool hold(double time_s, Vec3d point) const;
@@ -32,6 +35,7 @@ class MovingBoxes {
   };
   using Track = std::vector<Box>;  ///< of one object, by time
   std::vector<Track> tracks_;
+  double begin_s_ = 0, end_s_ = -1;  ///< of all boxes in the file
 };
 
 }  // namespace adasplats

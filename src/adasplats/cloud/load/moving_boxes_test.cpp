@@ -29,6 +29,18 @@ TEST(MovingBoxes, HoldWhatMovesAtItsTime) {
   EXPECT_FALSE(boxes.hold(1.0, {0, 0, 2.1}));
 }
 
+TEST(MovingBoxes, CoverTheTimesOfAllBoxes) {
+  const TemporaryFolder folder;
+  const MovingBoxes boxes(folder.write("boxes.csv", std::string(kHeader) +
+                                                        "0,-2,8,Car,1,0,20,1,4,2,1.5,0\n"
+                                                        "0,-1.5,7,Car,0,0,0,1,4,2,1.5,0\n"));
+  EXPECT_TRUE(boxes.cover(-3, -2));
+  EXPECT_TRUE(boxes.cover(-1.9, -1.8));
+  EXPECT_FALSE(boxes.cover(-1.4, 5));
+  EXPECT_FALSE(boxes.cover(-9, -2.1));
+  EXPECT_FALSE(MovingBoxes().cover(-1e9, 1e9));
+}
+
 TEST(MovingBoxes, TurnByTheirYawTheShortWay) {
   const TemporaryFolder folder;
   const MovingBoxes boxes(folder.write("boxes.csv", std::string(kHeader) +
