@@ -102,6 +102,11 @@ void Executor::for_chunks(std::size_t count, std::size_t grain,
   impl_->arena.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, chunks, run_chunk); });
 }
 
+void Executor::run(FunctionRef<void()> body) const {
+  check_interruption();
+  impl_->arena.execute([&] { body(); });
+}
+
 void Executor::sort_keys(std::vector<std::uint64_t>& keys,
                          std::vector<std::uint32_t>& order) const {
   constexpr int kDigitBits = 11;

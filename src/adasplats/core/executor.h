@@ -48,6 +48,11 @@ class Executor {
   void for_chunks(std::size_t count, std::size_t grain,
                   FunctionRef<void(std::size_t begin, std::size_t end)> body) const;
 
+  /// Calls body() once, on this thread, so that another library's parallel loops in it take these
+  /// threads and no others. They belong to no loop of ours: one that is cancelled reaches neither
+  /// them nor what they leave (Embree's scenes keep the group of tasks that they were built in).
+  void run(FunctionRef<void()> body) const;
+
   /// Sum over chunks in their order: `of_chunk(begin, end)` gives the part of one chunk (any type
   /// with +=). The same bits for every number of threads.
   template <class T, class F>

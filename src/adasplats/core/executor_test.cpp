@@ -49,6 +49,22 @@ TEST(Executor, OneThreadIsTheCallers) {
       100, 1, [&](std::size_t, std::size_t) { EXPECT_EQ(std::this_thread::get_id(), caller); });
 }
 
+TEST(Executor, RunsOnceOnTheCallersThread) {
+  const auto caller = std::this_thread::get_id();
+  for (const int threads : {1, 3}) {
+    const Executor executor(threads);
+    int calls = 0;
+    executor.run([&] {
+      ++calls;
+      EXPECT_EQ(std::this_thread::get_id(), caller);
+    });
+    EXPECT_EQ(calls, 1);
+    EXPECT_THROW(executor.run([] { throw std::runtime_error("of the body"); }), std::runtime_error);
+  }
+  const Executor interrupted(2, [] { throw std::runtime_error("interrupted"); });
+  EXPECT_THROW(interrupted.run([] { FAIL(); }), std::runtime_error);
+}
+
 // The bits of a sum of floating-point numbers depend on the order: here it may not vary.
 TEST(Executor, SumsHaveTheSameBitsForEveryNumberOfThreads) {
   const auto sum = [](const Executor& executor) {

@@ -35,10 +35,7 @@ DeviceHandle start_embree(ErrorLog& errors) {
 }
 
 void commit(RTCScene scene, const Executor& executor) {
-  // A loop of one chunk would stay on this thread.
-  executor.for_chunks(2, 1, [&](std::size_t begin, std::size_t) {
-    if (begin == 0) rtcCommitScene(scene);
-  });
+  executor.run([&] { rtcCommitScene(scene); });
 }
 
 }  // namespace adasplats

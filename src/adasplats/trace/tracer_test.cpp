@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <stdexcept>
 #include <string>
 
 #include "adasplats/core/maths/random.h"
@@ -581,6 +582,20 @@ TEST(Tracer, TwoScenesDoNotMix) {
   EXPECT_EQ(hits[0].t, 2.0F);
   second->nearest(rays, hits, one);
   EXPECT_EQ(hits[0].t, 7.0F);
+}
+
+// Embree's scene was built in a loop of ours. Interrupted in it, that took Embree's own tasks with
+// it: a crash, or a wait without end, once in a hundred times.
+TEST(Tracer, InterruptionsReachNoBuildThatHasBegun) {
+  const TriangleMesh mesh = random_mesh({15, {0, 0, 0}, 30, 0.2, 4}, 20'000);
+  for (int k = 0; k < 100; ++k) {
+    int calls = 0;
+    const Executor executor(4, [&] {
+      if (++calls == 2) throw std::runtime_error("interrupted");
+    });
+    EXPECT_NO_THROW(make_embree_tracer({{}, &mesh}, executor));
+    EXPECT_EQ(calls, 1);
+  }
 }
 
 }  // namespace
