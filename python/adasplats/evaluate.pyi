@@ -60,6 +60,7 @@ def presence(
     max_distance_m: float = 100000.0,
     max_dropped: float = 0.01,
     own_body_m: float | None = None,
+    driven_path_m: float = 0.6,
     trust_origins: bool = False,
     strict: bool = False,
     salvage: bool = False,

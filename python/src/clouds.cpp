@@ -34,7 +34,8 @@ constexpr const char* kReadDoc =
     "Points that are not finite or far are dropped with a warning; above the share max_dropped\n"
     "that is an error, and with strict any that is not finite is one. An intensity that is not\n"
     "known is NaN. Points on the recording vehicle itself are left out: those that go along with\n"
-    "the sensor, or all nearer to it than own_body_m (0 keeps all).\n"
+    "the sensor, or all nearer to it than own_body_m (0 keeps all). So are those where it drove,\n"
+    "up to driven_path_m beside its path (0 keeps them).\n"
     "Raises FileNotFoundError, ValueError (what is in a file), OSError.";
 
 constexpr const char* kCloudDoc =

@@ -110,6 +110,7 @@ FileFacts cloud_facts(const fs::path& input, const std::optional<LabelScheme>& s
   facts.rows.emplace_back("dropped: not finite", grouped(report.dropped_not_finite));
   facts.rows.emplace_back("dropped: too far", grouped(report.dropped_far));
   facts.rows.emplace_back("dropped: the recording vehicle itself", grouped(report.own_body));
+  facts.rows.emplace_back("dropped: where it drove", grouped(report.driven_path));
   if (report.unknown_intensities > 0)
     facts.rows.emplace_back("intensity not known", grouped(report.unknown_intensities));
   facts.rows.emplace_back("sensor positions", describe_origins(report.origins));

@@ -50,6 +50,9 @@ void report_dropped(const std::string& input, const LoadReport& report, const Lo
 
 void report_own_body(const std::string& input, const LoadReport& report, const LoadOptions& options,
                      ProgressSink& progress) {
+  if (report.driven_path > 0)
+    progress.warn(input + ": " + share_text(report.driven_path, report.points_read) +
+                  " are where the recording vehicle drove, left out (`driven_path` 0 keeps them)");
   if (report.own_body == 0) return;
   progress.warn(input + ": " + share_text(report.own_body, report.points_read) +
                 (options.own_body_m

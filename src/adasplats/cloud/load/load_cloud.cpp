@@ -14,8 +14,9 @@
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/dropped_points.h"
 #include "adasplats/cloud/load/frame_drive.h"
-#include "adasplats/cloud/load/own_body.h"
 #include "adasplats/cloud/load/point_origins.h"
+#include "adasplats/cloud/vehicle/driven_path.h"
+#include "adasplats/cloud/vehicle/own_body.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
 
@@ -373,6 +374,14 @@ PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, ProgressSink& 
   return all;
 }
 
+/// Leaves out the points with a flag, 1 or 0 each; gives how many. No flags: none.
+std::size_t drop_flagged(PointCloud& cloud, Kept flags) {
+  for (std::uint8_t& flag : flags) flag = flag == 0 ? 1 : 0;
+  const std::size_t dropped = count_dropped(flags);
+  if (dropped > 0) keep_only(cloud, flags);
+  return dropped;
+}
+
 /// Leaves out the points on the vehicle that carried the sensor; gives how many.
 std::size_t drop_own_body(PointCloud& cloud, std::optional<double> radius_m,
                           const Executor& executor) {
@@ -381,13 +390,15 @@ std::size_t drop_own_body(PointCloud& cloud, std::optional<double> radius_m,
     throw Error(ErrorKind::usage,
                 "points near their sensor are to be left out, but no point says where it was");
   }
-  Kept flags =
-      radius_m ? points_within(cloud, *radius_m, executor) : find_own_body(cloud, {}, executor);
-  if (flags.empty()) return 0;
-  for (std::uint8_t& flag : flags) flag = flag == 0 ? 1 : 0;
-  const std::size_t dropped = count_dropped(flags);
-  if (dropped > 0) keep_only(cloud, flags);
-  return dropped;
+  return drop_flagged(cloud, radius_m ? points_within(cloud, *radius_m, executor)
+                                      : find_own_body(cloud, {}, executor));
+}
+
+/// Leaves out the points where the vehicle itself drove; gives how many.
+std::size_t drop_driven_path(PointCloud& cloud, double half_width_m, const Executor& executor) {
+  DrivenPathOptions path;
+  path.half_width_m = half_width_m;
+  return drop_flagged(cloud, find_in_driven_path(cloud, path, executor));
 }
 
 }  // namespace
@@ -429,6 +440,7 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   }
   PointCloud cloud = joined(std::move(clouds), origin, progress);
   report.own_body = drop_own_body(cloud, options.own_body_m, executor);
+  report.driven_path = drop_driven_path(cloud, options.driven_path_m, executor);
   report_own_body(name_of(inputs), report, options, progress);
   report.origins = count_origins(cloud);
   return {std::move(cloud), report};

@@ -55,6 +55,9 @@ struct LoadOptions {
   /// Points on the vehicle that carried the sensor are left out: where this is not given those that
   /// find_own_body() finds, else all that are nearer to their sensor, m; with 0 none.
   std::optional<double> own_body_m;
+  /// Points in the volume that the carrier of the sensor passed through, so far to each side of its
+  /// path, m (find_in_driven_path()), are left out; 0 keeps them.
+  double driven_path_m = 0.6;
 };
 
 /// What of the points is dropped, and when that is an error.
@@ -85,6 +88,15 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .group = group,
                 .least = 0},
         load.own_body_m);
+  visit(Setting{.name = "driven_path",
+                .help = "Points in the volume that the vehicle passed through, so far to each side "
+                        "of its path, are left out, m; 0 keeps all",
+                .value = "M",
+                .key = "driven_path_m",
+                .group = group,
+                .least = 0,
+                .most = 1},
+        load.driven_path_m);
   visit(Setting{.name = "trust_origins",
                 .help = "Take sensor positions though points lie behind others as seen from there, "
                         "as later returns do",
@@ -153,6 +165,8 @@ struct LoadReport {
   std::size_t dropped_far = 0;
   /// On the vehicle that carried the sensor.
   std::size_t own_body = 0;
+  /// In the volume that it passed through.
+  std::size_t driven_path = 0;
 };
 
 /// Loads and accumulates point files and SemanticKITTI sequence folders (see read_points and

@@ -193,6 +193,7 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
   json["points_no_return"] = result.loaded.no_returns;
   json["points_far"] = result.loaded.dropped_far;
   json["points_own_body"] = result.loaded.own_body;
+  json["points_driven_path"] = result.loaded.driven_path;
   json["points_intensity_unknown"] = result.loaded.unknown_intensities;
   json["beams"] = result.loaded.beams;
   json["points_in"] = built.points_in;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/load/own_body.h"
+#include "adasplats/cloud/vehicle/own_body.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/core/executor.h"
+
+namespace adasplats {
+
+/// The volume that whatever carried the sensor passed through: from above the ground to the sensor,
+/// along its path. The numbers are set, not chosen by data: cars are 1.6 m wide and more, robots
+/// and people with a scanner half a metre; kerbs and humps are lower than 0.35 m.
+struct DrivenPathOptions {
+  double half_width_m = 0.6;      ///< of the volume; 0: none
+  double above_ground_m = 0.35;   ///< it begins
+  double above_sensor_m = 0.1;    ///< it ends
+  double step_m = 0.25;           ///< between places of the path
+  double most_apart_m = 5;        ///< scans farther apart than this are not joined
+  double least_path_m = 5;        ///< shorter ones are no drive
+  double ground_radius_m = 1;     ///< points that say where the ground is
+  double most_height_m = 3.5;     ///< of the sensor above ground: nothing carries it from there on
+  double most_spread_m = 0.5;     ///< of this height between most places, else it is no height
+  std::size_t least_points = 20;  ///< that say where the ground is at a place
+};
+
+/// The points in the volume that the carrier of the sensor passed through, 1 or 0 each; empty: none
+/// or no such volume (origins not measured, a sensor that hardly moved, one in the air, no ground
+/// below it). What was measured there had gone when the carrier passed, or came later: mostly
+/// vehicles ahead. Up is +z. Time: two passes over the points.
+std::vector<std::uint8_t> find_in_driven_path(const PointCloud& cloud,
+                                              const DrivenPathOptions& options,
+                                              const Executor& executor);
+
+}  // namespace adasplats
