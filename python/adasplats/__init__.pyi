@@ -425,6 +425,9 @@ class Sensor:
     def elevations_rad(self) -> NDArray[np.float64]:
         """(B,) float64, topmost first; empty where it is a list of rays or a rosette."""
     @property
+    def range_offsets_m(self) -> NDArray[np.float64]:
+        """(B,) float64, to be added to what each ring of this unit reports; empty: none known."""
+    @property
     def divergence_rad(self) -> tuple[float, float]:
         """Full angles of a beam between 1/e2 of its intensity, horizontal and vertical."""
     @property
@@ -710,6 +713,7 @@ class Scene:
         rolling_shutter: bool = False,
         points: Literal["raw", "deskewed"] = "raw",
         noise: bool = True,
+        unit_offsets: bool = False,
         range_noise: float | None = None,
         min_range: float | None = None,
         max_range: float | None = None,
@@ -738,6 +742,7 @@ class Scene:
         rolling_shutter: bool = False,
         points: Literal["raw", "deskewed"] = "raw",
         noise: bool = True,
+        unit_offsets: bool = False,
         range_noise: float | None = None,
         min_range: float | None = None,
         max_range: float | None = None,
