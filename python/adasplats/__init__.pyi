@@ -153,6 +153,34 @@ def mesh(
     threads: int = 0,
     progress: Progress | None = None,
 ) -> Mesh: ...
+def calibrate(
+    inputs: Path | Sequence[Path],
+    output: Path,
+    *,
+    poses: bool = True,
+    ranges: bool = True,
+    elevations: bool = True,
+    label_field: str | None = None,
+    viewpoint: ArrayLike | None = None,
+    trajectory: Path | None = None,
+    boxes: Path | None = None,
+    beams_from_poses: bool = False,
+    max_distance_m: float = 100000.0,
+    max_dropped: float = 0.01,
+    own_body_m: float | None = None,
+    trust_origins: bool = False,
+    strict: bool = False,
+    salvage: bool = False,
+    sensor_x_field: str | None = None,
+    sensor_y_field: str | None = None,
+    sensor_z_field: str | None = None,
+    first_scan: int = 0,
+    scan_count: int | None = None,
+    scan_stride: int = 1,
+    overwrite: bool = False,
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> dict[str, Any]: ...
 def export(
     input: Path,
     output: Path,
@@ -428,6 +456,9 @@ class Sensor:
     @property
     def elevations_rad(self) -> NDArray[np.float64]:
         """(B,) float64, topmost first; empty where it is a list of rays or a rosette."""
+    @property
+    def range_offsets_m(self) -> NDArray[np.float64]:
+        """(B,) float64, to be added to what each ring of this unit reports; empty: none known."""
     @property
     def divergence_rad(self) -> tuple[float, float]:
         """Full angles of a beam between 1/e2 of its intensity, horizontal and vertical."""
@@ -714,6 +745,7 @@ class Scene:
         rolling_shutter: bool = False,
         points: Literal["raw", "deskewed"] = "raw",
         noise: bool = True,
+        unit_offsets: bool = False,
         range_noise: float | None = None,
         min_range: float | None = None,
         max_range: float | None = None,
@@ -742,6 +774,7 @@ class Scene:
         rolling_shutter: bool = False,
         points: Literal["raw", "deskewed"] = "raw",
         noise: bool = True,
+        unit_offsets: bool = False,
         range_noise: float | None = None,
         min_range: float | None = None,
         max_range: float | None = None,

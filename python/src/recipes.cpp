@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "adasplats/recipes/calibrate_drive.h"
 #include "adasplats/recipes/compare/compare.h"
 #include "adasplats/recipes/export.h"
 #include "adasplats/recipes/make_mesh.h"
@@ -24,6 +25,18 @@ constexpr const char* kMeshDoc =
     "truncation (voxels) are for imls, depth, samples_per_node, trim and poisson_program for "
     "poisson.\n"
     "Raises ValueError, OSError, RuntimeError (no program for Poisson).";
+
+constexpr const char* kCalibrateDoc =
+    "Estimate from a drive's points what its poses and lasers get wrong, and write it.\n\n"
+    "inputs: SemanticKITTI sequence folders, and folders of scans with times (then trajectory, "
+    "too).\n"
+    "output: a folder to create, with trajectory.csv, poses.txt, lasers.csv, sensor.toml, "
+    "report.html\n"
+    "and report.json, as far as known (docs/formats.md). poses, ranges, elevations: what is "
+    "estimated.\n"
+    "Gives report.json as a dict. Raises ValueError (DataError where the points do not say clearly "
+    "that\n"
+    "anything is wrong; the report is written nevertheless), OSError.";
 
 constexpr const char* kExportDoc =
     "Write a splat model, points or the scans of a sequence for other programs.\n\n"
@@ -84,6 +97,32 @@ std::shared_ptr<MeshModel> mesh(py::handle points, const py::kwargs& kwargs) {
     return std::make_shared<MeshModel>(
         (in_memory ? make_mesh(*cloud, call.job, session) : make_mesh(call.job, session)).first);
   });
+}
+
+struct CalibrateCall {
+  CalibrateJob job;
+  WorkOptions work;
+
+  void take(Keywords& keywords) {
+    take_settings(keywords, job.calibrate);
+    take_load_options(keywords, job.load);
+    keywords.take("overwrite", job.overwrite);
+    work.has_device = false;
+    work.take(keywords);
+  }
+};
+
+py::object calibrate_drive(py::handle inputs, py::handle output, const py::kwargs& kwargs) {
+  Keywords keywords("calibrate", kwargs);
+  CalibrateCall call;
+  call.take(keywords);
+  keywords.finish();
+  call.job.inputs = paths_of(inputs, "inputs");
+  call.job.output = path_of(output, "output");
+  Work work(call.work);
+  const nlohmann::ordered_json report =
+      work.run([&](Session& session) { return to_json(run_calibrate(call.job, session)); });
+  return python_of(report);
 }
 
 /// Takes a word that may be None.
@@ -255,6 +294,8 @@ std::string doc_of(const char* name, const char* leading, const char* text) {
 void bind_recipes(py::module_& module) {
   module.def("mesh", &mesh, py::arg("points"),
              doc_of<MeshCall>("mesh", "points", kMeshDoc).c_str());
+  module.def("calibrate", &calibrate_drive, py::arg("inputs"), py::arg("output"),
+             doc_of<CalibrateCall>("calibrate", "inputs, output", kCalibrateDoc).c_str());
   module.def("export", &export_file, py::arg("input"), py::arg("output"),
              doc_of<ExportCall>("export", "input, output", kExportDoc).c_str());
   module.def("compare", &compare, py::arg("data"), py::arg("output"),

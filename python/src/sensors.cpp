@@ -31,6 +31,7 @@ void fields(Archive& archive, LidarModel& model) {
   archive("azimuth_offsets_rad", model.azimuth_offsets_rad);
   archive("beam_origins_m", model.beam_origins_m);
   archive("firing_times_s", model.firing_times_s);
+  archive("range_offsets_m", model.range_offsets_m);
   archive("columns", model.columns);
   archive("first_azimuth_rad", model.first_azimuth_rad);
   archive("rotation_hz", model.rotation_hz);
@@ -310,6 +311,12 @@ void add_attributes(SensorClass& type) {
             return array_view(self.cast<const LidarModel&>().elevations_rad, self);
           },
           "(B,) float64, topmost first; empty where it is a list of rays or a rosette.")
+      .def_property_readonly(
+          "range_offsets_m",
+          [](const py::object& self) {
+            return array_view(self.cast<const LidarModel&>().range_offsets_m, self);
+          },
+          "(B,) float64, to be added to what each ring of this unit reports; empty: none known.")
       .def_property_readonly(
           "divergence_rad",
           [](const LidarModel& m) {

@@ -43,6 +43,45 @@ def test_export(street, tmp_path):
     assert not (tmp_path / "x.mcap").exists()
 
 
+def hall_drive(folder):
+    """Scans of KITTI's sensor in a hall, and a wave in their poses."""
+    quads = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)]
+    corners = [[(-20, 20)[k & 1], (-14, 14)[k >> 1 & 1], (0, 10)[k >> 2]] for k in range(8)]
+    text = "".join("v {} {} {}\n".format(*corner) for corner in corners)
+    for a, b, c, d in quads:
+        text += f"f {a + 1} {b + 1} {c + 1}\nf {a + 1} {c + 1} {d + 1}\n"
+    (folder / "hall.obj").write_text(text)
+    poses = np.tile(np.eye(4), (8, 1, 1))
+    poses[:, :3, 3] = [[-3 + 0.6 * k, np.sin(0.4 * k), 1.8] for k in range(8)]
+    scans = adasplats.Scene(folder / "hall.obj", device="cpu").simulate(
+        "velodyne-hdl-64e-kitti", poses, range_noise=0.005)
+    scans.save(folder / "drive")
+    sequence = folder / "drive" / "sequences" / "00"
+    sequence = sequence if sequence.exists() else folder / "drive"
+    rows = np.loadtxt(sequence / "poses.txt")
+    rows[:, 3] += 0.06 * np.sin(np.arange(8))
+    np.savetxt(sequence / "poses.txt", rows)
+    return sequence
+
+
+def test_calibrate(tmp_path):
+    sequence = hall_drive(tmp_path)
+    run_program("calibrate", sequence, "-o", tmp_path / "cli", "--own-body", 0)
+    told = adasplats.calibrate(sequence, tmp_path / "here", own_body_m=0)
+    assert files_of(tmp_path / "here") == files_of(tmp_path / "cli")
+    assert told == json.loads((tmp_path / "here" / "report.json").read_text(encoding="utf-8"))
+    assert told["applied"] and told["largest_shift_m"] > 0.03
+    sensor = adasplats.Sensor(tmp_path / "here" / "sensor.toml")
+    np.testing.assert_allclose(sensor.range_offsets_m, told["lasers"]["range_offset_m"], atol=1e-5)
+    assert len(adasplats.Trajectory.read(tmp_path / "here" / "trajectory.csv")) == 8
+    with pytest.raises(OSError, match="not empty"):
+        adasplats.calibrate(sequence, tmp_path / "here")
+    with pytest.raises(ValueError, match="nothing to estimate: poses, ranges and elevations"):
+        adasplats.calibrate(sequence, tmp_path / "no", poses=False, ranges=False, elevations=False)
+    with pytest.raises(adasplats.DataError, match="nothing calibrated"):
+        adasplats.calibrate(sequence, tmp_path / "few", own_body_m=0, scan_count=1)
+
+
 def test_simkitti32(street, tmp_path):
     expected = report_of(tmp_path, "simkitti32", street.sequence, "-o", tmp_path / "cli", "--sensor",
                          street.sensor, "--scans", "0:3", "--depth", 3, "--offset", "0,0,-0.4")

@@ -23,6 +23,7 @@ SUBCOMMANDS = [
     ["evaluate", "labels"],
     ["simkitti32"],
     ["model"],
+    ["calibrate"],
     ["mesh"],
     ["simulate"],
     ["render"],

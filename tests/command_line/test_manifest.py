@@ -51,6 +51,7 @@ class Manifest(ProgramTest):
         more = self.folder / "more.csv"
         write_poses(more, 5)
         sensor = self.file("other.toml", SENSOR.replace("16", "15"))
+        unit = self.file("unit.toml", SENSOR + f"range_offsets_m = {[0.01 * k for k in range(16)]}\n")
         return {
             "--sensor": ([], ["--sensor", sensor]),
             "--labels": ([], ["--labels", self.file("scheme.toml", SCHEME)]),
@@ -65,6 +66,7 @@ class Manifest(ProgramTest):
             "--motion": (["--rolling-shutter"], ["--rolling-shutter", "--motion", more]),
             "--points": (["--rolling-shutter"], ["--rolling-shutter", "--points", "deskewed"]),
             "--noise": ([], ["--no-noise"]),
+            "--unit-offsets": (["--sensor", unit], ["--sensor", unit, "--unit-offsets"]),
             "--range-noise": ([], ["--range-noise", "0.02"]),
             "--min-range": ([], ["--min-range", "3"]),
             "--max-range": ([], ["--max-range", "20"]),

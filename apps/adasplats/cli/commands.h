@@ -12,6 +12,7 @@ namespace adasplats::app {
 std::unique_ptr<Command> make_synth_street_command(CLI::App& synth);
 std::unique_ptr<Command> make_info_command(CLI::App& program);
 std::unique_ptr<Command> make_model_command(CLI::App& program);
+std::unique_ptr<Command> make_calibrate_command(CLI::App& program);
 std::unique_ptr<Command> make_mesh_command(CLI::App& program);
 std::unique_ptr<Command> make_simulate_command(CLI::App& program);
 std::unique_ptr<Command> make_render_command(CLI::App& program);

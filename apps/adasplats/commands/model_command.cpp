@@ -12,6 +12,7 @@
 #include "cli/options/setting_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
+#include "commands/calibration_text.h"
 
 namespace adasplats::app {
 namespace {
@@ -20,24 +21,6 @@ constexpr const char* kModelExamples =
     "  adasplats model street/mapping.ply -o street.ply --method semantic --labels semantickitti\n"
     "  adasplats model sequences/00 -o place.ply --scans 0:100:2 --remove moving\n"
     "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n";
-
-/// What was corrected, or why nothing was.
-std::string calibration_text(const ModelResult& result) {
-  if (!result.calibrated) return {};
-  const CalibrationReport& report = *result.calibrated;
-  if (!report.objection.empty()) return "Nothing calibrated: " + report.objection + "\n";
-  const CalibrationSizes sizes = sizes_of(result.calibration);
-  constexpr double kDegrees = 57.29577951308232;
-  std::string text = "Calibrated by " + grouped(report.planes) + " planes: poses by up to " +
-                     centimetres(sizes.largest_shift_m) + " and " +
-                     fixed(sizes.largest_rotation_rad * kDegrees, 2) + " deg";
-  if (!result.calibration.lasers.empty())
-    text += ", lasers by " + centimetres(sizes.range_rms_m) + " and " +
-            fixed(sizes.elevation_rms_rad * kDegrees, 3) + " deg (RMS)";
-  return text + "; points left out of it lie " + centimetres(report.calibrated_m) +
-         " from planes (" + centimetres(report.given_m) +
-         " before); as a whole the place stays where the given poses have it\n";
-}
 
 /// What the method itself counts and measures.
 std::string figures_of(const BuildReport& built) {
@@ -100,7 +83,8 @@ class ModelCommand final : public Command {
     print(table.text() + "\n" + job_.output.string() + ": " + grouped(built.primitives) +
           " splats from " + grouped(built.points_in) + " points, " + grouped(built.points_dynamic) +
           " of them dynamic and removed" + text_of(built.removed_classes) + "\n" +
-          figures_of(built) + "\n" + calibration_text(result));
+          figures_of(built) + "\n" +
+          (result.calibrated ? calibration_text(*result.calibrated, result.calibration) : ""));
   }
 
  private:

@@ -34,6 +34,15 @@ double between(double first, double last, int round, int rounds) {
   return first * std::pow(last / first, share);
 }
 
+ResidualCounts counts_of(const std::vector<double>& residuals_m) {
+  ResidualCounts result;
+  for (const double residual_m : residuals_m) {
+    const auto bin = static_cast<std::size_t>(residual_m / ResidualCounts::kBin_m);
+    ++result.counts[std::min(bin, result.counts.size() - 1)];
+  }
+  return result;
+}
+
 double median(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -67,7 +76,7 @@ class Calibrator {
   std::pair<Calibration, CalibrationReport> run() {
     CalibrationReport report;
     correct_points();
-    report.given_m = left_out_residual();
+    judge(report.given_m, report.given);
     for (int round = 0; round < options_.rounds && report.objection.empty(); ++round) {
       const ScanPlanes planes = find_planes(
           between(options_.first_flatness_m, options_.last_flatness_m, round, options_.rounds));
@@ -85,7 +94,7 @@ class Calibrator {
     if (!report.objection.empty()) return {{}, report};
     align_to_given();
     correct_points();
-    report.calibrated_m = left_out_residual();
+    judge(report.calibrated_m, report.calibrated);
     if (!(report.calibrated_m < options_.least_gain * report.given_m)) {
       report.objection = "points that took no part lie no better on the planes of the others";
       return {{}, report};
@@ -283,8 +292,14 @@ class Calibrator {
     for (RigidTransform& correction : corrected_from_given_) correction = back * correction;
   }
 
-  /// Median distance of the points that were left out from the planes of the others.
-  double left_out_residual() const {
+  void judge(double& median_m, ResidualCounts& counts) const {
+    std::vector<double> residuals_m = left_out_residuals();
+    counts = counts_of(residuals_m);
+    median_m = median(std::move(residuals_m));
+  }
+
+  /// Distances of the points that were left out from the planes of the others.
+  std::vector<double> left_out_residuals() const {
     const ScanPlanes found = find_planes(kFlatnessOfJudging);
     std::vector<double> residuals;
     for (const ScanPlane& plane : found.planes) {
@@ -300,7 +315,7 @@ class Calibrator {
         if (is_left_out(i))
           residuals.push_back(std::fabs(dot(plane.normal, corrected_[i] - mean / count)));
     }
-    return median(std::move(residuals));
+    return residuals;
   }
 
   Calibration calibration() const {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "adasplats/calibrate/calibration.h"
 #include "adasplats/calibrate/scan_planes.h"
 #include "adasplats/core/executor.h"
+#include "adasplats/core/setting.h"
 
 namespace adasplats {
 
@@ -40,15 +42,37 @@ struct CalibrateOptions {
   ScanPlaneOptions planes;  ///< but for the flatness
 };
 
+/// What users choose of it.
+template <class Visit>
+void visit_settings(CalibrateOptions& calibrate, Visit&& visit) {
+  visit(Setting{.name = "poses", .help = "Estimate a correction of the pose of every scan"},
+        calibrate.poses);
+  visit(Setting{.name = "ranges",
+                .help = "Estimate an offset of the ranges of every laser, where the sensor is "
+                        "recognised"},
+        calibrate.ranges);
+  visit(Setting{.name = "elevations",
+                .help = "Estimate an offset of the elevation of every laser, where the sensor is "
+                        "recognised"},
+        calibrate.elevations);
+}
+
+/// How many points lie how far from planes.
+struct ResidualCounts {
+  static constexpr double kBin_m = 0.0025;
+  std::array<std::size_t, 41> counts{};  ///< of bins from 0 on; the last one has all beyond
+};
+
 struct CalibrationReport {
   std::size_t planes = 0;  ///< of the last round
   std::size_t points = 0;  ///< on these
   /// Median distance of points that were left out of the fit from the planes of the others, m; with
   /// the given values and with the calibration.
   double given_m = 0, calibrated_m = 0;
-  double weakest_share = 0;  ///< of the planes' weight, along...
-  Vec3d weakest;             ///< ...the direction in which they hold the poses least
-  std::string objection;     ///< why nothing is to be applied; empty: the evidence is clear
+  ResidualCounts given, calibrated;  ///< of the same points
+  double weakest_share = 0;          ///< of the planes' weight, along...
+  Vec3d weakest;                     ///< ...the direction in which they hold the poses least
+  std::string objection;             ///< why nothing is to be applied; empty: the evidence is clear
 };
 
 /// Estimates what a recording gets wrong from planes that its scans saw together. The corrected

@@ -6,92 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "adasplats/report/svg_marks.h"
 #include "adasplats/report/text_format.h"
 
 namespace adasplats::page {
 namespace {
 
-// All lengths are units of the view box: about pixels at the size the page shows charts.
-constexpr double kWidth = 560;
-constexpr double kRight = 544;         // of the plot; a tick's text is centered on it
-constexpr double kLetter = 6.7;        // mean width of a letter of the 12 px text
-constexpr double kLineHeight = 18;     // of legend and texts
-constexpr double kPlotHeight = 210;    // of line charts
-constexpr double kMarker = 4.2;        // radius
 constexpr double kMostForLinear = 50;  // ratio of the highest to the lowest value
-constexpr std::size_t kColors = 8;     // of the style sheet
-constexpr std::size_t kMarkers = 5;
-
-std::string number(double value) {
-  std::string text = fixed_text(value, 1);
-  return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
-}
-
-/// A command of an SVG path: "M1 2".
-std::string path_to(char command, double x, double y) {
-  std::string text(1, command);
-  return text.append(number(x)).append(1, ' ').append(number(y));
-}
-
-double width_of(const std::string& text) {
-  const auto letters = std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;  // not a continuation byte of UTF-8
-  });
-  return kLetter * static_cast<double>(letters);
-}
-
-std::string shortened(std::string text, double width) {
-  if (width_of(text) <= width) return text;
-  while (!text.empty() && width_of(text) > width - kLetter) {
-    while ((static_cast<unsigned char>(text.back()) & 0xC0) == 0x80) text.pop_back();
-    text.pop_back();
-  }
-  return text + "…";
-}
-
-std::string text_mark(double x, double y, const std::string& style, const std::string& text) {
-  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" class=\"" + style + "\">" +
-         html_escape(text) + "</text>";
-}
-
-std::string line_between(double x0, double y0, double x1, double y1, const std::string& style) {
-  return "<line x1=\"" + number(x0) + "\" y1=\"" + number(y0) + "\" x2=\"" + number(x1) +
-         "\" y2=\"" + number(y1) + "\" class=\"" + style + "\"/>";
-}
-
-std::string style_of(const Key& key, const std::string& shape, const std::string& of_variant) {
-  return shape + " s" + std::to_string(key.slot.value_or(0) % kColors) +
-         (key.variant ? " " + of_variant : "");
-}
-
-std::string polygon(double x, double y, std::initializer_list<std::pair<double, double>> corners) {
-  std::string path;
-  for (const auto& [dx, dy] : corners) {
-    path += path_to(path.empty() ? 'M' : 'L', x + kMarker * dx, y + kMarker * dy);
-  }
-  return path + "Z";
-}
-
-std::string marker_path(const Key& key, double x, double y) {
-  switch (key.slot.value_or(0) % kMarkers) {
-    case 1: return polygon(x, y, {{-.9, -.9}, {.9, -.9}, {.9, .9}, {-.9, .9}});
-    case 2: return polygon(x, y, {{0, -1.2}, {1.15, .9}, {-1.15, .9}});
-    case 3: return polygon(x, y, {{0, -1.3}, {1.3, 0}, {0, 1.3}, {-1.3, 0}});
-    case 4: return polygon(x, y, {{0, 1.2}, {1.15, -.9}, {-1.15, -.9}});
-    default: break;
-  }
-  const std::string radius = number(kMarker);
-  const std::string arc = "a" + radius + " " + radius + " 0 1 0 ";
-  return path_to('M', x - kMarker, y) + arc + number(2 * kMarker) + " 0" + arc +
-         number(-2 * kMarker) + " 0Z";
-}
-
-std::string marker(const Key& key, double x, double y, const std::string& tooltip) {
-  std::string svg =
-      "<path class=\"" + style_of(key, "mark", "open") + "\" d=\"" + marker_path(key, x, y) + "\">";
-  if (!tooltip.empty()) svg += "<title>" + html_escape(tooltip) + "</title>";
-  return svg + "</path>";
-}
 
 std::string bar(const Key& key, double x0, double x1, double y, double height,
                 const std::string& tooltip) {
@@ -145,37 +66,15 @@ Scale scale_of(const Chart& chart, double length, bool may_be_log) {
   return scale;
 }
 
-/// What is drawn from the top: title and legend. `bottom` is where the next thing may begin.
-struct Head {
-  std::string svg;
-  double bottom = 0;
-};
-
-Head head_of(const Chart& chart, bool with_legend, bool with_lines) {
-  Head head{text_mark(0, 15, "title", chart.title), 24};
-  if (!with_legend) return head;
-  double x = 0;
-  double y = head.bottom + kLineHeight - 4;
-  for (const Series& series : chart.series) {
-    const double width = 30 + width_of(series.name) + 16;
-    if (x > 0 && x + width > kWidth) {
-      x = 0;
-      y += kLineHeight;
-    }
-    if (with_lines) {
-      head.svg += line_between(x, y - 4, x + 24, y - 4, style_of(series.key, "line", "dash"));
-    }
-    head.svg += marker(series.key, x + 12, y - 4, "");
-    head.svg += text_mark(x + 30, y, "", shortened(series.name, kWidth - 30));
-    x += width;
-  }
-  head.bottom = y + 8;
-  return head;
+Head head_of_chart(const Chart& chart, bool with_legend, bool with_lines) {
+  std::vector<LegendEntry> legend;
+  for (const Series& series : chart.series)
+    if (with_legend) legend.push_back({series.name, series.key});
+  return head_of(chart.title, legend, with_lines ? LegendMarks::both : LegendMarks::markers);
 }
 
-std::string svg_of(const Chart& chart, double height, const std::string& content) {
-  return "<svg role=\"img\" aria-label=\"" + html_escape(chart.title) + "\" viewBox=\"0 0 " +
-         number(kWidth) + " " + number(height) + "\">" + content + "</svg>\n";
+std::string svg_of_chart(const Chart& chart, double height, const std::string& content) {
+  return svg_of(chart.title, height, content);
 }
 
 /// The line of one series, broken where values are missing, and its markers.
@@ -249,7 +148,7 @@ std::string row_chart(const Chart& chart, Mark mark) {
   double left = 0;
   for (const std::string& label : layout.labels) left = std::max(left, width_of(label) + 12);
   left = std::min(left, 240.0);
-  const Head head = head_of(chart, !single, false);
+  const Head head = head_of_chart(chart, !single, false);
   const double top = head.bottom + 4;
   const double bottom =
       top + layout.block_height * static_cast<double>(chart.categories.size()) + 2;
@@ -274,7 +173,7 @@ std::string row_chart(const Chart& chart, Mark mark) {
   }
   svg += text_mark((left + right) / 2, bottom + 34, "tick middle",
                    chart.value_title + (scale.is_log ? ", logarithmic" : ""));
-  return svg_of(chart, bottom + 42, svg);
+  return svg_of_chart(chart, bottom + 42, svg);
 }
 
 }  // namespace
@@ -298,7 +197,7 @@ std::vector<double> nice_ticks(double highest) {
 std::string key_marker(const Key& key, double x, double y) { return marker(key, x, y, ""); }
 
 std::string line_chart(const Chart& chart) {
-  const Head head = head_of(chart, true, true);
+  const Head head = head_of_chart(chart, true, true);
   const Scale scale = scale_of(chart, kPlotHeight, false);
   const double top = head.bottom + 32;
   const double bottom = top + kPlotHeight;
@@ -319,7 +218,7 @@ std::string line_chart(const Chart& chart) {
   }
   for (const Series& series : chart.series) svg += line_of(chart, series, xs, bottom, scale);
   svg += text_mark((left + kRight) / 2, bottom + 37, "tick middle", chart.category_title);
-  return svg_of(chart, bottom + 45, svg);
+  return svg_of_chart(chart, bottom + 45, svg);
 }
 
 std::string bar_chart(const Chart& chart) { return row_chart(chart, Mark::bar); }

@@ -66,6 +66,27 @@ struct Table {
   bool folded = false;  ///< the chart is shown, the figures behind it on demand
 };
 
+enum class PlotStyle { lines, steps, marks };
+
+struct PlotPoint {
+  double x = 0, y = 0;
+};
+
+struct PlotSeries {
+  std::string name;
+  Key key;
+  std::vector<PlotPoint> points;
+};
+
+/// Numbers over numbers.
+struct Plot {
+  std::string title;
+  std::string x_title;
+  std::string y_title;  ///< with the unit
+  PlotStyle style = PlotStyle::lines;
+  std::vector<PlotSeries> series;
+};
+
 struct Picture {
   std::string title;
   Key key;
@@ -87,6 +108,7 @@ struct Section {
   std::vector<Fact> facts;
   bool facts_as_tiles = false;
   std::vector<Table> tables;
+  std::vector<Plot> plots;  ///< of HTML alone
   std::optional<ColorScale> scale;
   std::vector<Picture> pictures;
   std::vector<Fact> commands;
@@ -96,6 +118,7 @@ struct Document {
   std::string title;
   std::string subtitle;
   std::vector<Section> sections;
+  std::string footer;
 };
 
 /// Marks the best cells of each column; equal texts share the mark, and all equal get none.

@@ -325,6 +325,8 @@ Document document_of(const Json& results) {
       failures_section(competitors),
       commands_section(competitors)};
   std::erase_if(document.sections, [](const Section& section) { return section.id.empty(); });
+  document.footer =
+      "Bold: the best of a column. –: not measured. Shares are of all rays unless said otherwise.";
   return document;
 }
 

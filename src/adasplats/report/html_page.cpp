@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include "adasplats/report/html_page.h"
+
 #include "adasplats/report/chart.h"
 #include "adasplats/report/page_style.h"
 #include "adasplats/report/picture.h"
+#include "adasplats/report/plot.h"
 #include "adasplats/report/report_page.h"
 #include "adasplats/report/sections.h"
 #include "adasplats/report/text_format.h"
@@ -128,6 +131,13 @@ std::string figures_html(const std::vector<Table>& tables) {
   return html.empty() ? html : element("div", "figures", html) + "\n";
 }
 
+std::string plots_html(const std::vector<Plot>& plots) {
+  std::string html;
+  for (const Plot& plot : plots)
+    html += element("figure", "chart", element("div", "box", plot_svg(plot))) + "\n";
+  return html.empty() ? html : element("div", "figures", html) + "\n";
+}
+
 std::string scale_html(const ColorScale& scale) {
   std::string colors;
   for (const std::string& color : scale.colors) colors += "," + color;
@@ -174,24 +184,21 @@ std::string section_html(const Section& section, const std::filesystem::path& fo
     html += element("h3", "", html_escape(table.title)) + table_html(table);
     html += facts_html(table.definitions, "defs");
   }
-  html += figures_html(section.tables);
+  html += figures_html(section.tables) + plots_html(section.plots);
   if (section.scale) html += scale_html(*section.scale);
   html += pictures_html(section, folder) + commands_html(section.commands);
   return "<section id=\"" + section.id + "\">\n" + html + "</section>\n";
 }
 
 }  // namespace
-}  // namespace page
 
-std::string report_html(const nlohmann::ordered_json& results,
-                        const std::filesystem::path& folder) {
-  const page::Document document = page::document_of(results);
-  const std::string title = page::html_escape(document.title);
+std::string html_page(const Document& document, const std::filesystem::path& folder) {
+  const std::string title = html_escape(document.title);
   std::string links;
   std::string sections;
-  for (const page::Section& section : document.sections) {
-    links += "<a href=\"#" + section.id + "\">" + page::html_escape(section.title) + "</a>\n";
-    sections += page::section_html(section, folder);
+  for (const Section& section : document.sections) {
+    links += "<a href=\"#" + section.id + "\">" + html_escape(section.title) + "</a>\n";
+    sections += section_html(section, folder);
   }
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
@@ -200,12 +207,17 @@ std::string report_html(const nlohmann::ordered_json& results,
          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src "
          "data:; "
          "style-src 'unsafe-inline'\">\n<title>" +
-         title + "</title>\n<style>" + page::kPageStyle + "</style>\n</head>\n<body>\n<header>\n" +
-         "<h1>" + title + "</h1>\n<p class=\"subtitle\">" + page::html_escape(document.subtitle) +
-         "</p>\n<nav>\n" + links + "</nav>\n</header>\n<main>\n" + sections +
-         "</main>\n<footer>Bold: the best of a column. –: not measured. Shares "
-         "are "
-         "of all rays unless said otherwise.</footer>\n</body>\n</html>\n";
+         title + "</title>\n<style>" + kPageStyle + "</style>\n</head>\n<body>\n<header>\n" +
+         "<h1>" + title + "</h1>\n<p class=\"subtitle\">" + html_escape(document.subtitle) +
+         "</p>\n<nav>\n" + links + "</nav>\n</header>\n<main>\n" + sections + "</main>\n<footer>" +
+         html_escape(document.footer) + "</footer>\n</body>\n</html>\n";
+}
+
+}  // namespace page
+
+std::string report_html(const nlohmann::ordered_json& results,
+                        const std::filesystem::path& folder) {
+  return page::html_page(page::document_of(results), folder);
 }
 
 }  // namespace adasplats

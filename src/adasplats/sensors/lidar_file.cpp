@@ -45,6 +45,7 @@ void sort_beams(LidarFile& file) {
   reorder(file.model.azimuth_offsets_rad, order);
   reorder(file.model.beam_origins_m, order);
   reorder(file.model.firing_times_s, order);
+  reorder(file.model.range_offsets_m, order);
   reorder(file.column_steps, order);
   reorder(file.column_phases, order);
 }
@@ -103,6 +104,7 @@ void LidarFile::clear_pattern() {
   model.azimuth_offsets_rad.clear();
   model.beam_origins_m.clear();
   model.firing_times_s.clear();
+  model.range_offsets_m.clear();
   model.free_pattern.clear();
   model.rosette.reset();
   column_steps.clear();

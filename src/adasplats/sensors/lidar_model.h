@@ -44,6 +44,9 @@ struct LidarModel {
   /// When each beam fires after its column began, s; one a beam, or empty for zero. The head turns
   /// on meanwhile.
   std::vector<double> firing_times_s;
+  /// What each ring of this very unit measures beside the range: to be added to what it reports.
+  /// One a ring, or empty for zero. Simulated only where that is asked for (SimulateOptions).
+  std::vector<double> range_offsets_m;
   std::uint32_t columns = 0;     ///< azimuth steps a revolution
   double first_azimuth_rad = 0;  ///< of the head when a revolution begins
   double rotation_hz = 10.0;     ///< revolutions, or scans of a free pattern, a second

@@ -52,7 +52,8 @@ const Keys& sensor_keys() {
                             "first_azimuth_deg",
                             "rosette",
                             "firing_times_us",
-                            "beam_origins_m"};
+                            "beam_origins_m",
+                            "range_offsets_m"};
   return keys;
 }
 
@@ -268,6 +269,8 @@ void read_beams(const SensorTable& table, LidarFile& file) {
   std::vector<double> times_s = table.numbers("firing_times_us", 0, 1e9);
   for (double& time_s : times_s) time_s *= kMicrosecond_s;
   read_one_a_beam(table, "firing_times_us", beams, std::move(times_s), model.firing_times_s);
+  read_one_a_beam(table, "range_offsets_m", beams,
+                  table.numbers("range_offsets_m", -kFar_m, kFar_m), model.range_offsets_m);
   read_one_a_beam(table, "column_steps", beams, table.whole_numbers("column_steps", 1),
                   file.column_steps);
   read_one_a_beam(table, "column_phases", beams, table.whole_numbers("column_phases", 0),
@@ -367,7 +370,7 @@ void read_divergence(const SensorTable& table, LidarModel& model) {
 void check_untouched(const SensorTable& table, const LidarModel& model) {
   for (const char* key :
        {"azimuth_offsets_deg", "beam_origins_m", "firing_times_us", "column_steps", "column_phases",
-        "columns", "first_azimuth_deg", "clockwise"})
+        "columns", "first_azimuth_deg", "clockwise", "range_offsets_m"})
     if (table.has(key))
       throw table.error(key, "does not fit a sensor that is a rosette or a list of rays");
   for (const Firing& firing : model.free_pattern)

@@ -206,6 +206,7 @@ std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Exe
   KittiSequence sequence;
   sequence.folder = drive.folder;
   sequence.beams.recognised = description_of(*found);
+  sequence.beams.sensor = found->cones.sensor;
   for (std::size_t k = 0; k < files.size(); ++k) {
     const auto [first, last] = overview.times_s[k];
     if (std::isnan(first)) continue;  // a file without points

@@ -413,11 +413,15 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   Gathered gathered{read_parts(sources, options, executor, progress), {}};
 
   LoadReport report;
-  for (CloudPart& part : gathered.parts) {
+  for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
+    CloudPart& part = gathered.parts[p];
     gathered.kept.push_back(finite_points(part, executor));
     if (options.strict) require_all_finite(part, gathered.kept.back());
     report.points_read += part.size();
-    if (part.is_sequence) report.beams.push_back(part.beams.description());
+    if (part.is_sequence) {
+      report.beams.push_back(part.beams.description());
+      report.drives.push_back({sources[p].input.path, part.beams.sensor, part.runs.size()});
+    }
     report.dropped_not_finite += count_dropped(gathered.kept.back());
     report.no_returns += count_no_returns(part, gathered.kept.back());
     report.unknown_intensities += mark_unknown(part.cloud.intensities, gathered.kept.back());

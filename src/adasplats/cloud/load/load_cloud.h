@@ -147,11 +147,20 @@ void visit_settings(LoadOptions& load, Visit&& visit) {
   visit_drop_settings(load, kGroup, visit);
 }
 
+/// A sequence, or a folder of scans with times, among the inputs.
+struct LoadedDrive {
+  std::filesystem::path folder;
+  std::string sensor;     ///< of the library (ScanBeams::sensor)
+  std::size_t scans = 0;  ///< that were chosen
+};
+
 /// What was dropped on the way.
 struct LoadReport {
   std::size_t points_read = 0;
   /// Where the beams of the sequences started (ScanBeams::description), one each.
   std::vector<std::string> beams;
+  /// One each, in the order of PointCloud::scan_poses.
+  std::vector<LoadedDrive> drives;
   /// How many points of the cloud have an origin of each kind, by OriginKind.
   OriginCounts origins{};
   /// Position not finite.

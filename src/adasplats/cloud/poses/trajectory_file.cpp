@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "adasplats/cloud/poses/kitti_poses.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/error.h"
@@ -307,6 +308,24 @@ void write_trajectory_csv(const std::filesystem::path& path, const Trajectory& t
       append_fixed(text, value);
     }
     text += '\n';
+  }
+  write_file(path, text);
+}
+
+void write_kitti_poses(const std::filesystem::path& path, const Trajectory& world_from_velodyne,
+                       const std::filesystem::path& sequence_folder) {
+  const auto camera_from_sensor = read_calibration(sequence_folder);
+  if (!camera_from_sensor)
+    throw Error(ErrorKind::data, (sequence_folder / kCalibrationName).string() + ": is missing");
+  std::string text;
+  for (const TimedPose& pose : world_from_velodyne) {
+    const RigidTransform camera =
+        *camera_from_sensor * pose.world_from_sensor * camera_from_sensor->inverse();
+    for (int r = 0; r < 3; ++r) {
+      const Vec3d row = camera.rotation.rows[r];
+      for (const double value : {row.x, row.y, row.z}) text += exact_text(value) + " ";
+      text += exact_text(camera.translation[r]) + (r < 2 ? " " : "\n");
+    }
   }
   write_file(path, text);
 }

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "adasplats/cloud/poses/kitti_poses.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/temporary_folder_test.h"
@@ -296,6 +297,22 @@ TEST(Rotation, QuaternionRoundTrip) {
         EXPECT_GE(q.w, 0);
         EXPECT_LT(rotation_distance(rotation_from_quaternion(q.w, q.x, q.y, q.z), m), 1e-14);
       }
+}
+
+// Oracle: round trip.
+TEST(WriteKittiPoses, AreReadBackInTheirFolder) {
+  const TemporaryFolder folder;
+  folder.write("calib.txt", std::string("Tr: 0 -1 0 0.1 0 0 -1 -0.08 1 0 0 -0.27\n"));
+  const Trajectory poses = {{0, yawed(0.3, {1, 2, 3})},
+                            {0.1, yawed(-2, {456789.123456789, 5e6 + 0.7, 80})}};
+  write_kitti_poses(folder.path() / "poses.txt", poses, folder.path());
+  const Trajectory read = read_trajectory(folder.path() / "poses.txt");
+  ASSERT_EQ(read.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_LT(pose_distance(read[k].world_from_sensor, poses[k].world_from_sensor), 1e-8);
+  const TemporaryFolder other;
+  expect_error(ErrorKind::data, {"calib.txt"},
+               [&] { write_kitti_poses(other.path() / "poses.txt", poses, other.path()); });
 }
 
 }  // namespace

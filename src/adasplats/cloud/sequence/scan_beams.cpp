@@ -26,6 +26,7 @@ constexpr std::array<double, 64> kElevations_deg = {
     -13.0410, -13.4848, -14.0484, -14.5981, -15.1888, -15.6568, -16.1767, -16.5538,
     -17.1869, -17.7304, -18.3234, -18.7974, -19.3203, -19.7364, -20.2224, -20.7877,
     -21.3169, -21.9356, -22.4376, -22.8566, -23.3224, -23.9711, -24.5068, -24.9993};
+constexpr const char* kSensor = "velodyne-hdl-64e-kitti";  // the same table in the library
 constexpr double kBlocksMeet_deg = -8.87;
 constexpr double kRevolution_s = 0.1033;  // KITTI's sensor turns 9.68 times a second
 constexpr double kRadians = std::numbers::pi / 180;
@@ -150,7 +151,7 @@ ScanBeams recognize_beams(const KittiSequence& sequence) {
   constexpr std::size_t kLeastPoints = 500;
   constexpr double kMostDistance_m = 0.01;
 
-  ScanBeams moving{true, sweeps_of(sequence.trajectory), {}, {}, {}};
+  ScanBeams moving{true, sweeps_of(sequence.trajectory), {}, {}, {}, kSensor};
   std::vector<double> as_measured_m, compensated_m;
   const std::size_t scans = std::min(kScans, sequence.scans.size());
   for (std::size_t k = 0; k < scans; ++k) {

@@ -44,6 +44,8 @@ struct ScanBeams {
   LaserOffsets offsets;
   /// What was recognised where scans say themselves where beams began; else empty.
   std::string recognised;
+  /// Name of the recognised sensor in the library; its rings are the lasers. Else empty.
+  std::string sensor;
 
   /// In the scan's frame, of the beam that measured `point` (as it stands in the file).
   Vec3d origin_of(std::size_t scan, Vec3d point) const { return beam_of(scan, point).origin; }

@@ -10,6 +10,7 @@
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/gpu/gpu_model.h"
+#include "adasplats/pipeline/model/calibration_json.h"
 #include "adasplats/pipeline/model/label_use.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/splats/reflectance/reflectance.h"
@@ -162,28 +163,6 @@ std::pair<SplatModel, ModelResult> make_model(const PointCloud& cloud, const Mod
   result.seconds = total.seconds();
   return {std::move(model), std::move(result)};
 }
-
-namespace {
-
-nlohmann::ordered_json calibration_json(const CalibrationReport& report,
-                                        const Calibration& calibration) {
-  const CalibrationSizes sizes = sizes_of(calibration);
-  nlohmann::ordered_json json;
-  json["applied"] = !calibration.empty();
-  if (!report.objection.empty()) json["objection"] = report.objection;
-  json["planes"] = report.planes;
-  json["residual_given_m"] = report.given_m;
-  json["residual_calibrated_m"] = report.calibrated_m;
-  json["weakest_share"] = report.weakest_share;
-  json["largest_rotation_rad"] = sizes.largest_rotation_rad;
-  json["largest_shift_m"] = sizes.largest_shift_m;
-  json["smooth_s"] = calibration.smooth_s;
-  json["range_offset_rms_m"] = sizes.range_rms_m;
-  json["elevation_offset_rms_rad"] = sizes.elevation_rms_rad;
-  return json;
-}
-
-}  // namespace
 
 nlohmann::ordered_json to_json(const ModelResult& result) {
   nlohmann::ordered_json json;

@@ -36,6 +36,9 @@ void check(const ScanSettings& settings) {
   check_settings(SensorOverrides{sensor.range_noise_m, sensor.min_range_m, {}, sensor.rotation_hz});
   if (!(sensor.min_range_m < sensor.max_range_m))
     throw Error(ErrorKind::usage, "min_range must be less than max_range");
+  if (settings.unit_offsets && sensor.range_offsets_m.empty())
+    throw Error(ErrorKind::usage, "`unit_offsets` has no effect: the sensor '" + sensor.name +
+                                      "' has no range_offsets_m");
   check_beam(settings.beam, settings.sensor);
   check_weather(settings.weather, settings.sensor);
 }
@@ -50,6 +53,7 @@ ScanSettings ScanChoice::settings_of(LidarModel model, std::uint64_t seed) const
   overrides.apply(settings.sensor);
   settings.beam = beam;
   settings.noise = noise;
+  settings.unit_offsets = unit_offsets;
   settings.frame = frame;
   settings.weather = weather;
   settings.seed = seed;
@@ -116,6 +120,7 @@ Scan ScanSimulator::assemble(std::span<const Hit> hits, const ScanMotion& motion
   SimulateOptions options;
   options.seed = settings_.seed;
   options.noise = settings_.noise;
+  options.unit_offsets = settings_.unit_offsets;
   options.beam = settings_.beam;
   options.ray_drop = settings_.ray_drop ? &*settings_.ray_drop : nullptr;
   options.frame = settings_.frame;

@@ -25,7 +25,8 @@ namespace adasplats {
 struct ScanSettings {
   LidarModel sensor;
   BeamOptions beam;
-  bool noise = true;  ///< of the sensor, on ranges and angles
+  bool noise = true;          ///< of the sensor, on ranges and angles
+  bool unit_offsets = false;  ///< of the sensor's rings, on ranges (LidarModel::range_offsets_m)
   PointFrame frame = PointFrame::raw;
   std::optional<RayDropModel> ray_drop;  ///< none: every echo is reported
   Weather weather;
@@ -40,6 +41,7 @@ struct ScanChoice {
   std::string sensor = kDefaultSensor;  ///< as load_lidar_model takes it
   PointFrame frame = PointFrame::raw;
   bool noise = true;
+  bool unit_offsets = false;
   SensorOverrides overrides;
   BeamOptions beam;
   std::filesystem::path ray_drop;  ///< fitted model; empty: every echo is reported
@@ -61,6 +63,11 @@ void visit_settings(ScanChoice& scan, Visit&& visit) {
                 .help = "Noise of the sensor on ranges and angles",
                 .opposite = "no-noise,no-range-noise"},
         scan.noise);
+  visit(Setting{.name = "unit_offsets",
+                .help =
+                    "Report ranges with the offsets of the sensor's rings (range_offsets_m of its "
+                    "file), as that very unit does"},
+        scan.unit_offsets);
   visit_settings(scan.overrides, visit);
   visit_settings(scan.beam, visit);
   visit(Setting{.name = "ray_drop",

@@ -121,6 +121,7 @@ class ScanMaker {
         return false;
     }
     double range_m = static_cast<double>(point.echo.range_m);
+    if (options_.unit_offsets) range_m -= range_offset_m(firings_[point.firing].ring);
     if (options_.noise && sensor_.range_noise_m > 0)
       range_m += sensor_.range_noise_m *
                  draw(options_.seed, Draw::range, scan_index_, point.firing, k).normal();
@@ -129,6 +130,10 @@ class ScanMaker {
     point.echo.range_m = static_cast<float>(range_m);
     return point.echo.range_m > static_cast<float>(sensor_.min_range_m) &&
            point.echo.range_m <= static_cast<float>(sensor_.max_range_m);
+  }
+
+  double range_offset_m(std::uint16_t ring) const {
+    return ring < sensor_.range_offsets_m.size() ? sensor_.range_offsets_m[ring] : 0.0;
   }
 
   float reflectance(const FiringReturn& point) const {

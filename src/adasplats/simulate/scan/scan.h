@@ -94,8 +94,9 @@ inline constexpr std::pair<std::string_view, PointFrame> kPointFrames[] = {
 inline Words<PointFrame> words_of(PointFrame) { return kPointFrames; }
 
 struct SimulateOptions {
-  std::uint64_t seed = 0;  ///< of noise and drop; drawn by (seed, scan index, ray index)
-  bool noise = true;       ///< apply the sensor's range and angular noise
+  std::uint64_t seed = 0;     ///< of noise and drop; drawn by (seed, scan index, ray index)
+  bool noise = true;          ///< apply the sensor's range and angular noise
+  bool unit_offsets = false;  ///< apply LidarModel::range_offsets_m
   BeamOptions beam;
   const RayDropModel* ray_drop = nullptr;  ///< none: every echo is reported
   PointFrame frame = PointFrame::raw;

@@ -238,5 +238,23 @@ TEST_F(ScanNoise, ThreadsDoNotChangeAByte) {
   }
 }
 
+// Oracle: the same scan without offsets. What is to be added to what a ring reports is what it
+// reports too little.
+TEST(SimulateScan, OffsetsOfAUnitAreAppliedOnDemand) {
+  const TriangleMesh mesh = box_mesh(10.0F);
+  Drive drive;
+  drive.view = {{}, &mesh};
+  const Scan without = drive.scan();
+  for (std::size_t ring = 0; ring < 32; ++ring)
+    drive.sensor.range_offsets_m.push_back(0.01 * static_cast<double>(ring));
+  EXPECT_EQ(drive.scan().ranges_m, without.ranges_m);
+  drive.options.unit_offsets = true;
+  const Scan with = drive.scan();
+  ASSERT_EQ(with.size(), without.size());
+  for (std::size_t i = 0; i < with.size(); ++i)
+    ASSERT_NEAR(static_cast<double>(without.ranges_m[i] - with.ranges_m[i]), 0.01 * with.rings[i],
+                1e-5);
+}
+
 }  // namespace
 }  // namespace adasplats

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "adasplats/io/point_format.h"
+#include "adasplats/recipes/calibrate_drive.h"
+#include "cli/commands.h"
+#include "cli/options/load_options.h"
+#include "cli/options/option_types.h"
+#include "cli/options/setting_options.h"
+#include "cli/terminal.h"
+#include "cli/text_table.h"
+#include "commands/calibration_text.h"
+
+namespace adasplats::app {
+namespace {
+
+constexpr const char* kCalibrateExamples =
+    "  adasplats calibrate sequences/00 -o calibrated\n"
+    "  adasplats calibrate frames --trajectory vehicle.csv -o calibrated --scans 0:64:2\n"
+    "  adasplats simulate place.ply --sensor calibrated/sensor.toml --unit-offsets \\\n"
+    "    --trajectory calibrated/trajectory.csv -o scans\n";
+
+class CalibrateCommand final : public Command {
+ public:
+  explicit CalibrateCommand(CLI::App& program)
+      : Command(program, "calibrate",
+                "Estimate from a drive's points what its poses and lasers get wrong",
+                kCalibrateExamples) {
+    OptionSet& app = options();
+    require(app.add_option_function<std::vector<std::string>>(
+                   "INPUT",
+                   [this](const std::vector<std::string>& names) {
+                     job_.inputs.assign(names.begin(), names.end());
+                   },
+                   "SemanticKITTI sequence folders, and folders of scans with times (" +
+                       point_format_names() + ") with --trajectory")
+                ->type_name("PATH"));
+    require(writes_folder(add_path(app, "-o,--output", job_.output,
+                                   "Folder to create: trajectory.csv, poses.txt, lasers.csv, "
+                                   "sensor.toml, report.html and report.json, as far as known")));
+    app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
+    add_settings(app, job_.calibrate);
+    add_load_options(app, job_.load);
+  }
+
+  void run(Session& session) override {
+    const CalibrateResult result = run_calibrate(job_, session);
+    session.report.update(to_json(result));
+    session.report["seconds"]["total"] = result.seconds;
+    TextTable table({"calibration", job_.output.string()});
+    table.add_row({"sensor", result.sensor.empty() ? "not recognised" : result.sensor});
+    table.add_row({"scans", grouped(result.given.size())});
+    table.add_row({"planes", grouped(result.report.planes)});
+    table.add_row({"weakest direction", fixed(100 * result.report.weakest_share, 2) + " %"});
+    for (const std::string& file : result.files) table.add_row({"written", file});
+    table.add_row({"seconds", fixed(result.seconds, 1)});
+    print(table.text() + "\n" + calibration_text(result.report, result.calibration));
+  }
+
+ private:
+  CalibrateJob job_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_calibrate_command(CLI::App& program) {
+  return std::make_unique<CalibrateCommand>(program);
+}
+
+}  // namespace adasplats::app

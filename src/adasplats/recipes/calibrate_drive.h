@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "adasplats/calibrate/calibrate.h"
+#include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/pipeline/session/session.h"
+
+namespace adasplats {
+
+/// What recordings get wrong, as files: drives in, a folder out.
+struct CalibrateJob {
+  std::vector<std::filesystem::path> inputs;
+  LoadOptions load;
+  CalibrateOptions calibrate;
+  std::filesystem::path output;
+  bool overwrite = false;
+};
+
+struct CalibrateResult {
+  LoadReport loaded;
+  CalibrationReport report;
+  Calibration calibration;
+  Trajectory given, corrected;     ///< poses of the scans
+  std::string sensor;              ///< that measured all drives; empty: not known
+  std::vector<std::string> files;  ///< below the folder
+  double seconds = 0;
+};
+
+/// Estimates and writes, for a drive (several: each in a folder drive_N of its own, from 0 on),
+/// trajectory.csv and, of a SemanticKITTI folder all of whose scans are covered, poses.txt to stand
+/// in place of its own; lasers.csv, where the sensor is recognised sensor.toml, report.json and
+/// report.html. Where nothing is to be applied, the reports alone. Errors: usage (nothing to
+/// estimate); data with the objection, where nothing is to be applied; those of load_cloud and
+/// OutputFolder.
+CalibrateResult run_calibrate(const CalibrateJob& job, Session& session);
+
+/// The keys of report.json; the same for the same job.
+nlohmann::ordered_json to_json(const CalibrateResult& result);
+
+/// Why the result is to be taken with care: the direction that planes hold least; empty: no reason.
+std::string warning_of(const CalibrationReport& report);
+
+}  // namespace adasplats

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/sensors/unit_sensor.h"
+
+// As in lidar_toml.cpp.
+#define TOML_ASSERT(expression) static_cast<void>(0)
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <locale>
+#include <numbers>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/sensors/lidar_files.h"
+#include "adasplats/sensors/lidar_library.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kLineWidth = 100;
+constexpr const char* kFoundBy = "; elevations_deg and range_offsets_m of this unit by calibration";
+
+/// One key and what it holds, in the order of a file.
+struct SensorEntry {
+  std::string key, value;
+};
+
+std::string toml_text(const toml::node& scalar) {
+  if (const toml::value<double>* number = scalar.as_floating_point())
+    return exact_text(number->get());  // toml++ writes 9.68 as 9.6799999999999997
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  scalar.visit([&](const auto& value) { text << value; });
+  return text.str();
+}
+
+/// Lists of lists and lists of scalars, without line breaks.
+std::string text_of_node(const toml::node& node) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr) return toml_text(node);
+  std::string text;
+  for (const toml::node& element : *list)
+    text += (text.empty() ? "" : ", ") + text_of_node(element);
+  return "[" + text + "]";
+}
+
+std::string text_of_numbers(const std::vector<double>& numbers) {
+  constexpr double kStepsPerUnit = 1e5;
+  toml::array list;
+  for (const double number : numbers)
+    list.push_back(std::round(number * kStepsPerUnit) / kStepsPerUnit + 0.0);  // never -0
+  return text_of_node(list);
+}
+
+/// `key = value` with lists that are too long for a line broken behind commas.
+std::string lines_of(const std::string& key, const std::string& value) {
+  const std::string line = key + " = " + value;
+  if (line.size() <= kLineWidth || value.front() != '[') return line + "\n";
+  std::string text = key + " = [\n", part = " ";
+  std::size_t depth = 0, word = 1;
+  for (std::size_t i = 1; i + 1 < value.size(); ++i) {
+    if (value[i] == '[') ++depth;
+    if (value[i] == ']') --depth;
+    const bool is_last = i + 2 == value.size();
+    if (!is_last && !(value[i] == ',' && depth == 0)) continue;
+    const std::size_t first = value.find_first_not_of(' ', word);
+    const std::string next = " " + value.substr(first, i + 1 - first);
+    if (part.size() + next.size() > kLineWidth) {
+      text += part + "\n";
+      part = " ";
+    }
+    part += next;
+    word = i + 1;
+  }
+  return text + part + "\n]\n";
+}
+
+/// Number of each beam of a file among the rings, topmost 0: as load_lidar_model sorts them.
+std::vector<std::size_t> rings_of_beams(const std::vector<double>& elevations_rad) {
+  std::vector<std::size_t> beams(elevations_rad.size()), rings(elevations_rad.size());
+  std::iota(beams.begin(), beams.end(), std::size_t{0});
+  std::ranges::stable_sort(beams, std::greater<>(),
+                           [&](std::size_t beam) { return elevations_rad[beam]; });
+  for (std::size_t ring = 0; ring < beams.size(); ++ring) rings[beams[ring]] = ring;
+  return rings;
+}
+
+double offset_at(std::span<const double> offsets, std::size_t ring) {
+  return ring < offsets.size() ? offsets[ring] : 0.0;
+}
+
+/// The keys of a file of the library in its order, but for those that say the elevations.
+std::vector<SensorEntry> entries_of(std::string_view library_toml) {
+  const toml::table table = toml::parse(library_toml);
+  if (table.contains("like")) throw std::logic_error("a sensor of the library is like another");
+  std::vector<std::pair<std::uint32_t, SensorEntry>> found;
+  for (const auto& [key, node] : table) {
+    const std::string name(key.str());
+    const bool says_elevations = name == "elevations_deg" || name == "beams" ||
+                                 name.starts_with("elevation_") || name == "range_offsets_m";
+    if (says_elevations) continue;
+    found.push_back({node.source().begin.line, {name, text_of_node(node)}});
+  }
+  std::ranges::stable_sort(found, {}, &std::pair<std::uint32_t, SensorEntry>::first);
+  std::vector<SensorEntry> entries;
+  entries.reserve(found.size());
+  for (auto& [line, entry] : found) entries.push_back(std::move(entry));
+  return entries;
+}
+
+}  // namespace
+
+std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets& offsets) {
+  const auto library = lidar_library();
+  const auto known = std::ranges::find(library, library_name, &LibraryLidar::name);
+  if (known == library.end()) throw Error(ErrorKind::usage, unknown_lidar_model(library_name));
+  const LidarFile file = *read_library_lidar(library_name);
+  const std::size_t beams = file.model.elevations_rad.size();
+  if (beams == 0 || offsets.range_m.size() > beams || offsets.elevation_rad.size() > beams)
+    throw std::logic_error("offsets of other beams than those of " + library_name);
+  const std::vector<std::size_t> rings = rings_of_beams(file.model.elevations_rad);
+  std::vector<double> elevations_deg, ranges_m;
+  for (std::size_t beam = 0; beam < beams; ++beam) {
+    elevations_deg.push_back(
+        (file.model.elevations_rad[beam] + offset_at(offsets.elevation_rad, rings[beam])) *
+        (180 / std::numbers::pi));
+    ranges_m.push_back(offset_at(offsets.range_m, rings[beam]));
+  }
+  std::string text =
+      "# One unit of " + library_name +
+      ":\n# elevations_deg are corrected; range_offsets_m is to be added to what each laser "
+      "reports\n# (simulated where --unit-offsets asks for it).\n";
+  for (SensorEntry& entry : entries_of(known->toml)) {
+    if (entry.key == "name") entry.value = toml_text(toml::value(library_name + "-unit"));
+    if (entry.key == "source") entry.value = toml_text(toml::value(file.model.source + kFoundBy));
+    text += lines_of(entry.key, entry.value);
+  }
+  return text + lines_of("elevations_deg", text_of_numbers(elevations_deg)) +
+         lines_of("range_offsets_m", text_of_numbers(ranges_m));
+}
+
+}  // namespace adasplats

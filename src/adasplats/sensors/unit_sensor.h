@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace adasplats {
+
+/// What one unit measures beside the table of its kind, ring by ring (topmost 0), to be added to
+/// what it reports; rings behind the end have none.
+struct UnitOffsets {
+  std::span<const double> range_m;
+  std::span<const double> elevation_rad;
+};
+
+/// The file of one unit of a sensor of the library (TOML, as load_lidar_model reads it): its keys
+/// with the elevations corrected, and range_offsets_m. Elevations to 1e-5 degrees, ranges to 0.01
+/// mm. Errors: usage (unknown name); std::logic_error for a sensor without beams or more offsets
+/// than beams.
+std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets& offsets);
+
+}  // namespace adasplats
