@@ -16,6 +16,7 @@
 #include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/cloud/load/own_body.h"
 #include "adasplats/cloud/load/point_origins.h"
+#include "adasplats/cloud/load/timed_points.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
 
@@ -51,8 +52,11 @@ std::vector<Source> open_sources(std::span<const std::filesystem::path> paths,
   std::vector<Source> sources;
   for (const std::filesystem::path& path : paths) {
     std::optional<KittiSequence> drive;
-    if (!options.trajectory.empty() && has_timed_frames(path))
-      drive = open_frame_drive({path, options.trajectory, options.boxes, true}, executor, progress);
+    // Where the mount is stated nothing is to be recognised.
+    if (!options.trajectory.empty() && !options.mount && has_timed_frames(path))
+      drive = open_frame_drive(
+          {path, options.trajectory, options.boxes, true, options.time_offset_s.value_or(0)},
+          executor, progress);
     if (drive)
       sources.push_back({{path, true}, std::move(drive)});
     else
@@ -316,63 +320,6 @@ PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin, const Poi
   return cloud;
 }
 
-/// Gives every cloud sensor positions if any has them: a point without one has that of its own
-/// place and OriginKind::none. Leaves out the kinds where all are measured.
-void unify_origins(std::vector<PointCloud>& clouds) {
-  const auto has_sensors = [](const PointCloud& c) { return !c.sensor_positions.empty(); };
-  const auto all_measured = [](const PointCloud& c) {
-    return c.empty() ||
-           (!c.sensor_positions.empty() && std::ranges::all_of(c.origin_kinds, [](OriginKind kind) {
-             return kind == OriginKind::measured;
-           }));
-  };
-  if (std::ranges::none_of(clouds, has_sensors)) return;
-  const bool needs_kinds = !std::ranges::all_of(clouds, all_measured);
-  for (PointCloud& cloud : clouds) {
-    if (!needs_kinds) {
-      cloud.origin_kinds = {};
-    } else if (cloud.sensor_positions.empty()) {
-      cloud.sensor_positions = cloud.positions;
-      cloud.origin_kinds.assign(cloud.size(), OriginKind::none);
-    } else if (cloud.origin_kinds.empty()) {
-      cloud.origin_kinds.assign(cloud.size(), OriginKind::measured);
-    }
-  }
-}
-
-/// Empties an attribute that some clouds have and others lack.
-template <class Attribute>
-void unify_attribute(std::vector<PointCloud>& clouds, const Attribute& attribute,
-                     ProgressSink& progress) {
-  std::size_t with = 0, filled = 0;
-  for (const PointCloud& cloud : clouds) {
-    if (cloud.empty()) continue;
-    ++filled;
-    if (!attribute.of(cloud).empty()) ++with;
-  }
-  if (with == filled) return;
-  for (PointCloud& cloud : clouds) attribute.of(cloud) = {};
-  if (with != 0)
-    progress.warn(std::string(attribute.title) + " dropped: " + std::to_string(with) + " of " +
-                  std::to_string(filled) + " inputs have them");
-}
-
-PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, ProgressSink& progress) {
-  unify_origins(clouds);
-  for_each_attribute([&](const auto& attribute) { unify_attribute(clouds, attribute, progress); });
-  PointCloud all;
-  all.origin = origin;
-  const bool has_poses = std::ranges::all_of(
-      clouds, [](const PointCloud& cloud) { return cloud.empty() || !cloud.scan_poses.empty(); });
-  Trajectory poses;  // of inputs without points, too: scans are numbered over all
-  for (PointCloud& cloud : clouds) {
-    if (has_poses) poses.insert(poses.end(), cloud.scan_poses.begin(), cloud.scan_poses.end());
-    if (!cloud.empty()) append(all, std::move(cloud));
-  }
-  all.scan_poses = std::move(poses);
-  return all;
-}
-
 /// Leaves out the points on the vehicle that carried the sensor; gives how many.
 std::size_t drop_own_body(PointCloud& cloud, std::optional<double> radius_m,
                           const Executor& executor) {
@@ -400,8 +347,15 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   require_options_that_fit(options, sources);
   const PointOrigins origins(options);
   Gathered gathered{read_parts(sources, options, executor, progress), {}};
+  const std::optional<PlacedByTimes> placed =
+      place_by_times(gathered.parts, options, executor, progress);
+  const bool any_drive =
+      std::ranges::any_of(sources, [](const Source& source) { return source.drive.has_value(); });
+  require_used(options, placed.has_value(), placed.has_value() || any_drive);
+  Trajectory scan_poses = scan_poses_of(gathered.parts, placed);
 
   LoadReport report;
+  if (placed) report.timed = placed->origins;
   for (CloudPart& part : gathered.parts) {
     gathered.kept.push_back(finite_points(part, executor));
     if (options.strict) require_all_finite(part, gathered.kept.back());
@@ -427,7 +381,7 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
     const Input& input = sources[p].input;
     if (!input.is_sequence) check_origins(clouds.back(), input.path, options, executor);
   }
-  PointCloud cloud = joined(std::move(clouds), origin, progress);
+  PointCloud cloud = joined(std::move(clouds), origin, std::move(scan_poses), progress);
   report.own_body = drop_own_body(cloud, options.own_body_m, executor);
   report_own_body(name_of(inputs), report, options, progress);
   report.origins = count_origins(cloud);
