@@ -139,10 +139,11 @@ void require_covered(const FrameDrive& drive, const std::vector<std::filesystem:
     const auto [first, last] = overview.times_s[k];
     if (std::isnan(first) || (first >= begin_s - apart_s && last <= end_s + apart_s)) continue;
     std::array<char, 256> text{};
-    std::snprintf(text.data(), text.size(),
-                  ": points of %.3f to %.3f s, but the trajectory is of %.3f to %.3f s: the clocks "
-                  "differ, or the trajectory is of another drive",
-                  first, last, begin_s, end_s);
+    std::snprintf(
+        text.data(), text.size(),
+        ": points of %.3f to %.3f s, but the trajectory is of %.3f to %.3f s: the clocks "
+        "differ (`time_offset` states by how much), or the trajectory is of another drive",
+        first, last, begin_s, end_s);
     throw Error(ErrorKind::data,
                 files[k].string() + text.data() + " (" + drive.trajectory.string() + ")");
   }

@@ -248,6 +248,40 @@ TEST_F(TimedPoints, WithoutAMountThePosesAreTheSensorsAndThatIsSaid) {
       << said_;
 }
 
+TEST_F(TimedPoints, APointWithoutATimeIsAnError) {
+  const auto points =
+      folder_.write("a.xyz", std::string("x y z time\n1 2 3 0.5\n4 5 6 nan\nnan nan nan nan\n"));
+  expect_error(ErrorKind::data, {"a.xyz", "time of point 1"},
+               [&] { load(points, with(poses(0, 0, 4))); });
+}
+
+TEST_F(TimedPoints, FilesWithSensorPositionsKeepThem) {
+  const auto points = folder_.write(
+      "a.xyz",
+      std::string("x y z time sensor_x sensor_y sensor_z\n1 2 3 0.5 7 7 7\n4 5 6 1 7 7 7"));
+  LoadOptions options = with(poses(0, 0, 4));
+  options.mount.reset();
+  const auto [cloud, report] = load(points, options);
+  EXPECT_FALSE(report.timed.has_value());
+  EXPECT_EQ(cloud.sensor_positions[1], (Vec3f{7, 7, 7}));
+}
+
+TEST_F(TimedPoints, TilesOfOneDriveShareItsScans) {
+  recording_ = Recording(20);
+  const std::filesystem::path folder = folder_.path() / "tiles";
+  std::filesystem::create_directories(folder);
+  const auto times = recording_.times(kWeek_s, 1);
+  const std::size_t half = times.size() / 2 + 100;  // in the middle of a scan
+  std::vector<ColumnView> columns = recording_.columns("gps_time", times);
+  write_ply(folder / "a.ply", half, columns);
+  for (ColumnView& column : columns) column.data = static_cast<const double*>(column.data) + half;
+  write_ply(folder / "b.ply", times.size() - half, columns);
+  const auto [cloud, report] = load(folder, with(poses(kWeek_s, 0, 4)));
+  expect_true_origins(cloud);
+  EXPECT_EQ(cloud.scan_poses.size(), 40U);
+  EXPECT_EQ(cloud.scan_indices[half - 1], cloud.scan_indices[half]);
+}
+
 TEST_F(TimedPoints, WhatNothingTakesIsAnError) {
   const auto points = folder_.write("a.xyz", std::string("x y z\n1 2 3\n4 5 6\n"));
   LoadOptions options = with(poses(0, 0, 4));
