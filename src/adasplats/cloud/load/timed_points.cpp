@@ -23,51 +23,83 @@ bool has_own_times(const CloudPart& part) {
          part.world_sensors.empty();
 }
 
-/// Cuts the times into scans and numbers those that have points.
-class ScanNumbers {
+/// Cuts times into scans: where nothing was measured for half a scan, and what is between such
+/// pauses into equal pieces of about 0.1 s. Pieces by the clock alone would cut the scans of a
+/// recording that pauses between them, and a sliver of a scan holds no pose.
+class ScanCut {
  public:
-  explicit ScanNumbers(TimeSpan times_s) : begin_s_(times_s.first) {
+  explicit ScanCut(TimeSpan times_s) : begin_s_(times_s.first) {
+    constexpr double kMostBins = 4e7;
     const double length_s = times_s.last - times_s.first;
-    scan_s_ = std::max(kScan_s, length_s / static_cast<double>(kMostScans - 1));
-    used_.resize(static_cast<std::size_t>(length_s / scan_s_) + 1);
+    bin_s_ = std::max(kScan_s / 100, length_s / kMostBins);
+    is_used_.resize(static_cast<std::size_t>(length_s / bin_s_) + 1);
   }
-  std::uint32_t piece_of(double time_s) const {
-    const double piece =
-        std::clamp((time_s - begin_s_) / scan_s_, 0.0, static_cast<double>(used_.size() - 1));
-    return static_cast<std::uint32_t>(piece);
-  }
-  void use(std::uint32_t piece) { used_[piece] = 1; }
-  /// Numbers of pieces, from `first` on, and the poses of the used ones in their middles.
-  Trajectory number(std::uint32_t first, const Trajectory& track) {
-    Trajectory poses;
-    for (std::size_t piece = 0; piece < used_.size(); ++piece) {
-      if (used_[piece] == 0) continue;
-      used_[piece] = first + static_cast<std::uint32_t>(poses.size());
-      const double middle_s = begin_s_ + (static_cast<double>(piece) + 0.5) * scan_s_;
-      poses.push_back({middle_s, interpolate(track, middle_s)});
+  void add(double time_s) { is_used_[bin_of(time_s)] = 1; }
+
+  /// When all times are added.
+  void cut() {
+    const auto pause = static_cast<std::size_t>(std::ceil(0.5 * kScan_s / bin_s_));
+    std::vector<TimeSpan> runs;
+    double measured_s = 0;
+    for (std::size_t bin = 0; bin < is_used_.size(); ++bin) {
+      if (is_used_[bin] == 0) continue;
+      const std::size_t begin = bin;
+      std::size_t last = bin;
+      for (; bin < is_used_.size() && bin - last < pause; ++bin)
+        if (is_used_[bin] != 0) last = bin;
+      runs.push_back({begin_s_ + static_cast<double>(begin) * bin_s_,
+                      begin_s_ + static_cast<double>(last + 1) * bin_s_});
+      measured_s += runs.back().last - runs.back().first;
+      --bin;
     }
+    is_used_ = {};
+    scan_s_ = std::max(kScan_s, measured_s / static_cast<double>(kMostScans));
+    for (const TimeSpan run : runs) {
+      const double length_s = run.last - run.first;
+      const auto pieces = static_cast<std::size_t>(std::max(1.0, std::round(length_s / scan_s_)));
+      const double piece_s = length_s / static_cast<double>(pieces);
+      for (std::size_t k = 0; k < pieces; ++k) {
+        begins_s_.push_back(run.first + static_cast<double>(k) * piece_s);
+        middles_s_.push_back(begins_s_.back() + 0.5 * piece_s);
+      }
+    }
+  }
+  std::uint32_t scan_of(double time_s) const {
+    const auto behind = std::ranges::upper_bound(begins_s_, time_s) - begins_s_.begin();
+    return static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(1, behind) - 1);
+  }
+  /// The poses in the middles of the scans.
+  Trajectory poses(const Trajectory& track) const {
+    Trajectory poses;
+    for (const double middle_s : middles_s_)
+      poses.push_back({middle_s, interpolate(track, middle_s)});
     return poses;
   }
-  std::uint32_t number_of(std::uint32_t piece) const { return used_[piece]; }
   double scan_s() const { return scan_s_; }
 
  private:
-  double begin_s_, scan_s_ = kScan_s;
-  std::vector<std::uint32_t> used_;
+  std::size_t bin_of(double time_s) const {
+    const double bin = (time_s - begin_s_) / bin_s_;
+    return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(is_used_.size() - 1)));
+  }
+
+  double begin_s_, bin_s_ = 0, scan_s_ = kScan_s;
+  std::vector<std::uint8_t> is_used_;
+  std::vector<double> begins_s_, middles_s_;
 };
 
-void place(CloudPart& part, const ClockPair& clock, const Trajectory& poses, ScanNumbers& scans,
-           const Executor& executor) {
+void place(CloudPart& part, const ClockPair& clock, const Trajectory& poses, const ScanCut& scans,
+           std::uint32_t first_scan, const Executor& executor) {
   part.world_sensors.resize(part.size());
   part.cloud.scan_indices.resize(part.size());
   executor.for_chunks(part.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
+      if (!std::isfinite(part.times_s[i])) continue;  // a point without a place, dropped later
       const double time_s = clock.in_trajectory(part.times_s[i]);
       part.world_sensors[i] = interpolate(poses, time_s).translation;
-      part.cloud.scan_indices[i] = scans.piece_of(time_s);
+      part.cloud.scan_indices[i] = first_scan + scans.scan_of(time_s);
     }
   });
-  for (const std::uint32_t piece : part.cloud.scan_indices) scans.use(piece);
   part.times_s = {};
 }
 
@@ -106,7 +138,7 @@ std::string TimedOrigins::description() const {
   std::snprintf(
       text.data(), text.size(),
       "origins of %zu points by their times, %.3f to %.3f s, from poses of %.3f to %.3f s "
-      "(%s), %s; median range %.1f m; %zu scans of %.3g s",
+      "(%s), %s; median range %.1f m; %zu scans of about %.3g s",
       points, times_s.first, times_s.last, trajectory_s.first, trajectory_s.last, clock.c_str(),
       is_mounted ? sensor.data() : "taken as the sensor's own since no `mount` is given",
       median_range_m, scans, scan_s);
@@ -147,15 +179,17 @@ std::optional<PlacedByTimes> place_by_times(std::span<CloudPart> parts, const Lo
                     .mount_m = options.mount.value_or(Vec3d{}),
                     .median_range_m = seen.median_range_m,
                     .share_behind = seen.share_behind};
-  ScanNumbers scans(placed.origins.times_s);
-  for (CloudPart& part : parts) {
+  ScanCut scans(placed.origins.times_s);
+  for (const CloudPart& part : parts) {
     placed.parts.push_back(has_own_times(part) ? 1 : 0);
-    if (placed.parts.back() != 0) place(part, clock, track.poses, scans, executor);
+    for (std::size_t i = 0; placed.parts.back() != 0 && i < part.size(); ++i)
+      if (std::isfinite(part.times_s[i])) scans.add(clock.in_trajectory(part.times_s[i]));
   }
-  placed.scan_poses = scans.number(count_scans(parts), track.poses);
+  scans.cut();
+  const std::uint32_t first_scan = count_scans(parts);
   for (std::size_t p = 0; p < parts.size(); ++p)
-    if (placed.parts[p] != 0)
-      for (std::uint32_t& scan : parts[p].cloud.scan_indices) scan = scans.number_of(scan);
+    if (placed.parts[p] != 0) place(parts[p], clock, track.poses, scans, first_scan, executor);
+  placed.scan_poses = scans.poses(track.poses);
   placed.origins.scans = placed.scan_poses.size();
   placed.origins.scan_s = scans.scan_s();
   progress.warn(points.name() + ": " + placed.origins.description());

@@ -282,6 +282,27 @@ TEST_F(TimedPoints, TilesOfOneDriveShareItsScans) {
   EXPECT_EQ(cloud.scan_indices[half - 1], cloud.scan_indices[half]);
 }
 
+TEST_F(TimedPoints, PausesOfTheRecordingEndScans) {
+  // Every second revolution, the first one at half of a tenth: pieces by the clock would cut each.
+  Recording paused;
+  Recording kept(1);
+  for (auto* values : {&kept.x, &kept.y, &kept.z, &kept.time_s}) values->clear();
+  for (std::size_t i = 0; i < paused.time_s.size(); ++i) {
+    const double t = paused.time_s[i];
+    if (t < 0.05 || std::fmod(t + 0.05, 0.2) >= 0.1) continue;
+    kept.x.push_back(paused.x[i]);
+    kept.y.push_back(paused.y[i]);
+    kept.z.push_back(paused.z[i]);
+    kept.time_s.push_back(t);
+  }
+  recording_ = kept;
+  const auto [cloud, report] = load(ply(kGps_s), with(poses(kGps_s, 0, 4)));
+  ASSERT_EQ(cloud.scan_poses.size(), 20U);
+  for (std::size_t i = 1; i < cloud.size(); ++i)
+    EXPECT_EQ(cloud.scan_indices[i] != cloud.scan_indices[i - 1],
+              recording_.time_s[i] - recording_.time_s[i - 1] > 0.05);
+}
+
 TEST_F(TimedPoints, WhatNothingTakesIsAnError) {
   const auto points = folder_.write("a.xyz", std::string("x y z\n1 2 3\n4 5 6\n"));
   LoadOptions options = with(poses(0, 0, 4));
