@@ -29,6 +29,21 @@ std::string span_text(TimeSpan span) { return fixed(span.first, 3) + " to " + fi
 
 std::string percent(double share) { return fixed(100 * share, 0) + " %"; }
 
+/// The sample with a quarter of its points, for many looks at it.
+SweepSample quarter_of(const SweepSample& sample) {
+  const auto thinned = [](const std::vector<TimedPoint>& points, std::size_t most) {
+    const std::size_t every = points.size() / most + 1;
+    std::vector<TimedPoint> kept;
+    for (std::size_t i = 0; i < points.size(); i += every) kept.push_back(points[i]);
+    return kept;
+  };
+  SweepSample quarter;
+  quarter.points = thinned(sample.points, 50'000);
+  for (const std::vector<TimedPoint>& sweep : sample.sweeps)
+    quarter.sweeps.push_back(thinned(sweep, 20'000));
+  return quarter;
+}
+
 }  // namespace
 
 ClockFinder::ClockFinder(const TimedRecording& points, std::filesystem::path file,
@@ -149,16 +164,21 @@ ClockPair ClockFinder::clearest(const std::vector<ClockPair>& covering) {
 }
 
 /// A shift of the times by which the points would fit clearly better; 0: none.
-double ClockFinder::better_shift_s(const ClockPair& clock, const SweepView& seen) {
+double ClockFinder::better_shift_s(const ClockPair& clock) {
   const Trajectory poses = track(clock).poses;
-  double best_s = 0, least = seen.cost() - kClearlyLess;
-  // Roundings and guesses of hand, and what the scales of GPS, UTC and TAI differ by.
-  for (const double by_s : {0.3, 1.0, 2.0, 5.0, 10.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 37.0})
-    for (const double shift_s : {by_s, -by_s}) {
+  const SweepSample quarter = quarter_of(sample(clock.points_unit_s));
+  // Parts of a second, and all that the scales of GPS, UTC and TAI differ by, in steps so small
+  // that a better one is not stepped over.
+  std::vector<double> steps_s = {0.3, 0.6, 37};
+  for (int step_s = 1; step_s <= 20; ++step_s) steps_s.push_back(step_s);
+  double best_s = 0;
+  double least = view_along(quarter, clock, poses, executor_).cost() - kClearlyLess;
+  for (const double step_s : steps_s)
+    for (const double shift_s : {step_s, -step_s}) {
       ClockPair other = clock;
       other.offset_s += shift_s;
       if (!covers(other)) continue;
-      const double cost = view_along(sample(clock.points_unit_s), other, poses, executor_).cost();
+      const double cost = view_along(quarter, other, poses, executor_).cost();
       if (cost > least) continue;
       least = cost;
       best_s = shift_s;
@@ -195,7 +215,7 @@ void ClockFinder::check(const ClockPair& clock, const SweepView& seen, ProgressS
                     " m in y from the sensor; moved by that, it would clearly fit better: it is of "
                     "another place or frame" +
                     kTrust);
-  if (const double shift_s = better_shift_s(clock, seen); shift_s != 0) {
+  if (const double shift_s = better_shift_s(clock); shift_s != 0) {
     const std::string message =
         named + "with " + (shift_s > 0 ? "+" : "") + fixed(shift_s, 1) +
         " s more they would clearly fit better; the clocks differ by about that: " + kStateIt;

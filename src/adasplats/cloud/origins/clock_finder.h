@@ -42,7 +42,7 @@ class ClockFinder {
   void require_cover(const std::vector<ClockPair>& possible) const;
   ClockPair clearest(const std::vector<ClockPair>& covering);
   bool is_aside(const ClockPair& clock, const SweepView& seen);
-  double better_shift_s(const ClockPair& clock, const SweepView& seen);
+  double better_shift_s(const ClockPair& clock);
   const SweepSample& sample(double unit_s);
 
   const TimedRecording& points_;
