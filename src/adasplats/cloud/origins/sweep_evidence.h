@@ -43,7 +43,7 @@ struct SweepView {
 
   /// The less the better a trajectory and a clock fit. What a spinning sensor measured hides behind
   /// other points as seen from elsewhere; the profiles of a mobile scanner do not, but leave their
-  /// plane. Of a Pandar64 at 0 to 5 m/s it was 0.35 higher with a clock wrong by 0.3 s and 0.6 with
+  /// plane. Of a Pandar64 at 0 to 5 m/s it was 0.4 higher with a clock wrong by 0.3 s and 0.8 with
   /// 1 s; of simulated profilers at 8 to 33 m/s 1.5 to 3.7 and 2.7 to 5.8, of 16 beams at 1.2 m/s
   /// 0.5 and 1.1, of scanners 1000 m up at 60 m/s 0.0 to 0.2 and 0.7 to 0.9.
   double cost() const { return scatter + 10 * share_behind; }
