@@ -121,9 +121,10 @@ class InfoCommand final : public Command {
   void refuse_what_does_not_fit(const std::set<std::string>& kinds) {
     if (kinds.empty() || kinds.contains("point cloud")) return;
     const std::string why = "on a " + *kinds.begin();
-    refuse({"--label-field", "--sensor-fields", "--viewpoint", "--trajectory", "--max-distance",
-            "--beams-from-poses", "--salvage"},
-           why);
+    refuse(
+        {"--label-field", "--sensor-fields", "--viewpoint", "--trajectory", "--mount",
+         "--mount-rotation", "--time-offset", "--max-distance", "--beams-from-poses", "--salvage"},
+        why);
     if (!kinds.contains("sequence")) refuse({"--scans", "--strict"}, why);
   }
 

@@ -13,6 +13,7 @@
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/point_files.h"
+#include "adasplats/pipeline/model/make_model.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/pipeline/session/scan_range.h"
 #include "adasplats/scene/mesh_model.h"
@@ -114,6 +115,10 @@ FileFacts cloud_facts(const fs::path& input, const std::optional<LabelScheme>& s
   if (report.unknown_intensities > 0)
     facts.rows.emplace_back("intensity not known", grouped(report.unknown_intensities));
   facts.rows.emplace_back("sensor positions", describe_origins(report.origins));
+  if (report.timed) {
+    facts.rows.emplace_back("by their times", report.timed->description());
+    facts.json["timed_origins"] = to_json(*report.timed);
+  }
   facts.rows.emplace_back("intensities", cloud.intensities.empty() ? "no" : "yes");
   survey.describe_classes(facts, scheme);
   return facts;

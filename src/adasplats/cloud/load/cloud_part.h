@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/origins/clocks.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/scan_beams.h"
 #include "adasplats/core/maths/rigid_transform.h"
@@ -40,10 +41,11 @@ struct CloudPart {
   /// Attributes as they will be. `positions` are in the sensor frames of the runs for sequences
   /// (the scans' own floats: nothing is lost) and empty for files.
   PointCloud cloud;
-  std::vector<Vec3d> world_positions;  ///< of files
-  std::vector<Vec3d> world_sensors;    ///< of files that have them
-  std::vector<double> times_s;         ///< of files that have them, in whatever clock
-  std::vector<Vec3f> scan_origins;     ///< of sequences whose scans say them, sensor frames
+  std::vector<Vec3d> world_positions;         ///< of files
+  std::vector<Vec3d> world_sensors;           ///< of files that have them
+  std::vector<double> times_s;                ///< of files that have them, in whatever clock...
+  SaidClock said_clock = SaidClock::nothing;  ///< ...and what the file says of that
+  std::vector<Vec3f> scan_origins;            ///< of sequences whose scans say them, sensor frames
   std::vector<PartRun> runs;
   bool is_sequence = false;
   ScanBeams beams;  ///< of a sequence
@@ -76,5 +78,10 @@ KittiSequence open_sequence(const std::filesystem::path& folder, const LoadOptio
 /// Reads a file of points.
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
                          ProgressSink& progress);
+
+/// One cloud of all; `scan_poses` are of their scans. Inputs with and without an attribute together
+/// lose it, with a warning; sensor positions stay (load_cloud).
+PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, Trajectory scan_poses,
+                  ProgressSink& progress);
 
 }  // namespace adasplats

@@ -139,10 +139,11 @@ void require_covered(const FrameDrive& drive, const std::vector<std::filesystem:
     const auto [first, last] = overview.times_s[k];
     if (std::isnan(first) || (first >= begin_s - apart_s && last <= end_s + apart_s)) continue;
     std::array<char, 256> text{};
-    std::snprintf(text.data(), text.size(),
-                  ": points of %.3f to %.3f s, but the trajectory is of %.3f to %.3f s: the clocks "
-                  "differ, or the trajectory is of another drive",
-                  first, last, begin_s, end_s);
+    std::snprintf(
+        text.data(), text.size(),
+        ": points of %.3f to %.3f s, but the trajectory is of %.3f to %.3f s: the clocks "
+        "differ (`time_offset` states by how much), or the trajectory is of another drive",
+        first, last, begin_s, end_s);
     throw Error(ErrorKind::data,
                 files[k].string() + text.data() + " (" + drive.trajectory.string() + ")");
   }
@@ -178,13 +179,18 @@ bool has_timed_frames(const std::filesystem::path& folder) {
   const auto files = files_of(folder);
   if (files.size() < 2) return false;
   ProgressSink silent;
-  return !read_file_part(files.front(), {}, silent).times_s.empty();
+  constexpr double kLongestScan_s = 1;
+  const std::vector<double> times_s = read_file_part(files.front(), {}, silent).times_s;
+  if (times_s.empty()) return false;
+  const auto [first, last] = std::ranges::minmax(times_s);
+  return !(last - first > kLongestScan_s);
 }
 
 std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Executor& executor,
                                               ProgressSink& progress) {
   const std::vector<std::filesystem::path> files = files_of(drive.folder);
   Trajectory vehicle = read_trajectory(drive.trajectory);
+  for (TimedPose& pose : vehicle) pose.time_s -= drive.time_offset_s;
   const Overview overview = look_into(files, vehicle, executor, progress);
   require_covered(drive, files, overview, vehicle);
   MovingBoxes boxes;
@@ -197,8 +203,8 @@ std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Exe
   progress.end_step();
   if (!found) {
     progress.warn(drive.folder.string() +
-                  ": no sensor of the library is recognised, so where beams began is not known "
-                  "but guessed from the trajectory: no ray checks the model");
+                  ": no sensor of the library is recognised, so where it sits is not known; "
+                  "`mount` states it");
     return std::nullopt;
   }
   const auto reader = std::make_shared<FrameReader>(std::move(vehicle), *found, std::move(boxes),

@@ -21,9 +21,11 @@ struct FrameDrive {
   std::filesystem::path trajectory;  ///< as read_trajectory takes it
   std::filesystem::path boxes;       ///< of moving objects (MovingBoxes); empty: none
   bool with_classes = true;          ///< as the files have them
+  double time_offset_s = 0;          ///< what the points' times lack to those of the trajectory
 };
 
-/// Whether a folder holds files of points of one extension, the first of which has times.
+/// Whether a folder holds files of points of one extension, the first of which has times of at most
+/// a second: scans, not tiles of a recording.
 bool has_timed_frames(const std::filesystem::path& folder);
 
 /// Finds which sensor of the library measured the points and how it is mounted (recognize_sensor);

@@ -132,6 +132,39 @@ TEST(FrameDrive, AnotherClockIsAnError) {
   });
 }
 
+TEST(FrameDrive, AnotherClockCanBeStated) {
+  const Drive drive;
+  ProgressSink quiet;
+  Trajectory late = read_trajectory(drive.poses());
+  for (TimedPose& pose : late) pose.time_s += 1000;
+  LoadOptions options;
+  options.trajectory = drive.folder().path() / "late.csv";
+  write_trajectory_csv(options.trajectory, late);
+  options.time_offset_s = 1000;
+  const std::filesystem::path frames = drive.frames();
+  const auto report = load_cloud(std::span(&frames, 1), options, Executor(2), quiet).second;
+  ASSERT_EQ(report.beams.size(), 1U);
+  EXPECT_NE(report.beams.front().find("hesai-pandar64"), std::string::npos);
+  EXPECT_FALSE(report.timed.has_value());
+}
+
+TEST(FrameDrive, AStatedMountTakesThePlaceOfRecognition) {
+  const Drive drive;
+  ProgressSink quiet;
+  LoadOptions options;
+  options.trajectory = drive.poses();
+  options.mount = kMount.translation;
+  options.own_body_m = 0;
+  const std::filesystem::path frames = drive.frames();
+  const auto [cloud, report] = load_cloud(std::span(&frames, 1), options, Executor(2), quiet);
+  ASSERT_TRUE(report.timed.has_value());
+  EXPECT_EQ(report.timed->scans, 6U);
+  EXPECT_TRUE(cloud.lasers.empty());
+  const RigidTransform first = vehicle_at(0) * kMount;
+  EXPECT_LT(length(cloud.origin + vec_cast<double>(cloud.sensor_positions[0]) - first.translation),
+            0.001);
+}
+
 /// Points of no sensor, with times.
 std::filesystem::path frames_of_nothing(const TemporaryFolder& folder) {
   for (const char* name : {"frames/a.xyz", "frames/b.xyz"}) {

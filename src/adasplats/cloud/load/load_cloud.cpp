@@ -15,6 +15,7 @@
 #include "adasplats/cloud/load/dropped_points.h"
 #include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/cloud/load/point_origins.h"
+#include "adasplats/cloud/load/timed_points.h"
 #include "adasplats/cloud/vehicle/driven_path.h"
 #include "adasplats/cloud/vehicle/own_body.h"
 #include "adasplats/core/error.h"
@@ -52,8 +53,11 @@ std::vector<Source> open_sources(std::span<const std::filesystem::path> paths,
   std::vector<Source> sources;
   for (const std::filesystem::path& path : paths) {
     std::optional<KittiSequence> drive;
-    if (!options.trajectory.empty() && has_timed_frames(path))
-      drive = open_frame_drive({path, options.trajectory, options.boxes, true}, executor, progress);
+    // Where the mount is stated nothing is to be recognised.
+    if (!options.trajectory.empty() && !options.mount && has_timed_frames(path))
+      drive = open_frame_drive(
+          {path, options.trajectory, options.boxes, true, options.time_offset_s.value_or(0)},
+          executor, progress);
     if (drive)
       sources.push_back({{path, true}, std::move(drive)});
     else
@@ -317,63 +321,6 @@ PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin, const Poi
   return cloud;
 }
 
-/// Gives every cloud sensor positions if any has them: a point without one has that of its own
-/// place and OriginKind::none. Leaves out the kinds where all are measured.
-void unify_origins(std::vector<PointCloud>& clouds) {
-  const auto has_sensors = [](const PointCloud& c) { return !c.sensor_positions.empty(); };
-  const auto all_measured = [](const PointCloud& c) {
-    return c.empty() ||
-           (!c.sensor_positions.empty() && std::ranges::all_of(c.origin_kinds, [](OriginKind kind) {
-             return kind == OriginKind::measured;
-           }));
-  };
-  if (std::ranges::none_of(clouds, has_sensors)) return;
-  const bool needs_kinds = !std::ranges::all_of(clouds, all_measured);
-  for (PointCloud& cloud : clouds) {
-    if (!needs_kinds) {
-      cloud.origin_kinds = {};
-    } else if (cloud.sensor_positions.empty()) {
-      cloud.sensor_positions = cloud.positions;
-      cloud.origin_kinds.assign(cloud.size(), OriginKind::none);
-    } else if (cloud.origin_kinds.empty()) {
-      cloud.origin_kinds.assign(cloud.size(), OriginKind::measured);
-    }
-  }
-}
-
-/// Empties an attribute that some clouds have and others lack.
-template <class Attribute>
-void unify_attribute(std::vector<PointCloud>& clouds, const Attribute& attribute,
-                     ProgressSink& progress) {
-  std::size_t with = 0, filled = 0;
-  for (const PointCloud& cloud : clouds) {
-    if (cloud.empty()) continue;
-    ++filled;
-    if (!attribute.of(cloud).empty()) ++with;
-  }
-  if (with == filled) return;
-  for (PointCloud& cloud : clouds) attribute.of(cloud) = {};
-  if (with != 0)
-    progress.warn(std::string(attribute.title) + " dropped: " + std::to_string(with) + " of " +
-                  std::to_string(filled) + " inputs have them");
-}
-
-PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, ProgressSink& progress) {
-  unify_origins(clouds);
-  for_each_attribute([&](const auto& attribute) { unify_attribute(clouds, attribute, progress); });
-  PointCloud all;
-  all.origin = origin;
-  const bool has_poses = std::ranges::all_of(
-      clouds, [](const PointCloud& cloud) { return cloud.empty() || !cloud.scan_poses.empty(); });
-  Trajectory poses;  // of inputs without points, too: scans are numbered over all
-  for (PointCloud& cloud : clouds) {
-    if (has_poses) poses.insert(poses.end(), cloud.scan_poses.begin(), cloud.scan_poses.end());
-    if (!cloud.empty()) append(all, std::move(cloud));
-  }
-  all.scan_poses = std::move(poses);
-  return all;
-}
-
 /// Leaves out the points with a flag, 1 or 0 each; gives how many. No flags: none.
 std::size_t drop_flagged(PointCloud& cloud, Kept flags) {
   for (std::uint8_t& flag : flags) flag = flag == 0 ? 1 : 0;
@@ -411,6 +358,12 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   require_options_that_fit(options, sources);
   const PointOrigins origins(options);
   Gathered gathered{read_parts(sources, options, executor, progress), {}};
+  const std::optional<PlacedByTimes> placed =
+      place_by_times(gathered.parts, options, executor, progress);
+  const bool any_drive =
+      std::ranges::any_of(sources, [](const Source& source) { return source.drive.has_value(); });
+  require_used(options, placed.has_value(), placed.has_value() || any_drive);
+  Trajectory scan_poses = scan_poses_of(gathered.parts, placed);
 
   LoadReport report;
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
@@ -425,6 +378,10 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
     report.dropped_not_finite += count_dropped(gathered.kept.back());
     report.no_returns += count_no_returns(part, gathered.kept.back());
     report.unknown_intensities += mark_unknown(part.cloud.intensities, gathered.kept.back());
+  }
+  if (placed) {
+    report.timed = placed->origins;
+    report.drives.push_back({sources.front().input.path, {}, placed->origins.scans});
   }
   const Extents extents = drop_far(gathered, options.max_distance_m, executor);
   std::size_t dropped = 0;
@@ -442,7 +399,7 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
     const Input& input = sources[p].input;
     if (!input.is_sequence) check_origins(clouds.back(), input.path, options, executor);
   }
-  PointCloud cloud = joined(std::move(clouds), origin, progress);
+  PointCloud cloud = joined(std::move(clouds), origin, std::move(scan_poses), progress);
   report.own_body = drop_own_body(cloud, options.own_body_m, executor);
   report.driven_path = drop_driven_path(cloud, options.driven_path_m, executor);
   report_own_body(name_of(inputs), report, options, progress);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/cloud/origins/clocks.h"
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
@@ -28,9 +29,18 @@ struct LoadOptions {
   /// The station that measured every point that has no sensor position, world coordinates. It must
   /// be possible (station_objection()). OriginKind::stated.
   std::optional<Vec3d> viewpoint;
-  /// A trajectory whose nearest position (in the plane) becomes the sensor position of points that
-  /// have none. That is a guess, metres off: OriginKind::guessed, which turns normals alone.
+  /// A trajectory that says where the sensor was when it measured the points that have no sensor
+  /// position: at their times (TimedOrigins), where they and its poses have some. Else its nearest
+  /// position (in the plane): a guess, metres off, OriginKind::guessed, which turns normals alone.
   std::filesystem::path trajectory;
+  /// The lever arm: where the sensor sits in the frame of the trajectory's poses, m. Not given: the
+  /// poses are the sensor's own.
+  std::optional<Vec3d> mount;
+  /// The boresight: yaw, pitch and roll of the sensor there, degrees. Points are in world
+  /// coordinates, so it turns the poses of scans and moves no origin.
+  Vec3d mount_rotation_deg;
+  /// What points' times lack to those of the trajectory, s. Not given: found (possible_clocks).
+  std::optional<double> time_offset_s;
   /// Boxes of moving objects (MovingBoxes), whose points are left out of scans with times.
   std::filesystem::path boxes;
   /// Of a sequence: `count` scans (or as many as there are) from `first` on, every `stride`-th.
@@ -127,12 +137,31 @@ void visit_settings(LoadOptions& load, Visit&& visit) {
         load.viewpoint);
   visit(
       Setting{.name = "trajectory",
-              .help = "Poses of the recording. For a folder of scans whose points have times: with "
-                      "them, and the sensor and its mount as they are recognised, every beam's "
-                      "beginning. Else the nearest pose turns the normals of points that have no "
-                      "sensor position; a guess, nothing is checked with it",
+              .help = "Poses of the recording. Of points with times: every beam's beginning, for a "
+                      "folder of scans with the sensor and its mount as they are recognised, else "
+                      "with `mount`. Without times the nearest pose turns the normals of points "
+                      "that have no sensor position; a guess, nothing is checked with it",
               .group = kGroup},
       load.trajectory);
+  visit(
+      Setting{.name = "mount",
+              .help = "Lever arm: where the sensor sits in the frame of the trajectory's poses, m "
+                      "(default: they are the sensor's own)",
+              .group = kGroup},
+      load.mount);
+  visit(Setting{.name = "mount_rotation",
+                .help = "Boresight: its yaw, pitch and roll there, degrees. Points in world "
+                        "coordinates need none: it turns the poses of scans alone",
+                .key = "mount_rotation_deg",
+                .group = kGroup},
+        load.mount_rotation_deg);
+  visit(Setting{.name = "time_offset",
+                .help = "Added to the points' times they are those of the trajectory, s (default: "
+                        "found from clocks of GPS, UTC and PTP)",
+                .value = "S",
+                .key = "time_offset_s",
+                .group = kGroup},
+        load.time_offset_s);
   visit(Setting{.name = "boxes",
                 .help = "Boxes of objects by time (CSV: time,id,stationary,x,y,z,size_x,size_y,"
                         "size_z,yaw): what those that move hold is left out of scans with times",
@@ -154,7 +183,22 @@ struct LoadedDrive {
   std::size_t scans = 0;  ///< that were chosen
 };
 
-/// What was dropped on the way.
+/// What was understood of points with times and the trajectory of their sensor.
+struct TimedOrigins {
+  std::size_t points = 0;
+  TimeSpan times_s, trajectory_s;  ///< of the points and the poses, both in the trajectory's clock
+  std::string clock;               ///< ClockPair::description()
+  double offset_s = 0;
+  bool is_mounted = false;  ///< a lever arm was given, else the poses are the sensor's own
+  Vec3d mount_m;
+  std::size_t scans = 0;  ///< the points cut by their times...
+  double scan_s = 0;      ///< ...into pieces so long
+  double median_range_m = 0;
+  double share_behind = 0;  ///< SweepView's
+  std::string description() const;
+};
+
+/// What was dropped on the way, and what was understood.
 struct LoadReport {
   std::size_t points_read = 0;
   /// Where the beams of the sequences started (ScanBeams::description), one each.
@@ -163,6 +207,7 @@ struct LoadReport {
   std::vector<LoadedDrive> drives;
   /// How many points of the cloud have an origin of each kind, by OriginKind.
   OriginCounts origins{};
+  std::optional<TimedOrigins> timed;
   /// Position not finite.
   std::size_t dropped_not_finite = 0;
   /// Of these, points whose three coordinates are NaN.
@@ -187,7 +232,9 @@ struct LoadReport {
 /// (names in any case): intensity from the first of intensity, reflectance, remission,
 /// reflectivity, luma and their scalar_ twins; classes are the low 16 bits of the label column,
 /// instances its high 16 bits or the column `instance`; `scan_index` as save_cloud_ply writes it.
-/// Memory: sequences 1.1x the cloud; files the reader's plus 24 bytes a point. Whichever scans of a
+/// Points with times and a trajectory with times: TimedOrigins; their scans are pieces of 0.1 s,
+/// numbered behind those of sequences. Memory: sequences 1.1x the cloud; files the reader's plus 24
+/// bytes a point, with times and a trajectory 60. Whichever scans of a
 /// sequence are chosen, up to five are read to recognise its sensor and up to eight to check its
 /// poses (require_poses_that_fit), without labels; there one that cannot be read is skipped. What
 /// is dropped is reported as warnings. Errors: those of the readers; data for sensor positions that

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "adasplats/cloud/load/station_check.h"
+#include "adasplats/cloud/origins/station_check.h"
 #include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {

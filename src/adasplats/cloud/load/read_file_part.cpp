@@ -216,6 +216,16 @@ void take_comment(const PointFile& file, const std::string& comment, ProgressSin
                   "'classification'; convert it to LAS to have it");
 }
 
+/// LAS alone says what its times are: seconds of the week, where no comment says otherwise.
+SaidClock said_clock_of(const PointFile& file) {
+  const std::string extension = lower_case(file.path.extension().string());
+  if (extension != ".las" && extension != ".laz") return SaidClock::nothing;
+  const auto& comments = file.table.comments;
+  return std::ranges::find(comments, "adjusted GPS time") != comments.end()
+             ? SaidClock::adjusted_gps
+             : SaidClock::gps_week;
+}
+
 }  // namespace
 
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
@@ -234,6 +244,7 @@ CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& o
     for_each_value(*column, [&part](std::size_t i, auto value) {
       part.times_s[i] = static_cast<double>(value);
     });
+    part.said_clock = said_clock_of(file);
   }
   PointCloud& cloud = part.cloud;
   if (const Column* column = file.find("origin_kind"); column && !part.world_sensors.empty())

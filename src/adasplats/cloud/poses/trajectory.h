@@ -34,6 +34,10 @@ using Trajectory = std::vector<TimedPose>;
 /// than 1e-3, time that does not ascend.
 Trajectory read_trajectory(const std::filesystem::path& path);
 
+/// Whether a pose file, or the times.txt beside KITTI's rows, says when its poses were. Errors:
+/// those of reading the file.
+bool has_times(const std::filesystem::path& trajectory);
+
 /// The files that read_trajectory(path) reads: it, and beside KITTI's rows the calib.txt and the
 /// times.txt that are there. Errors: those of reading the file.
 std::vector<std::filesystem::path> trajectory_files(const std::filesystem::path& path);

@@ -288,6 +288,11 @@ Trajectory read_trajectory(const std::filesystem::path& path) {
   return read_kitti_poses(path, lines);
 }
 
+bool has_times(const std::filesystem::path& trajectory) {
+  return heading_of(filled_lines(trajectory)).columns.has_value() ||
+         is_there(trajectory.parent_path() / kTimesName);
+}
+
 std::vector<std::filesystem::path> trajectory_files(const std::filesystem::path& path) {
   std::vector<std::filesystem::path> files = {path};
   if (heading_of(filled_lines(path)).columns) return files;

@@ -117,6 +117,8 @@ LasHeader read_las_header(InputFile& file) {
   const HeaderBytes bytes(file, file.peek(least_bytes));
   LasHeader header;
   header.header_bytes = header_bytes;
+  // Reserved before 1.2, and zero there.
+  header.has_adjusted_times = (bytes.at<std::uint16_t>(6) & 1U) != 0;
   header.vlr_count = bytes.at<std::uint32_t>(100);
   header.points_offset_bytes = bytes.at<std::uint32_t>(96);
   const std::uint8_t format = bytes.at<std::uint8_t>(104);

@@ -16,6 +16,9 @@ inline constexpr std::size_t kVlrHeaderBytes = 54;
 /// The public header block of a LAS or LAZ file (ASPRS, "LAS specification 1.4 - R15", table 3).
 struct LasHeader {
   std::size_t format = 0;  ///< point data record format, 0-10
+  /// Times are adjusted GPS time (less 1e9 s), else seconds of the GPS week: bit 0 of the global
+  /// encoding.
+  bool has_adjusted_times = false;
   bool is_compressed = false;
   std::size_t record_bytes = 0;
   std::size_t header_bytes = 0;

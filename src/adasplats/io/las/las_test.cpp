@@ -182,6 +182,14 @@ TEST(Las, AttributesInExtraBytes) {
   EXPECT_EQ(table.columns.back().name, "height");
 }
 
+// ASPRS LAS 1.4 R15, table 4.
+TEST(Las, TheClockOfItsTimesIsSaid) {
+  std::string file = las_with(las_vlr("other", 1, "x"), 1, 0);
+  EXPECT_TRUE(read(file).comments.empty());
+  put(file, 6, std::uint16_t{17});
+  EXPECT_EQ(read(file).comments, std::vector<std::string>{"adjusted GPS time"});
+}
+
 TEST(Las, LongitudesAndLatitudesAreSaid) {
   const auto comments = [](const std::string& record) {
     return read(las_with(record, 1, 0)).comments;

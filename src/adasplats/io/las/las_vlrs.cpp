@@ -134,11 +134,13 @@ std::vector<std::string> LasDescription::comments() const {
   std::vector<std::string> comments;
   if (geographic) comments.push_back("geographic: " + *geographic);
   if (not_metres) comments.push_back("not metres: " + *not_metres);
+  if (has_adjusted_times) comments.push_back("adjusted GPS time");
   return comments;
 }
 
 LasDescription read_las_description(const std::filesystem::path& path, const LasHeader& header) {
   LasDescription description;
+  description.has_adjusted_times = header.has_adjusted_times;
   InputFile file(path);
   file.skip(header.header_bytes);
   for (std::uint64_t k = 0; k < header.vlr_count; ++k) {

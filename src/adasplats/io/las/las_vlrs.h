@@ -32,6 +32,7 @@ struct LasDescription {
   std::optional<std::string> geographic;
   /// Where a length of the coordinates is no metre: which, its unit and what says so.
   std::optional<std::string> not_metres;
+  bool has_adjusted_times = false;  ///< as LasHeader has it
 
   /// What of it whoever reads the points must know, as comments of the table (read_las()).
   std::vector<std::string> comments() const;

@@ -164,6 +164,23 @@ std::pair<SplatModel, ModelResult> make_model(const PointCloud& cloud, const Mod
   return {std::move(model), std::move(result)};
 }
 
+nlohmann::ordered_json to_json(const TimedOrigins& timed) {
+  const Vec3d at = timed.mount_m;
+  nlohmann::ordered_json json;
+  json["points"] = timed.points;
+  json["times_s"] = {timed.times_s.first, timed.times_s.last};
+  json["trajectory_s"] = {timed.trajectory_s.first, timed.trajectory_s.last};
+  json["clock"] = timed.clock;
+  json["offset_s"] = timed.offset_s;
+  json["mount_m"] =
+      timed.is_mounted ? nlohmann::ordered_json{at.x, at.y, at.z} : nlohmann::ordered_json();
+  json["scans"] = timed.scans;
+  json["scan_s"] = timed.scan_s;
+  json["median_range_m"] = timed.median_range_m;
+  json["share_behind"] = timed.share_behind;
+  return json;
+}
+
 nlohmann::ordered_json to_json(const ModelResult& result) {
   nlohmann::ordered_json json;
   const BuildReport& built = result.built;
@@ -175,6 +192,7 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
   json["points_driven_path"] = result.loaded.driven_path;
   json["points_intensity_unknown"] = result.loaded.unknown_intensities;
   json["beams"] = result.loaded.beams;
+  if (result.loaded.timed) json["timed_origins"] = to_json(*result.loaded.timed);
   json["points_in"] = built.points_in;
   json["points_dynamic"] = built.points_dynamic;
   json["points_removed"] = nlohmann::ordered_json::object();

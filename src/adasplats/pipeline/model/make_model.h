@@ -55,6 +55,8 @@ std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& sess
 std::pair<SplatModel, ModelResult> make_model(const PointCloud& cloud, const ModelOptions& options,
                                               Session& session);
 
+/// Of a model's --report and of `info`.
+nlohmann::ordered_json to_json(const TimedOrigins& timed);
 /// The keys of a model's --report.
 nlohmann::ordered_json to_json(const ModelResult& result);
 

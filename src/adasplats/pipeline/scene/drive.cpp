@@ -2,18 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/scene/drive.h"
 
-#include <numbers>
-
-#include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/error.h"
 #include "adasplats/pipeline/session/inputs.h"
 
 namespace adasplats {
-
-RigidTransform MountSettings::transform() const {
-  const Vec3d turn_rad = (std::numbers::pi / 180) * rotation_deg;
-  return {rotation_from_yaw_pitch_roll(turn_rad.x, turn_rad.y, turn_rad.z), translation_m};
-}
 
 Trajectory sensor_poses(const DriveOptions& drive) {
   check_settings(drive);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "adasplats/cloud/poses/mount.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/setting.h"
 #include "adasplats/sensors/lidar_model.h"
@@ -52,23 +53,6 @@ void visit_settings(DriveOptions& drive, Visit&& visit) {
                 .help = "How it moves where the trajectory has too few poses to tell (with a "
                         "rolling shutter)"},
         drive.motion);
-}
-
-/// DriveOptions::mount as users give it.
-struct MountSettings {
-  Vec3d translation_m;
-  Vec3d rotation_deg;  ///< yaw, pitch, roll
-
-  RigidTransform transform() const;
-};
-
-template <class Visit>
-void visit_settings(MountSettings& mount, Visit&& visit) {
-  visit(Setting{.name = "mount", .help = "Where the sensor sits in the frame of the poses, m"},
-        mount.translation_m);
-  visit(Setting{.name = "mount_rotation",
-                .help = "Its yaw, pitch and roll there, degrees; a positive pitch looks down"},
-        mount.rotation_deg);
 }
 
 /// Poses of the sensor. Errors: usage, data (no poses).

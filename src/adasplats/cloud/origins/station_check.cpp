@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/load/station_check.h"
+#include "adasplats/cloud/origins/station_check.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/origins/clock_finder.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "adasplats/cloud/origins/station_check.h"
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+namespace {
+
+constexpr double kMostFar = 0.5;  // of the points
+constexpr const char* kStateIt = "state it with `time_offset`, seconds to add to the points' times";
+constexpr const char* kTrust = "; `trust_origins` takes it nevertheless";
+
+std::string fixed(double value, int digits) {
+  std::array<char, 400> text{};  // the largest double has 309 digits before the point
+  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+  return text.data();
+}
+
+std::string span_text(TimeSpan span) { return fixed(span.first, 3) + " to " + fixed(span.last, 3); }
+
+std::string percent(double share) { return fixed(100 * share, 0) + " %"; }
+
+/// The sample with a quarter of its points, for many looks at it.
+SweepSample quarter_of(const SweepSample& sample) {
+  const auto thinned = [](const std::vector<TimedPoint>& points, std::size_t most) {
+    const std::size_t every = points.size() / most + 1;
+    std::vector<TimedPoint> kept;
+    for (std::size_t i = 0; i < points.size(); i += every) kept.push_back(points[i]);
+    return kept;
+  };
+  SweepSample quarter;
+  quarter.points = thinned(sample.points, 50'000);
+  for (const std::vector<TimedPoint>& sweep : sample.sweeps)
+    quarter.sweeps.push_back(thinned(sweep, 20'000));
+  return quarter;
+}
+
+}  // namespace
+
+ClockFinder::ClockFinder(const TimedRecording& points, std::filesystem::path file,
+                         const Trajectory& sensor, std::optional<double> stated_offset_s,
+                         const Executor& executor)
+    : points_(points),
+      file_(std::move(file)),
+      sensor_(sensor),
+      stated_offset_s_(stated_offset_s),
+      executor_(executor) {
+  const double apart = pose_distance_s(sensor);
+  padded_ = {sensor.front().time_s - apart, sensor.back().time_s + apart};
+}
+
+ClockPair ClockFinder::find() {
+  if (stated_offset_s_) {
+    const ClockPair stated{"as stated", kTheSameClock, 1, 1, *stated_offset_s_};
+    require_cover({stated});
+    return stated;
+  }
+  const std::vector<ClockPair> possible = possible_clocks(points_.span(), points_.said(), padded_);
+  std::vector<ClockPair> covering;
+  for (const ClockPair& clock : possible)
+    if (covers(clock)) covering.push_back(clock);
+  if (covering.empty()) require_cover(possible);
+  return covering.size() == 1 ? covering.front() : clearest(covering);
+}
+
+Track ClockFinder::track(const ClockPair& clock) const {
+  Trajectory poses = sensor_;
+  for (TimedPose& pose : poses) pose.time_s *= clock.trajectory_unit_s;
+  return track_of(poses);
+}
+
+SweepView ClockFinder::view(const ClockPair& clock) {
+  return view_along(sample(clock.points_unit_s), clock, track(clock).poses, executor_);
+}
+
+TimeSpan ClockFinder::covered(const ClockPair& clock) const {
+  return {padded_.first * clock.trajectory_unit_s, padded_.last * clock.trajectory_unit_s};
+}
+
+bool ClockFinder::covers(const ClockPair& clock) const {
+  // What offsets of 1e9 s lose in doubles, on both sides.
+  constexpr double kRounding_s = 1e-6;
+  const TimeSpan times = clock.in_trajectory(points_.span()), poses = covered(clock);
+  return times.first >= poses.first - kRounding_s && times.last <= poses.last + kRounding_s;
+}
+
+const SweepSample& ClockFinder::sample(double unit_s) {
+  if (sample_unit_s_ != unit_s) sample_ = points_.sample(unit_s);
+  sample_unit_s_ = unit_s;
+  return sample_;
+}
+
+/// Throws with the figures of what comes nearest, where nothing covers all times.
+void ClockFinder::require_cover(const std::vector<ClockPair>& possible) const {
+  const ClockPair* best = nullptr;
+  std::size_t most = 0;
+  for (const ClockPair& clock : possible) {
+    if (covers(clock)) return;
+    const std::size_t points = points_.count_within(covered(clock), clock);
+    if (points <= most) continue;
+    most = points;
+    best = &clock;
+  }
+  const std::string named =
+      points_.name() + ": the trajectory " + file_.string() + " does not cover ";
+  if (best == nullptr) {
+    throw Error(ErrorKind::data,
+                named + "the times of the points" +
+                    (stated_offset_s_ ? " by the stated `time_offset`" : " by any known clock") +
+                    ": points of " + span_text(points_.span()) + ", poses of " +
+                    span_text({sensor_.front().time_s, sensor_.back().time_s}) +
+                    "; it is of another recording, or of another clock: " + kStateIt);
+  }
+  const TimeSpan times = best->in_trajectory(points_.span());
+  const TimeSpan poses = {sensor_.front().time_s * best->trajectory_unit_s,
+                          sensor_.back().time_s * best->trajectory_unit_s};
+  throw Error(
+      ErrorKind::data,
+      named + std::to_string(points_.size() - most) + " of " + std::to_string(points_.size()) +
+          " points (" + best->description() + "): they are of " + span_text(times) +
+          " s, its poses of " + span_text(poses) + " s, so up to " +
+          fixed(std::max(0.0, poses.first - times.first), 3) + " s before and " +
+          fixed(std::max(0.0, times.last - poses.last), 3) +
+          " s behind; nothing is extrapolated. Leave these points out, or bring the rest of the "
+          "trajectory; where the clock is another one, " +
+          kStateIt);
+}
+
+/// Of several clocks the one that the sweeps fit. One clock for both is taken where nothing speaks
+/// against it.
+ClockPair ClockFinder::clearest(const std::vector<ClockPair>& covering) {
+  std::vector<std::pair<double, const ClockPair*>> by_cost;
+  bool has_evidence = true;
+  for (const ClockPair& clock : covering) {
+    const SweepView seen = view(clock);
+    has_evidence = has_evidence && seen.points >= kLeastEvidence;
+    by_cost.emplace_back(seen.cost(), &clock);
+  }
+  const auto [one_cost, one] = by_cost.front();
+  std::ranges::stable_sort(by_cost, {}, [](const auto& entry) { return entry.first; });
+  const double least = by_cost[0].first;
+  if (has_evidence && least + kClearlyLess <= by_cost[1].first) return *by_cost[0].second;
+  const bool is_one_clock = one->offset_s == 0;
+  if (is_one_clock && (!has_evidence || one_cost < least + kClearlyLess)) return *one;
+  std::string list;
+  for (const auto& entry : by_cost)
+    list += "\n  " + entry.second->description() +
+            (has_evidence ? ", misfit " + fixed(entry.first, 2) : "");
+  throw Error(ErrorKind::data,
+              points_.name() + ": the trajectory " + file_.string() +
+                  " covers all times by several clocks, and " +
+                  (has_evidence ? "the points fit none of them clearly best"
+                                : "there are too few points to tell which is right") +
+                  "; " + kStateIt + ":" + list);
+}
+
+/// A shift of the times by which the points would fit clearly better; 0: none.
+double ClockFinder::better_shift_s(const ClockPair& clock) {
+  const Trajectory poses = track(clock).poses;
+  const SweepSample quarter = quarter_of(sample(clock.points_unit_s));
+  // Parts of a second, and all that the scales of GPS, UTC and TAI differ by, in steps so small
+  // that a better one is not stepped over.
+  std::vector<double> steps_s = {0.3, 0.6, 37};
+  for (int step_s = 1; step_s <= 20; ++step_s) steps_s.push_back(step_s);
+  double best_s = 0;
+  double least = view_along(quarter, clock, poses, executor_).cost() - kClearlyLess;
+  for (const double step_s : steps_s)
+    for (const double shift_s : {step_s, -step_s}) {
+      ClockPair other = clock;
+      other.offset_s += shift_s;
+      if (!covers(other)) continue;
+      const double cost = view_along(quarter, other, poses, executor_).cost();
+      if (cost > least) continue;
+      least = cost;
+      best_s = shift_s;
+    }
+  return best_s;
+}
+
+/// Whether all is far to one side, and poses amid the points would fit better by far.
+bool ClockFinder::is_aside(const ClockPair& clock, const SweepView& seen) {
+  constexpr double kLeastAside_m = 50, kByFar = 1;
+  const Vec3d aside = {seen.median_way_m.x, seen.median_way_m.y, 0};
+  if (length(aside) < kLeastAside_m) return false;
+  const SweepView moved =
+      view_along(sample(clock.points_unit_s), clock, shifted(track(clock).poses, aside), executor_);
+  return moved.cost() + kByFar < seen.cost();
+}
+
+void ClockFinder::check(const ClockPair& clock, const SweepView& seen, ProgressSink& progress) {
+  if (seen.points < kLeastEvidence) return;
+  const std::string named = points_.name() + ": the trajectory " + file_.string() +
+                            " does not fit the points (" + clock.description() + "): ";
+  const std::string median = "the median range is " + fixed(seen.median_range_m, 1) + " m";
+  if (seen.share_far > kMostFar || seen.median_range_m > kFarthestOriginM)
+    throw Error(ErrorKind::data, named + median + ", and " + percent(seen.share_far) +
+                                     " of the points are farther than " +
+                                     fixed(kFarInStreets_m, 0) +
+                                     " m and not below the sensor; it is of another place, another "
+                                     "frame or another clock" +
+                                     kTrust);
+  if (is_aside(clock, seen))
+    throw Error(ErrorKind::data,
+                named + median + ", and half of the points are " + fixed(seen.median_way_m.x, 0) +
+                    " m or more in x and " + fixed(seen.median_way_m.y, 0) +
+                    " m in y from the sensor; moved by that, it would clearly fit better: it is of "
+                    "another place or frame" +
+                    kTrust);
+  if (const double shift_s = better_shift_s(clock); shift_s != 0) {
+    const std::string message =
+        named + "with " + (shift_s > 0 ? "+" : "") + fixed(shift_s, 1) +
+        " s more they would clearly fit better; the clocks differ by about that: " + kStateIt;
+    if (!stated_offset_s_) throw Error(ErrorKind::data, message + kTrust);
+    progress.warn(message);
+  }
+  if (seen.share_behind > seen.most_behind())
+    throw Error(ErrorKind::data,
+                named + percent(seen.share_behind) +
+                    " of what was measured within 0.1 s lies behind other points as seen from "
+                    "there, at most " +
+                    percent(seen.most_behind()) +
+                    " do; the sensor sits elsewhere (`mount`), or the trajectory is of another "
+                    "place or clock; " +
+                    median + kTrust);
+}
+
+void ClockFinder::require_no_gaps(const ClockPair& clock, const Track& track) const {
+  for (const TimeSpan gap : track.gaps) {
+    const std::size_t inside = points_.count_within(gap, clock);
+    if (inside == 0) continue;
+    throw Error(ErrorKind::data, points_.name() + ": " + std::to_string(inside) +
+                                     " points were measured in a gap of the trajectory " +
+                                     file_.string() + ", which has no poses from " +
+                                     span_text(gap) +
+                                     " s; leave them out: nothing is guessed there");
+  }
+}
+
+}  // namespace adasplats

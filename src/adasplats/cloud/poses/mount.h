@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/core/setting.h"
+
+namespace adasplats {
+
+/// Where a sensor sits in the frame of the poses, as users give it.
+struct MountSettings {
+  Vec3d translation_m;
+  Vec3d rotation_deg;  ///< yaw, pitch, roll
+
+  RigidTransform transform() const;  ///< vehicle_from_sensor
+};
+
+template <class Visit>
+void visit_settings(MountSettings& mount, Visit&& visit) {
+  visit(Setting{.name = "mount", .help = "Where the sensor sits in the frame of the poses, m"},
+        mount.translation_m);
+  visit(Setting{.name = "mount_rotation",
+                .help = "Its yaw, pitch and roll there, degrees; a positive pitch looks down"},
+        mount.rotation_deg);
+}
+
+}  // namespace adasplats
