@@ -184,6 +184,7 @@ class Simulation {
     model.load.first_scan = source_.numbers.front();
     model.load.scan_count = (source_.numbers.size() + job_.model_every - 1) / job_.model_every;
     model.load.scan_stride = job_.scans.stride * job_.model_every;
+    model.load.driven_path_m = 0;  // labels tell what moved
     model.build.recipe = RecipeChoice{.method = job_.method}.recipe();
     model.build.remove = DynamicRemoval::moving;
     model.calibrate = false;  // scans stand at the sequence's own poses, as its other data do
