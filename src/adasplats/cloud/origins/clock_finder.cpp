@@ -60,7 +60,7 @@ ClockFinder::ClockFinder(const TimedRecording& points, std::filesystem::path fil
 
 ClockPair ClockFinder::find() {
   if (stated_offset_s_) {
-    const ClockPair stated{"as stated", kTheSameClock, 1, 1, *stated_offset_s_};
+    ClockPair stated{"as stated", kTheSameClock, 1, 1, *stated_offset_s_};
     require_cover({stated});
     return stated;
   }

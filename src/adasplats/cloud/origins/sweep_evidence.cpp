@@ -27,7 +27,7 @@ std::uint64_t cell_of(Vec3d direction) {
   const auto cell = [&](int axis) {
     return static_cast<std::uint64_t>((std::atan(direction[axis] / depth) + 1) / kCell_rad);
   };
-  const auto side = static_cast<std::uint64_t>(2 * face + (direction[face] > 0 ? 1 : 0));
+  const std::uint64_t side = 2U * static_cast<unsigned>(face) + (direction[face] > 0 ? 1U : 0U);
   return side << 40 | cell((face + 1) % 3) << 20 | cell((face + 2) % 3);
 }
 
