@@ -165,9 +165,20 @@ def c2c_columns(sensor, name):
 MODELS = [("splats", "model/primitives", "0.00 M"), *c2c_columns("hdl-64-paper", "HDL-64"),
           *c2c_columns("hdl-32-paper", "HDL-32"),
           *(column for column in COMPARISON if column[1].startswith("resimulate"))]
+CALIBRATION = [
+    ("figures", "use", "text"), ("within 10 cm, as given", "as_given/within_10cm", "0.0 %"),
+    ("calibrated", "calibrated/within_10cm", "0.0 %"),
+    ("registered", "registered/within_10cm", "0.0 %"),
+    ("median, as given", "as_given/median_m", "0.00 cm"),
+    ("calibrated", "calibrated/median_m", "0.00 cm"),
+    ("no hit", "calibrated/no_hit", "0.0 %"), ("early", "calibrated/early_50cm", "0.0 %"),
+    ("late", "calibrated/late_50cm", "0.0 %"), ("splats", "calibrated/primitives", "0.00 M"),
+    ("planes", "calibration/planes", "0,000"),
+    ("ranges (RMS)", "calibration/range_offset_rms_m", "0.0 cm")]
 # Name: (the rows' key where the document gives none, columns). A column that no row fills is left
 # out.
-TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS)}
+TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
+          "calibration": ("drives", CALIBRATION)}
 
 
 def rows_of(data, key):
