@@ -118,7 +118,7 @@ class CalibrationFiles {
       const auto end = std::next(begin, static_cast<std::ptrdiff_t>(drives[k].scans));
       write_trajectory_csv(named(place / "trajectory.csv"), Trajectory(begin, end));
       begin = end;
-      if (is_kitti_sequence(drives[k].folder)) write_poses(drives[k].folder, place);
+      if (fs::exists(drives[k].folder / "poses.txt")) write_poses(drives[k].folder, place);
     }
   }
 

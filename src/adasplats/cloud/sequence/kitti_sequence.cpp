@@ -9,6 +9,8 @@
 #include <utility>
 #include <variant>
 
+#include "adasplats/cloud/sequence/files_by_name.h"
+#include "adasplats/cloud/sequence/kitti_raw.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/point_files.h"
@@ -18,37 +20,6 @@ namespace adasplats {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "KITTI files are little-endian");
-
-/// Files of a folder with an extension, by name; none where there is no such folder.
-std::vector<std::filesystem::path> files_by_name(const std::filesystem::path& folder,
-                                                 const std::string& extension) {
-  std::vector<std::filesystem::path> files;
-  std::error_code problem;
-  if (!std::filesystem::is_directory(folder, problem)) return files;
-  std::filesystem::directory_iterator entry(folder, problem);
-  for (; !problem && entry != std::filesystem::directory_iterator(); entry.increment(problem)) {
-    const std::filesystem::path& path = entry->path();
-    // A leading dot marks files that are being written or belong to some tool.
-    if (path.extension() == extension && path.filename().string().front() != '.')
-      files.push_back(path);
-  }
-  if (problem) throw system_error(ErrorKind::no_input, folder, "cannot be listed", problem.value());
-  std::ranges::sort(files);
-  return files;
-}
-
-/// The number that a name such as 000123 is; nothing for other names.
-std::optional<std::size_t> number_in_name(const std::filesystem::path& file) {
-  const std::string stem = file.stem().string();
-  constexpr std::size_t kMostDigits = 18;  // fits 64 bits
-  if (stem.empty() || stem.size() > kMostDigits) return std::nullopt;
-  std::size_t number = 0;
-  for (const char c : stem) {
-    if (c < '0' || c > '9') return std::nullopt;
-    number = 10 * number + static_cast<std::size_t>(c - '0');
-  }
-  return number;
-}
 
 /// The pose of each scan: by the number in its name where every name is one that has a pose, else
 /// one by one.
@@ -106,10 +77,11 @@ void read_labels(const std::filesystem::path& path, KittiScan& scan) {
 
 bool is_kitti_sequence(const std::filesystem::path& folder) {
   std::error_code ignored;  // what cannot be looked into is no sequence
-  return std::filesystem::is_directory(folder / "velodyne", ignored);
+  return std::filesystem::is_directory(folder / "velodyne", ignored) || is_kitti_raw_drive(folder);
 }
 
 KittiSequence open_kitti_sequence(const std::filesystem::path& folder) {
+  if (is_kitti_raw_drive(folder)) return open_kitti_raw_drive(folder);
   if (!is_kitti_sequence(folder))
     throw Error(ErrorKind::no_input, folder.string() + ": has no folder 'velodyne'");
   KittiSequence sequence;

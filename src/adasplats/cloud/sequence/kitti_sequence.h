@@ -35,11 +35,12 @@ struct KittiSequence {
   std::shared_ptr<const ScanReader> reader;  ///< null: the files are KITTI's
 };
 
-/// True for a folder with a `velodyne` folder in it.
+/// True for a folder with a `velodyne` folder in it, and for a drive of KITTI's raw data
+/// (is_kitti_raw_drive()).
 bool is_kitti_sequence(const std::filesystem::path& folder);
 
 /// Lists a sequence and reads its poses; scans are not read. Errors: no_input, data (poses of
-/// another count than scans, labels of another count).
+/// another count than scans, labels of another count), those of open_kitti_raw_drive.
 KittiSequence open_kitti_sequence(const std::filesystem::path& folder);
 
 /// One scan in the sensor frame.
