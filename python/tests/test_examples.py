@@ -29,13 +29,19 @@ def test_numpy_cloud_to_scans(tmp_path):
     assert len(list(tmp_path.glob("0000??.npy"))) == 20
 
 
+def only_tells_of_the_path(errors):
+    """The street has cars where the vehicle drove; points of these are left out, and that is said."""
+    return errors.count("Warning: ") == errors.count("are where the recording vehicle drove")
+
+
 def test_sensor_from_csv(tmp_path):
     code, out, errors = run("sensor_from_csv.py")
-    assert (code, errors) == (0, "") and "20000 rays in 0.100 s" in out and "road" in out
+    assert code == 0 and only_tells_of_the_path(errors), errors
+    assert "20000 rays in 0.100 s" in out and "road" in out
     rays = tmp_path / "rays.csv"
     rays.write_text("azimuth_deg,elevation_deg\n0,-5\n10,-5\n")
     code, out, errors = run("sensor_from_csv.py", rays)
-    assert (code, errors) == (0, "") and "2 rays" in out
+    assert code == 0 and only_tells_of_the_path(errors) and "2 rays" in out, errors
 
 
 def test_torch_dataset():
