@@ -147,6 +147,18 @@ RigidTransform pose_of_record(const std::array<double, 6>& record, double scale)
   return pose;
 }
 
+/// Throws data where a record has no place or no angles that can be.
+void require_possible(const std::array<double, 6>& record, const fs::path& file) {
+  const auto [latitude, longitude, altitude, roll, pitch, yaw] = record;
+  if (!(std::fabs(latitude) < 85) || !(std::fabs(longitude) <= 360))
+    throw fault(file, "expected latitude, longitude, altitude, roll, pitch and yaw first");
+  constexpr double kTurn = 2 * std::numbers::pi, kMostTilt = std::numbers::pi / 2;
+  if (std::fabs(roll) > kMostTilt || std::fabs(pitch) > kMostTilt || std::fabs(yaw) > kTurn)
+    throw fault(file, "roll, pitch and yaw are " + exact_text(roll) + ", " + exact_text(pitch) +
+                          " and " + exact_text(yaw) +
+                          ", beyond a quarter turn, a quarter turn and a turn; expected radians");
+}
+
 /// world_from_imu by the records, whose first is the origin of the world.
 Trajectory read_records(const fs::path& drive) {
   const fs::path stamps = drive / "oxts" / "timestamps.txt";
@@ -162,8 +174,8 @@ Trajectory read_records(const fs::path& drive) {
       if (!is_read) record = numbers_of<6>(line, file, number);
       is_read = true;
     });
-    if (!is_read || !(std::fabs(record[0]) < 85) || !(std::fabs(record[1]) <= 360))
-      throw fault(file, "expected latitude, longitude, altitude, roll, pitch and yaw first");
+    if (!is_read) throw fault(file, "is empty, expected a record");
+    require_possible(record, file);
     if (poses.empty()) {
       scale = std::cos(record[0] * kDegree);
       origin = pose_of_record(record, scale).translation;

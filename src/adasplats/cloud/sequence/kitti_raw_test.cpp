@@ -131,7 +131,8 @@ TEST(KittiRaw, FaultsNameTheirFile) {
   has(with("drive/oxts/timestamps.txt", "2011-13-26 13:02:20\n"), "expected a time such as");
   has(with("drive/oxts/data/0000000001.txt", "49 8\n"), "line 1: '', expected 6 numbers");
   has(with("drive/oxts/data/0000000001.txt", "490 8 0 0 0 0\n"), "expected latitude");
-  has(with("drive/oxts/data/0000000001.txt", "\n"), "expected latitude");
+  has(with("drive/oxts/data/0000000001.txt", "\n"), "expected a record");
+  has(with("drive/oxts/data/0000000001.txt", "49 8 115 0 0 95.5\n"), "expected radians");
 }
 
 TEST(KittiRaw, NothingIsGuessedWhereRecordsAreMissing) {
