@@ -38,6 +38,8 @@ class SynthStreetCommand final : public Command {
         ->capture_default_str();
     app.add_option("--passes", job_.scan.passes, "Drives along the street, there and back")
         ->capture_default_str();
+    app.add_flag("--turns", job_.scan.turns,
+                 "Each pass turns into the street from the one across its end, and out of it");
     app.add_option("--speed", job_.scan.speed_m_per_s, "Of the vehicle, m/s")
         ->capture_default_str();
     app.add_option("--driving-spacing", job_.scan.driving_spacing_m,

@@ -128,7 +128,7 @@ Scan to_scan(std::span<const Firing> firings, std::span<const Echo> echoes,
 void drive_mapping(const Street& street, const StreetScanOptions& options,
                    const StreetCaster& caster, StreetRecording& recording, ProgressSink& progress) {
   const MappingPlan plan =
-      plan_mapping(options, drive_length(street), return_share(caster, street, options));
+      plan_mapping(options, drive_length(street, options), return_share(caster, street, options));
   const std::vector<Firing> firings = firings_of(plan.sensor);
   reserve(recording.mapping, options.points + options.points / 10);
   progress.begin_step("mapping drive",
@@ -153,7 +153,8 @@ void drive_driving(const Street& street, const StreetScanOptions& options,
                    const std::function<void(std::size_t, const Scan&)>& on_driving_scan,
                    ProgressSink& progress) {
   if (options.driving_spacing_m <= 0 || options.most_driving_scans == 0) return;
-  const double fit = std::max(1.0, std::floor(drive_length(street) / options.driving_spacing_m));
+  const double fit =
+      std::max(1.0, std::floor(drive_length(street, options) / options.driving_spacing_m));
   const std::size_t count =
       static_cast<std::size_t>(std::min(fit, static_cast<double>(options.most_driving_scans)));
   const LidarModel sensor = hdl_64_paper();

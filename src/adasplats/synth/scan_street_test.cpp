@@ -256,6 +256,36 @@ TEST(ScanStreet, MappingSensorIsPitchedAndDrivingSensorLevel) {
   }
 }
 
+// Oracle: analytic. The second pass is the first one seen from the other end.
+TEST(ScanStreet, APassThatTurnsComesFromTheStreetAcross) {
+  const Street street = make_street(kShortStreet);
+  StreetScanOptions options = exact_scan(2'000);
+  options.turns = true;
+  options.driving_spacing_m = 1;
+  const Executor executor(2);
+  ProgressSink progress;
+  const Trajectory poses = scan_street(
+                               street, options, [](std::size_t, const Scan&) {}, executor, progress)
+                               .true_driving_trajectory;
+  ASSERT_GT(poses.size(), 70U);
+  const RigidTransform& first = poses.front().world_from_sensor;
+  const RigidTransform& last = poses.back().world_from_sensor;
+  EXPECT_LT(first.rotation.rows[1].x, -0.99);  // towards -y, right into the street...
+  EXPECT_LT(poses[poses.size() / 2].world_from_sensor.rotation.rows[0].x, -0.99);
+  EXPECT_LT(last.rotation.rows[1].x, -0.99);  // ...and left out of it
+  EXPECT_NEAR(first.translation.x, 50 + 3.75, 1e-9);
+  EXPECT_NEAR(last.translation.x, -3.75, 1e-9);
+  double longest_m = 0, sharpest_rad = 0;
+  for (std::size_t k = 1; k < poses.size(); ++k) {
+    const RigidTransform &a = poses[k - 1].world_from_sensor, &b = poses[k].world_from_sensor;
+    longest_m = std::max(longest_m, length(b.translation - a.translation));
+    sharpest_rad = std::max(sharpest_rad, angle_between(a.rotation, b.rotation));
+    EXPECT_NEAR(b.translation.z - road_height(b.translation.x, b.translation.y), 1.73, 0.01);
+  }
+  EXPECT_NEAR(longest_m, 1, 0.05);
+  EXPECT_NEAR(sharpest_rad, 1.0 / 6, 0.02);  // of a radius of 6 m
+}
+
 TEST(ScanStreet, MostDrivingScansLimitsTheirNumber) {
   const Street street = make_street(kShortStreet);
   StreetScanOptions options = exact_scan(2'000);

@@ -66,6 +66,9 @@ struct StreetScanOptions {
   double pose_error_m = 0.01;      ///< standard deviation of each pass's offset, per axis
   double pose_error_rad = 0.0002;  ///< standard deviation of each pass's rotation, per axis
   int passes = 2;                  ///< drives along the street, there and back
+  /// Each pass comes from the street across the one end, by a quarter turn, and leaves into that
+  /// across the other, by another to the other side.
+  bool turns = false;
   double speed_m_per_s = 8;
   double driving_spacing_m = 2;  ///< between the driving scans, all on the last pass; 0: none
   std::size_t most_driving_scans = 150;  ///< a longer street has them further apart

@@ -21,19 +21,56 @@ double vehicle_y(int direction, int pass, double x) {
   return -direction * kLaneCenter + kWander_m * std::sin(x / kWanderLength_m + pass);
 }
 
-/// The vehicle on the road after `travelled` metres of a pass, along the slope, level across.
-RigidTransform world_from_vehicle(const Street& street, int pass, double travelled) {
-  const int direction = pass % 2 == 0 ? 1 : -1;
-  const double x = direction > 0 ? kMargin_m + travelled : street.length_m - kMargin_m - travelled;
-  const auto on_road = [&](double at) {
-    const double y = vehicle_y(direction, pass, at);
-    return Vec3d{at, y, road_height(at, y)};
-  };
-  const Vec3d here = on_road(x);
-  const Vec3d ahead = on_road(x + direction * 1.0) - here;
+/// Of a pass that turns, forth: up the street across the beginning, round the corner, along the
+/// street, round the corner and up the street across the end; arcs of a quarter between straights.
+constexpr double kApproach_m = 10, kTurnRadius_m = 6;
+constexpr double kArc_m = 0.5 * std::numbers::pi * kTurnRadius_m;
+
+double straight_between_turns(const Street& street) {
+  return street.length_m + kCrossRoad - 2 * kTurnRadius_m;
+}
+
+/// The place after `travelled` metres of it; z is 0.
+Vec3d place_on_turning_way(const Street& street, double travelled) {
+  const double r = kTurnRadius_m;
+  const Vec3d right = {-0.5 * kCrossRoad + r, -kLaneCenter - r, 0};  // centers of the turns
+  const double straight_m = straight_between_turns(street);
+  const Vec3d left = {right.x + straight_m, -kLaneCenter + r, 0};
+  if (travelled < kApproach_m) return right + Vec3d{-r, travelled - kApproach_m, 0};
+  travelled -= kApproach_m;
+  if (travelled < kArc_m)
+    return right + r * Vec3d{-std::cos(travelled / r), std::sin(travelled / r), 0};
+  travelled -= kArc_m;
+  if (travelled < straight_m) return right + Vec3d{travelled, r, 0};
+  travelled -= straight_m;
+  if (travelled < kArc_m)
+    return left + r * Vec3d{std::sin(travelled / r), -std::cos(travelled / r), 0};
+  return left + Vec3d{r, travelled - kArc_m, 0};
+}
+
+/// The vehicle at a place of the road, along the slope to one ahead, level across.
+RigidTransform vehicle_between(Vec3d here, Vec3d further) {
+  const Vec3d ahead = further - here;
   const double yaw = std::atan2(ahead.y, ahead.x);
   const double climb = std::atan2(ahead.z, std::hypot(ahead.x, ahead.y));
   return {rotation_from_yaw_pitch_roll(yaw, -climb, 0), here};
+}
+
+/// The vehicle on the road after `travelled` metres of a pass.
+RigidTransform world_from_vehicle(const Street& street, bool turns, int pass, double travelled) {
+  const int direction = pass % 2 == 0 ? 1 : -1;
+  const auto on_road = [](double x, double y) { return Vec3d{x, y, road_height(x, y)}; };
+  if (turns) {
+    const auto place = [&](double at) {
+      const Vec3d forth = place_on_turning_way(street, at);
+      return direction > 0 ? on_road(forth.x, forth.y)
+                           : on_road(street.length_m - forth.x, -forth.y);
+    };
+    return vehicle_between(place(travelled), place(travelled + 1));
+  }
+  const double x = direction > 0 ? kMargin_m + travelled : street.length_m - kMargin_m - travelled;
+  const auto place = [&](double at) { return on_road(at, vehicle_y(direction, pass, at)); };
+  return vehicle_between(place(x), place(x + direction * 1.0));
 }
 
 /// recorded_from_true of a pass.
@@ -61,12 +98,15 @@ RigidTransform vehicle_from_driving_sensor() {
   return {rotation_from_yaw_pitch_roll(0, 0, 0), {0, 0, 1.73}};
 }
 
-double drive_length(const Street& street) { return street.length_m - 2 * kMargin_m; }
+double drive_length(const Street& street, const StreetScanOptions& options) {
+  if (options.turns) return 2 * (kApproach_m + kArc_m) + straight_between_turns(street);
+  return street.length_m - 2 * kMargin_m;
+}
 
 std::vector<RecordedPose> poses_of_pass(const Street& street, const StreetScanOptions& options,
                                         int pass, std::size_t count,
                                         const RigidTransform& vehicle_from_sensor) {
-  const double way = drive_length(street);
+  const double way = drive_length(street, options);
   const double start_s = pass * (way / options.speed_m_per_s + kTurnRound_s);
   const RigidTransform recorded_from_true = pass_error(street, options, pass);
   std::vector<RecordedPose> poses;
@@ -74,7 +114,8 @@ std::vector<RecordedPose> poses_of_pass(const Street& street, const StreetScanOp
   for (std::size_t k = 0; k < count; ++k) {
     const double travelled = way * (static_cast<double>(k) + 0.5) / static_cast<double>(count);
     const double time_s = start_s + travelled / options.speed_m_per_s;
-    const RigidTransform truth = world_from_vehicle(street, pass, travelled) * vehicle_from_sensor;
+    const RigidTransform truth =
+        world_from_vehicle(street, options.turns, pass, travelled) * vehicle_from_sensor;
     poses.push_back({{time_s, truth}, {time_s, recorded_from_true * truth}});
   }
   return poses;

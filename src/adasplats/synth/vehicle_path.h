@@ -22,8 +22,9 @@ struct RecordedPose {
 RigidTransform vehicle_from_mapping_sensor();
 RigidTransform vehicle_from_driving_sensor();
 
-/// The way of one pass: the street less a little at both ends, m.
-double drive_length(const Street& street);
+/// The way of one pass: the street less a little at both ends, or with the turns into it and out of
+/// it, m.
+double drive_length(const Street& street, const StreetScanOptions& options);
 
 /// Poses of a sensor at `count` places of one pass, evenly apart. Passes alternate in direction,
 /// each in its right lane. The recorded pose is off by the pass's error: one rotation about the
