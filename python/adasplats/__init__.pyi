@@ -169,6 +169,7 @@ def calibrate(
     poses: bool = True,
     ranges: bool = True,
     elevations: bool = True,
+    mount_correction: bool = True,
     label_field: str | None = None,
     viewpoint: ArrayLike | None = None,
     trajectory: Path | None = None,

@@ -34,6 +34,7 @@ void fields(Archive& archive, LaserOffsets& lasers) {
 
 template <class Archive>
 void fields(Archive& archive, Calibration& calibration) {
+  archive("mount", calibration.mount);
   archive("poses", calibration.poses);
   archive("lasers", calibration.lasers);
   archive("smooth_s", calibration.smooth_s);

@@ -76,8 +76,9 @@ def test_calibrate(tmp_path):
     assert len(adasplats.Trajectory.read(tmp_path / "here" / "trajectory.csv")) == 8
     with pytest.raises(OSError, match="not empty"):
         adasplats.calibrate(sequence, tmp_path / "here")
-    with pytest.raises(ValueError, match="nothing to estimate: poses, ranges and elevations"):
-        adasplats.calibrate(sequence, tmp_path / "no", poses=False, ranges=False, elevations=False)
+    with pytest.raises(ValueError, match="nothing to estimate: poses, ranges, elevations and"):
+        adasplats.calibrate(sequence, tmp_path / "no", poses=False, ranges=False, elevations=False,
+                            mount_correction=False)
     with pytest.raises(adasplats.DataError, match="nothing calibrated"):
         adasplats.calibrate(sequence, tmp_path / "few", own_body_m=0, scan_count=1)
 

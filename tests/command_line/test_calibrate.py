@@ -34,12 +34,19 @@ def pose_line(k, shift=0.0):
             f"{math.cos(yaw / 2)},0,0,{math.sin(yaw / 2)}")
 
 
+def winding_line(k):
+    """Of a drive that turns, and not about one place: that would tell no yaw of the mount."""
+    yaw = 0.2 * k
+    return (f"{0.1 * k:.1f},{-9 + 2 * k},{4 * math.sin(0.8 * k)},1.8,"
+            f"{math.cos(yaw / 2)},0,0,{math.sin(yaw / 2)}")
+
+
 class Calibrate(ProgramTest):
-    def drive(self, shift_m, offsets=OFFSETS):
+    def drive(self, shift_m, offsets=OFFSETS, line_of=pose_line):
         """Scans of a unit of KITTI's sensor with poses that are off in waves."""
         (self.folder / "hall.obj").write_text(hall())
         poses = self.folder / "drive.csv"
-        poses.write_text("\n".join(["time,x,y,z,qw,qx,qy,qz"] + [pose_line(k) for k in range(SCANS)]))
+        poses.write_text("\n".join(["time,x,y,z,qw,qx,qy,qz"] + [line_of(k) for k in range(SCANS)]))
         unit = self.folder / "unit.toml"
         unit.write_text(f'like = "{KITTI}"\nrange_noise_m = 0.005\nrange_offsets_m = {offsets}\n')
         self.run_good("simulate", self.folder / "hall.obj", "--sensor", unit, "--unit-offsets",
@@ -92,6 +99,39 @@ class Calibrate(ProgramTest):
         self.assertNotIn("range_offsets_m", manifests[0])
         self.assertEqual(len(manifests[1]["range_offsets_m"]), 64)
 
+    def test_a_mount_is_found_and_what_is_not_observed_is_named(self):
+        sequence = self.drive(0, [0.0] * 64, winding_line)
+        yaw, ahead_m = math.radians(5), 0.4
+        lines = (sequence / "poses.txt").read_text().splitlines()
+        for k, line in enumerate(lines):  # of a camera: y is down, z is forward
+            rows = [[float(word) for word in line.split()[4 * row:4 * row + 4]] for row in range(3)]
+            lines[k] = " ".join(repr(value) for x, y, z, t in rows for value in (
+                math.cos(yaw) * x + math.sin(yaw) * z, y, math.cos(yaw) * z - math.sin(yaw) * x,
+                t + ahead_m * z))
+        (sequence / "poses.txt").write_text("\n".join(lines) + "\n")
+        words = ["calibrate", sequence, "--own-body", "0", "--overwrite", "-o", self.folder / "out"]
+        mount = self.report(*words)["mount"]
+        self.assertIs(mount["applied"], True)
+        found_deg, found_m = mount["yaw_pitch_roll_deg"], mount["shift_m"]
+        sign = math.copysign(1, found_deg[0])
+        for found, expected in zip(found_deg, (5 * sign, 0, 0)):
+            self.assertAlmostEqual(found, expected, delta=0.05)
+        # Undone: turned back, and then shifted back along the axes that were turned.
+        for found, expected in zip(found_m[:2], (-ahead_m * math.cos(yaw),
+                                                 -sign * ahead_m * math.sin(yaw))):
+            self.assertAlmostEqual(found, expected, delta=0.02)
+        self.assertEqual([each["name"] for each in mount["not_observed"]], ["lever arm along z"])
+        page = (self.folder / "out" / "report.html").read_text(encoding="utf-8")
+        self.assertIn("Boresight", page)
+        text = self.run_good(*words, "--no-poses", "--no-ranges", "--no-elevations").stdout
+        self.assertIn("Mount corrected by 5.0", text)
+        self.assertIn("left as given: lever arm along z", text)
+        poses = (self.folder / "out" / "poses.txt").read_text()
+        shutil.copy(self.folder / "out" / "poses.txt", sequence / "poses.txt")
+        self.run_bad(65, *words, "--no-poses", "--no-ranges", "--no-elevations",
+                     says=["nothing calibrated", "the mount: "])
+        self.assertEqual(len(poses.splitlines()), SCANS)
+
     def test_what_is_estimated_is_chosen(self):
         sequence = self.drive(0.06, [0.0] * 64)
         words = ["calibrate", sequence, "--own-body", "0", "--overwrite", "-o", self.folder / "out"]
@@ -102,8 +142,10 @@ class Calibrate(ProgramTest):
         report = self.report(*words, "--no-poses")
         self.assertEqual(report["largest_shift_m"], 0)
         self.assertGreater(report["range_offset_rms_m"], 0.02)
-        self.run_bad(64, *words, "--no-poses", "--no-ranges", "--no-elevations",
-                     says=["nothing to estimate", "--poses"])
+        rest = ["--no-poses", "--no-ranges", "--no-elevations"]
+        self.run_bad(64, *words, *rest, "--no-mount-correction",
+                     says=["nothing to estimate", "--poses", "--mount-correction"])
+        self.run_bad(65, *words, *rest, says=["nothing calibrated", "the mount: "])
 
     def test_nothing_wrong_is_an_error_with_a_report(self):
         sequence = self.drive(0, [0.0] * 64)

@@ -53,12 +53,19 @@ class CalibrateCommand final : public Command {
     table.add_row({"scans", grouped(result.given.size())});
     table.add_row({"planes", grouped(result.report.planes)});
     table.add_row({"weakest direction", fixed(100 * result.report.weakest_share, 2) + " %"});
+    if (result.report.mount) add_mount(*result.report.mount, table);
     for (const std::string& file : result.files) table.add_row({"written", file});
     table.add_row({"seconds", fixed(result.seconds, 1)});
     print(table.text() + "\n" + calibration_text(result.report, result.calibration));
   }
 
  private:
+  static void add_mount(const MountReport& report, TextTable& table) {
+    table.add_row({"mount", report.objection.empty() ? "corrected" : "as given"});
+    if (const std::string names = not_observed_text(report.found); !names.empty())
+      table.add_row({"not observed of it", names});
+  }
+
   CalibrateJob job_;
 };
 

@@ -6,9 +6,18 @@
 #include "cli/text_table.h"
 
 namespace adasplats::app {
+namespace {
 
-std::string calibration_text(const CalibrationReport& report, const Calibration& calibration) {
-  if (!report.objection.empty()) return "Nothing calibrated: " + report.objection + "\n";
+/// "Mount corrected by 5.00 deg and 50.0 cm; not observed and left as given: yaw (about z)"
+std::string mount_text(const MountEstimate& found) {
+  std::string text = "Mount corrected by " + fixed(length(found.mount.rotation_rad) / kDegree, 2) +
+                     " deg and " + centimetres(length(found.mount.shift_m));
+  const std::string not_observed = not_observed_text(found);
+  return not_observed.empty() ? text : text + "; not observed and left as given: " + not_observed;
+}
+
+/// What single poses and lasers were corrected by.
+std::string rest_text(const CalibrationReport& report, const Calibration& calibration) {
   const CalibrationSizes sizes = sizes_of(calibration);
   std::string text = "Calibrated by " + grouped(report.planes) + " planes: poses by up to " +
                      centimetres(sizes.largest_shift_m) + " and " +
@@ -16,6 +25,26 @@ std::string calibration_text(const CalibrationReport& report, const Calibration&
   if (!calibration.lasers.empty())
     text += ", lasers by " + centimetres(sizes.range_rms_m) + " and " +
             fixed(sizes.elevation_rms_rad / kDegree, 3) + " deg (RMS)";
+  return text;
+}
+
+}  // namespace
+
+std::string not_observed_text(const MountEstimate& found) {
+  std::string text;
+  for (const MountDirection& direction : found.not_observed)
+    text += (text.empty() ? "" : ", ") + direction.name;
+  return text;
+}
+
+std::string calibration_text(const CalibrationReport& report, const Calibration& calibration) {
+  if (!report.objection.empty()) return "Nothing calibrated: " + report.objection + "\n";
+  std::string text;
+  const bool is_mounted = report.mount && report.mount->objection.empty();
+  if (is_mounted) text = mount_text(report.mount->found) + ". ";
+  text += is_mounted && !report.mount->alone_because.empty()
+              ? "Nothing else is corrected: " + report.mount->alone_because
+              : rest_text(report, calibration);
   return text + "; points left out of it lie " + centimetres(report.calibrated_m) +
          " from planes (" + centimetres(report.given_m) +
          " before); as a whole the place stays where the given poses have it\n";

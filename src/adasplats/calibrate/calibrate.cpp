@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "adasplats/calibrate/plane_system.h"
+#include "adasplats/calibrate/robust_weight.h"
 #include "adasplats/core/maths/small_motion.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
 
@@ -20,14 +21,9 @@ namespace {
 
 constexpr std::size_t kLeftOut = 8;         // every so many-th point
 constexpr double kFlatnessOfJudging = 0.1;  // m
+constexpr double kMostDistance_m = 0.25;    // that counts where mounts are compared
 
 bool is_left_out(std::size_t i) { return i % kLeftOut == 0; }
-
-double weight_of(double residual_m, double width_m) {
-  const double squared = width_m * width_m;
-  const double share = squared / (squared + residual_m * residual_m);
-  return share * share;  // Geman-McClure
-}
 
 double between(double first, double last, int round, int rounds) {
   const double share = rounds > 1 ? static_cast<double>(round) / (rounds - 1) : 1;
@@ -50,6 +46,16 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+struct DistanceSum {
+  double distance_m = 0, weight = 0;
+
+  DistanceSum& operator+=(const DistanceSum& other) {
+    distance_m += other.distance_m;
+    weight += other.weight;
+    return *this;
+  }
+};
+
 /// The ray of a point, in local coordinates.
 struct PointRay {
   Vec3d direction, upward;
@@ -67,7 +73,8 @@ class Calibrator {
     }
     for (const std::uint16_t laser : cloud.lasers)
       if (laser != kNoLaser) lasers_ = std::max(lasers_, std::size_t{laser} + 1);
-    corrected_from_given_.resize(places_.size());
+    mounted_from_given_.resize(places_.size());
+    corrected_from_mounted_.resize(places_.size());
     offsets_.range_m.resize(lasers_);
     offsets_.elevation_rad.resize(lasers_);
     choose_points();
@@ -77,32 +84,53 @@ class Calibrator {
     CalibrationReport report;
     correct_points();
     judge(report.given_m, report.given);
-    for (int round = 0; round < options_.rounds && report.objection.empty(); ++round) {
-      const ScanPlanes planes = find_planes(
-          between(options_.first_flatness_m, options_.last_flatness_m, round, options_.rounds));
-      report.planes = planes.planes.size();
-      report.points = planes.points.size();
-      report.weakest_share = weakest_share(planes, report.weakest);
-      report.objection = objection_to(report);
-      const double width_m =
-          between(options_.first_width_m, options_.last_width_m, round, options_.rounds);
-      for (int step = 0; step < options_.steps && report.objection.empty(); ++step) {
-        make_step(planes, width_m);
-        correct_points();
-      }
+    if (options_.mount_correction) report.mount = estimate_mount();
+    const bool is_mounted = report.mount && report.mount->objection.empty();
+    double before_m = report.given_m;
+    if (is_mounted) judge(before_m, report.calibrated);
+    if (!options_.poses && !options_.ranges && !options_.elevations)
+      report.objection = is_mounted || !report.mount ? "nothing else was asked for"
+                                                     : "the mount: " + report.mount->objection;
+    for (int round = 0; round < options_.rounds && report.objection.empty(); ++round)
+      make_round(round, report);
+    if (report.objection.empty()) {
+      align_to_mounted();
+      correct_points();
+      judge(report.calibrated_m, report.calibrated);
+      if (!(report.calibrated_m < options_.least_gain * before_m))
+        report.objection = "points that took no part lie no better on the planes of the others";
     }
-    if (!report.objection.empty()) return {{}, report};
-    align_to_given();
-    correct_points();
-    judge(report.calibrated_m, report.calibrated);
-    if (!(report.calibrated_m < options_.least_gain * report.given_m)) {
-      report.objection = "points that took no part lie no better on the planes of the others";
-      return {{}, report};
-    }
+    if (report.objection.empty()) return {calibration(), report};
+    if (!is_mounted) return {{}, report};
+    keep_mount_alone(report);
     return {calibration(), report};
   }
 
  private:
+  void make_round(int round, CalibrationReport& report) {
+    const ScanPlanes planes = find_planes(
+        between(options_.first_flatness_m, options_.last_flatness_m, round, options_.rounds));
+    report.planes = planes.planes.size();
+    report.points = planes.points.size();
+    report.weakest_share = weakest_share(planes, report.weakest);
+    report.objection = objection_to(report);
+    const double width_m =
+        between(options_.first_width_m, options_.last_width_m, round, options_.rounds);
+    for (int step = 0; step < options_.steps && report.objection.empty(); ++step) {
+      make_step(planes, width_m);
+      correct_points();
+    }
+  }
+
+  void keep_mount_alone(CalibrationReport& report) {
+    std::ranges::fill(corrected_from_mounted_, RigidTransform{});
+    offsets_ = {};
+    correct_points();
+    judge(report.calibrated_m, report.calibrated);
+    report.mount->alone_because = std::move(report.objection);
+    report.objection.clear();
+  }
+
   /// Every so many-th point with a known beam, so that the scans have as many as are wanted in the
   /// mean.
   void choose_points() {
@@ -139,9 +167,133 @@ class Calibrator {
 
   Vec3d corrected(std::uint32_t i) const {
     const std::uint32_t scan = cloud_.scan_indices[i];
-    return corrected_from_given_[scan] *
-           offsets_.corrected(vec_cast<double>(cloud_.sensor_positions[i]),
-                              vec_cast<double>(cloud_.positions[i]), axes_[scan], laser_of(i));
+    return corrected_from_mounted_[scan] *
+           (mounted_from_given_[scan] *
+            offsets_.corrected(vec_cast<double>(cloud_.sensor_positions[i]),
+                               vec_cast<double>(cloud_.positions[i]), axes_[scan], laser_of(i)));
+  }
+
+  /// Every `stride`-th of the chosen points that are not left out, in the frames of their scans.
+  MountPoints mount_points(std::size_t stride) const {
+    std::vector<RigidTransform> sensor_from_local;
+    for (const TimedPose& pose : cloud_.scan_poses) {
+      RigidTransform local_from_sensor = pose.world_from_sensor;
+      local_from_sensor.translation = local_from_sensor.translation - cloud_.origin;
+      sensor_from_local.push_back(local_from_sensor.inverse());
+    }
+    MountPoints points;
+    for (std::size_t k = 0; k < chosen_.size(); k += stride) {
+      if (is_left_out(k)) continue;
+      points.in_sensor.push_back(sensor_from_local[scans_[k]] *
+                                 vec_cast<double>(cloud_.positions[chosen_[k]]));
+      points.scans.push_back(scans_[k]);
+    }
+    return points;
+  }
+
+  /// Searches with few points; what poses of single scans do not make up for is looked at closely.
+  MountReport estimate_mount() {
+    const MountOptions& mount = options_.mount;
+    const std::size_t wanted = mount.points_a_scan * std::max<std::size_t>(1, places_.size());
+    // Odd: points of a laser may lie a power of two apart.
+    const std::size_t stride = std::max<std::size_t>(1, chosen_.size() / wanted) | 1;
+    MountReport report;
+    report.found = search_mount(mount_points(stride), cloud_.scan_poses, mount, executor_);
+    report.objection = objection_to(report.found);
+    if (!report.objection.empty()) return report;
+    report.found = refine_mount(mount_points(1), cloud_.scan_poses, report.found, mount, executor_);
+    report.objection = objection_to(report.found);
+    if (!report.objection.empty()) return report;
+    judge_mount(report);
+    if (report.mounted_m < mount.least_gain * report.given_m) return report;
+    report.objection =
+        "points that took no part lie not clearly better on the planes of the others";
+    set_mount({});
+    return report;
+  }
+
+  /// Of the planes that are flat with the given mount, and of those that are with the found one:
+  /// the floor is flat with any, so it is the same points that are compared. Sets the mount.
+  void judge_mount(MountReport& report) {
+    const std::vector<Vec3d> given = corrected_;
+    const ScanPlanes of_given = find_planes(kFlatnessOfJudging);
+    set_mount(report.found.mount);
+    const ScanPlanes of_mounted = find_planes(kFlatnessOfJudging);
+    const auto mean_m = [&](const std::vector<Vec3d>& points) {
+      DistanceSum sum = left_out_distances(points, of_given);
+      sum += left_out_distances(points, of_mounted);
+      return sum.weight > 0 ? sum.distance_m / sum.weight : 0;
+    };
+    report.given_m = mean_m(given);
+    report.mounted_m = mean_m(corrected_);
+  }
+
+  /// Of points that were left out from planes through the others of the same cells.
+  DistanceSum left_out_distances(const std::vector<Vec3d>& points, const ScanPlanes& planes) const {
+    return executor_.sum_chunks(
+        planes.planes.size(), 256, DistanceSum{}, [&](std::size_t begin, std::size_t end) {
+          DistanceSum sum;
+          for (std::size_t plane = begin; plane < end; ++plane)
+            sum += left_out_distance(points, planes.points_of(planes.planes[plane]));
+          return sum;
+        });
+  }
+
+  DistanceSum left_out_distance(const std::vector<Vec3d>& points,
+                                std::span<const std::uint32_t> members) const {
+    Vec3d mean;
+    double count = 0;
+    for (const std::uint32_t i : members) {
+      if (is_left_out(i)) continue;
+      mean = mean + points[i];
+      ++count;
+    }
+    if (count < 3) return {};
+    mean = mean / count;
+    SymmetricMat3d spread;
+    for (const std::uint32_t i : members) {
+      if (is_left_out(i)) continue;
+      const Vec3d d = points[i] - mean;
+      spread.xx += d.x * d.x;
+      spread.xy += d.x * d.y;
+      spread.xz += d.x * d.z;
+      spread.yy += d.y * d.y;
+      spread.yz += d.y * d.z;
+      spread.zz += d.z * d.z;
+    }
+    const Vec3d normal = symmetric_eigen(spread).vectors[2];
+    DistanceSum sum;
+    for (const std::uint32_t i : members) {
+      if (!is_left_out(i)) continue;
+      sum.distance_m += std::min(kMostDistance_m, std::fabs(dot(normal, points[i] - mean)));
+      ++sum.weight;
+    }
+    const double scale = sum.weight > 0 ? std::min(1.0, options_.most_weight / count) : 0;
+    return {scale * sum.distance_m, scale * sum.weight};
+  }
+
+  std::string objection_to(const MountEstimate& found) const {
+    const MountOptions& mount = options_.mount;
+    if (found.planes < mount.least_planes)
+      return "too few planes that several scans saw (" + std::to_string(found.planes) + ")";
+    if (length(found.mount.rotation_rad) < mount.least_rotation_rad &&
+        length(found.mount.shift_m) < mount.least_shift_m)
+      return "what is wrong with it is no more than corrections of single poses make up for";
+    if (!(found.deviations >= mount.least_deviations)) return "it is not clear from the data";
+    return {};
+  }
+
+  void set_mount(const MountCorrection& mount) {
+    mount_ = mount;
+    const RigidTransform given_from_mounted = mount.given_from_mounted();
+    for (std::size_t scan = 0; scan < places_.size(); ++scan) {
+      RigidTransform given = cloud_.scan_poses[scan].world_from_sensor;
+      given.translation = given.translation - cloud_.origin;
+      const RigidTransform mounted = given * given_from_mounted;
+      places_[scan] = mounted.translation;
+      mounted_from_given_[scan] = mount.empty() ? RigidTransform{} : mounted * given.inverse();
+    }
+    correct_points();
   }
 
   ScanPlanes find_planes(double flatness_m) const {
@@ -154,7 +306,7 @@ class Calibrator {
     PlaneResidual row;
     const std::uint32_t i = chosen_[k];
     row.scan = scans_[k];
-    const RigidTransform& correction = corrected_from_given_[row.scan];
+    const RigidTransform& correction = corrected_from_mounted_[row.scan];
     const Vec3d from_center = corrected_[k] - plane.center;
     row.residual_m = dot(plane.normal, from_center);
     row.by_plane = {1, dot(plane.axes[0], from_center), dot(plane.axes[1], from_center)};
@@ -167,9 +319,10 @@ class Calibrator {
     if (laser == kNoLaser) return row;
     row.laser = laser;
     const PointRay ray = ray_of(i);
-    if (options_.ranges) row.by_laser[0] = dot(plane.normal, correction.rotation * ray.direction);
+    const Mat3d rotation = correction.rotation * mounted_from_given_[row.scan].rotation;
+    if (options_.ranges) row.by_laser[0] = dot(plane.normal, rotation * ray.direction);
     if (options_.elevations)
-      row.by_laser[1] = ray.range_m * dot(plane.normal, correction.rotation * ray.upward);
+      row.by_laser[1] = ray.range_m * dot(plane.normal, rotation * ray.upward);
     return row;
   }
 
@@ -181,7 +334,7 @@ class Calibrator {
     for (std::size_t k = 0; k < members.size(); k += stride) {
       if (is_left_out(members[k])) continue;
       residuals.push_back(residual_of(members[k], plane));
-      residuals.back().weight = weight_of(residuals.back().residual_m, width_m);
+      residuals.back().weight = robust_weight(residuals.back().residual_m, width_m);
       total += residuals.back().weight;
     }
     const double scale = total > options_.most_weight ? options_.most_weight / total : 1;
@@ -193,7 +346,7 @@ class Calibrator {
       return std::pow(options_.residual_sigma_m / sigma, 2);
     };
     for (std::size_t scan = 0; scan < places_.size(); ++scan) {
-      const RigidTransform& correction = corrected_from_given_[scan];
+      const RigidTransform& correction = corrected_from_mounted_[scan];
       const Vec3d turned = rotation_vector(correction.rotation);
       const Vec3d place = places_[scan];
       const Vec3d shifted = correction * place - place;
@@ -224,7 +377,7 @@ class Calibrator {
 
   void apply(const PlaneSystem::Step& step) {
     for (std::size_t scan = 0; options_.poses && scan < places_.size(); ++scan) {
-      RigidTransform& correction = corrected_from_given_[scan];
+      RigidTransform& correction = corrected_from_mounted_[scan];
       const Vec3d pivot = correction * places_[scan];
       const auto& x = step.poses[scan];
       correction = moved_about(pivot, {x[0], x[1], x[2]}, {x[3], x[4], x[5]}) * correction;
@@ -277,19 +430,19 @@ class Calibrator {
     for (double& offset : offsets) offset -= mean;
   }
 
-  /// Turns and shifts the whole so that the poses lie on the given ones.
-  void align_to_given() {
+  /// Turns and shifts the whole so that the poses lie on the given ones, as mounted.
+  void align_to_mounted() {
     if (places_.empty()) return;
     const double n = static_cast<double>(places_.size());
     Vec3d turn, given, corrected;
     for (std::size_t scan = 0; scan < places_.size(); ++scan) {
-      const RigidTransform& correction = corrected_from_given_[scan];
+      const RigidTransform& correction = corrected_from_mounted_[scan];
       turn = turn + rotation_vector(correction.rotation) / n;
       given = given + places_[scan] / n;
       corrected = corrected + (correction * places_[scan]) / n;
     }
     const RigidTransform back = moved_about(corrected, -turn, given - corrected);
-    for (RigidTransform& correction : corrected_from_given_) correction = back * correction;
+    for (RigidTransform& correction : corrected_from_mounted_) correction = back * correction;
   }
 
   void judge(double& median_m, ResidualCounts& counts) const {
@@ -320,12 +473,13 @@ class Calibrator {
 
   Calibration calibration() const {
     Calibration result;
+    result.mount = mount_;
     for (std::size_t scan = 0; scan < places_.size(); ++scan) {
-      const RigidTransform& correction = corrected_from_given_[scan];
+      const RigidTransform& correction = corrected_from_mounted_[scan];
       const TimedPose& given = cloud_.scan_poses[scan];
+      const Vec3d place = given.world_from_sensor.translation - cloud_.origin;
       result.poses.push_back({given.time_s, given.world_from_sensor.translation,
-                              rotation_vector(correction.rotation),
-                              correction * places_[scan] - places_[scan]});
+                              rotation_vector(correction.rotation), correction * place - place});
     }
     result.lasers = offsets_;
     result.smooth_s = best_smoothing(result);
@@ -335,12 +489,14 @@ class Calibrator {
   const PointCloud& cloud_;
   const CalibrateOptions& options_;
   const Executor& executor_;
-  std::vector<Vec3d> places_;  ///< of the sensor, one a scan as given, local coordinates
+  std::vector<Vec3d> places_;  ///< of the sensor, one a scan, as mounted, local coordinates
   std::vector<Vec3d> axes_;    ///< of its rotation, upwards
   std::size_t lasers_ = 0;
-  std::vector<std::uint32_t> chosen_;                 ///< points
-  std::vector<std::uint32_t> scans_;                  ///< theirs
-  std::vector<RigidTransform> corrected_from_given_;  ///< local coordinates
+  std::vector<std::uint32_t> chosen_;  ///< points
+  std::vector<std::uint32_t> scans_;   ///< theirs
+  MountCorrection mount_;
+  std::vector<RigidTransform> mounted_from_given_;      ///< one a scan, local coordinates, and...
+  std::vector<RigidTransform> corrected_from_mounted_;  ///< ...what is left to correct
   LaserOffsets offsets_;
   std::vector<Vec3d> corrected_;  ///< chosen points
 };

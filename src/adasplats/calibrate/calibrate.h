@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "adasplats/calibrate/calibration.h"
+#include "adasplats/calibrate/mount.h"
 #include "adasplats/calibrate/scan_planes.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/setting.h"
@@ -18,8 +20,10 @@ struct CalibrateOptions {
   bool poses = true;       ///< one correction a scan
   bool ranges = true;      ///< one offset a laser
   bool elevations = true;  ///< one offset a laser
-  int rounds = 8;          ///< planes are found again in each...
-  int steps = 2;           ///< ...and so many steps of Gauss-Newton are made
+  /// One correction for all scans, before those of single ones, where it is more than these find.
+  bool mount_correction = true;
+  int rounds = 8;  ///< planes are found again in each...
+  int steps = 2;   ///< ...and so many steps of Gauss-Newton are made
   /// Of the first and of the last round: most thickness of a plane, width of the residuals that
   /// count.
   double first_flatness_m = 0.25, last_flatness_m = 0.05;
@@ -40,6 +44,7 @@ struct CalibrateOptions {
   std::size_t least_planes = 100;
   double least_share = 0.002, least_gain = 0.98;
   ScanPlaneOptions planes;  ///< but for the flatness
+  MountOptions mount;
 };
 
 /// What users choose of it.
@@ -55,12 +60,27 @@ void visit_settings(CalibrateOptions& calibrate, Visit&& visit) {
                 .help = "Estimate an offset of the elevation of every laser, where the sensor is "
                         "recognised"},
         calibrate.elevations);
+  visit(
+      Setting{.name = "mount_correction",
+              .help = "Estimate a correction of the sensor's mount, common to all scans: boresight "
+                      "and lever arm"},
+      calibrate.mount_correction);
 }
 
 /// How many points lie how far from planes.
 struct ResidualCounts {
   static constexpr double kBin_m = 0.0025;
   std::array<std::size_t, 41> counts{};  ///< of bins from 0 on; the last one has all beyond
+};
+
+/// What was found of the mount.
+struct MountReport {
+  MountEstimate found;
+  /// Mean distance of points that were left out from the planes of the others, m, as given and with
+  /// it: of planes that either has, at most 0.25 m. 0: nothing to compare.
+  double given_m = 0, mounted_m = 0;
+  std::string objection;      ///< why it is not applied; empty: it is
+  std::string alone_because;  ///< why nothing else is applied; empty: single poses or lasers are
 };
 
 struct CalibrationReport {
@@ -73,6 +93,7 @@ struct CalibrationReport {
   double weakest_share = 0;          ///< of the planes' weight, along...
   Vec3d weakest;                     ///< ...the direction in which they hold the poses least
   std::string objection;             ///< why nothing is to be applied; empty: the evidence is clear
+  std::optional<MountReport> mount;  ///< nothing: it was not asked for
 };
 
 /// Estimates what a recording gets wrong from planes that its scans saw together. The corrected

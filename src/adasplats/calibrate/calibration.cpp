@@ -83,6 +83,10 @@ bool leads_past(const PoseCorrection& a, const PoseCorrection& b, double share, 
 
 }  // namespace
 
+RigidTransform MountCorrection::given_from_mounted() const {
+  return {rotation_by(rotation_rad), shift_m};
+}
+
 RigidTransform PoseCorrection::corrected_from_given() const {
   return moved_about(position, rotation_rad, shift_m);
 }
@@ -106,6 +110,13 @@ std::optional<PoseCorrection> Calibration::at(double time_s, Vec3d position) con
     return found;
   }
   return std::nullopt;
+}
+
+std::optional<RigidTransform> Calibration::corrected(const TimedPose& given) const {
+  const auto correction = at(given.time_s, given.world_from_sensor.translation);
+  if (!correction) return std::nullopt;
+  const RigidTransform by_pose = correction->corrected_from_given() * given.world_from_sensor;
+  return mount.empty() ? by_pose : by_pose * mount.given_from_mounted();
 }
 
 double best_smoothing(const Calibration& calibration) {
@@ -164,9 +175,9 @@ CalibrationSizes sizes_of(const Calibration& calibration) {
 bool apply(const Calibration& calibration, Trajectory& poses) {
   Trajectory corrected = poses;
   for (TimedPose& pose : corrected) {
-    const auto correction = calibration.at(pose.time_s, pose.world_from_sensor.translation);
-    if (!correction) return false;
-    pose.world_from_sensor = correction->corrected_from_given() * pose.world_from_sensor;
+    const auto corrected_pose = calibration.corrected(pose);
+    if (!corrected_pose) return false;
+    pose.world_from_sensor = *corrected_pose;
   }
   poses = std::move(corrected);
   return true;

@@ -13,6 +13,17 @@
 
 namespace adasplats {
 
+/// What the mount of the sensor was taken for wrongly, the same for all scans: its boresight (a
+/// rotation) and its lever arm (a shift), along the axes of the sensor as the poses give it.
+struct MountCorrection {
+  Vec3d rotation_rad;  ///< about the given position: the axis, as long as the angle
+  Vec3d shift_m;       ///< of the position
+
+  bool empty() const { return rotation_rad == Vec3d{} && shift_m == Vec3d{}; }
+  /// world_from_given * this is the pose of the sensor as it was mounted.
+  RigidTransform given_from_mounted() const;
+};
+
 /// What the pose of one scan got wrong.
 struct PoseCorrection {
   double time_s = 0;   ///< of the scan, as its recording tells it
@@ -26,6 +37,7 @@ struct PoseCorrection {
 /// What a recording gets wrong: the poses of its scans and the lasers of its sensor. Corrected
 /// coordinates are of the world that the given poses are of.
 struct Calibration {
+  MountCorrection mount;              ///< comes first: `poses` correct what it leaves
   std::vector<PoseCorrection> poses;  ///< scan by scan; where times do not ascend a drive begins
   LaserOffsets lasers;
   /// Over how long corrections are averaged for scans that took no part, s (standard deviation of
@@ -33,13 +45,17 @@ struct Calibration {
   /// but the two scans around count.
   double smooth_s = 0;
 
-  bool empty() const { return poses.empty() && lasers.empty(); }
+  bool empty() const { return mount.empty() && poses.empty() && lasers.empty(); }
 
   /// What a pose needs that was not estimated: that of the two scans around its time, or of the
   /// scans within `smooth_s`, where the given poses lead past its position. Nothing elsewhere:
   /// nothing is extrapolated, but the first and the last correction hold for as long as scans are
   /// apart.
   std::optional<PoseCorrection> at(double time_s, Vec3d position) const;
+
+  /// The pose of a sensor as a recording gives it, corrected: by the mount, and by what `at` has
+  /// for it. Nothing where that has nothing.
+  std::optional<RigidTransform> corrected(const TimedPose& given) const;
 };
 
 /// The `smooth_s` with which the correction of each scan is told best from those of the others.

@@ -60,16 +60,16 @@ void require_one_sensor(const std::vector<LoadedDrive>& drives) {
 }
 
 /// The poses of a sequence's own file, corrected; nothing where a scan is not covered by the
-/// calibration. Poses without a scan that are not covered stay as they are.
+/// calibration. Of poses without a scan that are not covered the mount alone is corrected.
 std::optional<Trajectory> corrected_poses_of(const fs::path& folder,
                                              const Calibration& calibration) {
   Trajectory scans = open_kitti_sequence(folder).trajectory;
   if (!adasplats::apply(calibration, scans)) return std::nullopt;
   Trajectory poses = read_trajectory(folder / "poses.txt");
   for (TimedPose& pose : poses) {
-    const auto correction = calibration.at(pose.time_s, pose.world_from_sensor.translation);
-    if (correction)
-      pose.world_from_sensor = correction->corrected_from_given() * pose.world_from_sensor;
+    const RigidTransform given = pose.world_from_sensor;
+    pose.world_from_sensor =
+        calibration.corrected(pose).value_or(given * calibration.mount.given_from_mounted());
   }
   return poses;
 }
@@ -196,9 +196,12 @@ std::string warning_of(const CalibrationReport& report) {
 CalibrateResult run_calibrate(const CalibrateJob& job, Session& session) {
   for (const auto& input : job.inputs) require_input(input);
   require_folder_apart(job.output, job.inputs);
-  if (!job.calibrate.poses && !job.calibrate.ranges && !job.calibrate.elevations)
-    throw Error(ErrorKind::usage,
-                "nothing to estimate: `poses`, `ranges` and `elevations` are all off");
+  if (!job.calibrate.poses && !job.calibrate.ranges && !job.calibrate.elevations &&
+      !job.calibrate.mount_correction)
+    throw Error(
+        ErrorKind::usage,
+        "nothing to estimate: `poses`, `ranges`, `elevations` and `mount_correction` are all "
+        "off");
   const Stopwatch watch;
   Json content;
   put_settings(job.calibrate, content);

@@ -231,6 +231,7 @@ TEST_F(CalibrateDrive, WhatCannotBeIsSaidBeforeLongWork) {
   const HallDrive drive({});
   CalibrateJob nothing = job(drive, "out");
   nothing.calibrate.poses = nothing.calibrate.ranges = nothing.calibrate.elevations = false;
+  nothing.calibrate.mount_correction = false;
   expect_error(ErrorKind::usage, {"nothing to estimate"},
                [&] { run_calibrate(nothing, session_); });
   expect_error(ErrorKind::usage, {"00"}, [&] { run_calibrate(job(drive, "00/out"), session_); });

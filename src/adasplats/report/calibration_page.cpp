@@ -3,6 +3,7 @@
 #include "adasplats/report/calibration_page.h"
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -50,6 +51,44 @@ void add_tile(Section& section, std::string term, std::string text) {
   if (!text.empty()) section.facts.push_back({std::move(term), std::move(text)});
 }
 
+/// "1.23, 0.00, -4.56 deg"; empty for what is no list of numbers.
+std::string numbers_text(const Json& json, const KeyPath& path, double scale,
+                         const std::string& unit) {
+  std::string text;
+  for (const double value : list_at(json, path)) {
+    if (!std::isfinite(value)) return {};
+    text += (text.empty() ? "" : ", ") + measure_text(scale * value);
+  }
+  return text.empty() ? text : text + " " + unit;
+}
+
+/// What was found of the mount, and what was not.
+void add_mount(const Json& report, Section& section) {
+  const Json* mount = find(report, {"mount"});
+  if (mount == nullptr || !mount->is_object()) return;
+  std::string not_observed;
+  if (const Json* all = find(*mount, {"not_observed"}); all != nullptr && all->is_array())
+    for (const Json& direction : *all)
+      not_observed += (not_observed.empty() ? "" : ", ") + text_at(direction, {"name"});
+  const std::string objection = text_at(*mount, {"objection"});
+  if (!objection.empty()) section.paragraphs.push_back("The mount is as given: " + objection + ".");
+  if (!not_observed.empty())
+    section.paragraphs.push_back("Not observed of the mount, and left as given: " + not_observed +
+                                 ".");
+  if (!objection.empty()) return;
+  const auto with_sd = [](const std::string& text, const std::string& sd) {
+    return sd.empty() ? text : text + "\nstandard deviations " + sd;
+  };
+  add_tile(section, "Boresight: yaw, pitch and roll of the sensor beside the given ones",
+           with_sd(numbers_text(*mount, {"yaw_pitch_roll_deg"}, 1, "deg"),
+                   numbers_text(*mount, {"yaw_pitch_roll_sd_deg"}, 1, "deg")));
+  add_tile(section, "Lever arm: the sensor from where it was given, along its axes",
+           with_sd(numbers_text(*mount, {"shift_m"}, kCentimetres, "cm"),
+                   numbers_text(*mount, {"shift_sd_m"}, kCentimetres, "cm")));
+  if (const std::string alone = text_at(*mount, {"alone_because"}); !alone.empty())
+    section.paragraphs.push_back("Nothing but the mount is corrected: " + alone + ".");
+}
+
 Section figures_section(const Json& report) {
   Section section{.id = "figures", .title = "What was found"};
   if (const std::string objection = text_at(report, {"objection"}); !objection.empty())
@@ -71,6 +110,7 @@ Section figures_section(const Json& report) {
   add_tile(section, "Largest correction of a pose",
            in_unit(figure("largest_shift_m"), kCentimetres, "cm") + "\n" +
                in_unit(figure("largest_rotation_rad"), kDegreesPerRadian, "deg"));
+  add_mount(report, section);
   add_tile(section, "Offsets of lasers (RMS)",
            in_unit(figure("range_offset_rms_m"), kMillimetres, "mm") + "\n" +
                in_unit(figure("elevation_offset_rms_rad"), kDegreesPerRadian, "deg"));

@@ -35,6 +35,21 @@ TEST(CalibrationPage, HasAllPlotsAndNothingUnescaped) {
   EXPECT_EQ(html.find("nan"), std::string::npos);
 }
 
+TEST(CalibrationPage, TellsTheMountAndWhatIsNotObservedOfIt) {
+  Json report = sample_report();
+  report["mount"] = Json::parse(R"({"applied": true, "yaw_pitch_roll_deg": [5, 0, -0.25],
+    "shift_m": [0.5, 0, 0], "yaw_pitch_roll_sd_deg": [0.01, 0.01, 0.01],
+    "shift_sd_m": [0.01, 0.01, 0], "not_observed": [{"name": "lever arm along z"}]})");
+  const std::string html = calibration_html(report);
+  for (const char* text : {"Boresight", "5.00, 0, -0.250 deg", "Lever arm", "50.0, 0, 0 cm",
+                           "left as given: lever arm along z."})
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+  report["mount"]["objection"] = "it is not clear";
+  const std::string refused = calibration_html(report);
+  EXPECT_NE(refused.find("The mount is as given: it is not clear."), std::string::npos);
+  EXPECT_EQ(refused.find("Boresight"), std::string::npos);
+}
+
 TEST(CalibrationPage, SaysWhyNothingIsCorrected) {
   const std::string html =
       calibration_html({{"applied", false}, {"objection", "too few planes"}, {"planes", 3}});
@@ -46,6 +61,7 @@ TEST(CalibrationPage, TakesWhateverItIsGiven) {
   const Json wrong[] = {nullptr,
                         3,
                         Json::array(),
+                        {{"mount", {{"shift_m", {"x"}}, {"not_observed", 3}}}},
                         {{"scans", {{"time_s", {1, "x", nullptr}}}}},
                         {{"residuals", {{"bin_m", 1}, {"given", Json::array()}}}}};
   for (const Json& report : wrong)

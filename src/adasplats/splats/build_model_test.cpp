@@ -281,11 +281,14 @@ TEST(SplatModelFile, KeepsTheCalibration) {
   model.calibration.poses = {{1.5, {448000.1, 2, 3}, {1e-3, 0, 0}, {0.01, 0, 1.0 / 3}},
                              {1.6, {448001.1, 2, 3}, {2e-3, 0, 0}, {0.02, 0, 0}}};
   model.calibration.smooth_s = 0.4;
+  model.calibration.mount = {{0.08, 0, -1.0 / 3}, {0.5, -0.25, 0}};
   save_model(path, model);
   const Calibration read = load_model(path).calibration;
   EXPECT_EQ(read.lasers.range_m, model.calibration.lasers.range_m);
   EXPECT_EQ(read.lasers.elevation_rad, model.calibration.lasers.elevation_rad);
   EXPECT_EQ(read.smooth_s, 0.4);
+  EXPECT_EQ(read.mount.rotation_rad, model.calibration.mount.rotation_rad);
+  EXPECT_EQ(read.mount.shift_m, model.calibration.mount.shift_m);
   ASSERT_EQ(read.poses.size(), 2U);
   EXPECT_EQ(read.poses[0].time_s, 1.5);
   EXPECT_EQ(read.poses[0].position, model.calibration.poses[0].position);
@@ -304,6 +307,10 @@ TEST(SplatModelFile, KeepsTheCalibration) {
   EXPECT_THROW(load_model(path), Error);
   with("calibration_pose 1.5 ", "calibration_pose nan ");
   EXPECT_THROW(load_model(path), Error);
+  with("calibration_mount 0.08 ", "calibration_mount ");
+  EXPECT_THROW(load_model(path), Error);
+  with("calibration_mount ", "calibration_of_old_mounts ");
+  EXPECT_TRUE(load_model(path).calibration.mount.empty());
   std::filesystem::remove(path);
 }
 

@@ -2,9 +2,50 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/model/calibration_json.h"
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "adasplats/core/constants.h"
+
 namespace adasplats {
+namespace {
+
+using MountJson = nlohmann::ordered_json;
+
+/// Yaw, pitch and roll, as rotation_from_yaw_pitch_roll() takes them, in degrees.
+MountJson yaw_pitch_roll_deg(const Mat3d& r) {
+  return {std::atan2(r.rows[1].x, r.rows[0].x) / kDegree,
+          std::asin(std::clamp(-r.rows[2].x, -1.0, 1.0)) / kDegree,
+          std::atan2(r.rows[2].y, r.rows[2].z) / kDegree};
+}
+
+MountJson mount_json(const MountReport& report) {
+  const MountEstimate& found = report.found;
+  MountJson json;
+  json["applied"] = report.objection.empty();
+  if (!report.objection.empty()) json["objection"] = report.objection;
+  if (!report.alone_because.empty()) json["alone_because"] = report.alone_because;
+  json["planes"] = found.planes;
+  json["yaw_pitch_roll_deg"] = yaw_pitch_roll_deg(found.mount.given_from_mounted().rotation);
+  const Vec3d shift = found.mount.shift_m, turn_sd = found.rotation_sd_rad;
+  json["shift_m"] = {shift.x, shift.y, shift.z};
+  json["yaw_pitch_roll_sd_deg"] = {turn_sd.z / kDegree, turn_sd.y / kDegree, turn_sd.x / kDegree};
+  json["shift_sd_m"] = {found.shift_sd_m.x, found.shift_sd_m.y, found.shift_sd_m.z};
+  json["not_observed"] = MountJson::array();
+  for (const MountDirection& out : found.not_observed)
+    json["not_observed"].push_back(
+        {{"name", out.name},
+         {"turning", {out.turning.x, out.turning.y, out.turning.z}},
+         {"shifting", {out.shifting.x, out.shifting.y, out.shifting.z}}});
+  if (report.given_m > 0) {
+    json["residual_given_m"] = report.given_m;
+    json["residual_mounted_m"] = report.mounted_m;
+  }
+  return json;
+}
+
+}  // namespace
 
 nlohmann::ordered_json calibration_json(const CalibrationReport& report,
                                         const Calibration& calibration) {
@@ -21,6 +62,7 @@ nlohmann::ordered_json calibration_json(const CalibrationReport& report,
   json["smooth_s"] = calibration.smooth_s;
   json["range_offset_rms_m"] = sizes.range_rms_m;
   json["elevation_offset_rms_rad"] = sizes.elevation_rms_rad;
+  if (report.mount) json["mount"] = mount_json(*report.mount);
   return json;
 }
 

@@ -27,6 +27,7 @@ constexpr std::array<const char*, 4> kResponseComments = {
     "adasplats.response_cosines ", "adasplats.response_cosine_gains "};
 constexpr const char* kRangeOffsetsComment = "adasplats.calibration_range_offsets_m ";
 constexpr const char* kElevationOffsetsComment = "adasplats.calibration_elevation_offsets_rad ";
+constexpr const char* kMountComment = "adasplats.calibration_mount ";
 constexpr const char* kSmoothComment = "adasplats.calibration_smooth_s ";
 constexpr const char* kPoseComment = "adasplats.calibration_pose ";
 constexpr const char* kFormatComment = "adasplats.splats 1";
@@ -124,6 +125,10 @@ void add_calibration_comments(const Calibration& calibration, std::vector<std::s
     comments.push_back(comment_of(kRangeOffsetsComment, calibration.lasers.range_m));
     comments.push_back(comment_of(kElevationOffsetsComment, calibration.lasers.elevation_rad));
   }
+  if (!calibration.mount.empty()) {
+    const auto& [r, s] = calibration.mount;
+    comments.push_back(comment_of(kMountComment, std::array{r.x, r.y, r.z, s.x, s.y, s.z}));
+  }
   if (!calibration.poses.empty())
     comments.push_back(comment_of(kSmoothComment, std::array{calibration.smooth_s}));
   for (const PoseCorrection& pose : calibration.poses) {
@@ -157,6 +162,12 @@ Calibration calibration_of(const Table& table, const std::filesystem::path& path
                                          std::to_string(lasers.range_m.size()) + " ranges and " +
                                          std::to_string(lasers.elevation_rad.size()) +
                                          " elevations");
+  const std::vector<double> mount = calibration_numbers(path, comment_value(table, kMountComment));
+  if (!mount.empty() && mount.size() != 6)
+    throw data_error({path, {}, {}}, "the mount of the calibration has " +
+                                         std::to_string(mount.size()) + " numbers, expected 6");
+  if (!mount.empty())
+    calibration.mount = {{mount[0], mount[1], mount[2]}, {mount[3], mount[4], mount[5]}};
   const std::vector<double> smooth =
       calibration_numbers(path, comment_value(table, kSmoothComment));
   if (smooth.size() > 1 || (!smooth.empty() && smooth.front() < 0))

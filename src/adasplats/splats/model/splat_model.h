@@ -41,8 +41,9 @@ std::pair<Vec3f, Vec3f> bounds(const SplatModel& model);
 /// doubles in world coordinates where the origin is not zero). The rest is in comments
 /// "adasplats.KEY VALUE"; the response in "response_ranges_m", "response_range_gains",
 /// "response_cosines" and "response_cosine_gains"; the calibration in
-/// "calibration_range_offsets_m", "calibration_elevation_offsets_rad", "calibration_smooth_s" and,
-/// one a scan, "calibration_pose": time, given position, rotation vector, shift.
+/// "calibration_range_offsets_m", "calibration_elevation_offsets_rad", "calibration_mount"
+/// (rotation vector, shift), "calibration_smooth_s" and, one a scan, "calibration_pose": time,
+/// given position, rotation vector, shift.
 void save_model(const std::filesystem::path& path, const SplatModel& model);
 
 /// Reads what save_model wrote, and any PLY with x y z nx ny nz radius. Errors: data (no radius
