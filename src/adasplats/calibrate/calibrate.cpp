@@ -198,6 +198,10 @@ class Calibrator {
     // Odd: points of a laser may lie a power of two apart.
     const std::size_t stride = std::max<std::size_t>(1, chosen_.size() / wanted) | 1;
     MountReport report;
+    if (places_.size() < mount.least_scans) {
+      report.objection = "too few scans (" + std::to_string(places_.size()) + ")";
+      return report;
+    }
     report.found = search_mount(mount_points(stride), cloud_.scan_poses, mount, executor_);
     report.objection = objection_to(report.found);
     if (!report.objection.empty()) return report;

@@ -145,10 +145,7 @@ class MountSearch {
       const double weight = std::max(eigen.values[k], 0.0);
       const double share = weight / std::max(form_of(direction, sums_.full, direction), 1e-12);
       const double sd_m = std::sqrt(form_of(direction, scatter, direction)) / weight;
-      const double size_m = std::fabs(product_of(direction, unknowns()));
-      const bool is_clear =
-          sd_m <= options_.most_sd_m || size_m >= options_.least_deviations * sd_m;
-      if (share >= options_.least_share && is_clear) continue;
+      if (share >= options_.least_share && sd_m <= options_.most_sd_m) continue;
       unobserved.push_back(direction);
     }
     left_out_.insert(left_out_.end(), unobserved.begin(), unobserved.end());

@@ -29,11 +29,12 @@ struct MountOptions {
   double first_width_m = 0.15, last_width_m = 0.03;
   double most_weight = 200;       ///< of a plane, in points
   std::size_t most_points = 400;  ///< of a plane that are looked at
-  /// Not observed is what the planes hold by less than this share of their weight, and what they
-  /// tell to no better than this standard deviation while it is not wrong by `least_deviations` of
-  /// it.
+  /// What the planes hold by less than this share of their weight, or to no better than this
+  /// standard deviation, is not observed.
   double least_share = 0.002, most_sd_m = 0.02;
-  std::size_t least_planes = 100;
+  /// With fewer scans nothing is estimated: deviations of six unknowns are told by the disagreement
+  /// of twice as many parts or more.
+  std::size_t least_planes = 100, least_scans = 12;
   /// What the poses of single scans make up for: half of what they are found from. And how often
   /// its standard deviation a correction has to be.
   double least_rotation_rad = 0.0044, least_shift_m = 0.1, least_deviations = 5;

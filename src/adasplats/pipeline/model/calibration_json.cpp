@@ -26,6 +26,7 @@ MountJson mount_json(const MountReport& report) {
   json["applied"] = report.objection.empty();
   if (!report.objection.empty()) json["objection"] = report.objection;
   if (!report.alone_because.empty()) json["alone_because"] = report.alone_because;
+  if (found.planes == 0) return json;
   json["planes"] = found.planes;
   json["yaw_pitch_roll_deg"] = yaw_pitch_roll_deg(found.mount.given_from_mounted().rotation);
   const Vec3d shift = found.mount.shift_m, turn_sd = found.rotation_sd_rad;
