@@ -62,13 +62,16 @@ void cast_nearest(const Disk* disks, std::size_t count, const MeasuredPoints& po
 struct EvidenceOfRay {
   const Disk* disks;
   EvidenceView counts;
+  EvidenceOptions options;
   Ray ray;
-  float free_until;
+  float range_m;
 
   /// No hit ends the search.
   __device__ float reach(float t_max) const { return t_max; }
   __device__ void offer(float t, std::uint32_t disk) const {
-    auto* const rings = t < free_until ? counts.contradicted : counts.confirmed;
+    const RayWord word = word_of_ray(disks[disk], ray, t, range_m, options);
+    if (word == RayWord::nothing) return;
+    auto* const rings = word == RayWord::confirms ? counts.confirmed : counts.contradicted;
     atomicAdd(rings + disk * EvidenceView::kBins + evidence_ring(disks[disk], ray, t), 1U);
   }
 };
@@ -124,13 +127,14 @@ DeviceEvidence DeviceRays::evidence(const Disk* disks, std::size_t count,
   evidence.contradicted.fill_bytes(0);
   const WideTree<LeafDisk> tree = build_tree(disks, count, TreeOptions{}, stream_);
   for_each(taken_of(numbers_.size(), options.phase, options.stride), stream_, "count rays",
-           [disks, counts = evidence.view(), points = points_, options, tree = tree.view(),
+           [disks, counts = evidence.view(), points = points_, options,
+            beyond_m = options.most_margin_m(), tree = tree.view(),
             numbers = numbers_.data()] __device__(std::uint64_t k) {
              const std::uint32_t point = numbers[options.phase + k * options.stride];
-             const Ray ray =
-                 measured_ray(points.sensors[point], points.positions[point], options.margin_m);
+             const Vec3f sensor = points.sensors[point], end = points.positions[point];
+             const Ray ray = measured_ray(sensor, end, beyond_m);
              if (!castable(ray)) return;
-             EvidenceOfRay of_ray = {disks, counts, ray, ray.t_max - 2 * options.margin_m};
+             EvidenceOfRay of_ray = {disks, counts, options, ray, length(end - sensor)};
              walk<kPostponeInCheck>(tree, ray, box_ray(ray), of_ray);
            });
   return evidence;

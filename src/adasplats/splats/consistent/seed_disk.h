@@ -92,11 +92,15 @@ ADASPLATS_HD inline Vec3f seed_normal(Vec3f normal, const MeasuredPoints& points
 }
 
 /// As large as the cells are apart, but no larger than beams are from one another; 0 for a cell far
-/// from all others.
+/// from all others. One ring alone on a road is a line of cells, in which the 7th neighbour is the
+/// fourth to one side: five sides away at most.
 ADASPLATS_HD inline float seed_radius(double spacing_m, double largest_m,
                                       const ConsistentOptions& options) {
   const double wanted_m = options.seed_spacing * spacing_m;
-  if (!(wanted_m > 0) || wanted_m > options.isolated * largest_m) return 0;
+  constexpr double kSidesInLine = 5;
+  if (!(wanted_m > 0)) return 0;
+  if (wanted_m > options.isolated * largest_m && spacing_m > kSidesInLine * options.cell_m)
+    return 0;
   return static_cast<float>(
       std::clamp(wanted_m, options.least_radius_m, std::max(options.least_radius_m, largest_m)));
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "adasplats/splats/consistent/seed_disk.h"
+
 namespace adasplats {
 namespace {
 
@@ -22,6 +24,17 @@ TEST(SixteenthOfTurn, IsThatOfTheAngle) {
           << angle;
     }
   }
+}
+
+// One ring on a road near the sensor: its cells have others on two sides alone, 5 cm apart, where
+// beams are 1 cm from one another.
+TEST(SeedRadius, ACellInALineIsNotIsolated) {
+  const ConsistentOptions options;
+  ASSERT_EQ(options.cell_m, 0.05);
+  EXPECT_FLOAT_EQ(seed_radius(0.2, 0.03, options), 0.03F);
+  EXPECT_FLOAT_EQ(seed_radius(0.249, 0.03, options), 0.03F);
+  EXPECT_EQ(seed_radius(0.3, 0.03, options), 0);
+  EXPECT_FLOAT_EQ(seed_radius(0.3, 0.15, options), 0.15F);
 }
 
 // Oracle: symmetry. On lattices seeds stand exactly on axes and diagonals, which begin a sector.

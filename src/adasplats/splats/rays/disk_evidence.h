@@ -12,6 +12,38 @@
 
 namespace adasplats {
 
+struct EvidenceOptions {  // numbers: docs/fidelity.md
+  /// A ray ends at a disk if it crosses it this near to its end, as the noise of ranges has it...
+  float range_margin_m = 0.04F;
+  /// ...and as much farther as puts its end this far off the disk's plane: a disk that stands or
+  /// leans a little wrong is crossed far from there by grazing rays.
+  float height_margin_m = 0.01F;
+  float least_cosine = 0.1F;  ///< rays that graze more have no wider margins
+  std::uint32_t stride = 4;   ///< every n-th ray
+  std::uint32_t phase = 0;    ///< begins with this one
+
+  /// How far behind its end a ray may cross a disk at which it ends.
+  float most_margin_m() const { return range_margin_m + height_margin_m / least_cosine; }
+};
+
+/// How near to its end a ray in this direction must cross a disk to end at it.
+ADASPLATS_HD inline float end_margin_m(const Disk& disk, Vec3f direction,
+                                       const EvidenceOptions& options) {
+  const float cosine = std::fabs(dot(disk.normal, direction));
+  return options.range_margin_m + options.height_margin_m / std::max(options.least_cosine, cosine);
+}
+
+/// What a ray that crosses a disk says of it.
+enum class RayWord : std::uint8_t { nothing, confirms, contradicts };
+
+/// Of a ray that crosses a disk at `hit_t` and ended at `range_m`.
+ADASPLATS_HD inline RayWord word_of_ray(const Disk& disk, const Ray& ray, float hit_t,
+                                        float range_m, const EvidenceOptions& options) {
+  const float margin_m = end_margin_m(disk, ray.direction, options);
+  if (hit_t > range_m + margin_m) return RayWord::nothing;
+  return hit_t < range_m - margin_m ? RayWord::contradicts : RayWord::confirms;
+}
+
 /// What the rays say of one disk: counts of its rings of equal area, from the middle outward.
 struct DiskEvidence {
   static constexpr int kBins = 16;

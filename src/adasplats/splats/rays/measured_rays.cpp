@@ -54,16 +54,20 @@ RayEvidence collect_evidence(std::span<const Disk> disks, const MeasuredRays& ra
   evidence.confirmed.resize(disks.size() * RayEvidence::kBins);
   evidence.contradicted.resize(disks.size() * RayEvidence::kBins);
   const PresentDisks present(disks, executor);
-  const auto count = [&](std::size_t, const Ray& ray, std::span<const Hit> hits) {
-    const float free_until = ray.t_max - 2 * options.margin_m;
+  const float beyond_m = options.most_margin_m();
+  const auto count = [&](std::size_t i, const Ray& ray, std::span<const Hit> hits) {
+    const float range_m = rays.range_m(i);
     for (const Hit& hit : hits) {
-      const std::size_t bin = evidence_ring(disks[hit.primitive], ray, hit.t);
-      auto& counts = hit.t < free_until ? evidence.contradicted : evidence.confirmed;
+      const Disk& disk = disks[hit.primitive];
+      const RayWord word = word_of_ray(disk, ray, hit.t, range_m, options);
+      if (word == RayWord::nothing) continue;
+      const std::size_t bin = evidence_ring(disk, ray, hit.t);
+      auto& counts = word == RayWord::confirms ? evidence.confirmed : evidence.contradicted;
       count_one(counts[static_cast<std::size_t>(hit.primitive) * RayEvidence::kBins + bin]);
     }
   };
-  present.cast(rays, {options.phase, options.stride, options.margin_m, RayCasting::Hits::all},
-               executor, count);
+  present.cast(rays, {options.phase, options.stride, beyond_m, RayCasting::Hits::all}, executor,
+               count);
   return evidence;
 }
 

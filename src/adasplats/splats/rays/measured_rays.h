@@ -46,12 +46,6 @@ struct RayEvidence {
   EvidenceView view() { return {confirmed.data(), contradicted.data()}; }
 };
 
-struct EvidenceOptions {     // numbers: docs/fidelity.md
-  float margin_m = 0.1F;     ///< a ray that ends this near to where it crosses a disk ends at it
-  std::uint32_t stride = 4;  ///< every n-th ray
-  std::uint32_t phase = 0;   ///< begins with this one
-};
-
 DiskEvidence evidence_of(const RayEvidence& evidence, std::size_t disk);
 
 /// Counts, for every disk that `rays` cross, however many they are; disks with no radius are not
