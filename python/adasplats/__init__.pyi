@@ -92,6 +92,7 @@ def model(
     balance_rounds: int = 4,
     strict_rounds: int = 5,
     settle_rounds: int = 2,
+    empty_beams: bool = True,
     fill: bool = True,
     remove: Literal["none", "moving", "movable"] = "movable",
     reflectance: bool = True,

@@ -33,7 +33,11 @@ std::string figures_of(const BuildReport& built) {
   const std::string seeds = grouped(report.cells) + " cells, " + grouped(report.seeds) + " seeds";
   if (!report.checked) return seeds + ", not checked against measured rays";
   return seeds + ", " + grouped(report.seeds_removed) + " of them contradicted by " +
-         grouped(report.rays) + " measured rays and removed, " + grouped(report.splats_filled) +
+         grouped(report.rays) + " measured rays" +
+         (report.empty_beams == 0
+              ? std::string()
+              : " and " + grouped(report.empty_beams) + " beams without return") +
+         " and removed, " + grouped(report.splats_filled) +
          " splats put back where rays fell through";
 }
 

@@ -209,6 +209,11 @@ bool apply(const Calibration& calibration, PointCloud& cloud, const Executor& ex
       cloud.sensor_positions[i] = vec_cast<float>(corrections[scan] * sensor);
     }
   });
+  for (EmptyBeam& beam : cloud.empty_beams) {
+    const RigidTransform& correction = corrections[beam.scan];
+    beam.origin = vec_cast<float>(correction * vec_cast<double>(beam.origin));
+    beam.direction = vec_cast<float>(correction.rotation * vec_cast<double>(beam.direction));
+  }
   return true;
 }
 

@@ -86,6 +86,7 @@ PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indice
   PointCloud result;
   result.origin = cloud.origin;
   result.scan_poses = cloud.scan_poses;
+  result.empty_beams = cloud.empty_beams;
   result.positions = gathered(cloud.positions, indices);
   for_each_attribute([&](const auto& attribute) {
     attribute.of(result) = gathered(attribute.of(cloud), indices);
@@ -106,6 +107,7 @@ void append(PointCloud& cloud, PointCloud&& other) {
     cloud.scan_poses = {};
   else
     append_values(cloud.scan_poses, std::move(other.scan_poses));
+  append_values(cloud.empty_beams, std::move(other.empty_beams));
   append_values(cloud.positions, std::move(other.positions));
   for_each_attribute([&](const auto& attribute) {
     append_values(attribute.of(cloud), std::move(attribute.of(other)));

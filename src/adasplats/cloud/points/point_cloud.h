@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/cloud/points/empty_beam.h"
 #include "adasplats/cloud/points/laser_offsets.h"
 #include "adasplats/cloud/points/origin_kind.h"
 #include "adasplats/cloud/poses/trajectory.h"
@@ -30,6 +31,8 @@ struct PointCloud {
   std::vector<std::uint16_t> lasers;  ///< of the sensor, topmost 0; kNoLaser where it is not known
   /// Of the scans by their numbers, world_from_sensor; empty: not known. No attribute of points.
   Trajectory scan_poses;
+  /// Of the scans, where they were looked for (find_empty_beams()). No attribute of points.
+  std::vector<EmptyBeam> empty_beams;
 
   std::size_t size() const { return positions.size(); }
   bool empty() const { return positions.empty(); }
@@ -96,7 +99,7 @@ OriginCounts count_origins(const PointCloud& cloud);
 /// known.
 std::string describe_origins(const OriginCounts& counts);
 
-/// The points of `cloud` in the order of `indices`, every attribute along.
+/// The points of `cloud` in the order of `indices`, every attribute along; empty beams stay.
 PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices);
 
 /// Adds `other` behind `cloud`. Both need the same origin and the same set of attributes

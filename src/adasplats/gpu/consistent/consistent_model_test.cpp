@@ -167,6 +167,17 @@ TEST_F(ConsistentOnGpu, EveryRayAndAllItsDisksCount) {
   EXPECT_GT(compare(scanned_room(), options), 1000U);
 }
 
+// Every third beam is said to have returned nothing: some of them contradict what others bear out.
+TEST_F(ConsistentOnGpu, BeamsWithoutReturnCountTheSame) {
+  PointCloud cloud = scanned_room();
+  const std::size_t without = compare(cloud, {});
+  for (std::size_t i = 0; i < cloud.size(); i += 3) {
+    const Vec3f sensor = cloud.sensor_positions[i];
+    cloud.empty_beams.push_back({sensor, normalized(cloud.positions[i] - sensor), 0});
+  }
+  EXPECT_NE(compare(cloud, {}), without);
+}
+
 TEST_F(ConsistentOnGpu, DuplicatesAndOtherCellsAreTheSame) {
   PointCloud cloud = scanned_room();
   for (std::size_t i = 0; i < 3000; ++i) cloud.positions[i + 1000] = cloud.positions[i % 7];

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 #include "adasplats/gpu/base/launch.cuh"
@@ -76,6 +77,26 @@ struct EvidenceOfRay {
   }
 };
 
+/// Counts the disks of `tree` that the rays `numbers` of `points` cross.
+void count_rays(const MeasuredPoints& points, const DeviceBuffer<std::uint32_t>& numbers,
+                RayEnds ends, const Disk* disks, const WideTree<LeafDisk>& tree,
+                const EvidenceOptions& options, EvidenceView counts, cudaStream_t stream) {
+  const bool nowhere = ends == RayEnds::nowhere;
+  const float beyond_m = nowhere ? 0 : options.most_margin_m();
+  for_each(taken_of(numbers.size(), options.phase, options.stride), stream, "count rays",
+           [disks, counts, points, options, nowhere, beyond_m, tree = tree.view(),
+            numbers = numbers.data()] __device__(std::uint64_t k) {
+             const std::uint32_t point = numbers[options.phase + k * options.stride];
+             const Vec3f sensor = points.sensors[point], end = points.positions[point];
+             const Ray ray = measured_ray(sensor, end, beyond_m);
+             if (!castable(ray)) return;
+             const float range_m =
+                 nowhere ? std::numeric_limits<float>::infinity() : length(end - sensor);
+             EvidenceOfRay of_ray = {disks, counts, options, ray, range_m};
+             walk<kPostponeInCheck>(tree, ray, box_ray(ray), of_ray);
+           });
+}
+
 /// Whether any disk has a radius. Waits for the stream.
 bool any_present(const Disk* disks, std::size_t count, cudaStream_t stream) {
   DeviceBuffer<std::uint32_t> found(1, stream);
@@ -112,31 +133,25 @@ DeviceBuffer<std::uint32_t> points_of_rays(const MeasuredPoints& points, std::si
 }  // namespace
 
 DeviceRays::DeviceRays(const MeasuredPoints& points, std::size_t count, double least_range_m,
-                       cudaStream_t stream)
+                       cudaStream_t stream, RayEnds ends)
     : points_(points),
       point_count_(count),
       stream_(stream),
+      ends_(ends),
       numbers_(points_of_rays(points, count, least_range_m, stream)) {}
 
 DeviceEvidence DeviceRays::evidence(const Disk* disks, std::size_t count,
-                                    const EvidenceOptions& options) const {
+                                    const EvidenceOptions& options, const DeviceRays* empty) const {
   const std::size_t bins = count * EvidenceView::kBins;
   DeviceEvidence evidence{DeviceBuffer<std::uint32_t>(bins, stream_),
                           DeviceBuffer<std::uint32_t>(bins, stream_)};
   evidence.confirmed.fill_bytes(0);
   evidence.contradicted.fill_bytes(0);
   const WideTree<LeafDisk> tree = build_tree(disks, count, TreeOptions{}, stream_);
-  for_each(taken_of(numbers_.size(), options.phase, options.stride), stream_, "count rays",
-           [disks, counts = evidence.view(), points = points_, options,
-            beyond_m = options.most_margin_m(), tree = tree.view(),
-            numbers = numbers_.data()] __device__(std::uint64_t k) {
-             const std::uint32_t point = numbers[options.phase + k * options.stride];
-             const Vec3f sensor = points.sensors[point], end = points.positions[point];
-             const Ray ray = measured_ray(sensor, end, beyond_m);
-             if (!castable(ray)) return;
-             EvidenceOfRay of_ray = {disks, counts, options, ray, length(end - sensor)};
-             walk<kPostponeInCheck>(tree, ray, box_ray(ray), of_ray);
-           });
+  count_rays(points_, numbers_, ends_, disks, tree, options, evidence.view(), stream_);
+  if (empty != nullptr)
+    count_rays(empty->points_, empty->numbers_, empty->ends_, disks, tree, options, evidence.view(),
+               stream_);
   return evidence;
 }
 

@@ -30,15 +30,15 @@ class DeviceRays {
   /// `points` (device memory, with sensors) must outlive the rays. Points nearer to their sensor
   /// than `least_range_m` have no ray. Waits for the stream.
   DeviceRays(const MeasuredPoints& points, std::size_t count, double least_range_m,
-             cudaStream_t stream);
+             cudaStream_t stream, RayEnds ends = RayEnds::at_surfaces);
 
   std::size_t size() const { return numbers_.size(); }
   /// The rays' points, in the order of the rays.
   const DeviceBuffer<std::uint32_t>& points() const { return numbers_; }
 
   /// collect_evidence() on disks [0, count).
-  DeviceEvidence evidence(const Disk* disks, std::size_t count,
-                          const EvidenceOptions& options) const;
+  DeviceEvidence evidence(const Disk* disks, std::size_t count, const EvidenceOptions& options,
+                          const DeviceRays* empty = nullptr) const;
   /// What every disk's rays say of its place: one sum a disk.
   DeviceBuffer<ShiftSums> shifts(const Disk* disks, std::size_t count,
                                  const SettleOptions& options) const;
@@ -50,6 +50,7 @@ class DeviceRays {
   MeasuredPoints points_;
   std::size_t point_count_;
   cudaStream_t stream_;
+  RayEnds ends_;
   DeviceBuffer<std::uint32_t> numbers_;
 };
 

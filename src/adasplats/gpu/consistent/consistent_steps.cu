@@ -46,13 +46,13 @@ class ConsistentOnGpu : public GpuPlace {
                         const DeviceBuffer<float>& units_m) const {
     return gpu::median_spacing(planes, units_m, stream());
   }
-  DeviceRays rays(const DeviceCloud& cloud, const MeasuredPoints& points,
-                  double least_range_m) const {
-    return {points, cloud.size(), least_range_m, stream()};
+  DeviceRays rays(const DeviceCloud& cloud, const MeasuredPoints& points, double least_range_m,
+                  RayEnds ends) const {
+    return {points, cloud.size(), least_range_m, stream(), ends};
   }
   DeviceEvidence evidence(const DeviceBuffer<Disk>& disks, const DeviceRays& rays,
-                          const EvidenceOptions& options) const {
-    return rays.evidence(disks.data(), disks.size(), options);
+                          const DeviceRays* empty, const EvidenceOptions& options) const {
+    return rays.evidence(disks.data(), disks.size(), options, empty);
   }
   DeviceBuffer<ShiftSums> shifts(const DeviceBuffer<Disk>& disks, const DeviceRays& rays,
                                  const SettleOptions& options) const {

@@ -207,6 +207,7 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
     json["cells"] = built.consistent->cells;
     json["seeds"] = built.consistent->seeds;
     json["rays"] = built.consistent->rays;
+    json["empty_beams"] = built.consistent->empty_beams;
     json["seeds_removed"] = built.consistent->seeds_removed;
     json["splats_filled"] = built.consistent->splats_filled;
   } else {

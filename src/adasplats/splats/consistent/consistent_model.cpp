@@ -63,6 +63,7 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
     steps.order_rays(options);
     for (int i = 0; i < options.balance_rounds; ++i) steps.balance_seeds(i, options);
     report.rays = steps.counts().rays;
+    report.empty_beams = steps.counts().empty;
     report.seeds_removed = report.seeds - steps.counts().seeds;
   }
   begin_step("cover", 1);

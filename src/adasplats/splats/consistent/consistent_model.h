@@ -42,8 +42,9 @@ struct ConsistentOptions {
   double most_contradicted = 0.05;  ///< of the rays that confirm a disk that was grown
   int settle_rounds = 2;
   SettleOptions settle;
-  bool fill = true;        ///< where rays fall between splats, seeds are put back...
-  float missed_m = 0.15F;  ///< ...if there is nothing up to so far behind the rays' ends
+  bool empty_beams = true;  ///< that are known say what is free
+  bool fill = true;         ///< where rays fall between splats, seeds are put back...
+  float missed_m = 0.15F;   ///< ...if there is nothing up to so far behind the rays' ends
 
   double smallest_cell_m() const { return small_cell_m > 0 ? small_cell_m : cell_m; }
   /// Cells are split up to `split_scale`: planes at larger scales than the first that decides need
@@ -96,6 +97,11 @@ void visit_settings(ConsistentOptions& consistent, Visit&& visit) {
                 .group = kGroup,
                 .least = 0},
         consistent.settle_rounds);
+  visit(Setting{.name = "empty_beams",
+                .help = "Beams that returned nothing say what is free, too, where a drive shows "
+                        "which did",
+                .group = kGroup},
+        consistent.empty_beams);
   visit(Setting{.name = "fill",
                 .help = "Put small splats where measured rays fall through",
                 .group = kGroup},
@@ -111,6 +117,7 @@ struct ConsistentReport {
   std::size_t cells = 0;          ///< that the points were fused in
   std::size_t seeds = 0;          ///< of these cells, those with a disk to begin with
   std::size_t rays = 0;           ///< measured ones, where they judged the disks
+  std::size_t empty_beams = 0;    ///< that did so, too
   std::size_t seeds_removed = 0;  ///< that more rays contradict than confirm
   std::size_t splats_filled = 0;  ///< put back where rays fell between disks
 };

@@ -156,6 +156,55 @@ TEST(ConsistentModel, WhatLaterRaysPassThroughLeavesNextToNoSplat) {
   EXPECT_TRUE(built.warnings.texts.empty());
 }
 
+/// A wall, seen up to its upper edge every 10 cm from 8 m away, by 12 scans that stand apart.
+PointCloud scanned_wall(bool with_empty_beams) {
+  PointCloud cloud;
+  for (int scan = 0; scan < 12; ++scan) {
+    const Vec3f sensor{8, 0.31F * static_cast<float>(scan), 0};
+    for (int column = -20; column <= 20; ++column) {
+      for (int row = 0; row < 40; ++row) {
+        const auto phase = 0.1F * static_cast<float>(scan % 4) / 4;
+        const Vec3f end{0, 0.1F * static_cast<float>(column) + phase,
+                        0.1F * static_cast<float>(row) + phase};
+        if (end.z < 2) {
+          cloud.positions.push_back(end);
+          cloud.sensor_positions.push_back(sensor);
+          cloud.scan_indices.push_back(static_cast<std::uint32_t>(scan));
+        } else if (with_empty_beams) {
+          cloud.empty_beams.push_back(
+              {sensor, normalized(end - sensor), static_cast<std::uint32_t>(scan)});
+        }
+      }
+    }
+  }
+  return cloud;
+}
+
+// Nothing was measured above the edge, so nothing but empty beams says how far disks may reach.
+TEST(ConsistentModel, BeamsWithoutReturnEndDisksAtEdges) {
+  const auto overhang_m2 = [](bool with_empty_beams) {
+    const Built built = build(scanned_wall(with_empty_beams));
+    EXPECT_EQ(built.report.consistent->empty_beams > 0, with_empty_beams);
+    const std::unique_ptr<Tracer> tracer = make_cpu_tracer(built.model.view(), Executor(2));
+    // Of a grid of rays from the front.
+    std::vector<Ray> rays;
+    for (int i = 0; i < 100; ++i)
+      for (int k = 0; k < 100; ++k)
+        rays.push_back(
+            {{5, -1.5F + 0.03F * static_cast<float>(i), 2.01F + 0.01F * static_cast<float>(k)},
+             0,
+             {-1, 0, 0},
+             10});
+    std::vector<Hit> hits(rays.size());
+    tracer->nearest_hits(rays, 1, hits, Executor(2));
+    return 0.0003 * static_cast<double>(
+                        std::ranges::count_if(hits, [](const Hit& hit) { return hit.valid(); }));
+  };
+  const double without = overhang_m2(false), with = overhang_m2(true);
+  EXPECT_GT(without, 0.05);
+  EXPECT_LT(with, 0.4 * without);
+}
+
 TEST(ConsistentModel, SplatsFaceTheSensor) {
   // All sensors are inside the room, outside the pillar. Exact for the walls; at edges normals lie
   // between those of two faces.

@@ -46,13 +46,13 @@ class ConsistentOnCpu : public CpuPlace {
                                  const AdaptivePlaneOptions& options) const {
     return adaptive_planes(cells, index, options, executor());
   }
-  MeasuredRays rays(const PointCloud& cloud, const MeasuredPoints& /*points*/,
-                    double least_range_m) const {
-    return {cloud, least_range_m, executor()};
+  MeasuredRays rays(const PointCloud& cloud, const MeasuredPoints& /*points*/, double least_range_m,
+                    RayEnds ends) const {
+    return {cloud, least_range_m, executor(), ends};
   }
   RayEvidence evidence(std::span<const Disk> disks, const MeasuredRays& rays,
-                       const EvidenceOptions& options) const {
-    return collect_evidence(disks, rays, options, executor());
+                       const MeasuredRays* empty, const EvidenceOptions& options) const {
+    return collect_evidence(disks, rays, options, executor(), empty);
   }
   std::vector<ShiftSums> shifts(std::span<const Disk> disks, const MeasuredRays& rays,
                                 const SettleOptions& options) const {

@@ -27,6 +27,7 @@ struct ConsistentCounts {
   std::size_t cells = 0;
   std::size_t seeds = 0;  ///< with a radius
   std::size_t rays = 0;   ///< measured ones; 0 before order_rays()
+  std::size_t empty = 0;  ///< beams without return, likewise
   std::size_t disks = 0;  ///< chosen ones
 };
 

@@ -25,6 +25,8 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
 
   std::size_t load(PointCloud cloud, const ClassTables& tables) override {
     [[maybe_unused]] const auto entered = place_.enter();
+    const std::vector<EmptyBeam> empty = std::exchange(cloud.empty_beams, {});
+    if (!empty.empty()) empty_ = place_.load(ends_of(empty, empty_reach_m(cloud)), {});
     cloud_ = place_.load(cloud, tables.removed);
     place_.wait("order the points");
     return cloud_.size();
@@ -50,7 +52,10 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
 
   void order_rays(const ConsistentOptions& options) override {
     [[maybe_unused]] const auto entered = place_.enter();
-    rays_.emplace(place_.rays(cloud_, points(), options.least_range_m));
+    rays_.emplace(
+        place_.rays(cloud_, points_of(cloud_), options.least_range_m, RayEnds::at_surfaces));
+    if (options.empty_beams && empty_.size() > 0)
+      empty_rays_.emplace(place_.rays(empty_, points_of(empty_), 0, RayEnds::nowhere));
   }
 
   /// What stands behind seeds that went is judged better in the next round.
@@ -113,7 +118,7 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   ConsistentCounts counts() const override {
     [[maybe_unused]] const auto entered = place_.enter();
     return {cells_.size(), place_.count_present(seeds_), rays_ ? rays_->size() : 0,
-            place_.count_present(chosen_)};
+            empty_rays_ ? empty_rays_->size() : 0, place_.count_present(chosen_)};
   }
 
   ConsistentSplats take_splats() override {
@@ -143,13 +148,14 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   template <class T>
   using Array = typename Place::template Array<T>;
 
-  MeasuredPoints points() const {
-    return {cloud_.positions.data(), data_or_null(cloud_.sensor_positions),
-            data_or_null(cloud_.origin_kinds)};
+  static MeasuredPoints points_of(const typename Place::Cloud& cloud) {
+    return {cloud.positions.data(), data_or_null(cloud.sensor_positions),
+            data_or_null(cloud.origin_kinds)};
   }
+  MeasuredPoints points() const { return points_of(cloud_); }
 
   auto count(const Array<Disk>& disks, const EvidenceOptions& options) const {
-    return place_.evidence(disks, *rays_, options);
+    return place_.evidence(disks, *rays_, empty_rays_ ? &*empty_rays_ : nullptr, options);
   }
 
   double median_spacing(const Array<LocalPlane>& planes, bool with_beam) {
@@ -175,11 +181,12 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   // In the order in which they are made; memory goes back to the place before it ends.
   Place place_;
   typename Place::Cloud cloud_;
+  typename Place::Cloud empty_;  ///< ends_of() empty beams
   typename Place::Cells cells_;
   std::optional<typename Place::Index> index_;  ///< of the cells
   Array<LocalPlane> planes_;
   Array<Disk> seeds_;
-  std::optional<typename Place::Rays> rays_;
+  std::optional<typename Place::Rays> rays_, empty_rays_;
   std::optional<typename Place::Cover> cover_;
   Array<Disk> chosen_;
 };

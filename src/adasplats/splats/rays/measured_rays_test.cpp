@@ -271,6 +271,43 @@ TEST(CollectEvidence, GrazingRaysEndAtDisksThatTheyCrossFarther) {
   EXPECT_FLOAT_EQ(options.most_margin_m(), 0.12F);
 }
 
+// What a beam without return crosses within its reach is contradicted, however near to the end.
+TEST(CollectEvidence, EmptyBeamsContradictAllThatTheyCross) {
+  PointCloud cloud;
+  cloud.positions = {{20, 0, 0}};
+  cloud.sensor_positions = {{0, 0, 0}};
+  const PointCloud ends = ends_of({{{0, 0, 0}, {1, 0, 0}, 0}, {{0, 5, 0}, {1, 0, 0}, 0}}, 10);
+  ASSERT_EQ(ends.size(), 2U);
+  const Executor executor(2);
+  const MeasuredRays rays(cloud, 0, executor), empty(ends, 0, executor, RayEnds::nowhere);
+  const std::vector<Disk> disks = {{{5, 0, 0}, 1, {1, 0, 0}},
+                                   {{9.99F, 5, 0}, 1, {1, 0, 0}},
+                                   {{10.01F, 0, 0}, 1, {1, 0, 0}},
+                                   {{20, 0, 0}, 1, {1, 0, 0}}};
+  const RayEvidence evidence = collect_evidence(disks, rays, tested_options(), executor, &empty);
+  const auto no = [&](std::size_t i) {
+    const DiskEvidence own = evidence_of(evidence, i);
+    return total({own.contradicted.begin(), own.contradicted.end()});
+  };
+  EXPECT_EQ(no(0), 2U);  // the measured ray, too
+  EXPECT_EQ(no(1), 1U);
+  EXPECT_EQ(no(2), 1U);  // beyond the reach: the measured ray alone
+  EXPECT_EQ(no(3), 0U);
+  EXPECT_EQ(total(evidence.confirmed), 1U);
+}
+
+// One in twenty is farther; points without a known beam do not count.
+TEST(EmptyReach, IsWhereTheRecordingEnds) {
+  PointCloud cloud;
+  for (int i = 1; i <= 100; ++i) {
+    cloud.positions.push_back({static_cast<float>(i), 0, 0});
+    cloud.sensor_positions.emplace_back();
+  }
+  EXPECT_FLOAT_EQ(empty_reach_m(cloud), 95);
+  cloud.origin_kinds.assign(100, OriginKind::guessed);
+  EXPECT_EQ(empty_reach_m(cloud), 0);
+}
+
 TEST(CollectEvidence, SeesEveryDiskOfARay) {
   PointCloud cloud;
   cloud.positions = {{20, 0, 0}, {20, 0, 1}, {5.105F, 0, 0}};
