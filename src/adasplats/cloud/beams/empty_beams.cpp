@@ -1,0 +1,331 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/beams/empty_beams.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <span>
+
+namespace adasplats {
+namespace {
+
+constexpr double kTurn_rad = 2 * std::numbers::pi;
+/// Points of a ring so near are returns of one beam: a tenth of the finest steps.
+constexpr double kOneBeam_rad = 1e-4;
+/// Bins of the field of view, one degree each: many steps of most sensors.
+constexpr std::size_t kViewBins = 360;
+/// Columns of a turn. Coarser and finer sensors that spin are not sold.
+constexpr std::size_t kFewestColumns = 180;
+constexpr std::size_t kMostColumns = 16'384;
+/// Steps around a firing within which a point is its return.
+constexpr double kReturnSteps = 0.75;
+
+using FieldOfView = std::array<bool, kViewBins>;
+
+struct AzimuthPoint {
+  double azimuth_rad;  ///< 0 to a turn
+  std::uint32_t point;
+};
+
+double wrapped_rad(double azimuth_rad) {
+  const double turned = std::fmod(azimuth_rad, kTurn_rad);
+  return turned < 0 ? turned + kTurn_rad : turned;
+}
+
+std::size_t view_bin(double azimuth_rad) {
+  return static_cast<std::size_t>(azimuth_rad / kTurn_rad * kViewBins) % kViewBins;
+}
+
+/// One scan, by rings and azimuths.
+struct SweptRings {
+  std::vector<std::vector<AzimuthPoint>> points;  ///< by ring, ascending
+  std::vector<double> elevations_rad;             ///< NaN: not known
+  std::size_t columns = 0;                        ///< of a turn; 0: the step cannot be told
+  std::vector<double> phases;                     ///< steps from azimuth 0 to the ring's firings
+};
+
+/// Columns of a turn by the median gap; 0 where gaps are not regular.
+std::size_t columns_of(const std::vector<std::vector<AzimuthPoint>>& rings,
+                       const EmptyBeamOptions& options) {
+  std::vector<double> gaps_rad;
+  for (const auto& ring : rings) {
+    for (std::size_t k = 1; k < ring.size(); ++k) {
+      const double gap_rad = ring[k].azimuth_rad - ring[k - 1].azimuth_rad;
+      if (gap_rad > kOneBeam_rad) gaps_rad.push_back(gap_rad);
+    }
+  }
+  if (gaps_rad.empty()) return 0;
+  const auto middle = gaps_rad.begin() + static_cast<std::ptrdiff_t>(gaps_rad.size() / 2);
+  std::ranges::nth_element(gaps_rad, middle);
+  const double step_rad = *middle;
+  const auto regular = std::ranges::count_if(gaps_rad, [&](double gap_rad) {
+    return gap_rad > 0.7 * step_rad && gap_rad < 1.4 * step_rad;
+  });
+  if (static_cast<double>(regular) < options.least_regular * static_cast<double>(gaps_rad.size()))
+    return 0;
+  const auto columns = static_cast<std::size_t>(std::lround(kTurn_rad / step_rad));
+  return columns < kFewestColumns || columns > kMostColumns ? 0 : columns;
+}
+
+/// Mean phase of a ring's azimuths among the columns.
+double phase_of(const std::vector<AzimuthPoint>& ring, std::size_t columns) {
+  std::complex<double> sum = 0;
+  for (const AzimuthPoint& p : ring)
+    sum += std::polar(1.0, p.azimuth_rad * static_cast<double>(columns));
+  return std::arg(sum) / kTurn_rad;
+}
+
+SweptRings sweep_of(const PointCloud& cloud, const ScanRings& scan,
+                    std::span<const double> elevations_rad, const EmptyBeamOptions& options) {
+  SweptRings sweep;
+  sweep.points.resize(elevations_rad.size());
+  std::vector<double> sums_rad(elevations_rad.size());
+  const Mat3d sensor_from_world = scan.world_from_sensor.transposed();
+  for (std::size_t k = 0; k < scan.points.size(); ++k) {
+    const std::size_t ring = scan.rings[k];
+    if (ring >= elevations_rad.size()) continue;
+    const Vec3d d = sensor_from_world * beam_direction(cloud, scan.points[k]);
+    sweep.points[ring].push_back({wrapped_rad(std::atan2(d.y, d.x)), scan.points[k]});
+    sums_rad[ring] += std::asin(std::clamp(d.z, -1.0, 1.0));
+  }
+  for (std::size_t ring = 0; ring < sweep.points.size(); ++ring) {
+    auto& points = sweep.points[ring];
+    std::ranges::sort(points, [](const AzimuthPoint& a, const AzimuthPoint& b) {
+      return a.azimuth_rad != b.azimuth_rad ? a.azimuth_rad < b.azimuth_rad : a.point < b.point;
+    });
+    const bool enough = points.size() >= std::max<std::size_t>(1, options.least_ring_points);
+    sweep.elevations_rad.push_back(enough ? sums_rad[ring] / static_cast<double>(points.size())
+                                          : elevations_rad[ring]);
+  }
+  sweep.columns = columns_of(sweep.points, options);
+  if (sweep.columns == 0) return sweep;
+  for (const auto& ring : sweep.points) sweep.phases.push_back(phase_of(ring, sweep.columns));
+  return sweep;
+}
+
+/// The cells (ring, column) of a scan and what is known of them.
+class BeamImage {
+ public:
+  BeamImage(const SweptRings& sweep, const Mat3d& world_from_sensor)
+      : sweep_(sweep),
+        world_from_sensor_(world_from_sensor),
+        columns_(sweep.columns),
+        returned_(rings() * columns_),
+        any_(columns_) {
+    for (std::size_t ring = 0; ring < rings(); ++ring)
+      for (const AzimuthPoint& p : sweep.points[ring]) add_return(ring, p.azimuth_rad);
+  }
+
+  std::size_t rings() const { return sweep_.points.size(); }
+  std::size_t columns() const { return columns_; }
+  std::size_t size() const { return returned_.size(); }
+  bool returned(std::size_t cell) const { return returned_[cell] != 0; }
+  bool any_in(std::size_t column) const { return any_[column] != 0; }
+  bool is_known(std::size_t ring) const {
+    return sweep_.elevations_rad[ring] == sweep_.elevations_rad[ring];
+  }
+  double azimuth_rad(std::size_t cell) const {
+    const double steps = static_cast<double>(cell % columns_) + sweep_.phases[cell / columns_];
+    return wrapped_rad(steps * kTurn_rad / static_cast<double>(columns_));
+  }
+  Vec3d direction(std::size_t cell) const {
+    const double azimuth = azimuth_rad(cell);
+    const double elevation_rad = sweep_.elevations_rad[cell / columns_];
+    const double flat = std::cos(elevation_rad);
+    return world_from_sensor_ *
+           Vec3d{flat * std::cos(azimuth), flat * std::sin(azimuth), std::sin(elevation_rad)};
+  }
+
+ private:
+  void add_return(std::size_t ring, double azimuth_rad) {
+    const double steps =
+        azimuth_rad / kTurn_rad * static_cast<double>(columns_) - sweep_.phases[ring];
+    const double nearest = std::round(steps);
+    const auto column = static_cast<std::int64_t>(nearest);
+    mark(ring, column);
+    if (steps - nearest > 1 - kReturnSteps) mark(ring, column + 1);
+    if (nearest - steps > 1 - kReturnSteps) mark(ring, column - 1);
+  }
+  void mark(std::size_t ring, std::int64_t column) {
+    const auto columns = static_cast<std::int64_t>(columns_);
+    const auto at = static_cast<std::size_t>((column + columns) % columns);
+    returned_[ring * columns_ + at] = 1;
+    any_[at] = 1;
+  }
+
+  const SweptRings& sweep_;
+  Mat3d world_from_sensor_;
+  std::size_t columns_;
+  std::vector<std::uint8_t> returned_, any_;
+};
+
+/// Whether the beams of a column without returns were fired: all go upwards, where nothing need be,
+/// and the field of view holds it.
+bool was_measured(const BeamImage& image, std::size_t column, const FieldOfView& view) {
+  if (image.any_in(column)) return true;
+  for (std::size_t ring = 0; ring < image.rings(); ++ring) {
+    if (!image.is_known(ring)) continue;
+    const std::size_t cell = ring * image.columns() + column;
+    if (image.direction(cell).z <= 0 || !view[view_bin(image.azimuth_rad(cell))]) return false;
+  }
+  return true;
+}
+
+/// The cells of beams that went upwards and returned nothing, 1 or 0.
+std::vector<std::uint8_t> empty_cells(const BeamImage& image, const FieldOfView& view,
+                                      const EmptyBeamOptions& options) {
+  std::vector<std::uint8_t> empty(image.size());
+  for (std::size_t column = 0; column < image.columns(); ++column) {
+    if (!was_measured(image, column, view)) continue;
+    for (std::size_t ring = 0; ring < image.rings(); ++ring) {
+      const std::size_t cell = ring * image.columns() + column;
+      if (image.returned(cell) || !image.is_known(ring)) continue;
+      empty[cell] = image.direction(cell).z > options.least_up ? 1 : 0;
+    }
+  }
+  return empty;
+}
+
+/// Visits the cell and those around it that the image has; columns wrap.
+template <class Visit>
+void for_block(std::size_t cell, std::size_t rings, std::size_t columns, Visit&& visit) {
+  const std::size_t ring = cell / columns, column = cell % columns;
+  for (std::size_t r = ring == 0 ? 0 : ring - 1; r <= std::min(ring + 1, rings - 1); ++r)
+    for (std::size_t c = column + columns - 1; c <= column + columns + 1; ++c)
+      visit(r * columns + c % columns);
+}
+
+/// Of the cells those in a connected region that holds three by three of them, ascending.
+std::vector<std::size_t> regions_with_blocks(std::vector<std::uint8_t> cells, std::size_t rings,
+                                             std::size_t columns) {
+  std::vector<std::size_t> open;
+  for (std::size_t ring = 1; ring + 1 < rings; ++ring) {
+    for (std::size_t cell = ring * columns; cell < (ring + 1) * columns; ++cell) {
+      int filled = 0;
+      for_block(cell, rings, columns, [&](std::size_t k) { filled += cells[k]; });
+      if (filled == 9) open.push_back(cell);
+    }
+  }
+  std::vector<std::uint8_t> reached(cells.size());
+  for (const std::size_t cell : open) reached[cell] = 1;
+  while (!open.empty()) {
+    const std::size_t cell = open.back();
+    open.pop_back();
+    for_block(cell, rings, columns, [&](std::size_t k) {
+      if (cells[k] == 0 || reached[k] != 0) return;
+      reached[k] = 1;
+      open.push_back(k);
+    });
+  }
+  std::vector<std::size_t> kept;
+  for (std::size_t cell = 0; cell < reached.size(); ++cell)
+    if (reached[cell] != 0) kept.push_back(cell);
+  return kept;
+}
+
+/// Where the sensor was at an azimuth, told by the points there: it moves as it turns.
+class SweepOrigins {
+ public:
+  SweepOrigins(const PointCloud& cloud, const SweptRings& sweep, const EmptyBeamOptions& options)
+      : cloud_(cloud), sweep_(sweep), options_(options) {
+    const AzimuthPoint none{std::numeric_limits<double>::infinity(), 0};
+    std::vector<AzimuthPoint> first(sweep.columns, none);
+    for (const auto& ring : sweep.points) {
+      for (const AzimuthPoint& p : ring) {
+        const auto bin = static_cast<std::size_t>(p.azimuth_rad / kTurn_rad *
+                                                  static_cast<double>(sweep.columns));
+        AzimuthPoint& place = first[std::min(bin, sweep.columns - 1)];
+        if (p.azimuth_rad < place.azimuth_rad) place = p;
+      }
+    }
+    for (const AzimuthPoint& p : first)
+      if (p.azimuth_rad < none.azimuth_rad) all_.push_back(p);
+  }
+
+  /// By the nearest point of the ring, else of any ring; nothing where all are too far away.
+  std::optional<Vec3f> find(std::size_t ring, double azimuth_rad) const {
+    const auto of_ring = find_in(sweep_.points[ring], azimuth_rad, 0);
+    return of_ring ? of_ring : find_in(all_, azimuth_rad, options_.most_moved_m);
+  }
+
+ private:
+  std::optional<Vec3f> find_in(const std::vector<AzimuthPoint>& points, double azimuth_rad,
+                               double most_moved_m) const {
+    if (points.empty()) return std::nullopt;
+    const auto above = std::ranges::lower_bound(
+        points, azimuth_rad, {}, [](const AzimuthPoint& p) { return p.azimuth_rad; });
+    const AzimuthPoint& next = above == points.end() ? points.front() : *above;
+    const AzimuthPoint& last = above == points.begin() ? points.back() : *(above - 1);
+    const double up_rad = wrapped_rad(next.azimuth_rad - azimuth_rad);
+    const double down_rad = wrapped_rad(azimuth_rad - last.azimuth_rad);
+    const Vec3f after = cloud_.sensor_positions[next.point];
+    const Vec3f before = cloud_.sensor_positions[last.point];
+    if (std::min(up_rad, down_rad) > options_.most_away_rad &&
+        static_cast<double>(length(after - before)) >= most_moved_m)
+      return std::nullopt;
+    return up_rad < down_rad ? after : before;
+  }
+
+  const PointCloud& cloud_;
+  const SweptRings& sweep_;
+  const EmptyBeamOptions& options_;
+  std::vector<AzimuthPoint> all_;
+};
+
+std::vector<EmptyBeam> beams_of_scan(const PointCloud& cloud, const ScanRings& scan,
+                                     const SweptRings& sweep, const FieldOfView& view,
+                                     const EmptyBeamOptions& options) {
+  std::vector<EmptyBeam> beams;
+  if (sweep.columns == 0) return beams;
+  const BeamImage image(sweep, scan.world_from_sensor);
+  const std::vector<std::size_t> cells =
+      regions_with_blocks(empty_cells(image, view, options), image.rings(), image.columns());
+  const SweepOrigins origins(cloud, sweep, options);
+  for (const std::size_t cell : cells) {
+    const auto origin = origins.find(cell / image.columns(), image.azimuth_rad(cell));
+    if (!origin) continue;
+    beams.push_back({*origin, vec_cast<float>(normalized(image.direction(cell))), scan.scan});
+  }
+  return beams;
+}
+
+/// Azimuths at which any scan has points.
+FieldOfView view_of(const PointCloud& cloud, std::span<const ScanRings> scans,
+                    const Executor& executor) {
+  std::vector<FieldOfView> views(scans.size());
+  executor.for_chunks(scans.size(), 1, [&](std::size_t s, std::size_t) {
+    const Mat3d sensor_from_world = scans[s].world_from_sensor.transposed();
+    for (const std::uint32_t i : scans[s].points) {
+      const Vec3d d = sensor_from_world * beam_direction(cloud, i);
+      views[s][view_bin(wrapped_rad(std::atan2(d.y, d.x)))] = true;
+    }
+  });
+  FieldOfView all{};
+  for (const FieldOfView& view : views)
+    for (std::size_t bin = 0; bin < kViewBins; ++bin) all[bin] = all[bin] || view[bin];
+  return all;
+}
+
+}  // namespace
+
+std::vector<EmptyBeam> find_empty_beams(const PointCloud& cloud, const EmptyBeamOptions& options,
+                                        const Executor& executor) {
+  const RecordingRings recording = find_scan_rings(cloud, options.rings, executor);
+  const std::span<const ScanRings> scans = recording.scans;
+  const FieldOfView view = view_of(cloud, scans, executor);
+  std::vector<std::vector<EmptyBeam>> of_scans(scans.size());
+  executor.for_chunks(scans.size(), 1, [&](std::size_t s, std::size_t) {
+    const SweptRings sweep = sweep_of(cloud, scans[s], recording.elevations_rad, options);
+    of_scans[s] = beams_of_scan(cloud, scans[s], sweep, view, options);
+  });
+  std::vector<EmptyBeam> beams;
+  for (const auto& part : of_scans) beams.insert(beams.end(), part.begin(), part.end());
+  return beams;
+}
+
+}  // namespace adasplats

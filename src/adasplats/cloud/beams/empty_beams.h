@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "adasplats/cloud/beams/scan_rings.h"
+#include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/core/constants.h"
+#include "adasplats/core/executor.h"
+
+namespace adasplats {
+
+/// A beam that returned nothing.
+struct EmptyBeam {
+  Vec3f origin;        ///< where it left the sensor, relative to the cloud's origin, m
+  Vec3f direction;     ///< unit, world axes
+  std::uint32_t scan;  ///< of its scan
+};
+
+/// When a beam counts as one that was fired and returned nothing.
+struct EmptyBeamOptions {
+  ScanRingOptions rings;
+  /// Of the gaps between neighbours of a ring those from 0.7 to 1.4 of their median: a scan below
+  /// that was thinned or put together from several. Of a ring of which every point was kept with
+  /// probability p such gaps are p at most, so that fewer than 0.3 of the cells are empty by chance
+  /// where it passes, and 3 x 3 of them are none in a scan.
+  double least_regular = 0.7;
+  std::size_t least_ring_points = 20;  ///< of a ring in a scan that tell its elevation there
+  /// Azimuth to the point that tells a beam's origin. A farther one does where the sensor moved
+  /// less than `most_moved_m` from the point before the beam to the one behind it.
+  double most_away_rad = 10 * kDegree;
+  double most_moved_m = 0.1;
+  double least_up = 0;  ///< z of the direction: lower beams may have met wet road or black paint
+};
+
+/// Finds the beams of a spinning sensor that returned nothing; files leave them out. Each is
+/// evidence that the space along it is free, the sky above roof edges and tree crowns above all.
+/// Rings: find_scan_rings(). In each the points are one step of azimuth apart (the median gap, the
+/// same in all rings of a scan), and where there is none within 0.75 steps of a firing, that firing
+/// returned nothing. Of these only what is sky rather than a dropout is kept: beams that go upwards
+/// in the world, in connected regions of (ring, column) that hold three by three empty cells.
+/// No evidence is: what lies beyond the field of view (azimuths without points in all scans), a
+/// column without any point if some of its beams go down (they would have met the ground: the
+/// column was not measured), rings that never have points, beams far from any point that tells
+/// their origin.
+/// Give it the cloud before points are taken away: where one was, its beam did return. Glass and
+/// what is too far away return nothing either. By scans; empty where the rings or the steps cannot
+/// be told. Time: a sort by scans and a few passes over the points.
+std::vector<EmptyBeam> find_empty_beams(const PointCloud& cloud, const EmptyBeamOptions& options,
+                                        const Executor& executor);
+
+}  // namespace adasplats

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/core/maths/rigid_transform.h"
+
+namespace adasplats {
+
+/// When the points of a scan are taken for the rings of a sensor that turns.
+struct ScanRingOptions {
+  std::size_t least_points = 2000;  ///< of a scan; fewer say too little
+  std::size_t least_rings = 8;      ///< of the sensor; fewer fit too much
+  /// Of a scan's points those nearer to a ring than an eighth of the gap to the next one, where
+  /// rings are found from directions alone; 0.25 by chance.
+  double least_near = 0.8;
+  double least_scans = 0.5;   ///< of the recording, on the rings; else there are none
+  double most_unknown = 0.2;  ///< of a scan's points, without a laser though others have one
+};
+
+/// The points of one scan by the ring that measured them.
+struct ScanRings {
+  std::uint32_t scan = 0;
+  Mat3d world_from_sensor;            ///< z is the axis that the sensor turned about
+  std::vector<std::uint32_t> points;  ///< of the cloud, with known beams, ascending
+  std::vector<std::uint16_t> rings;   ///< of each of them
+};
+
+struct RecordingRings {
+  std::vector<double> elevations_rad;  ///< of the rings, mean of all points; NaN: without points
+  std::vector<ScanRings> scans;        ///< by their numbers; those that are on the rings
+};
+
+/// The direction in which the beam of a point left its sensor, unit, world axes. Zero where the
+/// point is where the sensor is.
+Vec3d beam_direction(const PointCloud& cloud, std::size_t i);
+
+/// Finds the axis that the sensor turned about in every scan and the ring of every point. With
+/// lasers and scan poses these say it (the sensor's z is its axis). Without, from directions alone:
+/// - Neighbours of a ring are nearer than the next ring, so the way from a direction to its nearest
+///   one is across the axis: the least eigenvector of all ways, reweighted (Cauchy), is the axis.
+/// - Rings are peaks of the histogram of elevations about it, and the points of a ring lie in one
+///   plane across the axis, which makes the axis exact.
+/// The poses' axis and the world's vertical are tried where that fails. Nothing is found (no scans)
+/// where points do not lie on rings, and without scan numbers or known beams. Time: a sort by scans
+/// and a few passes over the points.
+RecordingRings find_scan_rings(const PointCloud& cloud, const ScanRingOptions& options,
+                               const Executor& executor);
+
+}  // namespace adasplats
