@@ -247,16 +247,25 @@ class SweepOrigins {
       if (p.azimuth_rad < none.azimuth_rad) all_.push_back(p);
   }
 
-  /// By the nearest point of the ring, else of any ring; nothing where all are too far away.
+  /// By the nearest point of the ring; of any ring where that one is far or the sensor moved much
+  /// from one side to the other, as at the seam of a sweep. Nothing where neither tells.
   std::optional<Vec3f> find(std::size_t ring, double azimuth_rad) const {
-    const auto of_ring = find_in(sweep_.points[ring], azimuth_rad, 0);
-    return of_ring ? of_ring : find_in(all_, azimuth_rad, options_.most_moved_m);
+    const Nearest of_ring = nearest_in(sweep_.points[ring], azimuth_rad);
+    if (of_ring.is_near && of_ring.moved_m < options_.most_moved_m) return of_ring.origin;
+    const Nearest of_any = nearest_in(all_, azimuth_rad);
+    if (of_any.is_near || of_any.moved_m < options_.most_moved_m) return of_any.origin;
+    return std::nullopt;
   }
 
  private:
-  std::optional<Vec3f> find_in(const std::vector<AzimuthPoint>& points, double azimuth_rad,
-                               double most_moved_m) const {
-    if (points.empty()) return std::nullopt;
+  struct Nearest {
+    Vec3f origin;
+    bool is_near = false;
+    double moved_m = std::numeric_limits<double>::infinity();  ///< between the points on its sides
+  };
+
+  Nearest nearest_in(const std::vector<AzimuthPoint>& points, double azimuth_rad) const {
+    if (points.empty()) return {};
     const auto above = std::ranges::lower_bound(
         points, azimuth_rad, {}, [](const AzimuthPoint& p) { return p.azimuth_rad; });
     const AzimuthPoint& next = above == points.end() ? points.front() : *above;
@@ -265,10 +274,9 @@ class SweepOrigins {
     const double down_rad = wrapped_rad(azimuth_rad - last.azimuth_rad);
     const Vec3f after = cloud_.sensor_positions[next.point];
     const Vec3f before = cloud_.sensor_positions[last.point];
-    if (std::min(up_rad, down_rad) > options_.most_away_rad &&
-        static_cast<double>(length(after - before)) >= most_moved_m)
-      return std::nullopt;
-    return up_rad < down_rad ? after : before;
+    return {up_rad < down_rad ? after : before,
+            std::min(up_rad, down_rad) <= options_.most_away_rad,
+            static_cast<double>(length(after - before))};
   }
 
   const PointCloud& cloud_;

@@ -29,8 +29,8 @@ struct EmptyBeamOptions {
   /// where it passes, and 3 x 3 of them are none in a scan.
   double least_regular = 0.7;
   std::size_t least_ring_points = 20;  ///< of a ring in a scan that tell its elevation there
-  /// Azimuth to the point that tells a beam's origin. A farther one does where the sensor moved
-  /// less than `most_moved_m` from the point before the beam to the one behind it.
+  /// Azimuth to the point that tells a beam's origin, and how far the sensor may have moved between
+  /// the points on both sides: either must hold, of points of its own ring both.
   double most_away_rad = 10 * kDegree;
   double most_moved_m = 0.1;
   double least_up = 0;  ///< z of the direction: lower beams may have met wet road or black paint
