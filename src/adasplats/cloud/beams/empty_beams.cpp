@@ -124,18 +124,19 @@ class BeamImage {
   std::size_t rings() const { return sweep_.points.size(); }
   std::size_t columns() const { return columns_; }
   std::size_t size() const { return returned_.size(); }
+  std::size_t ring_of(std::size_t cell) const { return cell / columns_; }
   bool returned(std::size_t cell) const { return returned_[cell] != 0; }
   bool any_in(std::size_t column) const { return any_[column] != 0; }
   bool is_known(std::size_t ring) const {
     return sweep_.elevations_rad[ring] == sweep_.elevations_rad[ring];
   }
   double azimuth_rad(std::size_t cell) const {
-    const double steps = static_cast<double>(cell % columns_) + sweep_.phases[cell / columns_];
+    const double steps = static_cast<double>(cell % columns_) + sweep_.phases[ring_of(cell)];
     return wrapped_rad(steps * kTurn_rad / static_cast<double>(columns_));
   }
   Vec3d direction(std::size_t cell) const {
     const double azimuth = azimuth_rad(cell);
-    const double elevation_rad = sweep_.elevations_rad[cell / columns_];
+    const double elevation_rad = sweep_.elevations_rad[ring_of(cell)];
     const double flat = std::cos(elevation_rad);
     return world_from_sensor_ *
            Vec3d{flat * std::cos(azimuth), flat * std::sin(azimuth), std::sin(elevation_rad)};
@@ -203,6 +204,7 @@ void for_block(std::size_t cell, std::size_t rings, std::size_t columns, Visit&&
 /// Of the cells those in a connected region that holds three by three of them, ascending.
 std::vector<std::size_t> regions_with_blocks(std::vector<std::uint8_t> cells, std::size_t rings,
                                              std::size_t columns) {
+  if (columns == 0) return {};
   std::vector<std::size_t> open;
   for (std::size_t ring = 1; ring + 1 < rings; ++ring) {
     for (std::size_t cell = ring * columns; cell < (ring + 1) * columns; ++cell) {
@@ -295,7 +297,7 @@ std::vector<EmptyBeam> beams_of_scan(const PointCloud& cloud, const ScanRings& s
       regions_with_blocks(empty_cells(image, view, options), image.rings(), image.columns());
   const SweepOrigins origins(cloud, sweep, options);
   for (const std::size_t cell : cells) {
-    const auto origin = origins.find(cell / image.columns(), image.azimuth_rad(cell));
+    const auto origin = origins.find(image.ring_of(cell), image.azimuth_rad(cell));
     if (!origin) continue;
     beams.push_back({*origin, vec_cast<float>(normalized(image.direction(cell))), scan.scan});
   }
