@@ -13,13 +13,6 @@
 
 namespace adasplats {
 
-/// A beam that returned nothing.
-struct EmptyBeam {
-  Vec3f origin;        ///< where it left the sensor, relative to the cloud's origin, m
-  Vec3f direction;     ///< unit, world axes
-  std::uint32_t scan;  ///< of its scan
-};
-
 /// When a beam counts as one that was fired and returned nothing.
 struct EmptyBeamOptions {
   ScanRingOptions rings;
@@ -33,7 +26,8 @@ struct EmptyBeamOptions {
   /// the points on both sides: either must hold, of points of its own ring both.
   double most_away_rad = 10 * kDegree;
   double most_moved_m = 0.1;
-  double least_up = 0;  ///< z of the direction: lower beams may have met wet road or black paint
+  /// z of the direction: lower beams may have met wet road, black paint or what is too far away.
+  double least_up = 0.05;
 };
 
 /// Finds the beams of a spinning sensor that returned nothing; files leave them out. Each is
@@ -41,10 +35,10 @@ struct EmptyBeamOptions {
 /// Rings: find_scan_rings(). In each the points are one step of azimuth apart (the median gap, the
 /// same in all rings of a scan), and where there is none within 0.75 steps of a firing, that firing
 /// returned nothing. Of these only what is sky rather than a dropout is kept: beams that go upwards
-/// in the world, in connected regions of (ring, column) that hold three by three empty cells.
-/// No evidence is: what lies beyond the field of view (azimuths without points in all scans), a
-/// column without any point if some of its beams go down (they would have met the ground: the
-/// column was not measured), rings that never have points, beams far from any point that tells
+/// in the world (by 3 degrees), in connected regions of (ring, column) that hold three by three
+/// empty cells. No evidence is: what lies beyond the field of view (azimuths without points in all
+/// scans), a column without any point if some of its beams go down (they would have met the ground:
+/// the column was not measured), rings that never have points, beams far from any point that tells
 /// their origin.
 /// Give it the cloud before points are taken away: where one was, its beam did return. Glass and
 /// what is too far away return nothing either. By scans; empty where the rings or the steps cannot

@@ -40,7 +40,7 @@ double recall(const std::vector<EmptyBeam>& found, const std::vector<TestBeam>& 
               const SpinningSensor& sensor) {
   double all = 0, known = 0;
   for (const TestBeam& beam : beams) {
-    if (beam.returned() || beam.direction.z <= 0) continue;
+    if (beam.returned() || beam.direction.z <= EmptyBeamOptions{}.least_up) continue;
     all += 1;
     for (const EmptyBeam& e : found) {
       if (e.scan != beam.scan || distance_between(e, beam) > 0.5 * sensor.step_rad()) continue;
@@ -85,6 +85,17 @@ TEST(EmptyBeams, OfASensorWithLasersAndPoses) {
 
 TEST(EmptyBeams, OfATiltedSensorFromDirectionsAlone) {
   const SpinningSensor sensor = pitched();
+  const auto beams = sensor.scans(2);
+  const auto found = found_in(beams, sensor, false);
+  EXPECT_GE(recall(found, beams, sensor), 0.95);
+  expect_true(found, beams, sensor);
+}
+
+// The nearest beams of a beam are then those of its column.
+TEST(EmptyBeams, OfATiltedSensorWhoseStepsAreWiderThanTheGapsBetweenItsRings) {
+  SpinningSensor sensor = pitched();
+  sensor.columns = 200;
+  sensor.phase_steps = 0;
   const auto beams = sensor.scans(2);
   const auto found = found_in(beams, sensor, false);
   EXPECT_GE(recall(found, beams, sensor), 0.95);

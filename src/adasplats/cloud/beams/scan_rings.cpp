@@ -57,8 +57,12 @@ Vec3d least_eigenvector(const SymmetricMat3d& m) { return symmetric_eigen(m).vec
 
 Vec3d turned_up(Vec3d axis) { return axis.z < 0 ? -axis : axis; }
 
-/// Unit vectors from some directions to their nearest ones.
-std::vector<Vec3d> ways_to_neighbours(std::span<const Vec3d> directions) {
+/// Unit vectors from some directions to their nearest ones, and across both.
+struct Ways {
+  std::vector<Vec3d> along, across;
+};
+
+Ways ways_to_neighbours(std::span<const Vec3d> directions) {
   // Rings about any axis but this one are spread along it, so that few are in a window.
   constexpr Vec3d kAlong{0.48, 0.6, 0.64};
   std::vector<std::pair<double, Vec3d>> sorted;
@@ -66,7 +70,7 @@ std::vector<Vec3d> ways_to_neighbours(std::span<const Vec3d> directions) {
   for (const Vec3d d : directions) sorted.emplace_back(dot(kAlong, d), d);
   std::ranges::sort(sorted, {}, [](const std::pair<double, Vec3d>& e) { return e.first; });
   const std::size_t stride = std::max<std::size_t>(1, sorted.size() / kNeighbourPoints);
-  std::vector<Vec3d> ways;
+  Ways ways;
   for (std::size_t at = stride / 2; at < sorted.size(); at += stride) {
     double best = 0.1;  // rad; farther ones are no neighbours
     Vec3d way{};
@@ -86,11 +90,14 @@ std::vector<Vec3d> ways_to_neighbours(std::span<const Vec3d> directions) {
       upwards = upwards && up < sorted.size() && look(up++);
       downwards = downwards && down > 0 && look(--down);
     }
-    if (dot(way, way) > 0) ways.push_back(way);
+    if (!(dot(way, way) > 0)) continue;
+    ways.along.push_back(way);
+    ways.across.push_back(normalized(cross(sorted[at].second, way)));
   }
   return ways;
 }
 
+/// The axis that most of some unit vectors are at right angles to.
 Vec3d axis_across(std::span<const Vec3d> ways) {
   constexpr int kRounds = 10;
   constexpr double kTight = 0.05;  // sine of what a way along a ring may be off
@@ -212,8 +219,12 @@ ScanAxis refined_axis(Vec3d axis, std::span<const Vec3d> directions,
 ScanAxis find_axis(std::span<const Vec3d> all, const std::optional<Vec3d>& pose_axis,
                    const ScanRingOptions& options) {
   const std::vector<Vec3d> directions = thinned(all, kAxisPoints);
-  ScanAxis best = refined_axis(axis_across(ways_to_neighbours(all)), directions, options);
-  for (const Vec3d guess : {pose_axis.value_or(Vec3d{0, 0, 1}), Vec3d{0, 0, 1}}) {
+  // Neighbours are of the same ring, or, where steps of azimuth are wider than the gaps between
+  // rings, of the same column: these are in planes with the axis.
+  const Ways ways = ways_to_neighbours(all);
+  ScanAxis best = refined_axis(axis_across(ways.along), directions, options);
+  for (const Vec3d guess :
+       {axis_across(ways.across), pose_axis.value_or(Vec3d{0, 0, 1}), Vec3d{0, 0, 1}}) {
     if (best.near >= options.least_near) break;
     const ScanAxis other = refined_axis(guess, directions, options);
     if (other.near > best.near) best = other;

@@ -26,12 +26,13 @@ struct TestBeam {
 };
 
 /// A sensor that turns, on a drive along y between walls (x = 12, 8 m high, and x = -9, 14 m high,
-/// both from y = -30 m to 30 m) on flat ground, under the sky. Its rings have phases of their own.
+/// both from y = -30 m to 30 m) on flat ground, under the sky.
 struct SpinningSensor {
   std::vector<double> elevations_rad;  ///< topmost first
   int columns = 360;
   Mat3d world_from_sensor;
-  double speed_m = 0.5;  ///< a revolution
+  double speed_m = 0.5;      ///< a revolution
+  double phase_steps = 0.3;  ///< by which the next ring is ahead; every third is not
 
   static SpinningSensor with(int rings, double top_deg, double bottom_deg) {
     SpinningSensor sensor;
@@ -51,7 +52,8 @@ struct SpinningSensor {
           TestBeam beam;
           beam.scan = scan;
           beam.ring = static_cast<std::uint16_t>(ring);
-          const double steps = column + 0.3 * static_cast<double>(ring % 3) + turned_steps * scan;
+          const double steps =
+              column + phase_steps * static_cast<double>(ring % 3) + turned_steps * scan;
           beam.azimuth_rad = std::remainder(steps * step_rad(), 360 * kDegree);
           const double flat = std::cos(elevations_rad[ring]);
           beam.direction = world_from_sensor * Vec3d{flat * std::cos(beam.azimuth_rad),
