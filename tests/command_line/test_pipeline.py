@@ -58,6 +58,22 @@ class Pipeline(ProgramTest):
         self.assertEqual(set(report["range_error_m"]), {"median", "mae", "rmse", "p90", "bias",
                                                       "spread"})
 
+    def test_beams_without_return_are_found_and_take_splats_away(self):
+        """Oracle: the street's mesh, which has nothing in the sky."""
+        street = self.folder / "street"
+        self.run_good("synth", "street", "-o", street, "--points", "300000", "--driving-spacing", "0")
+        ghosts = {}
+        for flag in ("--empty-beams", "--no-empty-beams"):
+            model = self.folder / f"m{flag}.ply"
+            made = self.report("model", street / "mapping.ply", "-o", model, flag, "--labels",
+                               "semantickitti", "--driven-path", "0")
+            self.assertEqual(made["empty_beams"] > 1000, flag == "--empty-beams", made)
+            truth = self.report("evaluate", "truth", model, street / "mesh.ply", "--trajectory",
+                                street / "mapping_trajectory.csv", "--every", "20", "--sensor",
+                                "hdl-32-paper")
+            ghosts[flag] = truth["ghost_share"]
+        self.assertLess(ghosts["--empty-beams"], 0.8 * ghosts["--no-empty-beams"], ghosts)
+
     def test_a_model_predicts_its_own_scans(self):
         """Round trip: scans without noise cast again hit where they came from."""
         model = self.model()

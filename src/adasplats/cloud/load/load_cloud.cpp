@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "adasplats/cloud/beams/empty_beams.h"
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/cloud_part.h"
 #include "adasplats/cloud/load/dropped_points.h"
@@ -400,6 +401,8 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
     if (!input.is_sequence) check_origins(clouds.back(), input.path, options, executor);
   }
   PointCloud cloud = joined(std::move(clouds), origin, std::move(scan_poses), progress);
+  if (options.empty_beams && options.boxes.empty())
+    cloud.empty_beams = find_empty_beams(cloud, {}, executor);
   report.own_body = drop_own_body(cloud, options.own_body_m, executor);
   report.driven_path = drop_driven_path(cloud, options.driven_path_m, executor);
   report_own_body(name_of(inputs), report, options, progress);

@@ -68,6 +68,9 @@ struct LoadOptions {
   /// Points in the volume that the carrier of the sensor passed through, so far to each side of its
   /// path, m (find_in_driven_path()), are left out; 0 keeps them.
   double driven_path_m = 0.6;
+  /// Also looks for the beams that returned nothing (find_empty_beams(), before points are left
+  /// out) and puts them into the cloud. Not where boxes take points away: their beams did return.
+  bool empty_beams = false;
 };
 
 /// What of the points is dropped, and when that is an error.

@@ -11,7 +11,7 @@ namespace adasplats {
 /// A beam that returned nothing: what it passed is free.
 struct EmptyBeam {
   Vec3f origin;            ///< where it left the sensor, relative to the cloud's origin, m
-  Vec3f direction;         ///< unit
+  Vec3f direction;         ///< unit, world axes
   std::uint32_t scan = 0;  ///< number of its scan
 };
 

@@ -137,12 +137,24 @@ class ModelMaker {
 
 }  // namespace
 
+namespace {
+
+/// Only what checks disks by rays has a use for them.
+bool uses_empty_beams(const ModelRecipe& recipe) {
+  const auto* ours = std::get_if<ConsistentOptions>(&recipe);
+  return ours != nullptr && ours->empty_beams && ours->balance_rounds > 0;
+}
+
+}  // namespace
+
 std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& session) {
   for (const auto& input : job.inputs) require_input(input);
   const Stopwatch total;
   ModelResult result;
+  LoadOptions load = job.load;
+  load.empty_beams = uses_empty_beams(job.build.recipe);
   const auto load_points = [&] {
-    auto [cloud, loaded] = load_cloud(job.inputs, job.load, session.executor, session.progress);
+    auto [cloud, loaded] = load_cloud(job.inputs, load, session.executor, session.progress);
     result.loaded = loaded;
     return std::move(cloud);
   };
