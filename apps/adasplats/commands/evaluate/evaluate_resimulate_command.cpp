@@ -25,6 +25,13 @@ void add_row(TextTable& table, const std::string& name, const BeamAccuracy& a) {
                  percent(a.late_50cm)});
 }
 
+/// Of the beams that returned nothing; empty where none are known.
+std::string ghosts_of(const EmptyBeamHits& empty) {
+  if (empty.beams == 0) return {};
+  return "Ghosts: " + percent(empty.ghosts) + " of " + grouped(empty.beams) +
+         " beams without return hit the model within " + fixed(empty.reach_m, 1) + " m\n";
+}
+
 std::string table_of(const HeldOutResult& result) {
   TextTable table({"beams", "rays", "no hit", "median", "MAE m", "RMSE m", "<5 cm", "<10 cm",
                    "<50 cm", "early", "late"});
@@ -38,7 +45,8 @@ std::string table_of(const HeldOutResult& result) {
   const CloudDistance& clouds = result.clouds;
   return table.text() + "\nPoses: " + std::string(word_of(result.poses, words_of(result.poses))) +
          "; beams from " + result.beams + "; Chamfer " + centimetres(clouds.chamfer_m) + ", " +
-         fixed(clouds.chamfer_m2, 4) + " m2; shares are of all rays, errors of hits\n";
+         fixed(clouds.chamfer_m2, 4) + " m2; shares are of all rays, errors of hits\n" +
+         ghosts_of(result.empty);
 }
 
 class EvaluateResimulateCommand final : public Command {

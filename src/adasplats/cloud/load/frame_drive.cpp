@@ -211,6 +211,7 @@ std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Exe
                                                     drive.with_classes);
   KittiSequence sequence;
   sequence.folder = drive.folder;
+  sequence.lacks_moving = !drive.boxes.empty();
   sequence.beams.recognised = description_of(*found);
   sequence.beams.sensor = found->cones.sensor;
   for (std::size_t k = 0; k < files.size(); ++k) {

@@ -33,6 +33,7 @@ struct KittiSequence {
   Trajectory trajectory;                      ///< world_from_velodyne, one a scan
   ScanBeams beams;  ///< unless recognize_beams says more: from the frame's origin
   std::shared_ptr<const ScanReader> reader;  ///< null: the files are KITTI's
+  bool lacks_moving = false;                 ///< the reader leaves out points on moving objects
 };
 
 /// True for a folder with a `velodyne` folder in it, and for a drive of KITTI's raw data

@@ -21,6 +21,7 @@ KittiSequence with_scans(KittiSequence all, const ScanRange& range) {
   chosen.beams.from_hdl64 = all.beams.from_hdl64;
   chosen.beams.recognised = all.beams.recognised;
   chosen.reader = all.reader;
+  chosen.lacks_moving = all.lacks_moving;
   for (const std::size_t i : chosen_scans(range, all.scans.size(), all.folder)) {
     chosen.scans.push_back(all.scans[i]);
     if (!all.labels.empty()) chosen.labels.push_back(all.labels[i]);
@@ -90,6 +91,7 @@ HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequ
   if (all_poses) result.with_given = cast(sequence);
   result.poses = calibrate_held_out(scene, sequence, session.progress);
   static_cast<ResimulateResult&>(result) = cast(sequence);
+  result.empty = cast_empty_beams(scene.tracer(), scene.origin(), sequence, session.executor);
   if (all_poses) {
     KittiSequence registered = sequence;
     register_scans(scene.tracer(), scene.view(), scene.origin(), registered, scheme, options,
@@ -102,6 +104,11 @@ HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequ
 nlohmann::ordered_json to_json(const HeldOutResult& result) {
   nlohmann::ordered_json json = to_json(static_cast<const ResimulateResult&>(result));
   json["poses"] = word_of(result.poses, words_of(result.poses));
+  json["empty_beams"] = {{"beams", result.empty.beams}, {"ghosts", nullptr}, {"reach_m", nullptr}};
+  if (result.empty.beams > 0) {
+    json["empty_beams"]["ghosts"] = result.empty.ghosts;
+    json["empty_beams"]["reach_m"] = result.empty.reach_m;
+  }
   if (result.with_given) json["as_given"] = to_json(*result.with_given);
   if (result.registered) json["registered"] = to_json(*result.registered);
   return json;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "adasplats/core/words.h"
+#include "adasplats/evaluate/empty_beams_cast.h"
 #include "adasplats/evaluate/resimulate.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/session/scan_range.h"
@@ -58,6 +59,7 @@ struct HeldOutResult : ResimulateResult {
   /// On demand: with the poses (and lasers) as given, and with each scan moved to where it fits the
   /// model best (register_scans).
   std::optional<ResimulateResult> with_given, registered;
+  EmptyBeamHits empty;  ///< of the beams that returned nothing
 };
 
 /// Casts the beams of held-out scans into the model, and leaves the scans corrected as they were
