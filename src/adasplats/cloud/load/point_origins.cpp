@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/cloud/origins/path_check.h"
 #include "adasplats/cloud/origins/station_check.h"
 #include "adasplats/core/error.h"
 
@@ -60,13 +61,21 @@ std::size_t first_too_far(const PointCloud& cloud) {
   return cloud.size();
 }
 
-/// Points as seen from the place where all beams start; empty where they start at several.
-std::vector<Vec3f> points_from_station(const PointCloud& cloud, std::size_t first) {
-  std::vector<Vec3f> points;
-  for (std::size_t i = first; i < cloud.size(); ++i) {
+/// The points with beams and where these start.
+struct MeasuredPoints {
+  std::vector<Vec3f> positions, origins;
+
+  bool of_one_station() const {
+    return std::ranges::all_of(origins, [&](Vec3f o) { return o == origins.front(); });
+  }
+};
+
+MeasuredPoints measured_points(const PointCloud& cloud) {
+  MeasuredPoints points;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!is_beam(cloud.origin_kind(i))) continue;
-    if (!(cloud.sensor_positions[i] == cloud.sensor_positions[first])) return {};
-    points.push_back(cloud.positions[i] - cloud.sensor_positions[i]);
+    points.positions.push_back(cloud.positions[i]);
+    points.origins.push_back(cloud.sensor_positions[i]);
   }
   return points;
 }
@@ -113,9 +122,20 @@ void check_origins(const PointCloud& cloud, const std::filesystem::path& file,
   std::size_t first = 0;
   while (first < cloud.size() && !is_beam(cloud.origin_kind(first))) ++first;
   if (first == cloud.size()) return;
-  const std::vector<Vec3f> points = points_from_station(cloud, first);
-  const std::string objection = station_objection(view_from_station(points, executor));
-  if (!objection.empty()) throw origin_error(file, cloud, first, options, objection);
+  MeasuredPoints points = measured_points(cloud);
+  if (points.of_one_station()) {
+    std::vector<Vec3f>& ways = points.positions;
+    for (std::size_t i = 0; i < ways.size(); ++i) ways[i] = ways[i] - points.origins[i];
+    const std::string objection = station_objection(view_from_station(ways, executor));
+    if (!objection.empty()) throw origin_error(file, cloud, first, options, objection);
+    return;
+  }
+  const std::string objection =
+      path_objection(view_from_path(points.positions, points.origins, executor));
+  if (!objection.empty())
+    throw Error(ErrorKind::data, file.string() + ": the sensor positions" +
+                                     (options.trajectory.empty() ? "" : " of the trajectory") +
+                                     " are not those of the points: " + objection);
 }
 
 }  // namespace adasplats

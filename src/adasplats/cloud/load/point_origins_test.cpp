@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "adasplats/cloud/origins/path_check.h"
 #include "adasplats/cloud/origins/station_check.h"
 #include "adasplats/core/temporary_folder_test.h"
 
@@ -173,6 +174,51 @@ TEST(PointOrigins, AStationMustSeeItsPoints) {
             wall.size());
 }
 
+/// What a sensor sees of the round wall on its way along x, and where it was.
+std::pair<std::vector<Vec3f>, std::vector<Vec3f>> wall_seen_on_the_way() {
+  std::pair<std::vector<Vec3f>, std::vector<Vec3f>> seen;
+  for (int step = -8; step <= 8; ++step) {
+    const Vec3f here = {0.5F * static_cast<float>(step), 0, 0};
+    for (const Vec3f p : wall_seen_from(here)) {
+      seen.first.push_back(p);
+      seen.second.push_back(here);
+    }
+  }
+  return seen;
+}
+
+TEST(PointOrigins, APathMustSeeItsPoints) {
+  const Executor executor(2);
+  auto [points, origins] = wall_seen_on_the_way();
+  const PathView inside = view_from_path(points, origins, executor);
+  EXPECT_EQ(inside.places, 16U);
+  EXPECT_LT(inside.share_behind, 0.01);
+  EXPECT_EQ(path_objection(inside), "");
+  for (Vec3f& origin : origins) origin.x += 30;
+  const PathView outside = view_from_path(points, origins, executor);
+  EXPECT_GT(outside.share_behind, 0.2);
+  EXPECT_EQ(outside.share_behind, view_from_path(points, origins, Executor(1)).share_behind);
+  EXPECT_NE(path_objection(outside), "");
+}
+
+TEST(PointOrigins, FilesWithThePathOfAnotherPlaceAreRefused) {
+  const auto [points, origins] = wall_seen_on_the_way();
+  const auto csv_from = [&, &points = points, &origins = origins](float shift_m) {
+    std::string text = "x,y,z,sensor_x,sensor_y,sensor_z\n";
+    for (std::size_t i = 0; i < points.size(); ++i)
+      text += std::to_string(points[i].x) + "," + std::to_string(points[i].y) + "," +
+              std::to_string(points[i].z) + "," + std::to_string(origins[i].x + shift_m) + ",0,0\n";
+    return text;
+  };
+  const TemporaryFolder folder;
+  EXPECT_EQ(load({folder.write("right.csv", csv_from(0))}).second.origins[3], points.size());
+  const auto wrong = folder.write("wrong.csv", csv_from(30));
+  expect_error(ErrorKind::data, {"wrong.csv", "sensor positions", "%"}, [&] { load({wrong}); });
+  LoadOptions trusting;
+  trusting.trust_origins = true;
+  EXPECT_EQ(load({wrong}, trusting).second.origins[3], points.size());
+}
+
 TEST(PointOrigins, SmallViewsAreNotJudged) {
   const Executor executor(1);
   EXPECT_EQ(station_objection(view_from_station({}, executor)), "");
@@ -182,6 +228,8 @@ TEST(PointOrigins, SmallViewsAreNotJudged) {
   EXPECT_EQ(station_objection(view_from_station(behind, executor)), "");
   const std::vector<Vec3f> same(100, Vec3f{0, 0, 0});
   EXPECT_EQ(station_objection(view_from_station(same, executor)), "");
+  EXPECT_EQ(path_objection(view_from_path({}, {}, executor)), "");
+  EXPECT_EQ(path_objection(view_from_path(behind, behind, executor)), "");
 }
 
 }  // namespace

@@ -16,8 +16,6 @@ constexpr std::size_t kMostSampled = std::size_t{1} << 20;
 constexpr double kPointsACell = 3;
 constexpr double kFinest_rad = 0.05 * std::numbers::pi / 180;
 constexpr double kCoarsest_rad = 3.2 * std::numbers::pi / 180;
-constexpr float kNearerShare = 0.8F;   // 1 / 1.25
-constexpr float kNearerLess_m = 0.5F;  // noise and slant of near surfaces
 
 struct Direction {
   float azimuth_rad, elevation_rad, range_m;
@@ -68,7 +66,7 @@ class DirectionCells {
       }
       for (std::size_t i = begins_[c]; i < begins_[c + 1]; ++i) {
         const float range_m = directions_[order_[i]].range_m;
-        if (range_m * kNearerShare - kNearerLess_m > nearest_m) ++behind;
+        if (lies_behind(range_m, nearest_m)) ++behind;
       }
     }
     return behind;

@@ -13,6 +13,10 @@ namespace adasplats {
 /// No LiDAR that surveys measures farther (RIEGL VZ-6000: 6 km), m.
 inline constexpr double kFarthestOriginM = 10e3;
 
+/// Whether a point is hidden by one in the same direction: at more than 1.25 times its range and,
+/// for the noise and slant of near surfaces, 0.5 m more.
+inline bool lies_behind(float range_m, float nearer_m) { return range_m * 0.8F - 0.5F > nearer_m; }
+
 /// How a cloud looks from one place.
 struct StationView {
   std::size_t points = 0;   ///< that were looked at
