@@ -95,7 +95,7 @@ void take_model(Keywords& keywords, ModelJob& job, RecipeChoice& recipe, WorkOpt
   take_settings(keywords, recipe);
   keywords.take<DynamicRemoval>("remove", job.build.remove, kDynamicRemovals);
   keywords.take("reflectance", job.reflectance);
-  keywords.take("calibrate", job.calibrate);
+  take_settings(keywords, job.calibration);
   take_load_options(keywords, job.load);
   work.has_seed = true;
   work.take(keywords);

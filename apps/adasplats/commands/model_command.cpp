@@ -63,9 +63,7 @@ class ModelCommand final : public Command {
     add_switch(app, "--reflectance,!--no-reflectance", job_.reflectance,
                "Make reflectances of intensities: without what range and incidence did to them, "
                "which simulate applies again");
-    add_switch(app, "--calibrate,!--no-calibrate", job_.calibrate,
-               "Estimate from the points what their poses and lasers get wrong and correct it, "
-               "where the evidence is clear");
+    add_settings(app, job_.calibration);
     add_load_options(app, job_.load);
     add_device_options();
   }

@@ -23,8 +23,6 @@ constexpr std::size_t kLeftOut = 8;         // every so many-th point
 constexpr double kFlatnessOfJudging = 0.1;  // m
 constexpr double kMostDistance_m = 0.25;    // that counts where mounts are compared
 
-bool is_left_out(std::size_t i) { return i % kLeftOut == 0; }
-
 double between(double first, double last, int round, int rounds) {
   const double share = rounds > 1 ? static_cast<double>(round) / (rounds - 1) : 1;
   return first * std::pow(last / first, share);
@@ -56,6 +54,20 @@ struct DistanceSum {
   }
 };
 
+/// Points that are looked at, as indices into the cloud.
+struct ChosenPoints {
+  std::vector<std::uint32_t> indices;
+  std::vector<std::uint32_t> scans;  ///< theirs
+  std::vector<Vec3d> corrected;
+  bool leaves_out = false;  ///< some take no part in the fit, to judge it
+
+  bool is_left_out(std::size_t k) const { return leaves_out && k % kLeftOut == 0; }
+  void add(std::uint32_t index, std::uint32_t scan) {
+    indices.push_back(index);
+    scans.push_back(scan);
+  }
+};
+
 /// The ray of a point, in local coordinates.
 struct PointRay {
   Vec3d direction, upward;
@@ -82,7 +94,7 @@ class Calibrator {
 
   std::pair<Calibration, CalibrationReport> run() {
     CalibrationReport report;
-    correct_points();
+    correct(all_);
     judge(report.given_m, report.given);
     if (options_.mount_correction) report.mount = estimate_mount();
     const bool is_mounted = report.mount && report.mount->objection.empty();
@@ -95,7 +107,7 @@ class Calibrator {
       make_round(round, report);
     if (report.objection.empty()) {
       align_to_mounted();
-      correct_points();
+      correct(all_);
       judge(report.calibrated_m, report.calibrated);
       if (!(report.calibrated_m < options_.least_gain * before_m))
         report.objection = "points that took no part lie no better on the planes of the others";
@@ -108,7 +120,10 @@ class Calibrator {
 
  private:
   void make_round(int round, CalibrationReport& report) {
+    ChosenPoints& points = round + options_.fine_rounds < options_.rounds ? few_ : all_;
+    correct(points);
     const ScanPlanes planes = find_planes(
+        points,
         between(options_.first_flatness_m, options_.last_flatness_m, round, options_.rounds));
     report.planes = planes.planes.size();
     report.points = planes.points.size();
@@ -117,30 +132,32 @@ class Calibrator {
     const double width_m =
         between(options_.first_width_m, options_.last_width_m, round, options_.rounds);
     for (int step = 0; step < options_.steps && report.objection.empty(); ++step) {
-      make_step(planes, width_m);
-      correct_points();
+      make_step(points, planes, width_m);
+      correct(points);
     }
   }
 
   void keep_mount_alone(CalibrationReport& report) {
     std::ranges::fill(corrected_from_mounted_, RigidTransform{});
     offsets_ = {};
-    correct_points();
+    correct(all_);
     judge(report.calibrated_m, report.calibrated);
     report.mount->alone_because = std::move(report.objection);
     report.objection.clear();
   }
 
   /// Every so many-th point with a known beam, so that the scans have as many as are wanted in the
-  /// mean.
+  /// mean, and few of these.
   void choose_points() {
     const std::size_t wanted = options_.points_a_scan * std::max<std::size_t>(1, places_.size());
     const std::size_t stride = std::max<std::size_t>(1, cloud_.size() / wanted);
     for (std::size_t i = 0; i < cloud_.size(); i += stride) {
       if (!is_beam(cloud_.origin_kind(i))) continue;
-      chosen_.push_back(static_cast<std::uint32_t>(i));
-      scans_.push_back(cloud_.scan_indices[i]);
+      all_.add(static_cast<std::uint32_t>(i), cloud_.scan_indices[i]);
     }
+    all_.leaves_out = true;
+    for (std::size_t k = 0; k < all_.indices.size(); k += options_.coarse_stride)
+      if (!all_.is_left_out(k)) few_.add(all_.indices[k], all_.scans[k]);
   }
 
   std::uint16_t laser_of(std::uint32_t i) const {
@@ -158,10 +175,10 @@ class Calibrator {
     return ray;
   }
 
-  void correct_points() {
-    corrected_.resize(chosen_.size());
-    executor_.for_chunks(chosen_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) corrected_[k] = corrected(chosen_[k]);
+  void correct(ChosenPoints& points) const {
+    points.corrected.resize(points.indices.size());
+    executor_.for_chunks(points.indices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) points.corrected[k] = corrected(points.indices[k]);
     });
   }
 
@@ -182,11 +199,11 @@ class Calibrator {
       sensor_from_local.push_back(local_from_sensor.inverse());
     }
     MountPoints points;
-    for (std::size_t k = 0; k < chosen_.size(); k += stride) {
-      if (is_left_out(k)) continue;
-      points.in_sensor.push_back(sensor_from_local[scans_[k]] *
-                                 vec_cast<double>(cloud_.positions[chosen_[k]]));
-      points.scans.push_back(scans_[k]);
+    for (std::size_t k = 0; k < all_.indices.size(); k += stride) {
+      if (all_.is_left_out(k)) continue;
+      points.in_sensor.push_back(sensor_from_local[all_.scans[k]] *
+                                 vec_cast<double>(cloud_.positions[all_.indices[k]]));
+      points.scans.push_back(all_.scans[k]);
     }
     return points;
   }
@@ -196,7 +213,7 @@ class Calibrator {
     const MountOptions& mount = options_.mount;
     const std::size_t wanted = mount.points_a_scan * std::max<std::size_t>(1, places_.size());
     // Odd: points of a laser may lie a power of two apart.
-    const std::size_t stride = std::max<std::size_t>(1, chosen_.size() / wanted) | 1;
+    const std::size_t stride = std::max<std::size_t>(1, all_.indices.size() / wanted) | 1;
     MountReport report;
     if (places_.size() < mount.least_scans) {
       report.objection = "too few scans (" + std::to_string(places_.size()) + ")";
@@ -219,17 +236,17 @@ class Calibrator {
   /// Of the planes that are flat with the given mount, and of those that are with the found one:
   /// the floor is flat with any, so it is the same points that are compared. Sets the mount.
   void judge_mount(MountReport& report) {
-    const std::vector<Vec3d> given = corrected_;
-    const ScanPlanes of_given = find_planes(kFlatnessOfJudging);
+    const std::vector<Vec3d> given = all_.corrected;
+    const ScanPlanes of_given = find_planes(all_, kFlatnessOfJudging);
     set_mount(report.found.mount);
-    const ScanPlanes of_mounted = find_planes(kFlatnessOfJudging);
+    const ScanPlanes of_mounted = find_planes(all_, kFlatnessOfJudging);
     const auto mean_m = [&](const std::vector<Vec3d>& points) {
       DistanceSum sum = left_out_distances(points, of_given);
       sum += left_out_distances(points, of_mounted);
       return sum.weight > 0 ? sum.distance_m / sum.weight : 0;
     };
     report.given_m = mean_m(given);
-    report.mounted_m = mean_m(corrected_);
+    report.mounted_m = mean_m(all_.corrected);
   }
 
   /// Of points that were left out from planes through the others of the same cells.
@@ -248,7 +265,7 @@ class Calibrator {
     Vec3d mean;
     double count = 0;
     for (const std::uint32_t i : members) {
-      if (is_left_out(i)) continue;
+      if (all_.is_left_out(i)) continue;
       mean = mean + points[i];
       ++count;
     }
@@ -256,7 +273,7 @@ class Calibrator {
     mean = mean / count;
     SymmetricMat3d spread;
     for (const std::uint32_t i : members) {
-      if (is_left_out(i)) continue;
+      if (all_.is_left_out(i)) continue;
       const Vec3d d = points[i] - mean;
       spread.xx += d.x * d.x;
       spread.xy += d.x * d.y;
@@ -268,7 +285,7 @@ class Calibrator {
     const Vec3d normal = symmetric_eigen(spread).vectors[2];
     DistanceSum sum;
     for (const std::uint32_t i : members) {
-      if (!is_left_out(i)) continue;
+      if (!all_.is_left_out(i)) continue;
       sum.distance_m += std::min(kMostDistance_m, std::fabs(dot(normal, points[i] - mean)));
       ++sum.weight;
     }
@@ -297,24 +314,25 @@ class Calibrator {
       places_[scan] = mounted.translation;
       mounted_from_given_[scan] = mount.empty() ? RigidTransform{} : mounted * given.inverse();
     }
-    correct_points();
+    correct(all_);
   }
 
-  ScanPlanes find_planes(double flatness_m) const {
+  ScanPlanes find_planes(const ChosenPoints& points, double flatness_m) const {
     ScanPlaneOptions planes = options_.planes;
     planes.flatness_m = flatness_m;
-    return find_scan_planes(corrected_, scans_, planes, executor_);
+    return find_scan_planes(points.corrected, points.scans, planes, executor_);
   }
 
-  PlaneResidual residual_of(std::size_t k, const ScanPlane& plane) const {
+  PlaneResidual residual_of(const ChosenPoints& points, std::size_t k,
+                            const ScanPlane& plane) const {
     PlaneResidual row;
-    const std::uint32_t i = chosen_[k];
-    row.scan = scans_[k];
+    const std::uint32_t i = points.indices[k];
+    row.scan = points.scans[k];
     const RigidTransform& correction = corrected_from_mounted_[row.scan];
-    const Vec3d from_center = corrected_[k] - plane.center;
+    const Vec3d from_center = points.corrected[k] - plane.center;
     row.residual_m = dot(plane.normal, from_center);
     row.by_plane = {1, dot(plane.axes[0], from_center), dot(plane.axes[1], from_center)};
-    const Vec3d arm = corrected_[k] - correction * places_[row.scan];
+    const Vec3d arm = points.corrected[k] - correction * places_[row.scan];
     const Vec3d turning = cross(arm, plane.normal);
     if (options_.poses)
       row.by_pose = {turning.x,      turning.y,      turning.z,
@@ -330,14 +348,14 @@ class Calibrator {
     return row;
   }
 
-  void residuals_of(const ScanPlanes& planes, const ScanPlane& plane, double width_m,
-                    std::vector<PlaneResidual>& residuals) const {
+  void residuals_of(const ChosenPoints& points, const ScanPlanes& planes, const ScanPlane& plane,
+                    double width_m, std::vector<PlaneResidual>& residuals) const {
     const auto members = planes.points_of(plane);
     const std::size_t stride = (members.size() + options_.most_points - 1) / options_.most_points;
     double total = 0;
     for (std::size_t k = 0; k < members.size(); k += stride) {
-      if (is_left_out(members[k])) continue;
-      residuals.push_back(residual_of(members[k], plane));
+      if (points.is_left_out(members[k])) continue;
+      residuals.push_back(residual_of(points, members[k], plane));
       residuals.back().weight = robust_weight(residuals.back().residual_m, width_m);
       total += residuals.back().weight;
     }
@@ -369,11 +387,11 @@ class Calibrator {
     }
   }
 
-  void make_step(const ScanPlanes& planes, double width_m) {
+  void make_step(const ChosenPoints& points, const ScanPlanes& planes, double width_m) {
     PlaneSystem system(places_.size(), lasers_, executor_);
     system.add_planes(planes.planes.size(),
                       [&](std::size_t plane, std::vector<PlaneResidual>& residuals) {
-                        residuals_of(planes, planes.planes[plane], width_m, residuals);
+                        residuals_of(points, planes, planes.planes[plane], width_m, residuals);
                       });
     add_priors(system);
     apply(system.solve(options_.tolerance, options_.most_iterations));
@@ -457,20 +475,20 @@ class Calibrator {
 
   /// Distances of the points that were left out from the planes of the others.
   std::vector<double> left_out_residuals() const {
-    const ScanPlanes found = find_planes(kFlatnessOfJudging);
+    const ScanPlanes found = find_planes(all_, kFlatnessOfJudging);
     std::vector<double> residuals;
     for (const ScanPlane& plane : found.planes) {
       Vec3d mean;
       double count = 0;
       for (const std::uint32_t i : found.points_of(plane)) {
-        if (is_left_out(i)) continue;
-        mean = mean + corrected_[i];
+        if (all_.is_left_out(i)) continue;
+        mean = mean + all_.corrected[i];
         ++count;
       }
       if (count < 3) continue;
       for (const std::uint32_t i : found.points_of(plane))
-        if (is_left_out(i))
-          residuals.push_back(std::fabs(dot(plane.normal, corrected_[i] - mean / count)));
+        if (all_.is_left_out(i))
+          residuals.push_back(std::fabs(dot(plane.normal, all_.corrected[i] - mean / count)));
     }
     return residuals;
   }
@@ -496,13 +514,12 @@ class Calibrator {
   std::vector<Vec3d> places_;  ///< of the sensor, one a scan, as mounted, local coordinates
   std::vector<Vec3d> axes_;    ///< of its rotation, upwards
   std::size_t lasers_ = 0;
-  std::vector<std::uint32_t> chosen_;  ///< points
-  std::vector<std::uint32_t> scans_;   ///< theirs
+  ChosenPoints all_;  ///< of the last rounds and of judging
+  ChosenPoints few_;  ///< of the rounds before
   MountCorrection mount_;
   std::vector<RigidTransform> mounted_from_given_;      ///< one a scan, local coordinates, and...
   std::vector<RigidTransform> corrected_from_mounted_;  ///< ...what is left to correct
   LaserOffsets offsets_;
-  std::vector<Vec3d> corrected_;  ///< chosen points
 };
 
 }  // namespace

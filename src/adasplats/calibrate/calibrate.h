@@ -22,7 +22,7 @@ struct CalibrateOptions {
   bool elevations = true;  ///< one offset a laser
   /// One correction for all scans, before those of single ones, where it is more than these find.
   bool mount_correction = true;
-  int rounds = 8;  ///< planes are found again in each...
+  int rounds = 5;  ///< planes are found again in each...
   int steps = 2;   ///< ...and so many steps of Gauss-Newton are made
   /// Of the first and of the last round: most thickness of a plane, width of the residuals that
   /// count.
@@ -30,7 +30,9 @@ struct CalibrateOptions {
   double first_width_m = 0.15, last_width_m = 0.03;
   double most_weight = 200;       ///< of a plane, in points: near ground must not outweigh facades
   std::size_t most_points = 400;  ///< of a plane that are looked at
-  std::size_t points_a_scan = 40'000;  ///< that are looked at, in the mean
+  std::size_t points_a_scan = 40'000;  ///< that are looked at, in the mean, in...
+  int fine_rounds = 2;                 ///< ...the last rounds; in the others, every so many-th:
+  std::size_t coarse_stride = 5;       ///< odd, as points of a laser may lie a power of two apart
   double tolerance = 1e-3;             ///< of a step's conjugate gradients, and...
   int most_iterations = 200;           ///< ...their most
   /// How far the given values are believed: standard deviations of weak priors, beside residuals of

@@ -10,7 +10,7 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kParts = 16;        // of the sum over planes: added in their order
-constexpr std::size_t kUnknownGrain = 8;  // scans or lasers of a chunk
+constexpr std::size_t kUnknownGrain = 1;  // scans or lasers of a chunk
 
 template <std::size_t N>
 double dot_of(const std::vector<std::array<double, N>>& a,

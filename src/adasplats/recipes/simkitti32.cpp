@@ -187,7 +187,7 @@ class Simulation {
     model.load.driven_path_m = 0;  // labels tell what moved
     model.build.recipe = RecipeChoice{.method = job_.method}.recipe();
     model.build.remove = DynamicRemoval::moving;
-    model.calibrate = false;  // scans stand at the sequence's own poses, as its other data do
+    model.calibration.on = false;  // scans stand at the sequence's own poses, as its other data do
     result.model = run_model(model, session_);
     folder_.record(kModelFile);
   }

@@ -52,7 +52,7 @@ class ModelMaker {
 
   SplatModel run(ModelResult& result) {
     PointCloud cloud = load(result);
-    if (options_.calibrate) estimate_calibration(cloud, result);
+    if (options_.calibration.on) estimate_calibration(cloud, result);
     check_label_use({options_.labels, options_.build.remove, options_.removal_is_asked}, cloud,
                     scheme_ ? &*scheme_ : nullptr, session_.progress);
     const bool has_reflectance = cloud.has_beams() && !cloud.intensities.empty();
@@ -87,7 +87,7 @@ class ModelMaker {
   void estimate_calibration(PointCloud& cloud, ModelResult& result) {
     const Stopwatch watch;
     session_.progress.begin_step("calibrate", 1);
-    auto [calibration, report] = calibrate(cloud, {}, session_.executor);
+    auto [calibration, report] = calibrate(cloud, options_.calibration.options, session_.executor);
     session_.progress.end_step();
     result.calibration = std::move(calibration);
     result.calibrated = std::move(report);

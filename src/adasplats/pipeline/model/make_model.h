@@ -16,6 +16,39 @@
 
 namespace adasplats {
 
+/// What a recording gets wrong is estimated from its points and corrected, where the evidence is
+/// clear (calibrate()); all of it, or parts alone.
+struct CalibrationChoice {
+  bool on = true;
+  CalibrateOptions options;
+};
+
+template <class Visit>
+void visit_settings(CalibrationChoice& choice, Visit&& visit) {
+  constexpr const char* kGroup = "Calibration";
+  visit(Setting{.name = "calibrate",
+                .help = "Estimate from the points what their poses and lasers get wrong and "
+                        "correct it, where the evidence is clear",
+                .group = kGroup},
+        choice.on);
+  visit(Setting{.name = "calibrate_poses",
+                .help = "With a correction of the pose of every scan",
+                .group = kGroup},
+        choice.options.poses);
+  visit(Setting{.name = "calibrate_ranges",
+                .help = "With an offset of the ranges of every laser",
+                .group = kGroup},
+        choice.options.ranges);
+  visit(Setting{.name = "calibrate_elevations",
+                .help = "With an offset of the elevation of every laser",
+                .group = kGroup},
+        choice.options.elevations);
+  visit(Setting{.name = "calibrate_mount",
+                .help = "With a correction of the sensor's mount, common to all scans",
+                .group = kGroup},
+        choice.options.mount_correction);
+}
+
 /// How a model is made of points.
 struct ModelOptions {
   std::string labels;  ///< as label_scheme_for takes it
@@ -26,9 +59,7 @@ struct ModelOptions {
   /// Intensities become reflectances with the sensor's response, where points have known beams
   /// and intensities (measure_reflectances); else they stay as measured.
   bool reflectance = true;
-  /// What the recording gets wrong is estimated from the points themselves and corrected, where the
-  /// evidence is clear (calibrate()).
-  bool calibrate = true;
+  CalibrationChoice calibration;
 };
 
 /// Of point files.
