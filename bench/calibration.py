@@ -3,12 +3,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What calibration does for beams that took no part: every real drive, before and after.
 
-  bench/calibration.py build/release/bin/adasplats REAL_DATA OUT
+  bench/calibration.py build/release/bin/adasplats REAL_DATA OUT [--parts]
 
 REAL_DATA has kitti-0005, pandaset-002 and semantickitti-labelled as unpacked; what is missing is
 left out. Writes OUT/calibration.json (for bench/results) and prints a Markdown table. A row whose
 reports are there is not run again. Columns: a model of the recording as it is; one that was
-calibrated, its held-out scans corrected by interpolation; these scans registered to that model.
+calibrated, its held-out scans corrected by interpolation; these scans registered to that model. With --parts also what is left
+without each part of the calibration, and without what else a drive's models do by themselves.
 """
 
 import json
@@ -19,6 +20,14 @@ import sys
 
 from provenance import provenance_of
 
+PARTS = {
+    "no_poses": ["--no-calibrate-poses"],
+    "no_ranges": ["--no-calibrate-ranges"],
+    "no_elevations": ["--no-calibrate-elevations"],
+    "no_mount": ["--no-calibrate-mount"],
+    "driven_path_kept": ["--driven-path", "0"],
+    "no_empty_beams": ["--no-empty-beams"],
+}
 KITTI_TRAINING = ["--labels", "semantickitti", "--remove", "movable"]
 KITTI_BEAMS = ["--labels", "semantickitti", "--drop-movable"]
 
@@ -57,35 +66,51 @@ def figures_of(beams):
             "within_10cm": beams["within"]["0.10"]}
 
 
-def row_of(program, folder, training, held_out, model_flags, beam_flags):
-    folder.mkdir(parents=True, exist_ok=True)
-    row = {}
-    for name, flags, columns in (("as-given", ["--no-calibrate"], []),
-                                 ("calibrated", [], ["--all-poses"])):
-        model = folder / f"{name}.ply"
-        made = report_of([program, "model", training, "-o", model, *model_flags, *flags],
-                         folder / f"{name}-model.json")
-        beams = report_of([program, "evaluate", "resimulate", model, held_out, *beam_flags,
-                           *columns], folder / f"{name}-beams.json")
-        row[name.replace("-", "_")] = {"primitives": made["primitives"], **figures_of(beams)}
-        if columns:
-            row["registered"] = figures_of(beams["registered"])
-            row["calibration"] = {**made["calibration"],
-                                  "seconds": made["seconds"].get("calibrate")}
-    return row
+class Drive:
+    """Models of one drive, and what they say of its held-out beams."""
+
+    def __init__(self, program, folder, training, held_out, model_flags, beam_flags):
+        self.program, self.folder = program, folder
+        self.training, self.model_flags = training, model_flags
+        self.held_out, self.beam_flags = held_out, beam_flags
+        folder.mkdir(parents=True, exist_ok=True)
+
+    def reports(self, name, flags, columns=()):
+        model = self.folder / f"{name}.ply"
+        made = report_of([self.program, "model", self.training, "-o", model, *self.model_flags,
+                          *flags], self.folder / f"{name}-model.json")
+        beams = report_of([self.program, "evaluate", "resimulate", model, self.held_out,
+                           *self.beam_flags, *columns], self.folder / f"{name}-beams.json")
+        model.unlink(missing_ok=True)
+        return made, beams
+
+    def row(self, with_parts):
+        row = {}
+        made, beams = self.reports("as-given", ["--no-calibrate"])
+        row["as_given"] = {"primitives": made["primitives"], **figures_of(beams)}
+        made, beams = self.reports("calibrated", [], ["--all-poses"])
+        row["calibrated"] = {"primitives": made["primitives"], **figures_of(beams)}
+        row["registered"] = figures_of(beams["registered"])
+        row["calibration"] = {**made["calibration"], "seconds": made["seconds"].get("calibrate")}
+        if with_parts:
+            row["parts"] = {name: figures_of(self.reports(name, flags)[1])
+                            for name, flags in PARTS.items()}
+        return row
 
 
 def main():
-    if len(sys.argv) != 4:
+    with_parts = "--parts" in sys.argv
+    words = [word for word in sys.argv[1:] if word != "--parts"]
+    if len(words) != 3:
         sys.exit(__doc__)
-    program, data, out = sys.argv[1:]
+    program, data, out = words
     out = pathlib.Path(out)
     rows = []
     print("| drive | figures | as given | calibrated | registered | median as given | calibrated "
           "| no hit | early | late |\n|---|---|--:|--:|--:|--:|--:|--:|--:|--:|")
     for name, use, training, held_out, model_flags, beam_flags in drives(pathlib.Path(data)):
-        row = row_of(program, out / name.replace(" ", "-"), training, held_out, model_flags,
-                     beam_flags)
+        row = Drive(program, out / name.replace(" ", "-"), training, held_out, model_flags,
+                    beam_flags).row(with_parts)
         rows.append({"name": name, "use": use, **row})
         given, new = row["as_given"], row["calibrated"]
         print(f"| {name} | {use} | {given['within_10cm']:.1%} | {new['within_10cm']:.1%} "
@@ -94,7 +119,8 @@ def main():
               f"| {new['late_50cm']:.1%} |", flush=True)
     provenance = provenance_of(program)
     # Paths of data and output mean nothing elsewhere.
-    provenance["command"] = "calibration.py build/release/bin/adasplats REAL_DATA OUT"
+    provenance["command"] = ("calibration.py build/release/bin/adasplats REAL_DATA OUT"
+                             + with_parts * " --parts")
     provenance["load_average"] = os.getloadavg()[0]
     result = {"provenance": provenance, "drives": rows}
     (out / "calibration.json").write_text(json.dumps(result, indent=1) + "\n")
