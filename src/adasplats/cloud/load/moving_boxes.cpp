@@ -21,7 +21,7 @@ namespace adasplats {
 namespace {
 
 constexpr double kMargin_m = 0.2;
-constexpr std::array<std::string_view, 10> kColumns = {
+constexpr std::array<std::string_view, 10> kBoxColumns = {
     "time", "id", "stationary", "x", "y", "z", "size_x", "size_y", "size_z", "yaw"};
 
 std::vector<std::string> cells_of(const std::string& line) {
@@ -46,11 +46,12 @@ MovingBoxes::MovingBoxes(const std::filesystem::path& path) {
   if (!std::getline(file, line))
     throw Error(ErrorKind::no_input, path.string() + ": cannot be read, or is empty");
   const std::vector<std::string> names = cells_of(line);
-  std::array<std::size_t, kColumns.size()> places{};
-  for (std::size_t k = 0; k < kColumns.size(); ++k) {
-    places[k] = static_cast<std::size_t>(std::ranges::find(names, kColumns[k]) - names.begin());
+  std::array<std::size_t, kBoxColumns.size()> places{};
+  for (std::size_t k = 0; k < kBoxColumns.size(); ++k) {
+    places[k] = static_cast<std::size_t>(std::ranges::find(names, kBoxColumns[k]) - names.begin());
     if (places[k] == names.size())
-      throw Error(ErrorKind::data, path.string() + ": has no column '" + std::string(kColumns[k]) +
+      throw Error(ErrorKind::data, path.string() + ": has no column '" +
+                                       std::string(kBoxColumns[k]) +
                                        "' (expected time, id, stationary, x, y, z, size_x, "
                                        "size_y, size_z, yaw)");
   }
@@ -58,13 +59,13 @@ MovingBoxes::MovingBoxes(const std::filesystem::path& path) {
   for (std::size_t row = 2; std::getline(file, line); ++row) {
     if (line.empty()) continue;
     const std::vector<std::string> cells = cells_of(line);
-    std::array<double, kColumns.size()> v{};
-    for (std::size_t k = 0; k < kColumns.size(); ++k) {
+    std::array<double, kBoxColumns.size()> v{};
+    for (std::size_t k = 0; k < kBoxColumns.size(); ++k) {
       const auto value = places[k] < cells.size() ? parse_number<double>(cells[places[k]])
                                                   : std::optional<double>();
       if (!value || !std::isfinite(*value))
         throw Error(ErrorKind::data, path.string() + ":" + std::to_string(row) + ": column '" +
-                                         std::string(kColumns[k]) + "' is no number");
+                                         std::string(kBoxColumns[k]) + "' is no number");
       v[k] = *value;
     }
     const bool is_first = end_s_ < begin_s_;
