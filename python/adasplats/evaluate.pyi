@@ -102,6 +102,19 @@ def resimulate(
     progress: Progress | None = None,
 ) -> dict[str, Any]: ...
 
+def segmentation(
+    predicted: Path | ArrayLike,
+    true: Path | ArrayLike,
+    *,
+    first_scan: int = 0,
+    scan_count: int | None = None,
+    scan_stride: int = 1,
+    labels: Path = "semantickitti",
+    least_share: float = 0.0005,
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> dict[str, Any]: ...
+
 def truth(
     model: Path,
     truth: Path,

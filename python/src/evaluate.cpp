@@ -9,9 +9,11 @@
 #include "adasplats/pipeline/evaluate/evaluate_labels.h"
 #include "adasplats/pipeline/evaluate/evaluate_presence.h"
 #include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
+#include "adasplats/pipeline/evaluate/evaluate_segmentation.h"
 #include "adasplats/pipeline/evaluate/evaluate_truth.h"
 #include "adasplats/pipeline/provenance/metrics_json.h"
 #include "adasplats/pipeline/session/inputs.h"
+#include "arrays.h"
 #include "clouds.h"
 #include "json.h"
 #include "scenes.h"
@@ -213,6 +215,49 @@ struct LabelArguments {
   }
 };
 
+/// Classes of an array of labels: their low 16 bits, as in files of labels.
+std::vector<std::uint16_t> classes_of(py::handle labels, const char* name) {
+  const py::array array = labels.is_none() ? py::array() : py::array::ensure(labels);
+  if (labels.is_none() || !array)
+    throw py::type_error(std::string(name) +
+                         ": expected a path or an array of whole numbers, got " +
+                         std::string(py::str(py::type::of(labels).attr("__name__"))));
+  const auto count = static_cast<std::size_t>(array.size());
+  const std::vector<std::uint32_t> numbers = whole_numbers_of<std::uint32_t>(array, count, name);
+  std::vector<std::uint16_t> classes;
+  classes.reserve(count);
+  for (const std::uint32_t number : numbers)
+    classes.push_back(static_cast<std::uint16_t>(number & 0xffff));
+  return classes;
+}
+
+struct SegmentationArguments {
+  SegmentationJob job;
+  WorkOptions work{.has_device = false};
+
+  void take(Keywords& keywords) {
+    take_scan_range(keywords, job.scans);
+    keywords.take("labels", job.labels);
+    keywords.take("least_share", job.options.least_share);
+    work.take(keywords);
+  }
+
+  py::object run(py::handle predicted, py::handle truth) {
+    if (is_path(predicted) || is_path(truth)) {
+      job.predicted = path_of(predicted, "predicted");
+      job.truth = path_of(truth, "true");
+      return reported(work, [&](Session& session) { return evaluate_segmentation(job, session); });
+    }
+    if (job.scans != ScanRange())
+      throw py::value_error("segmentation(): first_scan, scan_count and scan_stride are for paths");
+    const std::vector<std::uint16_t> has = classes_of(predicted, "predicted");
+    const std::vector<std::uint16_t> expected = classes_of(truth, "true");
+    return reported(work, [&](Session& session) {
+      return evaluate_segmentation(has, expected, job.labels, job.options, session);
+    });
+  }
+};
+
 }  // namespace
 
 void bind_evaluate(py::module_& module) {
@@ -250,6 +295,14 @@ void bind_evaluate(py::module_& module) {
                          "simulated, original: SemanticKITTI folders. window: original scans "
                          "before and after the one\n"
                          "of the same time. Raises ValueError, OSError.");
+  define<SegmentationArguments>(
+      evaluate, "segmentation", "predicted", "true",
+      "How well predicted classes agree with the true ones, by intersection over union.\n\n"
+      "predicted, true: paths of sequences, trees, .label files or points with classes; or arrays "
+      "(N,) of whole\n"
+      "numbers, the class in the low 16 bits. least_share: rarer classes are left out of "
+      "'miou_present'.\n"
+      "Raises TypeError, ValueError, OSError.");
 }
 
 }  // namespace adasplats::python

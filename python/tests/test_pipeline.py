@@ -312,6 +312,45 @@ def test_labels(street, scene, poses, tmp_path):
     assert adasplats.evaluate.labels(simulated, street.sequence) == without_times(expected)
 
 
+def test_segmentation(street, tmp_path):
+    """Oracle: the program, and the definitions with NumPy."""
+    true = adasplats.read(street.cloud).classes.astype(np.int64)
+    predicted = np.where(np.arange(true.size) % 3 == 0, 40, true)
+    predicted[::7] = 0
+    files = [tmp_path / "predicted.label", tmp_path / "true.label"]
+    for file, labels in zip(files, (predicted, true)):
+        (labels + (5 << 16)).astype("<u4").tofile(file)  # instances change nothing
+    result = adasplats.evaluate.segmentation(predicted, true)
+    assert result == adasplats.evaluate.segmentation(*files, threads=1)
+    assert result == without_times(report_of(street.folder, "evaluate", "segmentation", *files))
+    judged = ~np.isin(true, [0, 1, 52, 99])
+    assert result["points"] == judged.sum()
+    is_road, told_road = np.isin(true, [40, 60]), predicted == 40
+    expected = (is_road & told_road).sum() / (judged & (is_road | told_road)).sum()
+    np.testing.assert_allclose(result["iou"]["road"], expected)
+    assert adasplats.evaluate.segmentation(true, true)["miou_present"] == 1
+
+
+def test_segmentation_errors(street):
+    segmentation = adasplats.evaluate.segmentation
+    with pytest.raises(ValueError, match="1 predicted labels, 2 true"):
+        segmentation([40], [40, 40])
+    with pytest.raises(ValueError, match="class 2 of the true"):
+        segmentation([40], np.uint8([2]))
+    with pytest.raises(ValueError, match="none of the 0 true points"):
+        segmentation(np.uint16([]), np.uint16([]))
+    with pytest.raises(ValueError, match="for paths"):
+        segmentation([40], [40], first_scan=1)
+    with pytest.raises(ValueError, match="least_share"):
+        segmentation([40], [40], least_share=2)
+    with pytest.raises(TypeError, match="predicted: expected whole numbers"):
+        segmentation([0.5], [40])
+    with pytest.raises(TypeError, match="true: expected a path"):
+        segmentation(street.cloud, [40])
+    with pytest.raises(TypeError, match="predicted: expected a path or an array"):
+        segmentation(None, [40])
+
+
 def test_sensors(street):
     report = run_program("sensors").stdout
     names = adasplats.sensors()

@@ -21,6 +21,7 @@
 #include "adasplats/pipeline/evaluate/evaluate_labels.h"
 #include "adasplats/pipeline/evaluate/evaluate_presence.h"
 #include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
+#include "adasplats/pipeline/evaluate/evaluate_segmentation.h"
 #include "adasplats/pipeline/evaluate/evaluate_truth.h"
 #include "adasplats/pipeline/model/make_model.h"
 #include "adasplats/pipeline/scene/drive.h"

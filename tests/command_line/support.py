@@ -21,6 +21,7 @@ SUBCOMMANDS = [
     ["fit-drop"],
     ["evaluate", "echoes"],
     ["evaluate", "labels"],
+    ["evaluate", "segmentation"],
     ["simkitti32"],
     ["model"],
     ["calibrate"],

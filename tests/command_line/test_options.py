@@ -125,6 +125,7 @@ class OptionsTest(ProgramTest):
                     "--drop-movable")
         self.refuse("--sensor", "evaluate", "echoes", model, sequence, "--sensor",
                     "velodyne-hdl-64e-kitti")
+        self.refuse("--scans", "evaluate", "segmentation", self.cloud, self.cloud, "--scans", "0:1")
         self.refuse("--labels", "evaluate", "presence", model, self.unlabelled(), "--labels",
                     "semantickitti")
         self.refuse("--viewpoint", "export", model, "-o", self.folder / "out.glb", "--viewpoint",

@@ -55,21 +55,17 @@ const std::vector<float>& float_column(const Table& table, std::string_view name
   return std::get<std::vector<float>>(table.find(name)->values);
 }
 
-void read_labels(const std::filesystem::path& path, KittiScan& scan) {
-  const std::string bytes = read_file(path);
+void take_labels(const std::filesystem::path& path, KittiScan& scan) {
+  const std::vector<std::uint32_t> labels = read_kitti_labels(path);
   const std::size_t points = scan.positions.size();
-  if (bytes.size() != points * sizeof(std::uint32_t))
-    throw Error(ErrorKind::data, path.string() + ": " +
-                                     std::to_string(bytes.size() / sizeof(std::uint32_t)) +
-                                     " labels (" + std::to_string(bytes.size()) + " bytes), " +
-                                     std::to_string(points) + " points");
-  scan.classes.resize(points);
-  scan.instances.resize(points);
-  for (std::size_t i = 0; i < points; ++i) {
-    std::uint32_t label = 0;
-    std::memcpy(&label, bytes.data() + i * sizeof(label), sizeof(label));
-    scan.classes[i] = static_cast<std::uint16_t>(label & 0xffff);
-    scan.instances[i] = static_cast<std::uint16_t>(label >> 16);
+  if (labels.size() != points)
+    throw Error(ErrorKind::data, path.string() + ": " + std::to_string(labels.size()) +
+                                     " labels, " + std::to_string(points) + " points");
+  scan.classes.reserve(points);
+  scan.instances.reserve(points);
+  for (const std::uint32_t label : labels) {
+    scan.classes.push_back(static_cast<std::uint16_t>(label & 0xffff));
+    scan.instances.push_back(static_cast<std::uint16_t>(label >> 16));
   }
 }
 
@@ -131,9 +127,19 @@ std::optional<KittiScan> try_kitti_points(const KittiSequence& sequence, std::si
   }
 }
 
+std::vector<std::uint32_t> read_kitti_labels(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  std::vector<std::uint32_t> labels(bytes.size() / sizeof(std::uint32_t));
+  if (bytes.size() != labels.size() * sizeof(std::uint32_t))
+    throw Error(ErrorKind::data,
+                path.string() + ": " + std::to_string(bytes.size()) + " bytes, expected 4 a label");
+  if (!labels.empty()) std::memcpy(labels.data(), bytes.data(), bytes.size());
+  return labels;
+}
+
 KittiScan read_kitti_scan(const KittiSequence& sequence, std::size_t index) {
   KittiScan scan = read_kitti_points(sequence, index);
-  if (!sequence.labels.empty()) read_labels(sequence.labels.at(index), scan);
+  if (!sequence.labels.empty()) take_labels(sequence.labels.at(index), scan);
   return scan;
 }
 

@@ -60,6 +60,10 @@ struct KittiScan {
 MeasuredBeam beam_of(const KittiSequence& sequence, std::size_t index, const KittiScan& scan,
                      std::size_t i);
 
+/// The labels of a file such as labels/000000.label, the class in the low 16 bits and the instance
+/// in the high ones. Errors: data (not four bytes a label), no_input, io.
+std::vector<std::uint32_t> read_kitti_labels(const std::filesystem::path& path);
+
 /// Reads scan number `index`. Points that are not finite are kept here (the caller counts them).
 /// Errors: data where the label file has another number of entries ("n labels, m points").
 KittiScan read_kitti_scan(const KittiSequence& sequence, std::size_t index);

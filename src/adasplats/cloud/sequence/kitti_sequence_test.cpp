@@ -107,6 +107,9 @@ TEST(KittiSequence, CountsThatDoNotFit) {
                [&] { read_kitti_scan(sequence, 1); });
   folder.write("labels/000001.label", "abc");
   expect_error(ErrorKind::data, {"000001.label", "3 bytes"}, [&] { read_kitti_scan(sequence, 1); });
+  expect_error(ErrorKind::data, {"000001.label", "3 bytes"},
+               [&] { read_kitti_labels(sequence.labels.at(1)); });
+  EXPECT_TRUE(read_kitti_labels(folder.write("none.label", "")).empty());
   folder.write("velodyne/000001.bin", std::string(17, 'x'));
   expect_error(ErrorKind::data, {"000001.bin"}, [&] { read_kitti_scan(sequence, 1); });
   std::filesystem::rename(folder.path() / "labels/000001.label",

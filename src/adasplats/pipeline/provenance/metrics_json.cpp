@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace adasplats {
 namespace {
@@ -46,6 +47,25 @@ Json to_json(const LabelAgreement& agreement) {
     json["distance_m"] = agreement.distance_m;
   }
   return json;
+}
+
+Json confusion_json(const SegmentationConfusion& confusion, const Json& names) {
+  Json counts = Json::array();
+  for (std::size_t truth = 0; truth < confusion.classes(); ++truth) {
+    Json row = Json::array();
+    for (std::size_t predicted = 0; predicted <= confusion.classes(); ++predicted)
+      row.push_back(confusion.count(truth, predicted));
+    counts.push_back(row);
+  }
+  return {{"classes", names}, {"counts", counts}};
+}
+
+Json groups_json(const SegmentationConfusion& groups) {
+  Json iou = Json::object();
+  const std::vector<std::string> names = segmentation_groups();
+  for (std::size_t g = 0; g < names.size(); ++g)
+    if (groups.of_truth(g) > 0) iou[names[g]] = groups.iou(g);
+  return {{"miou", groups.mean_iou()}, {"iou", iou}};
 }
 
 }  // namespace
@@ -125,6 +145,29 @@ Json to_json(const LabelAgreementResult& result) {
   for (const auto& [id, agreement] : result.by_class)
     json["by_class"][std::to_string(id)] = to_json(agreement);
   return json;
+}
+
+Json to_json(const SegmentationResult& result) {
+  const SegmentationConfusion& confusion = result.confusion;
+  const double least_share = result.options.least_share;
+  Json names = Json::array(), iou = Json::object(), share = Json::object(), rare = Json::array();
+  for (std::size_t c = 0; c < confusion.classes(); ++c) {
+    const std::string& name = result.classes.classes()[c].name;
+    names.push_back(name);
+    if (confusion.of_truth(c) == 0) continue;
+    iou[name] = confusion.iou(c);
+    share[name] = confusion.share(c);
+    if (confusion.is_rare(c, least_share)) rare.push_back(name);
+  }
+  return {{"miou_present", confusion.mean_iou(least_share)},
+          {"accuracy", confusion.accuracy()},
+          {"points", confusion.points()},
+          {"ignored", confusion.ignored()},
+          {"iou", iou},
+          {"share", share},
+          {"rare", rare},
+          {"groups", groups_json(grouped(confusion, result.classes))},
+          {"confusion", confusion_json(confusion, names)}};
 }
 
 }  // namespace adasplats

@@ -8,6 +8,7 @@
 #include "adasplats/evaluate/label_agreement.h"
 #include "adasplats/evaluate/presence.h"
 #include "adasplats/evaluate/resimulate.h"
+#include "adasplats/evaluate/segmentation.h"
 #include "adasplats/evaluate/truth.h"
 
 namespace adasplats {
@@ -19,5 +20,6 @@ nlohmann::ordered_json to_json(const ResimulateResult& result);
 nlohmann::ordered_json to_json(const TruthResult& result);
 nlohmann::ordered_json to_json(const PresenceResult& result);
 nlohmann::ordered_json to_json(const LabelAgreementResult& result);
+nlohmann::ordered_json to_json(const SegmentationResult& result);
 
 }  // namespace adasplats
