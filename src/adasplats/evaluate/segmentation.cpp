@@ -148,6 +148,7 @@ double SegmentationConfusion::mean_iou(double least_share) const {
 
 std::vector<std::string> segmentation_groups() {
   std::vector<std::string> names;
+  names.reserve(kMovableGroup + 1);
   for (int group = 0; group < kSemanticGroups; ++group)
     names.emplace_back(name_of(static_cast<SemanticGroup>(group)));
   names.emplace_back("movable");
