@@ -33,6 +33,10 @@ std::vector<Vec3d> ring_about(Vec3d center, Vec3d u, Vec3d v, int sides) {
 
 }  // namespace
 
+void MeshBuilder::stand_at(const RigidTransform& world_from_shape, Vec3d scale) {
+  stand_ = {world_from_shape, scale};
+}
+
 void MeshBuilder::triangle(Vec3d a, Vec3d b, Vec3d c, const Material& material) {
   const std::array<Vec3d, 3> corners = {a, b, c};
   polygon(corners, material);
@@ -46,7 +50,13 @@ void MeshBuilder::quad(Vec3d a, Vec3d b, Vec3d c, Vec3d d, const Material& mater
 void MeshBuilder::polygon(std::span<const Vec3d> corners, const Material& material) {
   TriangleMesh& mesh = built_.mesh;
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const Vec3d& corner : corners) mesh.vertices.push_back(vec_cast<float>(corner));
+  for (const Vec3d& corner : corners) {
+    const Vec3d in_world = stand_ ? stand_->world_from_shape * Vec3d{stand_->scale.x * corner.x,
+                                                                     stand_->scale.y * corner.y,
+                                                                     stand_->scale.z * corner.z}
+                                  : corner;
+    mesh.vertices.push_back(vec_cast<float>(in_world));
+  }
   bool any = false;
   for (std::uint32_t k = 1; k + 1 < corners.size(); ++k) {
     const std::array<std::uint32_t, 3> t = {first, first + k, first + k + 1};

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/scene/scene.h"
 
@@ -29,6 +31,12 @@ struct BuiltMesh {
 /// corners does not matter. Triangles under 1e-8 m2 are left out.
 class MeshBuilder {
  public:
+  /// Where the shapes that follow stand: they are given in a frame of their own, stretched by
+  /// `scale` along its axes.
+  void stand_at(const RigidTransform& world_from_shape, Vec3d scale = {1, 1, 1});
+  /// Shapes are given in world coordinates again, as they are at first.
+  void stand_in_world() { stand_.reset(); }
+
   void triangle(Vec3d a, Vec3d b, Vec3d c, const Material& material);
   /// Corners in order around the quad.
   void quad(Vec3d a, Vec3d b, Vec3d c, Vec3d d, const Material& material);
@@ -52,7 +60,13 @@ class MeshBuilder {
   BuiltMesh take() { return std::move(built_); }
 
  private:
+  struct Stand {
+    RigidTransform world_from_shape;
+    Vec3d scale;
+  };
+
   BuiltMesh built_;
+  std::optional<Stand> stand_;
 };
 
 }  // namespace adasplats

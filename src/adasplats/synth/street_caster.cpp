@@ -37,11 +37,11 @@ bool in_the_way(const MovingObject& object, const RigidTransform& world_from_obj
 std::vector<Ray> rays_of(const LidarModel& sensor, std::span<const Firing> firings,
                          const RigidTransform& world_from_sensor, const Executor& executor) {
   std::vector<Ray> rays(firings.size());
-  const Vec3f origin = vec_cast<float>(world_from_sensor.translation);
   executor.for_chunks(firings.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3d direction =
           normalized(world_from_sensor.rotation * vec_cast<double>(firings[i].direction));
+      const Vec3f origin = vec_cast<float>(world_from_sensor * vec_cast<double>(firings[i].origin));
       rays[i] = {origin, static_cast<float>(sensor.min_range_m), vec_cast<float>(direction),
                  static_cast<float>(sensor.max_range_m)};
     }
@@ -130,8 +130,12 @@ std::vector<Echo> StreetCaster::cast(const LidarModel& sensor, std::span<const F
       const float intensity =
           intensity_of(surfaces.mesh.triangle(hit.primitive), surfaces.reflectances[hit.primitive],
                        rays[i], hit.t, random);
-      echoes[i] = {static_cast<std::uint32_t>(i), static_cast<float>(hit.t + noise), intensity,
-                   surfaces.mesh.classes[hit.primitive], surfaces.instances[hit.primitive]};
+      echoes[i] = {static_cast<std::uint32_t>(i),
+                   static_cast<float>(hit.t + noise),
+                   intensity,
+                   surfaces.mesh.classes[hit.primitive],
+                   surfaces.instances[hit.primitive],
+                   surfaces.reflectances[hit.primitive]};
     }
   });
   std::erase_if(echoes, [](const Echo& echo) { return echo.ray == kMiss || echo.range_m <= 0; });

@@ -25,6 +25,7 @@ struct Echo {
   float intensity = 0;    ///< 0..1
   std::uint16_t class_id = 0;
   std::uint16_t instance = 0;
+  float reflectance = 0;  ///< of the surface, 0..1
 };
 
 /// The movers that are there at a time, in world coordinates. Those that `vehicle` (a position)

@@ -154,18 +154,22 @@ void add_building(MeshBuilder& builder, const WallFrame& wall, const Building& b
   add_downpipe(builder, wall, building);
 }
 
-/// A row of buildings along `wall` until `length` is filled.
-void add_row(const StreetPlan& plan, MeshBuilder& builder, WallFrame wall, double length,
+void add_row(const StreetPlan& plan, MeshBuilder& builder, const WallFrame& wall, double length,
              std::uint64_t number) {
   Random random = random_of(plan, Purpose::facade, number);
-  const int count = std::max(1, static_cast<int>(std::lround(length / 13)));
-  for (int k = 0; k < count; ++k) {
-    add_building(builder, wall, draw_building(length / count, random), kKerbHeight);
-    wall.origin = wall.origin + wall.along * (length / count);
-  }
+  add_facade_row(builder, wall, length, kKerbHeight, random);
 }
 
 }  // namespace
+
+void add_facade_row(MeshBuilder& builder, WallFrame wall, double length, double ground_z,
+                    Random& random) {
+  const int count = std::max(1, static_cast<int>(std::lround(length / 13)));
+  for (int k = 0; k < count; ++k) {
+    add_building(builder, wall, draw_building(length / count, random), ground_z);
+    wall.origin = wall.origin + wall.along * (length / count);
+  }
+}
 
 void add_facades(const StreetPlan& plan, MeshBuilder& builder) {
   for (const Plot& plot : plan.plots) {

@@ -46,7 +46,7 @@ void add_plate(MeshBuilder& builder, Vec3d center, Vec3d normal, double half_wid
   builder.loft(faces, kSignFace);
 }
 
-enum class SignShape : std::uint8_t { disc, triangle, square, panel };
+}  // namespace
 
 void add_sign(MeshBuilder& builder, Vec3d foot, double pole_radius, double center_height,
               Vec3d normal, SignShape shape) {
@@ -62,6 +62,8 @@ void add_sign(MeshBuilder& builder, Vec3d foot, double pole_radius, double cente
       break;
   }
 }
+
+namespace {
 
 void add_sign_pole(const StreetPlan& plan, MeshBuilder& builder, const Item& item) {
   Random random = random_of(plan, Purpose::furniture, item.number);

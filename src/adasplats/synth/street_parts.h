@@ -83,4 +83,25 @@ void add_bar_fence(MeshBuilder& builder, Vec3d from, Vec3d to, const BarFence& f
 void add_car(MeshBuilder& builder, int shape, const Material& paint,
              const RigidTransform& world_from_car);
 
+/// One leaf: a rhombus folded along its middle, so it is two triangles.
+void add_leaf(MeshBuilder& builder, Vec3d center, double length_m, Random& random);
+
+/// A trunk or branch that bends: `points` joined by tapering tubes.
+void add_limb(MeshBuilder& builder, const std::vector<Vec3d>& points, double radius_from,
+              double radius_to, int sides, const Material& material);
+
+/// What a person is, about the ground under the middle, facing +x: legs in stride, body, arms,
+/// head.
+void add_person(MeshBuilder& builder, double height, const Material& cloth);
+
+enum class SignShape : std::uint8_t { disc, triangle, square, panel };
+
+/// The plate of a traffic sign before a pole that stands at `foot`, looking along `normal`.
+void add_sign(MeshBuilder& builder, Vec3d foot, double pole_radius, double center_height,
+              Vec3d normal, SignShape shape);
+
+/// Apartment buildings along `wall` until `length` is filled, their doors at `ground_z`.
+void add_facade_row(MeshBuilder& builder, WallFrame wall, double length, double ground_z,
+                    Random& random);
+
 }  // namespace adasplats

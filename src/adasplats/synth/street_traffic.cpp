@@ -16,11 +16,11 @@ constexpr double kCarEvery_s = 13;    // in each lane
 constexpr double kPersonEvery_m = 9;  // of each sidewalk
 constexpr double kWaypointEvery_m = 4;
 
-/// What a person is, about the ground under the middle: legs in stride, body, arms, head.
-void add_person(MeshBuilder& builder, double height, float clothing) {
+}  // namespace
+
+void add_person(MeshBuilder& builder, double height, const Material& cloth) {
   const double s = height / 1.75;
-  const Material cloth = {label::kMovingPerson, clothing};
-  const Material skin = {label::kMovingPerson, 0.5F};
+  const Material skin = {cloth.class_id, 0.5F, cloth.instance};
   for (const double side : {-1.0, 1.0}) {
     const Vec3d hip = {0, side * 0.09 * s, 0.88 * s};
     const Vec3d knee = {side * 0.12 * s, side * 0.1 * s, 0.48 * s};
@@ -38,6 +38,8 @@ void add_person(MeshBuilder& builder, double height, float clothing) {
   builder.tube({0, 0, 1.45 * s}, {0, 0, 1.56 * s}, 0.06 * s, 0.06 * s, 10, skin);
   builder.ellipsoid({0.01, 0, 1.64 * s}, {0.095 * s, 0.08 * s, 0.115 * s}, 8, 12, skin);
 }
+
+namespace {
 
 MovingObject finished(MeshBuilder& builder, std::uint16_t instance, Trajectory trajectory) {
   BuiltMesh built = builder.take();
@@ -120,7 +122,8 @@ std::vector<MovingObject> make_traffic(const StreetPlan& plan, std::uint16_t fir
   const auto add_walker = [&](Trajectory trajectory) {
     Random random = random_of(plan, Purpose::walkers, instance);
     MeshBuilder builder;
-    add_person(builder, random.uniform(1.55, 1.9), static_cast<float>(random.uniform(0.1, 0.6)));
+    const auto clothing = static_cast<float>(random.uniform(0.1, 0.6));
+    add_person(builder, random.uniform(1.55, 1.9), {label::kMovingPerson, clothing});
     add(builder, std::move(trajectory));
   };
 

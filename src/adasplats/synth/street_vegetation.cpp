@@ -21,7 +21,8 @@ Vec3d random_direction(Random& random) {
   return {level * std::cos(azimuth), level * std::sin(azimuth), z};
 }
 
-/// One leaf: a rhombus folded along its middle, so it is two triangles.
+}  // namespace
+
 void add_leaf(MeshBuilder& builder, Vec3d center, double length_m, Random& random) {
   const Vec3d along = random_direction(random);
   const Vec3d other = random_direction(random);
@@ -37,7 +38,6 @@ void add_leaf(MeshBuilder& builder, Vec3d center, double length_m, Random& rando
   builder.triangle(stalk, tip, center - half_across + lift, leaf);
 }
 
-/// A trunk or branch that bends: `points` joined by tapering tubes.
 void add_limb(MeshBuilder& builder, const std::vector<Vec3d>& points, double radius_from,
               double radius_to, int sides, const Material& material) {
   const auto pieces = static_cast<double>(points.size() - 1);
@@ -48,6 +48,8 @@ void add_limb(MeshBuilder& builder, const std::vector<Vec3d>& points, double rad
                  radius_from + b * (radius_to - radius_from), sides, material);
   }
 }
+
+namespace {
 
 struct TreeShape {
   double height = 8;
