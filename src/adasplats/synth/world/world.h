@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/core/progress.h"
+#include "adasplats/core/setting.h"
+#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/synth/street.h"
+
+namespace adasplats {
+
+/// What sort of place a procedural world is.
+enum class WorldKind : std::uint8_t { residential, suburban, rural, motorway, city };
+inline constexpr std::pair<std::string_view, WorldKind> kWorldKinds[] = {
+    {"residential", WorldKind::residential},
+    {"suburban", WorldKind::suburban},
+    {"rural", WorldKind::rural},
+    {"motorway", WorldKind::motorway},
+    {"city", WorldKind::city}};
+inline Words<WorldKind> words_of(WorldKind) { return kWorldKinds; }
+
+struct WorldOptions {
+  std::uint64_t seed = 1;
+  WorldKind kind = WorldKind::residential;
+  double length_m = 200;  ///< of the road
+};
+
+/// How a world is scanned: by a sensor at KITTI's height that drives in the right lane, its drive
+/// in the middle of the road.
+struct WorldScanOptions {
+  std::uint64_t seed = 1;
+  std::size_t scans = 10;
+  double spacing_m = 1;                           ///< between scans
+  std::string sensor = "velodyne-hdl-64e-kitti";  ///< as load_lidar_model takes it
+};
+
+template <class Visit>
+void visit_settings(WorldOptions& world, Visit&& visit) {
+  visit(Setting{.name = "kind", .help = "Of place"}, world.kind);
+  visit(Setting{.name = "length",
+                .help = "Of the road, m",
+                .value = "M",
+                .key = "length_m",
+                .least = 80,
+                .most = 1000},
+        world.length_m);
+}
+
+template <class Visit>
+void visit_settings(WorldScanOptions& scan, Visit&& visit) {
+  visit(Setting{.name = "scans", .help = "How many", .value = "N", .least = 1, .most = 10000},
+        scan.scans);
+  visit(Setting{.name = "spacing",
+                .help = "Between scans, m",
+                .value = "M",
+                .key = "spacing_m",
+                .least = 0,
+                .most = 100},
+        scan.spacing_m);
+}
+
+/// A place to learn semantic classes from: SemanticKITTI's classes in exact geometry, another plan
+/// with every seed. Metres, z up; the road begins at the origin and winds.
+struct SynthWorld {
+  Street place;      ///< its road is not straight; what moves is there from time 0 on
+  Trajectory drive;  ///< of the vehicle on the right lane, origin on the road, from end to end
+};
+
+/// Builds a world; depends on the options alone. Errors: usage (length out of its range).
+SynthWorld make_world(const WorldOptions& options);
+
+/// Scans a world; `on_scan` receives every scan (index, scan) in order. Ranges are noisy as the
+/// sensor says; glass and bright metal lose some returns, and a few are from nowhere: those have
+/// SemanticKITTI's class outlier.
+/// Errors: usage (an option out of its range, more scans than the road has room for), those of
+/// load_lidar_model.
+void scan_world(const SynthWorld& world, const WorldScanOptions& options,
+                const std::function<void(std::size_t, const Scan&)>& on_scan,
+                const Executor& executor, ProgressSink& progress);
+
+/// What write_world wrote.
+struct WorldReport {
+  std::size_t mesh_triangles = 0;
+  std::size_t moving_objects = 0;
+  std::size_t scans = 0;
+  std::size_t points = 0;
+};
+
+/// Makes, scans and writes a world: FOLDER/sequences/00/ (SemanticKITTI), mesh.ply (what stands).
+/// Errors: as make_world and scan_world; cannot_create (also where sequences/00 is there already),
+/// io.
+WorldReport write_world(const std::filesystem::path& folder, const WorldOptions& world,
+                        const WorldScanOptions& scan, const Executor& executor,
+                        ProgressSink& progress);
+
+}  // namespace adasplats

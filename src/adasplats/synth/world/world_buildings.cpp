@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "adasplats/synth/facade.h"
+#include "adasplats/synth/world/world_parts.h"
+
+namespace adasplats {
+namespace {
+
+constexpr double kFooting = 1.6;  // walls reach down through land that slopes
+constexpr double kStorey = 2.75;
+
+struct WorldHouse {
+  double width = 9, depth = 8;
+  int storeys = 2;
+  double roof = 3;  ///< rise of the ridge over the eaves; 0: flat
+  bool ridge_along = true;
+  float wall = 0.5F, tiles = 0.3F;
+  double eaves() const { return storeys * kStorey + 0.3; }
+};
+
+WorldHouse draw_house(double widest, Random& random) {
+  WorldHouse house;
+  house.width = std::clamp(random.uniform(7, 14), 4.5, std::max(4.5, widest));
+  house.depth = random.uniform(6.5, 12);
+  house.storeys = random.uniform() < 0.25 ? 1 : random.uniform() < 0.8 ? 2 : 3;
+  house.roof = random.uniform() < 0.12 ? 0 : random.uniform(1.5, 4.2);
+  house.ridge_along = random.uniform() < 0.65;
+  house.wall = static_cast<float>(random.uniform(0.35, 0.75));
+  house.tiles = static_cast<float>(random.uniform(0.15, 0.5));
+  return house;
+}
+
+/// One wall with an opening in most of its bays, of one storey after the other.
+void add_house_wall(MeshBuilder& builder, const WallFrame& wall, double width,
+                    const WorldHouse& house, bool has_door, Random& random) {
+  const int bays = std::max(1, static_cast<int>(std::lround(width / random.uniform(2.4, 3.6))));
+  const double bay = width / bays;
+  const int door = has_door ? static_cast<int>(random.uniform() * bays) : -1;
+  const bool shutters = random.uniform() < 0.3;
+  for (int storey = 0; storey < house.storeys; ++storey) {
+    const double floor = 0.25 + storey * kStorey;
+    const double top = storey + 1 == house.storeys ? house.eaves() : floor + kStorey;
+    for (int b = 0; b < bays; ++b) {
+      const WallRect panel = {b * bay, (b + 1) * bay, storey == 0 ? -kFooting : floor, top};
+      const double middle = (b + 0.5) * bay;
+      const double half = std::min(0.4 * bay, random.uniform(0.4, 1.1));
+      if (storey == 0 && b == door) {
+        add_wall_with_opening(builder, wall, panel, {middle - 0.5, middle + 0.5, 0.2, 2.3},
+                              OpeningKind::door, house.wall);
+      } else if (random.uniform() < 0.8) {
+        add_wall_with_opening(builder, wall, panel,
+                              {middle - half, middle + half, floor + 0.85, floor + 2.2},
+                              shutters ? OpeningKind::shutters : OpeningKind::window, house.wall);
+      } else {
+        builder.quad(wall(panel.a0, 0, panel.z0), wall(panel.a1, 0, panel.z0),
+                     wall(panel.a1, 0, panel.z1), wall(panel.a0, 0, panel.z1),
+                     {label::kBuilding, house.wall});
+      }
+    }
+  }
+}
+
+/// Roof with overhanging eaves, its gables and a chimney; x across the front, y away from the road.
+void add_house_roof(MeshBuilder& builder, const WorldHouse& house) {
+  const Material stone = {label::kBuilding, house.wall};
+  const Material tiles = {label::kBuilding, house.tiles};
+  const double half = 0.5 * house.width;
+  const double top = house.eaves();
+  if (house.roof <= 0) {
+    builder.box({-half - 0.2, -0.2, top - 0.1}, {half + 0.2, house.depth + 0.2, top + 0.25}, tiles);
+    return;
+  }
+  // As if the ridge lay along x: u along it, v across.
+  const double length_u = house.ridge_along ? house.width : house.depth;
+  const double length_v = house.ridge_along ? house.depth : house.width;
+  const auto at = [&](double u, double v, double z) {
+    return house.ridge_along ? Vec3d{u - half, v, z} : Vec3d{v - half, u, z};
+  };
+  constexpr double kOver = 0.45;
+  const double ridge = top + house.roof;
+  const double low = top - kOver * house.roof / (0.5 * length_v);
+  for (const double v : {-kOver, length_v + kOver})
+    builder.quad(at(-kOver, v, low), at(length_u + kOver, v, low),
+                 at(length_u + kOver, 0.5 * length_v, ridge), at(-kOver, 0.5 * length_v, ridge),
+                 tiles);
+  for (const double u : {0.0, length_u})
+    builder.triangle(at(u, 0, top), at(u, length_v, top), at(u, 0.5 * length_v, ridge), stone);
+  const Vec3d chimney = at(0.3 * length_u, 0.4 * length_v, ridge);
+  builder.box(chimney - Vec3d{0.35, 0.3, 1.5}, chimney + Vec3d{0.35, 0.3, 0.8}, stone);
+}
+
+/// In the builder's frame: x along the front, its middle at zero, y away from the road.
+void add_house(MeshBuilder& builder, const WorldHouse& house, Random& random) {
+  const double half = 0.5 * house.width;
+  add_house_wall(builder, {{-half, 0, 0}, {1, 0, 0}, {0, -1, 0}}, house.width, house, true, random);
+  add_house_wall(builder, {{-half, house.depth, 0}, {0, -1, 0}, {-1, 0, 0}}, house.depth, house,
+                 false, random);
+  add_house_wall(builder, {{half, 0, 0}, {0, 1, 0}, {1, 0, 0}}, house.depth, house, false, random);
+  builder.quad({-half, house.depth, -kFooting}, {half, house.depth, -kFooting},
+               {half, house.depth, house.eaves()}, {-half, house.depth, house.eaves()},
+               {label::kBuilding, house.wall});
+  add_house_roof(builder, house);
+  if (random.uniform() < 0.4) {  // a porch
+    const double x = random.uniform(-0.6, 0.6) * half;
+    builder.box({x - 1.1, -1.3, 2.5}, {x + 1.1, 0, 2.65}, {label::kBuilding, house.tiles});
+    for (const double post : {x - 1, x + 1})
+      builder.beam({post, -1.2, -0.5}, {post, -1.2, 2.5}, 0.06, 0.06,
+                   {label::kBuilding, house.wall});
+  }
+  if (random.uniform() < 0.3) {  // a bay window
+    const double x = random.uniform(-0.5, 0.5) * half;
+    builder.box({x - 1.2, -0.8, -kFooting}, {x + 1.2, 0, 2.9}, {label::kBuilding, house.wall});
+    builder.quad({x - 1, -0.82, 1}, {x + 1, -0.82, 1}, {x + 1, -0.82, 2.3}, {x - 1, -0.82, 2.3},
+                 {label::kBuilding, kDarkPane});
+  }
+}
+
+void add_house_plot(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
+  Random random = random_of(plan, WorldPurpose::house, plot.number);
+  const double front = plan.property_line(plot.side) + plot.setback;
+  const double left = plot.s0 + (plot.driveway ? 3.6 : 0.6);
+  const double gap = random.uniform() < 0.25 ? 0 : random.uniform(0.5, 2.5);
+  const double widest = plot.s1 - gap - left;
+  if (widest < 4.5) return;
+  WorldHouse house = draw_house(widest, random);
+  if (gap == 0 && random.uniform() < 0.7) house.width = widest;
+  const double middle = left + random.uniform(0.5, 1) * (widest - house.width) + 0.5 * house.width;
+  builder.stand_at(plan.stand(middle, plot.side, front, random.normal() * 0.01));
+  add_house(builder, house, random);
+  if (plot.driveway && random.uniform() < 0.6) {
+    const double back = front + random.uniform(1, 7);
+    builder.stand_at(plan.stand(plot.s0 + 1.9, plot.side, back));
+    const double z = random.uniform(2.3, 2.9);
+    builder.box({-1.6, 0, -kFooting}, {1.6, 5.5, z}, {label::kBuilding, house.wall * 0.9F});
+    builder.box({-1.7, -0.2, z}, {1.7, 5.7, z + 0.15}, {label::kBuilding, house.tiles});
+  }
+  if (random.uniform() < 0.3) {  // a shed further back
+    builder.stand_at(plan.stand(plot.s0 + random.uniform(2, plot.width() - 2), plot.side,
+                                front + house.depth + random.uniform(3, 9), random.uniform(-1, 1)));
+    builder.box({-1.4, -1.1, -1}, {1.4, 1.1, 2.1},
+                {random.uniform() < 0.6 ? label::kBuilding : label::kOtherStructure, 0.35F});
+  }
+  builder.stand_in_world();
+}
+
+void add_facade_plot(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
+  Random random = random_of(plan, WorldPurpose::house, plot.number);
+  const double setback = random.uniform() < 0.3 ? random.uniform(0.3, 3) : 0.05;
+  const double front = plan.property_line(plot.side) + setback;
+  // Chords between the ends, so that rows of a curve meet.
+  constexpr double kChord_m = 15;
+  const int rows = std::max(1, static_cast<int>(std::lround(plot.width() / kChord_m)));
+  for (int k = 0; k < rows; ++k) {
+    const double width = plot.width() / rows;
+    const double from = plot.s0 + k * width;
+    const Vec3d one = plan.ground_at(from, plot.side * front);
+    const Vec3d other = plan.ground_at(from + width, plot.side * front);
+    const Vec3d chord = {other.x - one.x, other.y - one.y, 0};
+    const Vec3d along = normalized(chord);
+    const Vec3d out = static_cast<double>(plot.side) * Vec3d{along.y, -along.x, 0};
+    builder.stand_at({Mat3d{}, {one.x, one.y, std::min(one.z, other.z)}});
+    add_facade_row(builder, {{0, 0, 0}, along, out}, length(chord), 0.1, random);
+  }
+  builder.stand_in_world();
+}
+
+}  // namespace
+
+void add_world_buildings(const WorldPlan& plan, MeshBuilder& builder) {
+  for (const WorldPlot& plot : plan.plots) {
+    if (plot.use == Frontage::houses) add_house_plot(plan, builder, plot);
+    if (plot.use == Frontage::facades) add_facade_plot(plan, builder, plot);
+  }
+}
+
+}  // namespace adasplats

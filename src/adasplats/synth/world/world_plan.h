@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "adasplats/core/maths/random.h"
+#include "adasplats/synth/street_plan.h"
+#include "adasplats/synth/world/world.h"
+#include "adasplats/synth/world/world_route.h"
+
+// Inside synth/world/: what stands where, before anything is built.
+
+namespace adasplats {
+
+/// SemanticKITTI ids that the street does without.
+namespace label {
+inline constexpr std::uint16_t kOutlier = 1, kBicycle = 11, kBus = 13, kMotorcycle = 15,
+                               kTruck = 18, kOtherVehicle = 20, kPerson = 30, kBicyclist = 31,
+                               kMotorcyclist = 32, kParking = 44, kLaneMarking = 60,
+                               kMovingBicyclist = 253, kMovingMotorcyclist = 255, kMovingBus = 257,
+                               kMovingTruck = 258, kMovingOther = 259;
+}  // namespace label
+
+enum class Ground : std::uint8_t { road, marking, parking, sidewalk, other, terrain };
+inline constexpr std::size_t kGroundCount = 6;
+
+/// Of the ground beside the road, outwards: from the end of the one before to here.
+struct Strip {
+  double to = 0;  ///< m from the axis
+  Ground ground = Ground::road;
+  double step = 0;  ///< above the road
+};
+
+/// A piece of ground that is not what its strip is: a driveway, a street that joins, a square.
+struct Patch {
+  int side = 1;
+  double s0 = 0, s1 = 0, d0 = 0, d1 = 0;  ///< d without the sign of the side
+  Ground ground = Ground::parking;
+  double step = 0;
+  bool crosses_sidewalk = false;  ///< nothing stands at the kerb there
+};
+
+enum class EdgeKind : std::uint8_t { none, hedge, picket, bars, mesh, boards, wall };
+enum class Frontage : std::uint8_t { houses, facades, open, wood };
+
+/// A piece of one side along the road. Metres.
+struct WorldPlot {
+  int side = 1;
+  double s0 = 0, s1 = 0;
+  Frontage use = Frontage::houses;
+  double setback = 4;  ///< of the house from the edge of the sidewalk
+  EdgeKind front = EdgeKind::none;
+  EdgeKind between = EdgeKind::none;
+  double edge_height = 1;
+  bool driveway = false;
+  std::uint64_t number = 0;
+  double width() const { return s1 - s0; }
+  double center() const { return 0.5 * (s0 + s1); }
+};
+
+/// One side of the road. Densities are numbers in 100 m.
+struct SideStyle {
+  double parking_width = 0;     ///< 0: no lane for it
+  bool parking_marked = false;  ///< of the class parking
+  double parked_share = 0;      ///< of the places
+  double shoulder = 0;
+  double kerb = 0.12;
+  double verge = 0;  ///< grass between road and sidewalk
+  double sidewalk = 2;
+  Frontage frontage = Frontage::houses;
+  double trees = 2, bushes = 4, lamps = 2.5, signs = 3, bollards = 0, boxes = 1, people = 1,
+         bicycles = 1, motorcycles = 0.3;
+  bool power_line = false;
+  bool guard_rail = false;
+  double noise_wall = 0;  ///< its height, 0: none
+  double ditch = 0;       ///< its depth
+  double bank = 0;        ///< rise of the land beside the road
+  double tilt = 0;        ///< and its slope beyond
+};
+
+/// What a kind of place draws for one world.
+struct WorldStyle {
+  int lanes = 1;  ///< each way
+  double lane_width = 3;
+  double median = 0;  ///< half its width
+  bool marked = true;
+  double undulation = 0.1;  ///< of the land, m
+  double roughness = 0.03;  ///< of soil and grass, m
+  double plot_low = 12, plot_high = 22, setback_low = 2, setback_high = 7;
+  double garden_trees = 1, garden_bushes = 3;
+  double leafiness = 1;
+  double side_streets = 0.6;  ///< in 100 m of one side
+  double cars = 1, trucks = 0.1, buses = 0.05, cyclists = 0.2, motorcyclists = 0.1, walkers = 1;
+  double speed_m_per_s = 9;
+  double tram = 0;  ///< poles of it in 100 m
+  double gantries = 0;
+  std::array<SideStyle, 2> sides;  ///< left, right
+};
+
+class WorldPlan {
+ public:
+  explicit WorldPlan(const WorldOptions& options);
+
+  WorldOptions options;
+  WorldStyle style;
+  WorldRoute route;
+  std::array<std::vector<Strip>, 2> strips;  ///< left, right
+  std::vector<Patch> patches;
+  std::vector<WorldPlot> plots;
+  std::array<float, kGroundCount> ground_reflectances{};
+
+  const SideStyle& side(int side) const { return style.sides[side > 0 ? 0 : 1]; }
+  const std::vector<Strip>& strips_of(int side) const { return strips[side > 0 ? 0 : 1]; }
+  /// Distances from the axis: end of the lanes, of the road with its parking lane and shoulder, of
+  /// the sidewalk.
+  double lanes_end() const { return style.median + style.lanes * style.lane_width; }
+  double road_end(int side) const;
+  double property_line(int side) const;
+  /// The middle of a lane, 0 the innermost.
+  double lane_center(int lane) const { return style.median + (lane + 0.5) * style.lane_width; }
+
+  struct Cell {
+    Ground ground = Ground::terrain;
+    double step = 0;
+  };
+  Cell cell_at(double s, double d) const;
+  /// Height of the land without steps and roughness.
+  double height(double s, double d) const;
+  Vec3d ground_at(double s, double d) const;
+  /// Where something stands: x along the road, y away from it, on either side; `yaw` turns it.
+  RigidTransform stand(double s, int side, double from_axis, double yaw = 0) const;
+  /// Whether a driveway or a street crosses the sidewalk between s0 and s1.
+  bool is_open(int side, double s0, double s1) const;
+
+  Random random(std::uint64_t purpose, std::uint64_t number) const;
+
+ private:
+  void draw_strips();
+  void draw_plots();
+  void draw_patches();
+
+  std::array<std::array<double, 4>, 4> swells_{};  ///< of the land: direction, wavelength, phase
+};
+
+/// The land reaches so far to both sides.
+inline constexpr double kReach_m = 58;
+
+/// Draws the style of a kind of place.
+WorldStyle draw_world_style(WorldKind kind, Random random);
+RouteLimits route_limits(WorldKind kind);
+
+}  // namespace adasplats
