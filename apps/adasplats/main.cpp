@@ -50,8 +50,10 @@ struct Program {
     app.allow_extras();
     app.require_subcommand(0, 1);
     CLI::App& synth = group("synth", "Make synthetic data with exact ground truth",
-                            "  adasplats synth street -o street\n");
+                            "  adasplats synth street -o street\n"
+                            "  adasplats synth world -o world --kind city\n");
     commands.push_back(make_synth_street_command(synth));
+    commands.push_back(make_synth_world_command(synth));
     commands.push_back(make_info_command(app));
     commands.push_back(make_sensors_command(app));
     commands.push_back(make_model_command(app));

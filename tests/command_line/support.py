@@ -16,6 +16,7 @@ from pathlib import Path
 PROGRAM = os.environ.get("ADASPLATS_PROGRAM", "adasplats")
 SUBCOMMANDS = [
     ["synth", "street"],
+    ["synth", "world"],
     ["info"],
     ["sensors"],
     ["fit-drop"],

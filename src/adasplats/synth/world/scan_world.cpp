@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <string>
+
+#include "adasplats/core/error.h"
+#include "adasplats/synth/street_caster.h"
+#include "adasplats/synth/vehicle_path.h"
+#include "adasplats/synth/world/world_parts.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::uint64_t kDropStream = 0x64726f70;
+constexpr double kLostAnywhere = 0.01;  // of all returns
+constexpr double kLostOnGlass = 0.75;   // of those from panes
+constexpr double kOutliers = 0.0002;    // from nowhere: dust, double echoes
+constexpr double kFaintest = 0.004;     // intensity times (range / 100 m)^-2 below: lost
+
+bool is_pane(float reflectance) {
+  return std::fabs(reflectance - kDarkPane) < 1e-6F || std::fabs(reflectance - kCarPane) < 1e-6F;
+}
+
+/// Whether a return reaches the sensor at all.
+bool is_lost(const Echo& echo, Random& random) {
+  if (random.uniform() < kLostAnywhere) return true;
+  if (is_pane(echo.reflectance)) return random.uniform() < kLostOnGlass;
+  const double far = static_cast<double>(echo.range_m) / 100;
+  // Paint that throws the beam away still returns from near.
+  const double strength = (static_cast<double>(echo.intensity) + 0.01) / (far * far);
+  return strength < kFaintest * 60 * random.uniform();
+}
+
+Scan scan_of(std::span<const Firing> firings, std::span<const Echo> echoes, const TimedPose& pose,
+             std::uint64_t seed, std::uint64_t number) {
+  Scan scan;
+  scan.world_from_sensor = pose.world_from_sensor;
+  scan.time_s = pose.time_s;
+  scan.rays = firings.size();
+  for (const Echo& echo : echoes) {
+    Random random(seed ^ kDropStream, number, echo.ray);
+    if (is_lost(echo, random)) continue;
+    const Firing& firing = firings[echo.ray];
+    const bool outlier = random.uniform() < kOutliers;
+    const float range_m =
+        outlier ? echo.range_m * static_cast<float>(random.uniform(0.2, 0.95)) : echo.range_m;
+    scan.positions.push_back(firing.origin + range_m * firing.direction);
+    scan.ranges_m.push_back(range_m);
+    // Two digits, as KITTI's.
+    scan.intensities.push_back(std::round(echo.intensity * 100) / 100);
+    scan.classes.push_back(outlier ? label::kOutlier : echo.class_id);
+    scan.instances.push_back(outlier ? std::uint16_t{0} : echo.instance);
+    scan.rings.push_back(firing.ring);
+    scan.times_s.push_back(firing.time_s);
+  }
+  return scan;
+}
+
+}  // namespace
+
+void scan_world(const SynthWorld& world, const WorldScanOptions& options,
+                const std::function<void(std::size_t, const Scan&)>& on_scan,
+                const Executor& executor, ProgressSink& progress) {
+  check_settings(options);
+  const double way = static_cast<double>(options.scans - 1) * options.spacing_m;
+  if (way > world.place.length_m - 10)
+    throw Error(ErrorKind::usage,
+                "a drive of " + std::to_string(way) + " m does not fit on a road of " +
+                    std::to_string(world.place.length_m) + " m; `length` makes it longer");
+  const LidarModel sensor = load_lidar_model(options.sensor);
+  const StreetCaster caster(world.place, sensor.range_noise_m, executor);
+  const double end_s = world.drive.back().time_s;
+  const double m_per_s = world.place.length_m / end_s;
+  const double first_m = 0.5 * (world.place.length_m - way);
+  std::vector<Firing> firings = firings_of(sensor);
+  progress.begin_step("scans", options.scans);
+  for (std::size_t k = 0; k < options.scans; ++k) {
+    if (k > 0 && !repeats(sensor)) firings = firings_of(sensor, k);
+    const double travelled = first_m + static_cast<double>(k) * options.spacing_m;
+    TimedPose pose = {travelled / m_per_s, {}};
+    pose.world_from_sensor = interpolate(world.drive, pose.time_s) * vehicle_from_driving_sensor();
+    const std::vector<Echo> echoes = caster.cast(sensor, firings, pose, options.seed, k);
+    on_scan(k, scan_of(firings, echoes, pose, options.seed, k));
+    progress.advance(k + 1);
+  }
+  progress.end_step();
+}
+
+}  // namespace adasplats

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/synth/world/world.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "adasplats/core/error.h"
+#include "adasplats/synth/world/world_plan.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::array kKinds = {WorldKind::residential, WorldKind::suburban, WorldKind::rural,
+                               WorldKind::motorway, WorldKind::city};
+
+std::set<std::uint16_t> classes_of(const SynthWorld& world) {
+  std::set<std::uint16_t> classes(world.place.fixed.classes.begin(),
+                                  world.place.fixed.classes.end());
+  for (const MovingObject& object : world.place.moving)
+    classes.insert(object.mesh.classes.begin(), object.mesh.classes.end());
+  return classes;
+}
+
+// Oracle: SemanticKITTI's list of classes that are learnt (semantic-kitti.yaml), moving or not.
+TEST(SynthWorld, KindsTogetherHaveEveryClass) {
+  std::set<std::uint16_t> seen;
+  for (const WorldKind kind : kKinds)
+    for (std::uint64_t seed = 1; seed <= 3; ++seed)
+      seen.merge(classes_of(make_world({.seed = seed, .kind = kind, .length_m = 120})));
+  constexpr std::array<std::pair<int, int>, 20> kLearnt = {
+      {{10, 252}, {11, 11},  {15, 15}, {18, 258}, {13, 257}, {20, 259}, {30, 254},
+       {31, 253}, {32, 255}, {40, 60}, {44, 44},  {48, 48},  {49, 49},  {50, 50},
+       {51, 51},  {70, 70},  {71, 71}, {72, 72},  {80, 80},  {81, 81}}};
+  for (const auto& [standing, moving] : kLearnt)
+    EXPECT_TRUE(seen.count(static_cast<std::uint16_t>(standing)) > 0 ||
+                seen.count(static_cast<std::uint16_t>(moving)) > 0)
+        << standing;
+}
+
+TEST(SynthWorld, DependsOnItsOptionsAlone) {
+  const WorldOptions options = {.seed = 4, .kind = WorldKind::residential, .length_m = 80};
+  const SynthWorld one = make_world(options);
+  const SynthWorld same = make_world(options);
+  const SynthWorld other = make_world({.seed = 5, .kind = options.kind, .length_m = 80});
+  EXPECT_EQ(one.place.fixed.vertices, same.place.fixed.vertices);
+  EXPECT_EQ(one.place.fixed.classes, same.place.fixed.classes);
+  EXPECT_EQ(one.place.moving.size(), same.place.moving.size());
+  EXPECT_NE(one.place.fixed.vertices, other.place.fixed.vertices);
+}
+
+TEST(SynthWorld, EveryTriangleIsFiniteAndHasItsAttributes) {
+  for (const WorldKind kind : kKinds) {
+    const SynthWorld world = make_world({.seed = 2, .kind = kind, .length_m = 80});
+    const TriangleMesh& mesh = world.place.fixed;
+    EXPECT_GT(mesh.triangles.size(), 10'000U);
+    ASSERT_EQ(mesh.classes.size(), mesh.triangles.size());
+    ASSERT_EQ(world.place.instances.size(), mesh.triangles.size());
+    ASSERT_EQ(world.place.reflectances.size(), mesh.triangles.size());
+    for (const Vec3f& v : mesh.vertices)
+      ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z));
+    for (const float reflectance : world.place.reflectances)
+      ASSERT_TRUE(reflectance > 0 && reflectance <= 1) << reflectance;
+  }
+}
+
+// Oracle: the plan's own height, on the lane that is driven.
+TEST(SynthWorld, TheDriveIsOnTheRoad) {
+  for (const WorldKind kind : kKinds) {
+    const WorldOptions options = {.seed = 3, .kind = kind, .length_m = 80};
+    const WorldPlan plan(options);
+    const SynthWorld world = make_world(options);
+    ASSERT_EQ(world.drive.size(), 160U);
+    const double lane = plan.lane_center(plan.style.lanes - 1);
+    for (std::size_t k = 0; k < world.drive.size(); ++k) {
+      const double s = 0.5 * static_cast<double>(k);
+      EXPECT_EQ(plan.cell_at(s, -lane).ground, Ground::road);
+      EXPECT_NEAR(world.drive[k].world_from_sensor.translation.z, plan.height(s, -lane), 1e-9);
+    }
+  }
+}
+
+TEST(SynthWorld, RefusesALengthOutOfRange) {
+  for (const double length_m : {0.0, 79.0, 1001.0, std::nan("")}) {
+    try {
+      make_world({.length_m = length_m});
+      ADD_FAILURE() << length_m;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::usage);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace adasplats
