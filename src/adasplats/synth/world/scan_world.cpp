@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -13,12 +14,28 @@ namespace {
 
 constexpr std::uint64_t kDropStream = 0x64726f70;
 constexpr double kLostAnywhere = 0.01;  // of all returns
-constexpr double kLostOnGlass = 0.75;   // of those from panes
+constexpr double kLostOnGlass = 0.6;    // of those from panes
 constexpr double kOutliers = 0.0002;    // from nowhere: dust, double echoes
-constexpr double kFaintest = 0.004;     // intensity times (range / 100 m)^-2 below: lost
+constexpr double kFaintest = 0.24;      // intensity over (range / 100 m)^2: always kept above
 
 bool is_pane(float reflectance) {
   return std::fabs(reflectance - kDarkPane) < 1e-6F || std::fabs(reflectance - kCarPane) < 1e-6F;
+}
+
+/// The vehicle under the sensor: roof and tail behind it, bonnet before it, as flat tops. In
+/// KITTI's scans the lowest beams lack a third of their points so.
+struct BodyTop {
+  float rear, front, half_width, below_sensor;  // m
+};
+constexpr BodyTop kBody[] = {{-2.3F, 0, 0.9F, 0.6F}, {0, 2, 0.9F, 0.73F}};
+
+bool meets_own_body(Vec3f direction) {
+  if (direction.z >= 0) return false;
+  return std::ranges::any_of(kBody, [&](const BodyTop& top) {
+    const float t = top.below_sensor / -direction.z;
+    const float x = t * direction.x;
+    return x > top.rear && x < top.front && std::fabs(t * direction.y) < top.half_width;
+  });
 }
 
 /// Whether a return reaches the sensor at all.
@@ -28,7 +45,7 @@ bool is_lost(const Echo& echo, Random& random) {
   const double far = static_cast<double>(echo.range_m) / 100;
   // Paint that throws the beam away still returns from near.
   const double strength = (static_cast<double>(echo.intensity) + 0.01) / (far * far);
-  return strength < kFaintest * 60 * random.uniform();
+  return strength < kFaintest * random.uniform();
 }
 
 Scan scan_of(std::span<const Firing> firings, std::span<const Echo> echoes, const TimedPose& pose,
@@ -39,8 +56,8 @@ Scan scan_of(std::span<const Firing> firings, std::span<const Echo> echoes, cons
   scan.rays = firings.size();
   for (const Echo& echo : echoes) {
     Random random(seed ^ kDropStream, number, echo.ray);
-    if (is_lost(echo, random)) continue;
     const Firing& firing = firings[echo.ray];
+    if (meets_own_body(firing.direction) || is_lost(echo, random)) continue;
     const bool outlier = random.uniform() < kOutliers;
     const float range_m =
         outlier ? echo.range_m * static_cast<float>(random.uniform(0.2, 0.95)) : echo.range_m;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "adasplats/synth/facade.h"
 #include "adasplats/synth/world/world_parts.h"
@@ -167,10 +168,63 @@ void add_facade_plot(const WorldPlan& plan, MeshBuilder& builder, const WorldPlo
   builder.stand_in_world();
 }
 
+/// The houses of the next street, seen between those of this one.
+void add_back_row(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
+  Random random = random_of(plan, WorldPurpose::behind, plot.number);
+  if (random.uniform() < 0.35) return;
+  const double front = plan.property_line(plot.side) + plot.setback + random.uniform(24, 32);
+  const WorldHouse house = draw_house(plot.width() - 2, random);
+  if (front + house.depth > kReach_m) return;
+  builder.stand_at(plan.stand(plot.center(), plot.side, front, 0.1 * random.normal()));
+  add_house(builder, house, random);
+  builder.stand_in_world();
+}
+
+/// Along one side of a street that joins at s: houses, or facades in a row. `towards` is +1 where
+/// the street is on the side of growing s.
+void line_side_street(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot, double s,
+                      int towards, double from) {
+  Random random =
+      random_of(plan, WorldPurpose::behind, 2 * plot.number + (towards > 0 ? 1 : 0) + 100'000);
+  const double back = plan.property_line(plot.side) + from;
+  if (plot.use == Frontage::facades) {
+    const Vec3d one = plan.ground_at(s, plot.side * back);
+    const Vec3d along =
+        normalized(plan.route.at(s, plot.side * (back + 1)) - plan.route.at(s, plot.side * back));
+    const double turn = static_cast<double>(plot.side * towards);
+    builder.stand_at({Mat3d{}, one});
+    add_facade_row(builder, {{0, 0, 0}, along, turn * Vec3d{along.y, -along.x, 0}}, kReach_m - back,
+                   0.1, random);
+  } else if (plot.use == Frontage::houses) {
+    const double inward = random.uniform(2, 5);
+    for (double d = back + 6; d < kReach_m - 6; d += random.uniform(13, 20)) {
+      // The front looks up the street: y of its frame goes away from that.
+      const double yaw = (plot.side > 0) == (towards > 0) ? 0.5 : -0.5;
+      builder.stand_at(plan.stand(s - towards * inward, plot.side, d, yaw * std::numbers::pi));
+      add_house(builder, draw_house(11, random), random);
+    }
+  }
+  builder.stand_in_world();
+}
+
+void add_side_streets(const WorldPlan& plan, MeshBuilder& builder) {
+  for (std::size_t k = 0; k + 1 < plan.plots.size(); ++k) {
+    const WorldPlot& one = plan.plots[k];
+    const WorldPlot& other = plan.plots[k + 1];
+    if (one.side != other.side || other.s0 - one.s1 < 1) continue;
+    line_side_street(plan, builder, one, one.s1, 1, one.use == Frontage::facades ? 11.5 : 22);
+    line_side_street(plan, builder, other, other.s0, -1,
+                     other.use == Frontage::facades ? 11.5 : 22);
+  }
+}
+
 }  // namespace
 
 void add_world_buildings(const WorldPlan& plan, MeshBuilder& builder) {
+  add_side_streets(plan, builder);
   for (const WorldPlot& plot : plan.plots) {
+    if (plot.use == Frontage::houses && plan.side(plot.side).frontage == Frontage::houses)
+      add_back_row(plan, builder, plot);
     if (plot.use == Frontage::houses) add_house_plot(plan, builder, plot);
     if (plot.use == Frontage::facades) add_facade_plot(plan, builder, plot);
   }

@@ -28,6 +28,10 @@ enum class WorldPurpose : std::uint64_t {
   standing,
   traffic,
   walls,
+  edges_plants,
+  grass,
+  behind,
+  islands,
 };
 
 inline Random random_of(const WorldPlan& plan, WorldPurpose purpose, std::uint64_t number) {

@@ -20,11 +20,11 @@ double smooth_step(double t) {
 EdgeKind draw_edge(Random& random, double none) {
   if (random.uniform() < none) return EdgeKind::none;
   const double draw = random.uniform();
-  if (draw < 0.34) return EdgeKind::hedge;
-  if (draw < 0.48) return EdgeKind::picket;
-  if (draw < 0.60) return EdgeKind::bars;
-  if (draw < 0.74) return EdgeKind::mesh;
-  if (draw < 0.84) return EdgeKind::boards;
+  if (draw < 0.48) return EdgeKind::hedge;
+  if (draw < 0.58) return EdgeKind::picket;
+  if (draw < 0.67) return EdgeKind::bars;
+  if (draw < 0.79) return EdgeKind::mesh;
+  if (draw < 0.87) return EdgeKind::boards;
   return EdgeKind::wall;
 }
 
@@ -107,7 +107,7 @@ void WorldPlan::draw_plots() {
       plot.s1 = s + draw.uniform(style.plot_low, style.plot_high);
       if (own.frontage == Frontage::open && draw.uniform() < 0.12) plot.use = Frontage::houses;
       if (own.frontage == Frontage::houses && draw.uniform() < 0.06) plot.use = Frontage::wood;
-      if (own.frontage == Frontage::facades && draw.uniform() < 0.08) plot.use = Frontage::open;
+      if (own.frontage == Frontage::facades && draw.uniform() < 0.13) plot.use = Frontage::open;
       plot.setback = draw.uniform(style.setback_low, style.setback_high);
       plot.front = draw_edge(draw, fenceless);
       plot.between = draw_edge(draw, fenceless + 0.1);
@@ -143,13 +143,41 @@ void WorldPlan::draw_patches() {
       last = plot.s1;
       if (plot.use == Frontage::facades || (plot.use == Frontage::open && own.sidewalk > 2))
         patches.push_back({which, plot.s0, plot.s1, edge, edge + 14, square, own.kerb});
+      if (plot.use == Frontage::houses && plot.setback < 6 && draw.uniform() < 0.25)  // paved
+        patches.push_back({which, plot.s0, plot.s1, edge, edge + plot.setback, drive, own.kerb});
       if (!plot.driveway) continue;
       const double middle = plot.s0 + kDrivewayHalf + 0.4;
       const double depth = edge + plot.setback + draw.uniform(0, 6);
       patches.push_back({which, middle - kDrivewayHalf, middle + kDrivewayHalf, edge, depth, drive,
                          own.kerb, true});
     }
+    draw_islands(which);
   }
+}
+
+void WorldPlan::draw_islands(int which) {
+  Random draw = random(5, which > 0 ? 1 : 0);
+  const SideStyle& own = side(which);
+  if (own.parking_width <= 0 || draw.uniform() > 0.45) return;
+  const double apart = draw.uniform(12, 28);
+  const double length_m = draw.uniform(1.2, 4);
+  for (double s = draw.uniform(0, apart); s < options.length_m; s += apart) {
+    if (is_open(which, s - 1, s + length_m + 1)) continue;
+    patches.push_back({.side = which,
+                       .s0 = s,
+                       .s1 = s + length_m,
+                       .d0 = lanes_end() + 0.25,
+                       .d1 = road_end(which),
+                       .ground = Ground::terrain,
+                       .step = own.kerb,
+                       .is_island = true});
+  }
+}
+
+bool WorldPlan::has_island(int which, double s0, double s1) const {
+  return std::ranges::any_of(patches, [&](const Patch& patch) {
+    return patch.side == which && patch.is_island && s1 > patch.s0 && s0 < patch.s1;
+  });
 }
 
 WorldPlan::Cell WorldPlan::cell_at(double s, double d) const {

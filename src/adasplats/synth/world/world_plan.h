@@ -41,6 +41,7 @@ struct Patch {
   Ground ground = Ground::parking;
   double step = 0;
   bool crosses_sidewalk = false;  ///< nothing stands at the kerb there
+  bool is_island = false;         ///< with a tree, between parked cars
 };
 
 enum class EdgeKind : std::uint8_t { none, hedge, picket, bars, mesh, boards, wall };
@@ -73,6 +74,7 @@ struct SideStyle {
   Frontage frontage = Frontage::houses;
   double trees = 2, bushes = 4, lamps = 2.5, signs = 3, bollards = 0, boxes = 1, people = 1,
          bicycles = 1, motorcycles = 0.3;
+  double grass = 0;  ///< tufts of tall grass
   bool power_line = false;
   bool guard_rail = false;
   double noise_wall = 0;  ///< its height, 0: none
@@ -91,6 +93,7 @@ struct WorldStyle {
   double roughness = 0.03;  ///< of soil and grass, m
   double plot_low = 12, plot_high = 22, setback_low = 2, setback_high = 7;
   double garden_trees = 1, garden_bushes = 3;
+  double edge_bushes = 0.3;  ///< of a metre of the edge of a plot
   double leafiness = 1;
   double side_streets = 0.6;  ///< in 100 m of one side
   double cars = 1, trucks = 0.1, buses = 0.05, cyclists = 0.2, motorcyclists = 0.1, walkers = 1;
@@ -132,6 +135,8 @@ class WorldPlan {
   Vec3d ground_at(double s, double d) const;
   /// Where something stands: x along the road, y away from it, on either side; `yaw` turns it.
   RigidTransform stand(double s, int side, double from_axis, double yaw = 0) const;
+  /// Whether an island is in the parking lane between s0 and s1.
+  bool has_island(int side, double s0, double s1) const;
   /// Whether a driveway or a street crosses the sidewalk between s0 and s1.
   bool is_open(int side, double s0, double s1) const;
 
@@ -141,6 +146,7 @@ class WorldPlan {
   void draw_strips();
   void draw_plots();
   void draw_patches();
+  void draw_islands(int side);
 
   std::array<std::array<double, 4>, 4> swells_{};  ///< of the land: direction, wavelength, phase
 };

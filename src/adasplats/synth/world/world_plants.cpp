@@ -52,8 +52,15 @@ WorldTree draw_tree(double leafiness, double tallest, Random& random) {
   tree.leaf = random.uniform(0.14, 0.3);
   const double skin = tree.crown_radius * (tree.height - tree.crown_base) * kWholeTurn;
   const double wish = leafiness * random.uniform(0.5, 1.2) * skin / (0.25 * tree.leaf * tree.leaf);
-  tree.leaves = static_cast<int>(std::clamp(wish, 300.0, 3500.0));
+  tree.leaves = static_cast<int>(std::clamp(wish, 400.0, 4500.0));
   tree.leaf = std::max(tree.leaf, std::sqrt(leafiness * skin / (0.35 * tree.leaves)));
+  return tree;
+}
+
+/// More leaves and smaller ones, for what stands near the road.
+WorldTree with_fine_leaves(WorldTree tree) {
+  tree.leaves *= 2;
+  tree.leaf /= std::numbers::sqrt2;
   return tree;
 }
 
@@ -140,6 +147,67 @@ void plant_garden(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& 
     if (draw_place(s, d)) plant_bush(plan, builder, s, plot.side, d, random);
 }
 
+/// Bushes that grow at the edge of a plot.
+void plant_edge(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
+  Random random = random_of(plan, WorldPurpose::edges_plants, plot.number);
+  const double line = plan.property_line(plot.side);
+  const int count =
+      static_cast<int>(plan.style.edge_bushes * plot.width() * random.uniform(0, 1.6));
+  for (int k = 0; k < count; ++k) {
+    const bool front = random.uniform() < 0.6 && plot.setback > 1.5;
+    const double s = front ? random.uniform(plot.s0, plot.s1) : plot.s1 - random.uniform(0.2, 0.9);
+    if (front && plan.is_open(plot.side, s - 0.7, s + 0.7)) continue;
+    plant_bush(plan, builder, s, plot.side,
+               line + (front ? random.uniform(0.7, 1.4) : random.uniform(0.7, plot.setback + 12)),
+               random);
+  }
+}
+
+/// Tufts of tall grass between the road and the land.
+void plant_grass(const WorldPlan& plan, MeshBuilder& builder, int side) {
+  Random random = random_of(plan, WorldPurpose::grass, side > 0 ? 1 : 0);
+  const double line = plan.road_end(side) + 0.5;
+  const double reach = random.uniform(1, 9);
+  for (const double s : places_along(plan, plan.side(side).grass, 0, random)) {
+    const double out = line + reach * random.uniform();
+    if (plan.cell_at(s, side * out).ground != Ground::terrain) continue;
+    builder.stand_at(plan.stand(s, side, out));
+    const double height = random.uniform(0.25, 0.8);
+    for (int blade = 0; blade < 30; ++blade) {
+      const Vec3d foot = {0.3 * random.normal(), 0.3 * random.normal(), -0.05};
+      const Vec3d tip = foot + height * Vec3d{0.3 * random.normal(), 0.3 * random.normal(),
+                                              random.uniform(0.6, 1.1)};
+      const double azimuth = random.uniform(0, kWholeTurn);
+      const Vec3d wide = 0.02 * Vec3d{std::cos(azimuth), std::sin(azimuth), 0};
+      builder.triangle(foot - wide, foot + wide, tip,
+                       {label::kVegetation, static_cast<float>(random.uniform(0.35, 0.6))});
+    }
+  }
+}
+
+/// A tree on each island of the parking lane, and low plants about it.
+void plant_islands(const WorldPlan& plan, MeshBuilder& builder) {
+  Random random = random_of(plan, WorldPurpose::islands, 0);
+  const double low = random.uniform() < 0.6 ? random.uniform(0.25, 0.8) : 0;
+  for (const Patch& patch : plan.patches) {
+    if (!patch.is_island) continue;
+    const double s = 0.5 * (patch.s0 + patch.s1);
+    const double d = 0.5 * (patch.d0 + patch.d1);
+    if (random.uniform() < 0.8) {
+      WorldTree tree = draw_tree(plan.style.leafiness, random.uniform(5, 11), random);
+      tree.crown = Crown::round;
+      tree.crown_base = std::max(tree.crown_base, 1.9);
+      tree.height = std::max(tree.height, 4.5);
+      plant(plan, builder, s, patch.side, d, with_fine_leaves(tree), random);
+    }
+    builder.stand_in_world();
+    if (low > 0)
+      add_leafy_hedge(builder, plan.ground_at(patch.s0 + 0.15, patch.side * d),
+                      plan.ground_at(patch.s1 - 0.15, patch.side * d),
+                      low * random.uniform(0.8, 1.2), patch.d1 - patch.d0 - 0.3, random);
+  }
+}
+
 void plant_wood(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
   Random random = random_of(plan, WorldPurpose::garden, plot.number);
   const double line = plan.property_line(plot.side) + random.uniform(0.8, 6);
@@ -148,8 +216,8 @@ void plant_wood(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& pl
   const int trees = static_cast<int>(plot.width() * (deep - line) / room);
   for (int k = 0; k < trees; ++k) {
     WorldTree tree = draw_tree(plan.style.leafiness, random.uniform(6, 16), random);
-    tree.leaves = tree.leaves / 3;
-    tree.leaf *= 1.5;
+    tree.leaves = tree.leaves / 4;
+    tree.leaf *= 1.6;
     plant(plan, builder, random.uniform(plot.s0, plot.s1), plot.side, random.uniform(line, deep),
           tree, random);
   }
@@ -173,7 +241,7 @@ void plant_side(const WorldPlan& plan, MeshBuilder& builder, int side) {
       tree.height = std::max(tree.height, 5.0);
       tree.crown_base = std::max(tree.crown_base, 2.1);
     }
-    plant(plan, builder, s, side, line + 0.15 * random.normal(), tree, random);
+    plant(plan, builder, s, side, line + 0.15 * random.normal(), with_fine_leaves(tree), random);
   }
   if (own.frontage != Frontage::open) return;
   for (const double s : places_along(plan, own.bushes, 0.5, random))
@@ -232,10 +300,18 @@ void add_leafy_bush(MeshBuilder& builder, double radius, double height, Random& 
 
 void add_world_plants(const WorldPlan& plan, MeshBuilder& builder) {
   for (const WorldPlot& plot : plan.plots) {
-    if (plot.use == Frontage::houses) plant_garden(plan, builder, plot);
-    if (plot.use == Frontage::wood) plant_wood(plan, builder, plot);
+    if (plot.use == Frontage::houses) {
+      plant_garden(plan, builder, plot);
+      plant_edge(plan, builder, plot);
+    }
+    const bool park = plot.use == Frontage::open && plan.side(plot.side).frontage != Frontage::open;
+    if (plot.use == Frontage::wood || park) plant_wood(plan, builder, plot);
   }
-  for (const int side : {1, -1}) plant_side(plan, builder, side);
+  for (const int side : {1, -1}) {
+    plant_side(plan, builder, side);
+    plant_grass(plan, builder, side);
+  }
+  plant_islands(plan, builder);
   builder.stand_in_world();
 }
 

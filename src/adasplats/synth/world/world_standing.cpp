@@ -53,7 +53,7 @@ void park_along(const WorldPlan& plan, Parking& parking, int side) {
                                             : VehicleKind::bus;
     const double room = vehicle_length(kind) + random.uniform(0.6, 1.8);
     const bool taken = random.uniform() < own.parked_share;
-    if (taken && !plan.is_open(side, s, s + room)) {
+    if (taken && !plan.is_open(side, s, s + room) && !plan.has_island(side, s, s + room)) {
       const std::uint16_t class_id = kind == VehicleKind::car       ? label::kCar
                                      : kind == VehicleKind::truck   ? label::kTruck
                                      : kind == VehicleKind::trailer ? label::kOtherVehicle
@@ -92,6 +92,7 @@ void stand_on_sidewalk(const WorldPlan& plan, Parking& parking, int side) {
   const double wide = std::max(1.2, own.sidewalk + own.verge);
   const double kerb = plan.road_end(side);
   for (const double s : places_along(plan, own.bicycles, 0.6, random)) {
+    if (plan.is_open(side, s - 1, s + 5)) continue;
     const double yaw = random.uniform() < 0.5 ? 0.1 * random.normal() : 1.3;
     const int group = random.uniform() < 0.3 ? 1 + static_cast<int>(random.uniform(1, 7)) : 1;
     for (int k = 0; k < group; ++k)

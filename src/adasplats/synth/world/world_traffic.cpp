@@ -113,9 +113,17 @@ std::vector<MovingObject> make_world_traffic(const WorldPlan& plan, std::uint16_
     }
     const double edge = plan.road_end(side);
     const double beside = plan.side(side).parking_width > 0 ? plan.lanes_end() - 0.4 : edge - 0.5;
-    maker.fill({VehicleKind::cyclist, side, beside, side < 0, 4.5, style.cyclists});
-    maker.fill({VehicleKind::motorcyclist, side, plan.lanes_end() - 0.9, side < 0, 8,
-                style.motorcyclists});
+    // Nobody squeezes past the vehicle that scans.
+    constexpr double kElbowRoom_m = 1.4;
+    const double driven = plan.lane_center(style.lanes - 1);
+    const auto fits = [&](double from_axis) {
+      return side > 0 || from_axis - driven > kElbowRoom_m;
+    };
+    maker.fill(
+        {VehicleKind::cyclist, side, beside, side < 0, 4.5, fits(beside) ? style.cyclists : 0});
+    const double beside_line = plan.lanes_end() - 0.9;
+    maker.fill({VehicleKind::motorcyclist, side, beside_line, side < 0, 8,
+                fits(beside_line) ? style.motorcyclists : 0});
     if (plan.options.kind == WorldKind::motorway) continue;
     const double walk = 0.5 * (edge + std::max(edge + 1.4, plan.property_line(side)));
     maker.fill({VehicleKind::walker, side, walk, side < 0, 1.3, style.walkers});
