@@ -12,6 +12,9 @@
 namespace adasplats {
 namespace {
 
+constexpr std::uint64_t kMountStream = 0x6d6f756e74;
+constexpr double kMountError_rad = 0.006;  // standard deviations
+constexpr double kMountError_m = 0.03;
 constexpr std::uint64_t kDropStream = 0x64726f70;
 constexpr double kLostAnywhere = 0.01;  // of all returns
 constexpr double kLostOnGlass = 0.6;    // of those from panes
@@ -46,6 +49,16 @@ bool is_lost(const Echo& echo, Random& random) {
   // Paint that throws the beam away still returns from near.
   const double strength = (static_cast<double>(echo.intensity) + 0.01) / (far * far);
   return strength < kFaintest * random.uniform();
+}
+
+/// The sensor at KITTI's height, as well as sensors are mounted and vehicles loaded.
+RigidTransform draw_mount(std::uint64_t seed) {
+  Random random(seed, kMountStream, 0);
+  RigidTransform mount = vehicle_from_driving_sensor();
+  const double pitch = kMountError_rad * random.normal();
+  mount.rotation = rotation_from_yaw_pitch_roll(0, pitch, kMountError_rad * random.normal());
+  mount.translation.z += kMountError_m * random.normal();
+  return mount;
 }
 
 Scan scan_of(std::span<const Firing> firings, std::span<const Echo> echoes, const TimedPose& pose,
@@ -86,6 +99,7 @@ void scan_world(const SynthWorld& world, const WorldScanOptions& options,
                     std::to_string(world.place.length_m) + " m; `length` makes it longer");
   const LidarModel sensor = load_lidar_model(options.sensor);
   const StreetCaster caster(world.place, sensor.range_noise_m, executor);
+  const RigidTransform vehicle_from_sensor = draw_mount(options.seed);
   const double end_s = world.drive.back().time_s;
   const double m_per_s = world.place.length_m / end_s;
   const double first_m = 0.5 * (world.place.length_m - way);
@@ -95,7 +109,7 @@ void scan_world(const SynthWorld& world, const WorldScanOptions& options,
     if (k > 0 && !repeats(sensor)) firings = firings_of(sensor, k);
     const double travelled = first_m + static_cast<double>(k) * options.spacing_m;
     TimedPose pose = {travelled / m_per_s, {}};
-    pose.world_from_sensor = interpolate(world.drive, pose.time_s) * vehicle_from_driving_sensor();
+    pose.world_from_sensor = interpolate(world.drive, pose.time_s) * vehicle_from_sensor;
     const std::vector<Echo> echoes = caster.cast(sensor, firings, pose, options.seed, k);
     on_scan(k, scan_of(firings, echoes, pose, options.seed, k));
     progress.advance(k + 1);

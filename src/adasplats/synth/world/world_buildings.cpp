@@ -168,6 +168,27 @@ void add_facade_plot(const WorldPlan& plan, MeshBuilder& builder, const WorldPlo
   builder.stand_in_world();
 }
 
+/// A barn, a workshop, a shop: large and with few openings.
+void add_hall(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
+  Random random = random_of(plan, WorldPurpose::house, plot.number);
+  WorldHouse hall;
+  hall.width = std::max(6.0, plot.width() * random.uniform(0.5, 0.95));
+  hall.depth = random.uniform(8, 18);
+  hall.storeys = random.uniform() < 0.5 ? 1 : 2;
+  hall.roof = random.uniform() < 0.5 ? 0 : random.uniform(1, 3);
+  hall.wall = static_cast<float>(random.uniform(0.3, 0.75));
+  hall.tiles = static_cast<float>(random.uniform(0.2, 0.6));
+  const double front = plan.property_line(plot.side) + random.uniform(4, 18);
+  builder.stand_at(plan.stand(plot.center(), plot.side, front, 0.05 * random.normal()));
+  const double half = 0.5 * hall.width;
+  builder.box({-half, 0, -kFooting}, {half, hall.depth, hall.eaves()},
+              {label::kBuilding, hall.wall});
+  add_house_roof(builder, hall);
+  for (double x = 1 - half; x < half - 4; x += random.uniform(5, 9))  // gates
+    builder.box({x, -0.05, -0.2}, {x + 3, 0.05, 2.6}, {label::kBuilding, 0.25F});
+  builder.stand_in_world();
+}
+
 /// The houses of the next street, seen between those of this one.
 void add_back_row(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
   Random random = random_of(plan, WorldPurpose::behind, plot.number);
@@ -225,6 +246,7 @@ void add_world_buildings(const WorldPlan& plan, MeshBuilder& builder) {
   for (const WorldPlot& plot : plan.plots) {
     if (plot.use == Frontage::houses && plan.side(plot.side).frontage == Frontage::houses)
       add_back_row(plan, builder, plot);
+    if (plot.use == Frontage::hall) add_hall(plan, builder, plot);
     if (plot.use == Frontage::houses) add_house_plot(plan, builder, plot);
     if (plot.use == Frontage::facades) add_facade_plot(plan, builder, plot);
   }

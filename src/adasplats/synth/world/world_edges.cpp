@@ -128,12 +128,19 @@ void add_plot_edges(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot
   if (plot.use == Frontage::facades || plot.use == Frontage::wood) return;
   Random random = random_of(plan, WorldPurpose::edge, plot.number);
   const double line = plan.property_line(plot.side) + 0.5;
-  if (plot.use == Frontage::open) {  // a field
+  if (plot.use == Frontage::open || plot.use == Frontage::hall) {  // a field
     const bool fenced = plot.front != EdgeKind::none && random.uniform() < 0.6;
     const EdgeKind kind = plot.front == EdgeKind::hedge ? EdgeKind::hedge : EdgeKind::mesh;
     if (fenced)
       add_edge_along(plan, builder, plot.side, line + random.uniform(1, 5), plot.s0, plot.s1,
                      draw_look(kind, plot.edge_height, random), random);
+    return;
+  }
+  if (plot.use == Frontage::car_park) {
+    const EdgeLook low = draw_look(plot.front, 0.6 * plot.edge_height, random);
+    add_edge_along(plan, builder, plot.side, line - 0.2, plot.s0 + 5, plot.s1 - 0.5, low, random);
+    add_edge_along(plan, builder, plot.side, line + kCarPark_m, plot.s0, plot.s1,
+                   draw_look(plot.between, plot.edge_height, random), random);
     return;
   }
   const EdgeLook front = draw_look(plot.front, plot.edge_height, random);

@@ -155,6 +155,27 @@ void furnish_sidewalk(const WorldPlan& plan, MeshBuilder& builder, int side) {
     furnish.along(0.5, 40, back - 0.4, [](MeshBuilder& b, Random&) { add_shelter(b); });
 }
 
+/// Where a street joins: a post with lights before it, on some with an arm over the road.
+void add_lights(const WorldPlan& plan, MeshBuilder& builder) {
+  Random random = random_of(plan, WorldPurpose::signs, 1);
+  const bool over_road = random.uniform() < 0.5;
+  const Material steel = pole_material(random);
+  constexpr Material kHead = {label::kOtherObject, 0.25F};
+  for (const Patch& patch : plan.patches) {
+    if (patch.ground != Ground::road || !patch.crosses_sidewalk) continue;
+    for (const double s : {patch.s0 - 1.2, patch.s1 + 1.2}) {
+      builder.stand_at(plan.stand(s, patch.side, patch.d0 + 0.5));
+      const double tall = over_road ? 5.8 : 3.4;
+      builder.tube(kInGround, {0, 0, tall}, 0.07, 0.06, 10, steel);
+      builder.box({0.1, -0.15, 2.3}, {0.32, 0.15, 3.2}, kHead);
+      if (!over_road) continue;
+      builder.tube({0, 0, tall - 0.2}, {0, -3, tall}, 0.05, 0.04, 8, steel);
+      builder.box({0.05, -3, tall - 0.9}, {0.27, -2.7, tall}, kHead);
+    }
+  }
+  builder.stand_in_world();
+}
+
 void furnish_motorway(const WorldPlan& plan, MeshBuilder& builder) {
   for (const int side : {1, -1}) {
     Furnisher furnish(plan, builder, side);
@@ -184,6 +205,7 @@ void furnish_motorway(const WorldPlan& plan, MeshBuilder& builder) {
 
 void add_world_furniture(const WorldPlan& plan, MeshBuilder& builder) {
   for (const int side : {1, -1}) furnish_sidewalk(plan, builder, side);
+  if (plan.style.lights) add_lights(plan, builder);
   if (plan.options.kind == WorldKind::motorway) furnish_motorway(plan, builder);
 }
 

@@ -108,6 +108,11 @@ void WorldPlan::draw_plots() {
       if (own.frontage == Frontage::open && draw.uniform() < 0.12) plot.use = Frontage::houses;
       if (own.frontage == Frontage::houses && draw.uniform() < 0.06) plot.use = Frontage::wood;
       if (own.frontage == Frontage::facades && draw.uniform() < 0.13) plot.use = Frontage::open;
+      const double other_use = draw.uniform();
+      if (other_use < style.car_parks)
+        plot.use = Frontage::car_park;
+      else if (other_use < style.car_parks + style.halls)
+        plot.use = Frontage::hall;
       plot.setback = draw.uniform(style.setback_low, style.setback_high);
       plot.front = draw_edge(draw, fenceless);
       plot.between = draw_edge(draw, fenceless + 0.1);
@@ -145,6 +150,9 @@ void WorldPlan::draw_patches() {
         patches.push_back({which, plot.s0, plot.s1, edge, edge + 14, square, own.kerb});
       if (plot.use == Frontage::houses && plot.setback < 6 && draw.uniform() < 0.25)  // paved
         patches.push_back({which, plot.s0, plot.s1, edge, edge + plot.setback, drive, own.kerb});
+      if (plot.use == Frontage::car_park)
+        patches.push_back({which, plot.s0 + 0.5, plot.s1 - 0.5, edge + 0.7, edge + kCarPark_m,
+                           Ground::parking, own.kerb});
       if (!plot.driveway) continue;
       const double middle = plot.s0 + kDrivewayHalf + 0.4;
       const double depth = edge + plot.setback + draw.uniform(0, 6);

@@ -45,7 +45,7 @@ struct Patch {
 };
 
 enum class EdgeKind : std::uint8_t { none, hedge, picket, bars, mesh, boards, wall };
-enum class Frontage : std::uint8_t { houses, facades, open, wood };
+enum class Frontage : std::uint8_t { houses, facades, open, wood, car_park, hall };
 
 /// A piece of one side along the road. Metres.
 struct WorldPlot {
@@ -98,8 +98,10 @@ struct WorldStyle {
   double side_streets = 0.6;  ///< in 100 m of one side
   double cars = 1, trucks = 0.1, buses = 0.05, cyclists = 0.2, motorcyclists = 0.1, walkers = 1;
   double speed_m_per_s = 9;
-  double tram = 0;  ///< poles of it in 100 m
+  double car_parks = 0, halls = 0;  ///< shares of the plots
+  double tram = 0;                  ///< poles of it in 100 m
   double gantries = 0;
+  bool lights = false;             ///< where streets join
   std::array<SideStyle, 2> sides;  ///< left, right
 };
 
@@ -150,6 +152,9 @@ class WorldPlan {
 
   std::array<std::array<double, 4>, 4> swells_{};  ///< of the land: direction, wavelength, phase
 };
+
+/// A car park is so deep: two rows of cars and the way between them.
+inline constexpr double kCarPark_m = 17;
 
 /// The land reaches so far to both sides.
 inline constexpr double kReach_m = 58;

@@ -47,9 +47,9 @@ void park_along(const WorldPlan& plan, Parking& parking, int side) {
   const double middle = plan.lanes_end() + 0.5 * own.parking_width;
   for (double s = 3; s < plan.options.length_m - 8;) {
     const double draw = random.uniform();
-    const VehicleKind kind = draw < 0.94    ? VehicleKind::car
-                             : draw < 0.97  ? VehicleKind::truck
-                             : draw < 0.985 ? VehicleKind::trailer
+    const VehicleKind kind = draw < 0.91    ? VehicleKind::car
+                             : draw < 0.945 ? VehicleKind::truck
+                             : draw < 0.975 ? VehicleKind::trailer
                                             : VehicleKind::bus;
     const double room = vehicle_length(kind) + random.uniform(0.6, 1.8);
     const bool taken = random.uniform() < own.parked_share;
@@ -83,6 +83,24 @@ void park_in_drives(const WorldPlan& plan, Parking& parking) {
     else
       parking.put(VehicleKind::trailer, label::kOtherVehicle, plot.s0 + 1.9, plot.side, deep, yaw,
                   random);
+  }
+}
+
+/// Two rows of cars, nose to the way between them or tail.
+void fill_car_parks(const WorldPlan& plan, Parking& parking) {
+  for (const WorldPlot& plot : plan.plots) {
+    if (plot.use != Frontage::car_park) continue;
+    Random random = random_of(plan, WorldPurpose::parked, 5000 + plot.number);
+    const double taken = random.uniform(0.2, 0.9);
+    const double line = plan.property_line(plot.side);
+    for (const double deep : {line + 3.6, line + kCarPark_m - 3}) {
+      for (double s = plot.s0 + 2; s < plot.s1 - 1.8; s += 2.55) {
+        if (random.uniform() > taken) continue;
+        const double yaw = (random.uniform() < 0.5 ? 0.5 : -0.5) * std::numbers::pi;
+        parking.put(VehicleKind::car, label::kCar, s, plot.side, deep + random.uniform(-0.3, 0.3),
+                    yaw + 0.03 * random.normal(), random);
+      }
+    }
   }
 }
 
@@ -127,6 +145,7 @@ void wait_on_road(const WorldPlan& plan, Parking& parking, int side) {
 std::uint16_t add_world_standing(const WorldPlan& plan, MeshBuilder& builder) {
   Parking parking(plan, builder);
   park_in_drives(plan, parking);
+  fill_car_parks(plan, parking);
   for (const int side : {1, -1}) {
     park_along(plan, parking, side);
     stand_on_sidewalk(plan, parking, side);

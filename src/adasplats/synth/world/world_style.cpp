@@ -30,6 +30,8 @@ void draw_residential(WorldStyle& style, Draw& draw) {
   style.garden_bushes = draw.in(3, 18);
   style.leafiness = draw.in(0.7, 1.7);
   style.edge_bushes = draw.few(1);
+  style.car_parks = draw.in(0, 0.1);
+  style.halls = draw.in(0, 0.08);
   style.cars = draw.few(1.5);
   style.cyclists = draw.few(0.8);
   style.motorcyclists = draw.few(0.6);
@@ -98,6 +100,8 @@ void draw_rural(WorldStyle& style, Draw& draw) {
   style.cyclists = draw.few(0.6);
   style.walkers = draw.few(0.4);
   style.speed_m_per_s = draw.in(14, 24);
+  style.car_parks = draw.in(0, 0.06);
+  style.halls = draw.in(0, 0.12);
   for (SideStyle& side : style.sides) {
     side.frontage = draw.chance(0.45) ? Frontage::wood : Frontage::open;
     side.shoulder = draw.in(0.2, 1);
@@ -134,6 +138,7 @@ void draw_motorway(WorldStyle& style, Draw& draw) {
   style.motorcyclists = draw.few(0.6);
   style.cyclists = style.walkers = 0;
   style.speed_m_per_s = draw.in(22, 32);
+  style.halls = draw.in(0, 0.2);
   style.gantries = draw.in(0, 1.2);
   for (SideStyle& side : style.sides) {
     side.frontage = draw.chance(0.5) ? Frontage::wood : Frontage::open;
@@ -172,6 +177,8 @@ void draw_city(WorldStyle& style, Draw& draw) {
   style.cyclists = draw.in(0.3, 3);
   style.motorcyclists = draw.few(1);
   style.walkers = draw.in(2, 10);
+  style.car_parks = draw.in(0, 0.12);
+  style.lights = draw.chance(0.6);
   style.tram = draw.chance(0.5) ? draw.in(2, 4) : 0;
   for (SideStyle& side : style.sides) {
     side.frontage = draw.chance(0.85) ? Frontage::facades : Frontage::houses;
