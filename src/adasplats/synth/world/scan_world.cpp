@@ -17,13 +17,12 @@ constexpr double kMountError_rad = 0.006;  // standard deviations
 constexpr double kMountError_m = 0.03;
 constexpr std::uint64_t kDropStream = 0x64726f70;
 constexpr double kLostAnywhere = 0.01;  // of all returns
-constexpr double kLostOnGlass = 0.6;    // of those from panes
-constexpr double kOutliers = 0.0002;    // from nowhere: dust, double echoes
-constexpr double kFaintest = 0.24;      // intensity over (range / 100 m)^2: always kept above
+constexpr double kLostOnWindows = 0.5;  // of those from panes
+constexpr double kLostOnCarGlass = 0.85;
+constexpr double kOutliers = 0.0002;  // from nowhere: dust, double echoes
+constexpr double kFaintest = 0.24;    // intensity over (range / 100 m)^2: always kept above
 
-bool is_pane(float reflectance) {
-  return std::fabs(reflectance - kDarkPane) < 1e-6F || std::fabs(reflectance - kCarPane) < 1e-6F;
-}
+bool is_about(float reflectance, float pane) { return std::fabs(reflectance - pane) < 1e-6F; }
 
 /// The vehicle under the sensor: roof and tail behind it, bonnet before it, as flat tops. In
 /// KITTI's scans the lowest beams lack a third of their points so.
@@ -44,7 +43,8 @@ bool meets_own_body(Vec3f direction) {
 /// Whether a return reaches the sensor at all.
 bool is_lost(const Echo& echo, Random& random) {
   if (random.uniform() < kLostAnywhere) return true;
-  if (is_pane(echo.reflectance)) return random.uniform() < kLostOnGlass;
+  if (is_about(echo.reflectance, kDarkPane)) return random.uniform() < kLostOnWindows;
+  if (is_about(echo.reflectance, kCarPane)) return random.uniform() < kLostOnCarGlass;
   const double far = static_cast<double>(echo.range_m) / 100;
   // Paint that throws the beam away still returns from near.
   const double strength = (static_cast<double>(echo.intensity) + 0.01) / (far * far);

@@ -12,10 +12,11 @@ namespace {
 constexpr double kDriveSpeed_m_per_s = 8;
 constexpr double kDriveStep_m = 0.5;
 
-/// The vehicle in the outermost lane of the right side, level across.
+/// The vehicle in the outermost lane of the right side, or further in where no line divides the
+/// road; level across.
 Trajectory drive_along(const WorldPlan& plan) {
   Trajectory drive;
-  const double lane = plan.lane_center(plan.style.lanes - 1);
+  const double lane = plan.driven_line();
   const auto place = [&](double s) {
     Vec3d p = plan.route.at(s, -lane);
     p.z = plan.height(s, -lane);

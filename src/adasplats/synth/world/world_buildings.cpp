@@ -29,7 +29,7 @@ WorldHouse draw_house(double widest, Random& random) {
   house.storeys = random.uniform() < 0.25 ? 1 : random.uniform() < 0.8 ? 2 : 3;
   house.roof = random.uniform() < 0.12 ? 0 : random.uniform(1.5, 4.2);
   house.ridge_along = random.uniform() < 0.65;
-  house.wall = static_cast<float>(random.uniform(0.35, 0.75));
+  house.wall = static_cast<float>(random.uniform(0.42, 0.8));
   house.tiles = static_cast<float>(random.uniform(0.15, 0.5));
   return house;
 }
@@ -178,7 +178,7 @@ void add_hall(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot
   hall.roof = random.uniform() < 0.5 ? 0 : random.uniform(1, 3);
   hall.wall = static_cast<float>(random.uniform(0.3, 0.75));
   hall.tiles = static_cast<float>(random.uniform(0.2, 0.6));
-  const double front = plan.property_line(plot.side) + random.uniform(4, 18);
+  const double front = plan.property_line(plot.side) + random.uniform(5, 18);
   builder.stand_at(plan.stand(plot.center(), plot.side, front, 0.05 * random.normal()));
   const double half = 0.5 * hall.width;
   builder.box({-half, 0, -kFooting}, {half, hall.depth, hall.eaves()},

@@ -67,7 +67,7 @@ struct EdgeLook {
 
 EdgeLook draw_look(EdgeKind kind, double height, Random& random) {
   EdgeLook look = {kind, height, random.uniform(0.07, 0.14), 0.4F};
-  look.reflectance = static_cast<float>(random.uniform(0.25, 0.7));
+  look.reflectance = static_cast<float>(random.uniform(0.35, 0.75));
   if (kind == EdgeKind::hedge) look.height = std::max(0.8, height);
   if (kind == EdgeKind::picket) look.height = std::min(1.2, height);
   if (kind == EdgeKind::boards) look.height = std::max(1.3, height);

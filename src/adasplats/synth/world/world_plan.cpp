@@ -35,7 +35,7 @@ WorldPlan::WorldPlan(const WorldOptions& world_options)
       style(draw_world_style(options.kind, random(0, 1))),
       route(options.length_m, route_limits(options.kind), random(0, 2)) {
   Random reflectances = random(0, 3);
-  constexpr std::array<double, kGroundCount> kTypical = {0.46, 0.7, 0.5, 0.54, 0.5, 0.56};
+  constexpr std::array<double, kGroundCount> kTypical = {0.46, 0.7, 0.5, 0.58, 0.54, 0.66};
   for (std::size_t k = 0; k < kGroundCount; ++k)
     ground_reflectances[k] = static_cast<float>(kTypical[k] * reflectances.uniform(0.75, 1.25));
   Random swell = random(0, 4);
@@ -116,7 +116,8 @@ void WorldPlan::draw_plots() {
       plot.setback = draw.uniform(style.setback_low, style.setback_high);
       plot.front = draw_edge(draw, fenceless);
       plot.between = draw_edge(draw, fenceless + 0.1);
-      plot.edge_height = draw.uniform(0.7, 1.9);
+      const double tall = draw.uniform();
+      plot.edge_height = 0.4 + 1.5 * tall * tall;
       plot.driveway = plot.use == Frontage::houses && plot.width() > 11 && draw.uniform() < 0.7;
       s = plot.s1;
       if (draw.uniform() < style.side_streets * plot.width() / 100) s += draw.uniform(8, 13);

@@ -89,6 +89,7 @@ struct WorldStyle {
   double lane_width = 3;
   double median = 0;  ///< half its width
   bool marked = true;
+  double driven = 1;        ///< where the vehicle drives, of the way from the axis to its lane
   double undulation = 0.1;  ///< of the land, m
   double roughness = 0.03;  ///< of soil and grass, m
   double plot_low = 12, plot_high = 22, setback_low = 2, setback_high = 7;
@@ -126,6 +127,9 @@ class WorldPlan {
   double property_line(int side) const;
   /// The middle of a lane, 0 the innermost.
   double lane_center(int lane) const { return style.median + (lane + 0.5) * style.lane_width; }
+
+  /// Where the vehicle drives, on the right side.
+  double driven_line() const { return style.driven * lane_center(style.lanes - 1); }
 
   struct Cell {
     Ground ground = Ground::terrain;

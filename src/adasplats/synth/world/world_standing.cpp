@@ -78,7 +78,7 @@ void park_in_drives(const WorldPlan& plan, Parking& parking) {
     const double deep = plan.property_line(plot.side) + random.uniform(2.8, 3 + plot.setback);
     const double draw = random.uniform();
     const double yaw = (random.uniform() < 0.5 ? 0.5 : -0.5) * std::numbers::pi;
-    if (draw < 0.93)
+    if (draw < 0.88)
       parking.put(VehicleKind::car, label::kCar, plot.s0 + 1.9, plot.side, deep, yaw, random);
     else
       parking.put(VehicleKind::trailer, label::kOtherVehicle, plot.s0 + 1.9, plot.side, deep, yaw,
@@ -100,6 +100,25 @@ void fill_car_parks(const WorldPlan& plan, Parking& parking) {
         parking.put(VehicleKind::car, label::kCar, s, plot.side, deep + random.uniform(-0.3, 0.3),
                     yaw + 0.03 * random.normal(), random);
       }
+    }
+  }
+}
+
+/// What is left before barns and workshops.
+void park_at_halls(const WorldPlan& plan, Parking& parking) {
+  for (const WorldPlot& plot : plan.plots) {
+    if (plot.use != Frontage::hall) continue;
+    Random random = random_of(plan, WorldPurpose::parked, 9000 + plot.number);
+    const double deep = plan.property_line(plot.side) + 2.5;
+    for (double s = plot.s0 + 6; s < plot.s1 - 12; s += random.uniform(8, 24)) {
+      const double draw = random.uniform();
+      const double yaw = 0.3 * random.normal();
+      if (draw < 0.4)
+        parking.put(VehicleKind::trailer, label::kOtherVehicle, s, plot.side, deep, yaw, random);
+      else if (draw < 0.6)
+        parking.put(VehicleKind::truck, label::kTruck, s + 5, plot.side, deep, yaw, random);
+      else if (draw < 0.8)
+        parking.put(VehicleKind::car, label::kCar, s, plot.side, deep, yaw, random);
     }
   }
 }
@@ -146,6 +165,7 @@ std::uint16_t add_world_standing(const WorldPlan& plan, MeshBuilder& builder) {
   Parking parking(plan, builder);
   park_in_drives(plan, parking);
   fill_car_parks(plan, parking);
+  park_at_halls(plan, parking);
   for (const int side : {1, -1}) {
     park_along(plan, parking, side);
     stand_on_sidewalk(plan, parking, side);

@@ -19,7 +19,7 @@ class Draw {
 };
 
 void draw_residential(WorldStyle& style, Draw& draw) {
-  style.lane_width = draw.in(2.4, 3.2);
+  style.lane_width = draw.in(2.2, 3.2);
   style.marked = draw.chance(0.3);
   style.side_streets = draw.in(0.5, 1.6);
   style.plot_low = draw.in(8, 12);
@@ -217,6 +217,7 @@ RouteLimits route_limits(WorldKind kind) {
 WorldStyle draw_world_style(WorldKind kind, Random random) {
   WorldStyle style;
   Draw draw(random);
+  const double share = draw.in(0.25, 0.95);
   switch (kind) {
     case WorldKind::residential: draw_residential(style, draw); break;
     case WorldKind::suburban: draw_suburban(style, draw); break;
@@ -224,6 +225,7 @@ WorldStyle draw_world_style(WorldKind kind, Random random) {
     case WorldKind::motorway: draw_motorway(style, draw); break;
     case WorldKind::city: draw_city(style, draw); break;
   }
+  style.driven = style.marked || style.lanes > 1 ? 1 : share;
   return style;
 }
 

@@ -74,7 +74,7 @@ TEST(SynthWorld, TheDriveIsOnTheRoad) {
     const WorldPlan plan(options);
     const SynthWorld world = make_world(options);
     ASSERT_EQ(world.drive.size(), 160U);
-    const double lane = plan.lane_center(plan.style.lanes - 1);
+    const double lane = plan.driven_line();
     for (std::size_t k = 0; k < world.drive.size(); ++k) {
       const double s = 0.5 * static_cast<double>(k);
       EXPECT_EQ(plan.cell_at(s, -lane).ground, Ground::road);

@@ -9,6 +9,7 @@
 namespace adasplats {
 namespace {
 
+constexpr double kPassing_m = 2.5;  // from the middle of one to that of the other
 constexpr double kPoseEvery_s = 0.25;
 
 std::uint16_t moving_class(VehicleKind kind) {
@@ -105,17 +106,21 @@ std::vector<MovingObject> make_world_traffic(const WorldPlan& plan, std::uint16_
       const double heavy = style.trucks + style.buses;
       const bool outer = lane + 1 == style.lanes;
       VehicleKind kind = VehicleKind::car;
-      if (outer && random.uniform() < heavy / (heavy + 0.6 * style.cars + 1e-9))
+      const double rare = plan.options.kind == WorldKind::motorway ? 1 : 0.35;
+      if (outer && random.uniform() < rare * heavy / (heavy + 0.6 * style.cars + 1e-9))
         kind = random.uniform() < style.trucks / heavy ? VehicleKind::truck : VehicleKind::bus;
       const double speed = style.speed_m_per_s * (outer ? 0.8 : 1.0) * random.uniform(0.85, 1.15);
       const double many = kind == VehicleKind::car ? style.cars : std::max(0.4, heavy);
-      maker.fill({kind, side, plan.lane_center(lane), side < 0, speed, many / style.lanes});
+      // Where the vehicle drives in the middle of a narrow road, nobody comes towards it.
+      const double beside = plan.lane_center(lane);
+      if (side > 0 && beside + plan.driven_line() < kPassing_m) continue;
+      maker.fill({kind, side, beside, side < 0, speed, many / style.lanes});
     }
     const double edge = plan.road_end(side);
     const double beside = plan.side(side).parking_width > 0 ? plan.lanes_end() - 0.4 : edge - 0.5;
     // Nobody squeezes past the vehicle that scans.
     constexpr double kElbowRoom_m = 1.4;
-    const double driven = plan.lane_center(style.lanes - 1);
+    const double driven = plan.driven_line();
     const auto fits = [&](double from_axis) {
       return side > 0 || from_axis - driven > kElbowRoom_m;
     };

@@ -112,20 +112,20 @@ void add_rider(MeshBuilder& builder, double saddle_x, double saddle_z, double le
 void add_stretched_car(MeshBuilder& builder, const RigidTransform& world_from_vehicle,
                        const Material& paint, Random& random) {
   const double body = random.uniform();
-  const int shape = body < 0.5    ? 0  // hatchbacks, and longer ones as estates
-                    : body < 0.65 ? 1
-                    : body < 0.85 ? 2
+  const int shape = body < 0.55   ? 0  // hatchbacks, and longer ones as estates
+                    : body < 0.77 ? 1
+                    : body < 0.92 ? 2
                                   : 3;
   const bool estate = shape == 0 && random.uniform() < 0.45;
   builder.stand_at(world_from_vehicle, {(estate ? 1.16 : 1.0) * random.uniform(0.92, 1.08),
-                                        random.uniform(0.94, 1.04), random.uniform(0.95, 1.06)});
+                                        random.uniform(0.94, 1.04), random.uniform(0.93, 1.03)});
   add_car(builder, shape, paint, RigidTransform{});
 }
 
 }  // namespace
 
 float draw_paint(Random& random) {
-  if (random.uniform() < 0.55) return static_cast<float>(random.uniform(0.004, 0.05));
+  if (random.uniform() < 0.65) return static_cast<float>(random.uniform(0.002, 0.02));
   return static_cast<float>(random.uniform(0.12, 0.75));
 }
 
