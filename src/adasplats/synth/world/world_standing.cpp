@@ -46,7 +46,8 @@ void park_along(const WorldPlan& plan, Parking& parking, int side) {
   Random random = random_of(plan, WorldPurpose::parked, side > 0 ? 1 : 0);
   const double middle = plan.lanes_end() + 0.5 * own.parking_width;
   for (double s = 3; s < plan.options.length_m - 8;) {
-    const double draw = random.uniform();
+    // Trucks and buses take more than a narrow lane.
+    const double draw = random.uniform() * (own.parking_width > 2.2 ? 1 : 0.91);
     const VehicleKind kind = draw < 0.91    ? VehicleKind::car
                              : draw < 0.945 ? VehicleKind::truck
                              : draw < 0.975 ? VehicleKind::trailer

@@ -19,7 +19,7 @@ class Draw {
 };
 
 void draw_residential(WorldStyle& style, Draw& draw) {
-  style.lane_width = draw.in(2.2, 3.2);
+  style.lane_width = draw.in(2.4, 3.5);
   style.marked = draw.chance(0.3);
   style.side_streets = draw.in(0.5, 1.6);
   style.plot_low = draw.in(8, 12);
@@ -57,7 +57,7 @@ void draw_residential(WorldStyle& style, Draw& draw) {
 
 void draw_suburban(WorldStyle& style, Draw& draw) {
   draw_residential(style, draw);
-  style.lane_width = draw.in(2.8, 3.6);
+  style.lane_width = draw.in(3, 4.3);
   style.plot_low = draw.in(15, 22);
   style.plot_high = style.plot_low + draw.in(4, 16);
   style.setback_low = draw.in(4, 8);
@@ -81,7 +81,7 @@ void draw_suburban(WorldStyle& style, Draw& draw) {
 }
 
 void draw_rural(WorldStyle& style, Draw& draw) {
-  style.lane_width = draw.in(2.4, 3.6);
+  style.lane_width = draw.in(2.8, 4.2);
   style.marked = draw.chance(0.6);
   style.undulation = draw.in(0.2, 1.2);
   style.roughness = draw.in(0.02, 0.06);
