@@ -175,10 +175,17 @@ CALIBRATION = [
     ("late", "calibrated/late_50cm", "0.0 %"), ("splats", "calibrated/primitives", "0.00 M"),
     ("planes", "calibration/planes", "0,000"),
     ("ranges (RMS)", "calibration/range_offset_rms_m", "0.0 cm")]
+CALIBRATION_PARTS = [
+    ("all parts", "calibrated/within_10cm", "0.0 %"), *(
+        (title, f"parts/{key}/within_10cm", "0.0 %") for title, key in (
+            ("without poses", "no_poses"), ("without ranges", "no_ranges"),
+            ("without elevations", "no_elevations"), ("without mount", "no_mount"),
+            ("driven path kept", "driven_path_kept"), ("without empty beams", "no_empty_beams")))]
 # Name: (the rows' key where the document gives none, columns). A column that no row fills is left
 # out.
 TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
-          "calibration": ("drives", CALIBRATION)}
+          "calibration": ("drives", CALIBRATION),
+          "parts": ("drives", CALIBRATION_PARTS)}
 
 
 def rows_of(data, key):
