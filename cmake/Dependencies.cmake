@@ -15,6 +15,13 @@ if(LASzip_FOUND)
   set(ADASPLATS_LASZIP_DEFINE ADASPLATS_HAVE_LASZIP)
 endif()
 
+# Networks that tell classes apart (stage segment): products of matrices.
+find_package(OpenBLAS QUIET MODULE)
+if(OpenBLAS_FOUND)
+  set(ADASPLATS_OPENBLAS_TARGET OpenBLAS::OpenBLAS)
+  set(ADASPLATS_OPENBLAS_DEFINE ADASPLATS_OPENBLAS)
+endif()
+
 # Meshes of the comparison. OpenVDB: grid and surface of IMLS. Open3D: screened Poisson, only in a
 # program of its own (apps/poisson), as it brings hundreds of libraries.
 find_package(OpenVDB 9 QUIET MODULE)
@@ -53,6 +60,12 @@ if(NOT LASzip_FOUND)
   set(missing "no LASzip (liblaszip-dev)")
 endif()
 adasplats_part(- "LAZ files" "${missing}" "LASzip" ADASPLATS_LAZ)
+
+set(missing "")
+if(NOT OpenBLAS_FOUND)
+  set(missing "no OpenBLAS (libopenblas-dev)")
+endif()
+adasplats_part(- "segmentation" "${missing}" "OpenBLAS ${OpenBLAS_VERSION}" ADASPLATS_SEGMENTATION)
 
 set(missing "")
 if(NOT OpenVDB_FOUND)

@@ -29,6 +29,7 @@ demo  libpng-dev           -             images
 demo  libboost-dev         -             the viewer's server (headers)
 maybe ccache               ccache        compiles nothing twice
 maybe liblaszip-dev        -             LAZ files
+maybe libopenblas-dev      -             segmentation by networks
 maybe nodejs               node          the viewer's page
 maybe npm                  npm           likewise
 test  git                  git           lists the files to check

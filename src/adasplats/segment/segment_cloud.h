@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/segment/network/network.h"
+
+namespace adasplats {
+
+struct SegmentOptions {
+  double tile_m = 32;     ///< side of the squares that are looked at one after the other, and...
+  double margin_m = 12;   ///< ...how much around each is looked at, too
+  bool intensity = true;  ///< is used where the points have it
+  bool confidences = false;
+};
+
+struct Segmentation {
+  std::vector<std::uint8_t> classes;  ///< of the points, indices into Network::classes
+  std::vector<float> confidences;     ///< of these, 0 to 1; empty: not asked for
+  std::size_t cells = 0, tiles = 0;   ///< that the network saw
+};
+
+/// The class of every point. The network sees means of cells; a point has the class of its cell.
+/// Memory depends on the tiles and not on the cloud. The same for any number of threads. Errors:
+/// unavailable (built without OpenBLAS).
+Segmentation segment_cloud(const PointCloud& cloud, const Network& network,
+                           const SegmentOptions& options, const Executor& executor);
+
+/// Height of points above the lowest ones around, m: the least of square columns of 1 m, eroded and
+/// smoothed over nine of them each way.
+std::vector<float> heights_above_ground(std::span<const Vec3f> points);
+
+}  // namespace adasplats
