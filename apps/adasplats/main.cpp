@@ -58,6 +58,7 @@ struct Program {
     commands.push_back(make_sensors_command(app));
     commands.push_back(make_model_command(app));
     commands.push_back(make_calibrate_command(app));
+    commands.push_back(make_segment_command(app));
     commands.push_back(make_mesh_command(app));
     commands.push_back(make_simulate_command(app));
     commands.push_back(make_render_command(app));

@@ -26,6 +26,7 @@ SUBCOMMANDS = [
     ["simkitti32"],
     ["model"],
     ["calibrate"],
+    ["segment"],
     ["mesh"],
     ["simulate"],
     ["render"],

@@ -14,6 +14,7 @@ std::unique_ptr<Command> make_synth_world_command(CLI::App& synth);
 std::unique_ptr<Command> make_info_command(CLI::App& program);
 std::unique_ptr<Command> make_model_command(CLI::App& program);
 std::unique_ptr<Command> make_calibrate_command(CLI::App& program);
+std::unique_ptr<Command> make_segment_command(CLI::App& program);
 std::unique_ptr<Command> make_mesh_command(CLI::App& program);
 std::unique_ptr<Command> make_simulate_command(CLI::App& program);
 std::unique_ptr<Command> make_render_command(CLI::App& program);

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "adasplats/io/point_format.h"
+#include "adasplats/recipes/segment_points.h"
+#include "cli/commands.h"
+#include "cli/options/load_options.h"
+#include "cli/options/option_types.h"
+#include "cli/options/setting_options.h"
+#include "cli/terminal.h"
+#include "cli/text_table.h"
+
+namespace adasplats::app {
+namespace {
+
+constexpr const char* kSegmentExamples =
+    "  adasplats segment sequences/00 -o labelled\n"
+    "  adasplats segment cloud.las -o cloud.ply --network my.network\n";
+
+class SegmentCommand final : public Command {
+ public:
+  explicit SegmentCommand(CLI::App& program)
+      : Command(program, "segment", "Give points semantic classes, by a network",
+                kSegmentExamples) {
+    OptionSet& app = options();
+    require(app.add_option_function<std::vector<std::string>>(
+                   "INPUT",
+                   [this](const std::vector<std::string>& names) {
+                     job_.inputs.assign(names.begin(), names.end());
+                   },
+                   "Sequence folders, or point files (" + point_format_names() + ")")
+                ->type_name("PATH"));
+    require(add_path(app, "-o,--output", job_.output,
+                     "Of sequences: folder to create; of files: PLY to write"));
+    app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
+    add_path(app, "--network", job_.network,
+             "File of a network; else the one that comes with the program");
+    add_settings(app, job_.segment);
+    add_load_options(app, job_.load);
+  }
+
+  void run(Session& session) override {
+    const SegmentResult result = run_segment(job_, session);
+    session.report.update(to_json(result));
+    TextTable table({"class", "points"});
+    for (const SegmentResult::ClassCount& count : result.classes)
+      if (count.points > 0) table.add_row({count.name, grouped(count.points)});
+    print(table.text() + "\n" + job_.output.string() + ": " + grouped(result.points) +
+          " points in " + grouped(result.cells) + " cells of " + grouped(result.tiles) +
+          " tiles, " + fixed(result.segment_seconds, 1) + " s\n");
+  }
+
+ private:
+  SegmentJob job_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_segment_command(CLI::App& program) {
+  return std::make_unique<SegmentCommand>(program);
+}
+
+}  // namespace adasplats::app
