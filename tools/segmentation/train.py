@@ -1,0 +1,198 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""Train a network on places of prepare.py.
+
+  tools/segmentation/train.py OUT PLACE.npz... [--steps N] [--test PLACE.npz...] [--checkpoint-every N]
+
+OUT/checkpoint.pt is taken up again where it is there; OUT/log.jsonl has a line every 50 steps;
+OUT/network.pt and OUT/test.json (confusion, rows: truth) at the end. The same seed on the same
+machine makes nearly the same network: sums on a GPU are not in a fixed order.
+"""
+import argparse
+import json
+import math
+import pathlib
+import time
+
+import numpy as np
+import torch
+from torch import nn
+
+from classes import GROUP_OF, GROUPS, IGNORED, NAMES
+from network import SHAPE, Network
+from places import Crops, features_of, load_place, tiles_of
+from pyramid import make_pyramid, means_by_cell
+
+
+def lovasz_softmax(probabilities, truth):
+    """A convex stand-in for one minus the IoU, mean over the classes that occur (Berman 2018)."""
+    is_class = nn.functional.one_hot(truth, probabilities.shape[1]).T.float()
+    errors, order = torch.sort((is_class - probabilities.T).abs(), dim=1, descending=True)
+    ordered = torch.gather(is_class, 1, order)
+    totals = ordered.sum(1, keepdim=True)
+    jaccard = 1 - (totals - ordered.cumsum(1)) / (totals + (1 - ordered).cumsum(1))
+    gradients = torch.cat([jaccard[:, :1], jaccard[:, 1:] - jaccard[:, :-1]], 1)
+    occurs = totals[:, 0] > 0
+    return ((errors * gradients).sum(1) * occurs).sum() / occurs.sum()
+
+
+def class_weights(places):
+    counts = sum(torch.bincount(p.classes[p.classes != IGNORED], minlength=len(NAMES))
+                 for p in places).double()
+    weights = (counts / counts.sum() + 1e-3)**-0.5
+    return (weights / weights[counts > 0].mean()).float()
+
+
+def predictions(network, place, with_intensity, core_m=30.0, margin_m=10.0):
+    """Class of every point, tile by tile."""
+    found = torch.full_like(place.classes, IGNORED)
+    network.eval()
+    for indices, in_core in tiles_of(place.positions, core_m, margin_m):
+        if not in_core.any():
+            continue
+        points = place.positions[indices]
+        means, cell_of, values = means_by_cell(points, SHAPE["cell_m"],
+                                               place.intensities[indices, None])
+        features = features_of(means, values[:, 0], with_intensity)
+        with torch.no_grad():
+            logits = network(features, make_pyramid(means, network.shape))
+        found[indices[in_core]] = logits.argmax(1)[cell_of[in_core]]
+    return found
+
+
+def confusion_of(network, place, with_intensity=True):
+    found = predictions(network, place, with_intensity)
+    known = place.classes != IGNORED
+    pairs = place.classes[known] * len(NAMES) + found[known]
+    return torch.bincount(pairs, minlength=len(NAMES)**2).view(len(NAMES), -1).cpu().numpy()
+
+
+def ious(confusion):
+    with np.errstate(invalid="ignore"):
+        return np.diag(confusion) / (confusion.sum(0) + confusion.sum(1) - np.diag(confusion))
+
+
+def summary(confusion, least_share=5e-4):
+    groups = np.zeros((len(GROUPS), len(GROUPS)))
+    np.add.at(groups, (GROUP_OF[:, None], GROUP_OF[None, :]), confusion)
+    share = confusion.sum(1) / confusion.sum()
+    of_class = ious(confusion)
+    present = share >= least_share
+    return {"miou_present": float(of_class[present].mean()),
+            "groups": {"miou": float(np.nanmean(ious(groups))),
+                       "iou": dict(zip(GROUPS, ious(groups).round(4).tolist()))},
+            "iou": {NAMES[k]: round(float(of_class[k]), 4) for k in np.flatnonzero(share > 0)},
+            "accuracy": float(np.trace(confusion) / confusion.sum())}
+
+
+def shares_of(options):
+    """How often crops are of each place."""
+    real, made = len(options.places), len(options.procedural)
+    of_made = options.procedural_share if real and made else float(made > 0)
+    return np.array([(1 - of_made) / max(real, 1)] * real + [of_made / max(made, 1)] * made)
+
+
+class Progress:
+    """How much of the training is done, by steps or by time, whichever is ahead: 0 to 1."""
+
+    def __init__(self, options, network, optimizer):
+        self.options, self.network, self.optimizer = options, network, optimizer
+        self.step, self.seconds, self.losses = 0, 0.0, []
+        self.checkpoint = options.out / "checkpoint.pt"
+        if self.checkpoint.exists():
+            state = torch.load(self.checkpoint, map_location=options.device)
+            network.load_state_dict(state["network"])
+            optimizer.load_state_dict(state["optimizer"])
+            self.step, self.seconds = state["step"], state["seconds"]
+        self.start = time.time() - self.seconds
+
+    def share(self):
+        of_time = (time.time() - self.start) / (60 * self.options.minutes)
+        return max(self.step / self.options.steps, of_time)
+
+    def rate(self):
+        """Up for a tenth of the training, down to nothing along a cosine."""
+        share = self.share()
+        if share < 0.1:
+            return self.options.rate * (0.05 + 0.95 * share / 0.1)
+        return self.options.rate * 0.5 * (1 + math.cos(math.pi * min(1.0, (share - 0.1) / 0.9)))
+
+    def add(self, loss, points):
+        self.losses.append(loss)
+        self.step += 1
+        if self.step % 50 == 0:
+            line = {"step": self.step, "loss": round(float(np.mean(self.losses[-50:])), 4),
+                    "seconds": round(time.time() - self.start, 1), "points": points}
+            with open(self.options.out / "log.jsonl", "a", encoding="utf-8") as log:
+                log.write(json.dumps(line) + "\n")
+        if self.step % self.options.checkpoint_every == 0:
+            partial = self.checkpoint.with_suffix(".partial")
+            torch.save({"network": self.network.state_dict(),
+                        "optimizer": self.optimizer.state_dict(), "step": self.step,
+                        "seconds": time.time() - self.start}, partial)
+            partial.replace(self.checkpoint)
+
+
+def train(options):
+    places = [load_place(file, options.device) for file in options.places + options.procedural]
+    network = Network().to(options.device)
+    on_gpu = options.device.type == "cuda"
+    optimizer = torch.optim.AdamW(network.parameters(), lr=options.rate, weight_decay=0.02,
+                                  **({"fused": True} if on_gpu else {}))
+    progress = Progress(options, network, optimizer)
+    crops = Crops(places, network.shape, [options.seed, progress.step], shares_of(options))
+    entropy = nn.CrossEntropyLoss(class_weights(places).to(options.device), ignore_index=IGNORED,
+                                  label_smoothing=0.05)
+    network.train()
+    while progress.share() < 1:
+        points, features, classes = crops.batch(options.crops)
+        with torch.autocast(options.device.type, torch.bfloat16, enabled=on_gpu):
+            logits = network(features, make_pyramid(points, network.shape)).float()
+        known = classes != IGNORED
+        loss = entropy(logits, classes) + lovasz_softmax(logits[known].softmax(1), classes[known])
+        optimizer.zero_grad()
+        loss.backward()
+        nn.utils.clip_grad_norm_(network.parameters(), 10.0)
+        for group in optimizer.param_groups:
+            group["lr"] = progress.rate()
+        optimizer.step()
+        progress.add(float(loss.detach()), len(points))
+    return network, progress.step
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("out", type=pathlib.Path)
+    parser.add_argument("places", type=pathlib.Path, nargs="*")
+    parser.add_argument("--procedural", type=pathlib.Path, nargs="*", default=[],
+                        help="places, too")
+    parser.add_argument("--procedural-share", type=float, default=0.5,
+                        help="of the crops that are of these")
+    parser.add_argument("--test", type=pathlib.Path, nargs="*", default=[])
+    parser.add_argument("--steps", type=int, default=10_000, help="at most")
+    parser.add_argument("--minutes", type=float, default=1e6, help="at most, in all")
+    parser.add_argument("--crops", type=int, default=2, help="of a step")
+    parser.add_argument("--rate", type=float, default=4e-3)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--checkpoint-every", type=int, default=500)
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    options.device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
+    torch.manual_seed(options.seed)
+    network, steps = train(options)
+    torch.save({"shape": network.shape, "classes": NAMES,
+                "places": [p.stem for p in options.places + options.procedural], "steps": steps,
+                "network": network.state_dict()}, options.out / "network.pt")
+    tested = {}
+    for file in options.test:
+        place = load_place(file, options.device)
+        for name, with_intensity in (("with", True), ("without", False)):
+            confusion = confusion_of(network, place, with_intensity)
+            tested.setdefault(name, {})[place.name] = confusion.tolist()
+            print(place.name, name, "intensity", json.dumps(summary(confusion)), flush=True)
+    (options.out / "test.json").write_text(json.dumps(tested) + "\n")
+
+
+if __name__ == "__main__":
+    main()
