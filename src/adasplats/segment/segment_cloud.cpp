@@ -21,8 +21,14 @@ struct Columns {
   int width = 0, height = 0;
   std::vector<float> numbers;
 
-  float& at(int x, int y) { return numbers[static_cast<std::size_t>(y * width + x)]; }
-  float at(int x, int y) const { return numbers[static_cast<std::size_t>(y * width + x)]; }
+  float& at(int x, int y) { return numbers[place(x, y)]; }
+  float at(int x, int y) const { return numbers[place(x, y)]; }
+
+ private:
+  std::size_t place(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
+  }
 };
 
 /// Combines each column with those around it, along x or y: body(sum, next).

@@ -48,7 +48,7 @@ class DepthMap {
     const float up = std::asin(std::clamp(way.z / range_m, -1.0F, 1.0F)) / kPi + 0.5F;
     const int column = std::clamp(static_cast<int>(across * kColumns), 0, kColumns - 1);
     const int row = std::clamp(static_cast<int>(up * kRows), 0, kRows - 1);
-    return static_cast<std::size_t>(row * kColumns + column);
+    return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
   }
 
   static constexpr float kInfinity = std::numeric_limits<float>::infinity();

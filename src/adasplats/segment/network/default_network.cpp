@@ -7,24 +7,24 @@
 // The file networks/default.network as it is (cmake/Networks.cmake).
 asm(".section .rodata\n"
     ".balign 16\n"
-    ".global adasplats_default_network\n"
-    "adasplats_default_network:\n"
+    ".global kAdasplatsDefaultNetwork\n"
+    "kAdasplatsDefaultNetwork:\n"
     ".incbin \"" ADASPLATS_DEFAULT_NETWORK
     "\"\n"
-    ".global adasplats_default_network_end\n"
-    "adasplats_default_network_end:\n"
+    ".global kAdasplatsDefaultNetworkEnd\n"
+    "kAdasplatsDefaultNetworkEnd:\n"
     ".byte 0\n"
     ".section .note.GNU-stack,\"\",@progbits\n"
     ".text\n");
-extern "C" const char adasplats_default_network[];
-extern "C" const char adasplats_default_network_end[];
+extern "C" const char kAdasplatsDefaultNetwork[];
+extern "C" const char kAdasplatsDefaultNetworkEnd[];
 
 namespace adasplats {
 
 Network default_network() {
   const std::string_view content(
-      adasplats_default_network,
-      static_cast<std::size_t>(adasplats_default_network_end - adasplats_default_network));
+      kAdasplatsDefaultNetwork,
+      static_cast<std::size_t>(kAdasplatsDefaultNetworkEnd - kAdasplatsDefaultNetwork));
   return parse_network(content, "the network of this program");
 }
 
