@@ -11,6 +11,7 @@
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/atomic_file.h"
@@ -121,6 +122,7 @@ class PointSegmenter {
 
   PlacedScans placed_scans(const fs::path& folder) {
     const KittiSequence sequence = open_kitti_sequence(folder);
+    require_poses_that_fit(sequence);
     const ScanRange range{job_.load.first_scan, job_.load.scan_count, job_.load.scan_stride};
     PlacedScans placed;
     session_.progress.begin_step("load", 0);
