@@ -7,6 +7,8 @@ import math
 import torch
 from torch import nn
 
+import kernels
+
 SHAPE = {"cell_m": 0.1, "levels": 5, "radius": 2.5, "sigma": 1.2, "kernel": 15, "neighbors": 32,
          "height_unit_m": 4.0, "widths": [64, 128, 256, 512, 512], "features": ["one", "height", "intensity",
                                                           "has_intensity"]}
@@ -25,38 +27,51 @@ def kernel_points(count=15, radius=1.65):
     return torch.cat([torch.zeros(1, 3, dtype=torch.float64), points]).float()
 
 
-def influences(queries, supports, neighbors, kernel, sigma_m):
-    """(N, H, K): how much of each neighbour each kernel point takes."""
-    far = torch.full((1, 3), 1e6, device=supports.device)
-    ways = torch.cat([supports, far]).index_select(0, neighbors.flatten()).view(
-        *neighbors.shape, 3) - queries[:, None]
-    # |a - b|^2 = |a|^2 + |b|^2 - 2 a b: one product of matrices instead of (N, H, K, 3) numbers.
-    squares = (ways.square().sum(2, keepdim=True) + kernel.square().sum(1) -
-               2 * (ways @ kernel.T))
-    return (1 - squares.clamp(min=0).sqrt() / sigma_m).clamp(min=0)
+class Reach:
+    """Points, the neighbours that they have among others and what kernel points take of these."""
+
+    def __init__(self, queries, supports, table, kernel, sigma_m):
+        self.queries, self.supports, self.table = queries, supports, table
+        self.kernel, self.sigma_m = kernel, sigma_m
+        self._influences = None
+
+    def influences(self):
+        """(N, H, K): how much of each neighbour each kernel point takes (KPConv, equation 3)."""
+        if self._influences is None:
+            far = torch.full((1, 3), 1e6, device=self.supports.device)
+            ways = torch.cat([self.supports, far]).index_select(0, self.table.flatten()).view(
+                *self.table.shape, 3) - self.queries[:, None]
+            # |a - b|^2 = |a|^2 + |b|^2 - 2 a b: one product instead of (N, H, K, 3) numbers.
+            squares = (ways.square().sum(2, keepdim=True) + self.kernel.square().sum(1) -
+                       2 * (ways @ self.kernel.T))
+            self._influences = (1 - squares.clamp(min=0).sqrt() / self.sigma_m).clamp(min=0)
+        return self._influences
+
+    def weighted(self, values):
+        """(N, K * C): what each kernel point takes of the neighbours' values (equation 2)."""
+        if kernels.available(values):
+            return kernels.Weighted.apply(values, self)
+        # (N, K, H) by (N, H, C)
+        taken = self.influences().to(values.dtype).transpose(1, 2) @ gather(values, self.table)
+        return taken.flatten(1)
+
+    def largest(self, values):
+        """(N, C): the largest of the neighbours; what is missing counts as zero, as in KPConv."""
+        if kernels.available(values):
+            return kernels.Largest.apply(values, self.table)
+        return gather(values, self.table).amax(1)
 
 
-class Gather(torch.autograd.Function):
-    """Rows of a matrix; back, sums by atomic additions: PyTorch's own sorts all indices."""
-
-    @staticmethod
-    def forward(context, values, neighbors):
-        context.save_for_backward(neighbors)
-        context.rows = len(values)
-        padded = torch.cat([values, torch.zeros_like(values[:1])])
-        return padded.index_select(0, neighbors.flatten()).view(*neighbors.shape, -1)
-
-    @staticmethod
-    def backward(context, gradient):
-        neighbors, = context.saved_tensors
-        columns = gradient.shape[-1]
-        sums = torch.zeros(context.rows + 1, columns, device=gradient.device)
-        sums.index_add_(0, neighbors.flatten(), gradient.reshape(-1, columns).float())
-        return sums[:-1].to(gradient.dtype), None
+def gather(values, table):
+    """Rows of a matrix; zeros where there is none."""
+    padded = torch.cat([values, torch.zeros_like(values[:1])])
+    return padded.index_select(0, table.flatten()).view(*table.shape, -1)
 
 
-def gather(values, neighbors):
-    return Gather.apply(values, neighbors)
+def rows_of(values, indices):
+    if kernels.available(values):
+        return kernels.Rows.apply(values, indices)
+    return values.index_select(0, indices)
 
 
 class KernelPointConvolution(nn.Module):
@@ -67,10 +82,8 @@ class KernelPointConvolution(nn.Module):
         with torch.no_grad():
             self.weight *= math.sqrt(3.0 / (kernel * inputs)) * 1.5
 
-    def forward(self, values, neighbors, influence):
-        # (N, K, H) by (N, H, C)
-        weighted = influence.to(values.dtype).transpose(1, 2) @ gather(values, neighbors)
-        return weighted.flatten(1) @ self.weight.to(values.dtype)
+    def forward(self, values, reach):
+        return reach.weighted(values) @ self.weight.to(values.dtype)
 
 
 class Unary(nn.Module):
@@ -98,12 +111,11 @@ class Residual(nn.Module):
         self.shortcut = Unary(inputs, outputs, active=False) if inputs != outputs else None
         self.strided = strided
 
-    def forward(self, values, neighbors, influence):
-        inner = self.convolution(self.down(values), neighbors, influence)
+    def forward(self, values, reach):
+        inner = self.convolution(self.down(values), reach)
         inner = self.up(nn.functional.leaky_relu(self.norm(inner), 0.1))
         if self.strided:
-            # The largest of the neighbours; what is missing counts as zero, as in KPConv.
-            values = gather(values, neighbors).amax(1)
+            values = reach.largest(values)
         if self.shortcut is not None:
             values = self.shortcut(values)
         return nn.functional.leaky_relu(inner + values, 0.1)
@@ -139,19 +151,18 @@ class Network(nn.Module):
         for k, level in enumerate(levels):
             cell_m = shape["cell_m"] * 2**k
             kernel, sigma_m = self.kernel * cell_m, shape["sigma"] * cell_m
-            own = influences(level.points, level.points, level.neighbors, kernel, sigma_m)
+            own = Reach(level.points, level.points, level.neighbors, kernel, sigma_m)
             if k == 0:
-                values = self.stem_norm(self.stem(values, level.neighbors, own))
+                values = self.stem_norm(self.stem(values, own))
                 values = nn.functional.leaky_relu(values, 0.1)
             for block in self.blocks[k]:
-                values = block(values, level.neighbors, own)
+                values = block(values, own)
             if level.pooled is None:
                 break
             skipped.append(values)
-            coarse = levels[k + 1].points
-            pooling = influences(coarse, level.points, level.pooled, kernel, sigma_m)
-            values = self.strided[k](values, level.pooled, pooling)
+            pooling = Reach(levels[k + 1].points, level.points, level.pooled, kernel, sigma_m)
+            values = self.strided[k](values, pooling)
         for k, decoder in zip(range(len(levels) - 2, -1, -1), self.decoders):
-            finer = gather(values, levels[k].coarser[:, None])[:, 0]
+            finer = rows_of(values, levels[k].coarser)
             values = decoder(torch.cat([finer, skipped[k]], 1))
         return self.head(self.dropout(values))

@@ -7,7 +7,7 @@ import struct
 import numpy as np
 import torch
 
-from network import gather, influences
+from network import Reach, gather
 
 MAGIC = b"adasplats-network\n"
 
@@ -46,10 +46,10 @@ class NetworkFile:
         below = levels[layer["level"] - strided]
         neighbors = below.pooled if strided else below.neighbors
         cell_m = self.shape["cell_m"] * 2**(layer["level"] - strided)
-        influence = influences(own, below.points, neighbors, self.kernel * cell_m,
-                               self.shape["sigma"] * cell_m)
-        weighted = influence.transpose(1, 2) @ gather(values[layer["input"]], neighbors)
-        return self._finished(layer, weighted.flatten(1) @ self.weights[layer["weight"]])
+        reach = Reach(own, below.points, neighbors, self.kernel * cell_m,
+                      self.shape["sigma"] * cell_m)
+        weighted = reach.weighted(values[layer["input"]])
+        return self._finished(layer, weighted @ self.weights[layer["weight"]])
 
     def _unary(self, layer, values, _):
         return self._finished(layer, values[layer["input"]] @ self.weights[layer["weight"]])

@@ -1,16 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 """Places of prepare.py and the crops of them that a network sees."""
+import itertools
 import math
+import queue
+import threading
 from dataclasses import dataclass
 
 import numpy as np
 import torch
 
 from classes import IGNORED, NAMES
-from pyramid import height_above_ground, means_by_cell
+from pyramid import height_above_ground, make_pyramid, means_by_cell
 
 MIDDLES_APART_M = 1000.0  # crops of a batch lie side by side
+LEAST_POINTS = 1000
 
 
 @dataclass
@@ -46,6 +50,8 @@ class Crops:
         self.places, self.shape = places, shape
         self.shares = np.full(len(places), 1 / len(places)) if shares is None else shares
         self.random = np.random.default_rng(seed)
+        self.noise = torch.Generator(places[0].positions.device)
+        self.noise.manual_seed(int(self.random.integers(1 << 31)))
         self.radius_m, self.most_points = radius_m, most_points
         self.weights = []
         for place in places:
@@ -57,6 +63,13 @@ class Crops:
             self.weights.append(torch.cumsum(weight, 0))
 
     def crop(self):
+        """Points, features and classes of one; others are drawn until there is enough of it."""
+        while True:
+            kept, place, away = self.points_of_crop()
+            if len(kept) >= LEAST_POINTS:
+                return self.seen(place, away, kept)
+
+    def points_of_crop(self):
         random = self.random
         chosen = int(random.choice(len(self.places), p=self.shares))
         place, weights = self.places[chosen], self.weights[chosen]
@@ -68,7 +81,10 @@ class Crops:
         away = place.positions - place.positions[middle]
         kept = away[:, :2].square().sum(1) < self.radius_m**2
         kept &= self.scans_and_rings(place)
-        kept = torch.nonzero(kept)[:, 0]
+        return torch.nonzero(kept)[:, 0], place, away
+
+    def seen(self, place, away, kept):
+        random = self.random
         points = self.moved(away[kept])
         means, cell_of, values = means_by_cell(points, self.shape["cell_m"],
                                                place.intensities[kept, None])
@@ -91,7 +107,8 @@ class Crops:
             every, rest = int(random.integers(2, 5)), int(random.integers(4))
             kept &= (place.rings % every) == rest % every
         if random.random() < 0.2:
-            kept &= torch.rand(len(kept), device=kept.device) < float(random.uniform(0.3, 1))
+            chances = torch.rand(len(kept), device=kept.device, generator=self.noise)
+            kept &= chances < float(random.uniform(0.3, 1))
         return kept
 
     def moved(self, points):
@@ -105,13 +122,67 @@ class Crops:
         points = points @ torch.tensor(matrix.T.astype(np.float32), device=points.device)
         points = points + torch.tensor(random.uniform(0, 1, 3).astype(np.float32),
                                        device=points.device)
-        return points + 0.01 * torch.randn_like(points)
+        noise = torch.randn(points.shape, device=points.device, generator=self.noise)
+        return points + 0.01 * noise
 
     def batch(self, count):
         crops = [self.crop() for _ in range(count)]
         for k, (points, _, _) in enumerate(crops):
             points[:, 0] += k * MIDDLES_APART_M
         return [torch.cat(parts) for parts in zip(*crops)]
+
+
+def batches(crops, count, device):
+    """(levels, features, classes) of batches of crops, without end. On a GPU the next ones are made
+    on a stream of their own while one is learned from."""
+    def make():
+        points, features, classes = crops.batch(count)
+        return make_pyramid(points, crops.shape), features, classes
+
+    if device.type != "cuda":
+        for _ in itertools.count():
+            yield make()
+    torch.cuda.synchronize()  # places were copied on another stream
+    made, ended = queue.Queue(maxsize=3), threading.Event()
+
+    def work():
+        try:
+            with torch.cuda.stream(torch.cuda.Stream(device)):
+                while not ended.is_set():
+                    batch = make()
+                    made.put((batch, torch.cuda.current_stream().record_event()))
+        except BaseException as error:  # told to whoever waits
+            made.put((error, None))
+
+    thread = threading.Thread(target=work, daemon=True)
+    thread.start()
+    try:
+        while True:
+            batch, event = made.get()
+            if event is None:
+                raise batch
+            here = torch.cuda.current_stream()
+            here.wait_event(event)
+            for tensor in tensors_of(batch):
+                tensor.record_stream(here)
+            yield batch
+    finally:
+        ended.set()
+        while thread.is_alive():
+            try:
+                made.get(timeout=0.1)
+            except queue.Empty:
+                pass
+
+
+def tensors_of(batch):
+    levels, features, classes = batch
+    yield features
+    yield classes
+    for level in levels:
+        for tensor in (level.points, level.neighbors, level.pooled, level.coarser):
+            if tensor is not None:
+                yield tensor
 
 
 def class_of_cells(classes, cell_of, count):

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import torch
 
+import kernels
+
 
 @dataclass
 class Level:
@@ -34,8 +36,11 @@ def means_by_cell(points, cell_m, values=None):
     return mean(points), cell_of, None if values is None else mean(values)
 
 
-def neighbors_of(queries, supports, radius_m, most, at_once=1 << 18):
-    """(N, most) indices of the nearest supports within the radius; len(supports): none."""
+def neighbors_of(queries, supports, radius_m, most, cell_m, at_once=1 << 18):
+    """(N, most) indices of the nearest supports within the radius; len(supports): none. Supports:
+    means of cells of `cell_m`."""
+    if kernels.available(supports):
+        return kernels.neighbors_of(queries, supports, radius_m, most, cell_m)
     low = torch.minimum(queries.min(0).values, supports.min(0).values) - radius_m
     cells = torch.floor((supports - low) / radius_m).long()
     high = torch.maximum(queries.max(0).values, supports.max(0).values)
@@ -80,14 +85,14 @@ def make_pyramid(points, shape):
     for k in range(shape["levels"]):
         cell_m = shape["cell_m"] * 2**k
         radius_m = shape["radius"] * cell_m
-        neighbors = neighbors_of(points, points, radius_m, shape["neighbors"])
+        neighbors = neighbors_of(points, points, radius_m, shape["neighbors"], cell_m)
         if k + 1 == shape["levels"]:
             levels.append(Level(points, neighbors, None, None))
             break
         coarse = means_by_cell(points, 2 * cell_m)[0]
-        pooled = neighbors_of(coarse, points, radius_m, shape["neighbors"])
+        pooled = neighbors_of(coarse, points, radius_m, shape["neighbors"], cell_m)
         # The mean of its own cell is nearer than the cell's diagonal.
-        coarser = neighbors_of(points, coarse, 4 * cell_m, 1)[:, 0]
+        coarser = neighbors_of(points, coarse, 4 * cell_m, 1, 2 * cell_m)[:, 0].contiguous()
         levels.append(Level(points, neighbors, pooled, coarser))
         points = coarse
     return levels

@@ -21,7 +21,7 @@ from torch import nn
 
 from classes import GROUP_OF, GROUPS, IGNORED, NAMES
 from network import SHAPE, Network
-from places import Crops, features_of, load_place, tiles_of
+from places import Crops, batches, features_of, load_place, tiles_of
 from pyramid import make_pyramid, means_by_cell
 
 
@@ -122,10 +122,11 @@ class Progress:
         self.losses.append(loss)
         self.step += 1
         if self.step % 50 == 0:
-            line = {"step": self.step, "loss": round(float(np.mean(self.losses[-50:])), 4),
+            line = {"step": self.step, "loss": round(float(torch.stack(self.losses).mean()), 4),
                     "seconds": round(time.time() - self.start, 1), "points": points}
             with open(self.options.out / "log.jsonl", "a", encoding="utf-8") as log:
                 log.write(json.dumps(line) + "\n")
+            self.losses = []
         if self.step % self.options.checkpoint_every == 0:
             partial = self.checkpoint.with_suffix(".partial")
             torch.save({"network": self.network.state_dict(),
@@ -145,10 +146,11 @@ def train(options):
     entropy = nn.CrossEntropyLoss(class_weights(places).to(options.device), ignore_index=IGNORED,
                                   label_smoothing=0.05)
     network.train()
-    while progress.share() < 1:
-        points, features, classes = crops.batch(options.crops)
+    for levels, features, classes in batches(crops, options.crops, options.device):
+        if progress.share() >= 1:
+            break
         with torch.autocast(options.device.type, torch.bfloat16, enabled=on_gpu):
-            logits = network(features, make_pyramid(points, network.shape)).float()
+            logits = network(features, levels).float()
         known = classes != IGNORED
         loss = entropy(logits, classes) + lovasz_softmax(logits[known].softmax(1), classes[known])
         optimizer.zero_grad()
@@ -157,7 +159,7 @@ def train(options):
         for group in optimizer.param_groups:
             group["lr"] = progress.rate()
         optimizer.step()
-        progress.add(float(loss.detach()), len(points))
+        progress.add(loss.detach(), len(features))
     return network, progress.step
 
 
