@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "adasplats/cloud/points/point_cloud.h"
@@ -30,9 +29,5 @@ struct Segmentation {
 /// unavailable (built without OpenBLAS).
 Segmentation segment_cloud(const PointCloud& cloud, const Network& network,
                            const SegmentOptions& options, const Executor& executor);
-
-/// Height of points above the lowest ones around, m: the least of square columns of 1 m, eroded and
-/// smoothed over nine of them each way.
-std::vector<float> heights_above_ground(std::span<const Vec3f> points);
 
 }  // namespace adasplats

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "adasplats/evaluate/echo_accuracy.h"
+#include "adasplats/evaluate/echoes/echo_accuracy.h"
 #include "adasplats/pipeline/session/scan_range.h"
 #include "adasplats/pipeline/session/session.h"
 

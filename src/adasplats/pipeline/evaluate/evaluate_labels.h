@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "adasplats/evaluate/label_agreement.h"
+#include "adasplats/evaluate/labels/label_agreement.h"
 #include "adasplats/pipeline/session/session.h"
 
 namespace adasplats {

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "adasplats/evaluate/segmentation.h"
+#include "adasplats/evaluate/labels/segmentation.h"
 #include "adasplats/pipeline/session/scan_range.h"
 #include "adasplats/pipeline/session/session.h"
 

@@ -5,10 +5,10 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "adasplats/evaluate/cloud_metrics.h"
-#include "adasplats/evaluate/label_agreement.h"
+#include "adasplats/evaluate/labels/label_agreement.h"
+#include "adasplats/evaluate/labels/segmentation.h"
 #include "adasplats/evaluate/presence.h"
 #include "adasplats/evaluate/resimulate.h"
-#include "adasplats/evaluate/segmentation.h"
 #include "adasplats/evaluate/truth.h"
 
 namespace adasplats {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/segmentation.h"
+#include "adasplats/evaluate/labels/segmentation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/beam_grid.h"
+#include "adasplats/evaluate/echoes/beam_grid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/evaluate/echo_accuracy.h"
+#include "adasplats/evaluate/echoes/echo_accuracy.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
-#include "adasplats/evaluate/beam_grid.h"
+#include "adasplats/evaluate/echoes/beam_grid.h"
 #include "adasplats/evaluate/share.h"
 
 namespace adasplats {
