@@ -5,14 +5,27 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
+#include <string>
 
+#include "adasplats/core/error.h"
 #include "adasplats/segment/network/run_network.h"
 #include "adasplats/segment/pyramid/heights_above_ground.h"
 
 namespace adasplats {
 namespace {
 
-constexpr double kFull = 0.99;  // intensities are shares of this quantile
+constexpr double kFull = 0.99;        // intensities are shares of this quantile
+constexpr float kFarthest_m = 100e3;  // grids of a cloud have 2^21 cells a side
+
+void require_places(const PointCloud& cloud) {
+  const auto is_near = [](float value) { return std::fabs(value) <= kFarthest_m; };  // no NaN
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3f p = cloud.positions[i];
+    if (!is_near(p.x) || !is_near(p.y) || !is_near(p.z))
+      throw Error(ErrorKind::data, "point " + std::to_string(i) +
+                                       " is not finite or farther than 100 km from the others");
+  }
+}
 
 class Segmenter {
  public:
@@ -21,13 +34,17 @@ class Segmenter {
       : cloud_(cloud), network_(network), options_(options), executor_(executor) {
     has_intensity_ = options.intensity && !cloud.intensities.empty();
     if (has_intensity_) full_intensity_ = full_intensity();
-    result_.classes.resize(cloud.size());
-    if (options.confidences) result_.confidences.resize(cloud.size());
+    wanted_ = std::min(options.wanted, cloud.size());
+    result_.classes.resize(wanted_);
+    if (options.confidences) result_.confidences.resize(wanted_);
+    if (options.probabilities) result_.probabilities.resize(wanted_ * network.classes.size());
   }
 
   Segmentation run() {
     sort_into_tiles();
-    for (std::size_t t = 0; t < begins_.size(); ++t) segment(t);
+    // The points of a tile are in their order.
+    for (std::size_t t = 0; t < begins_.size(); ++t)
+      if (core_of(t).front() < wanted_) segment(t);
     return std::move(result_);
   }
 
@@ -123,7 +140,8 @@ class Segmenter {
     const std::vector<PyramidLevel> levels =
         make_pyramid(std::move(cells.means), network_.shape, executor_);
     const std::vector<float> logits = run_network(network_, levels, std::move(features), executor_);
-    for (std::size_t k = 0; k < core; ++k) take(indices[k], cells.cell_of[k], logits);
+    for (std::size_t k = 0; k < core && indices[k] < wanted_; ++k)
+      take(indices[k], cells.cell_of[k], logits);
   }
 
   std::vector<float> features_of(const CellMeans& cells,
@@ -163,16 +181,23 @@ class Segmenter {
     const float* const own = logits.data() + cell * classes;
     const float* const best = std::max_element(own, own + classes);
     result_.classes[point] = static_cast<std::uint8_t>(best - own);
-    if (!options_.confidences) return;
+    if (!options_.confidences && !options_.probabilities) return;
     float sum = 0;
     for (std::size_t c = 0; c < classes; ++c) sum += std::exp(own[c] - *best);
-    result_.confidences[point] = 1 / sum;
+    // Weights that are too large for floats make logits of which nothing is known.
+    const float share = std::isfinite(sum) ? 1 / sum : 0;
+    if (options_.confidences) result_.confidences[point] = share;
+    if (!options_.probabilities) return;
+    float* const probabilities = result_.probabilities.data() + point * classes;
+    for (std::size_t c = 0; c < classes; ++c)
+      probabilities[c] = share > 0 ? share * std::exp(own[c] - *best) : 0;
   }
 
   const PointCloud& cloud_;
   const Network& network_;
   const SegmentOptions& options_;
   const Executor& executor_;
+  std::size_t wanted_ = 0;
   bool has_intensity_ = false;
   float full_intensity_ = 1;
   std::vector<std::uint32_t> order_;  ///< points, tile by tile
@@ -185,6 +210,7 @@ class Segmenter {
 
 Segmentation segment_cloud(const PointCloud& cloud, const Network& network,
                            const SegmentOptions& options, const Executor& executor) {
+  require_places(cloud);
   return Segmenter(cloud, network, options, executor).run();
 }
 

@@ -16,17 +16,22 @@ struct SegmentOptions {
   double margin_m = 12;   ///< ...how much around each is looked at, too
   bool intensity = true;  ///< is used where the points have it
   bool confidences = false;
+  bool probabilities = false;
+  /// How many points, from the first on, get classes; the others are looked at beside them.
+  std::size_t wanted = static_cast<std::size_t>(-1);
 };
 
 struct Segmentation {
   std::vector<std::uint8_t> classes;  ///< of the points, indices into Network::classes
-  std::vector<float> confidences;     ///< of these, 0 to 1; empty: not asked for
+  std::vector<float> confidences;     ///< probabilities of these, 0 to 1; empty: not asked for
+  std::vector<float> probabilities;   ///< of all classes, point by point; empty: not asked for
   std::size_t cells = 0, tiles = 0;   ///< that the network saw
 };
 
 /// The class of every point. The network sees means of cells; a point has the class of its cell.
 /// Memory depends on the tiles and not on the cloud. The same for any number of threads. Errors:
-/// unavailable (built without OpenBLAS).
+/// data (a point that is not finite or farther than 100 km from the cloud's origin), unavailable
+/// (built without OpenBLAS).
 Segmentation segment_cloud(const PointCloud& cloud, const Network& network,
                            const SegmentOptions& options, const Executor& executor);
 

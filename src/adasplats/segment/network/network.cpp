@@ -20,7 +20,8 @@ using nlohmann::json;
 
 constexpr std::string_view kMagic = "adasplats-network\n";
 constexpr int kVersion = 1;
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 32;
+constexpr std::uint64_t kMostRows = std::uint64_t{1} << 31;  // a product of two fits 64 bits
+constexpr std::size_t kMostWidth = 65536;
 
 /// A number of 16 bits (IEEE 754 binary16) as one of 32.
 float from_half(std::uint16_t half) {
@@ -68,6 +69,7 @@ Layer layer_of(const json& object, const Network& network) {
     layer.bias = index_below(object, "bias", network.weights.size());
   }
   layer.slope = object.value("slope", 1.0F);
+  if (!std::isfinite(layer.slope)) throw std::runtime_error("a slope is not finite");
   return layer;
 }
 
@@ -77,7 +79,7 @@ Weights weights_of(const json& object, std::string_view data) {
   weights.columns = object.at("shape").at(1).get<std::size_t>();
   const auto offset = object.at("offset").get<std::size_t>();
   const std::size_t count = weights.rows * weights.columns;
-  if (weights.rows > kMostBytes || weights.columns > kMostBytes || offset > data.size() ||
+  if (weights.rows > kMostRows || weights.columns > kMostRows || offset > data.size() ||
       count > (data.size() - offset) / 2)
     throw std::runtime_error("weights lie beyond its end");
   weights.values.resize(count);
@@ -92,12 +94,23 @@ Weights weights_of(const json& object, std::string_view data) {
 
 void require_shape(const Network& network) {
   const PyramidShape& shape = network.shape;
-  const auto positive = [](float value) { return value > 0 && std::isfinite(value); };
-  if (!positive(shape.cell_m) || !positive(shape.radius) || shape.radius > 8 ||
-      !positive(network.sigma) || !positive(network.height_unit_m) || shape.levels < 1 ||
-      shape.levels > 8 || shape.neighbors < 1 || shape.neighbors > 256 || network.kernel.empty() ||
-      network.kernel.size() > 64 || network.classes.empty() || network.layers.empty())
-    throw std::runtime_error("a value of its shape is out of range");
+  const auto within = [](auto value, auto least, auto most) {
+    return value >= least && value <= most;  // not so for NaN
+  };
+  const bool fits =
+      within(shape.cell_m, 0.01F, 100.0F) && within(shape.radius, 0.5F, 8.0F) &&
+      within(network.sigma, 0.01F, 100.0F) && within(network.height_unit_m, 0.01F, 1000.0F) &&
+      within(shape.levels, 1, 8) && within(shape.neighbors, 1U, 256U) &&
+      within(network.kernel.size(), std::size_t{1}, std::size_t{64}) &&
+      within(network.classes.size(), std::size_t{1}, std::size_t{255}) &&
+      within(network.values, std::size_t{2}, std::size_t{100'000}) && !network.features.empty();
+  const bool is_finite_kernel =
+      std::ranges::all_of(network.kernel, [](Vec3f p) { return is_finite(p); });
+  if (!fits || !is_finite_kernel) throw std::runtime_error("a value of its shape is out of range");
+  std::vector<std::string> names = network.classes;
+  std::ranges::sort(names);
+  if (const auto twice = std::ranges::adjacent_find(names); twice != names.end())
+    throw std::runtime_error("class '" + *twice + "' is there twice");
 }
 
 /// Widths and levels of the values, layer by layer.
@@ -124,6 +137,7 @@ class LayerCheck {
       if (layer.kind == LayerKind::add) require(second == width);
       if (layer.kind == LayerKind::join) result = width + second;
     }
+    require(result <= kMostWidth);
     widths_[layer.output] = result;
     levels_[layer.output] = layer.level;
   }
@@ -178,12 +192,11 @@ Network network_of(const json& header, std::string_view data) {
   network.classes = header.at("classes").get<std::vector<std::string>>();
   network.card = header.value("card", std::string());
   network.values = header.at("values").get<std::size_t>();
-  if (network.values < 2 || network.values > 100'000 || network.features.empty())
-    throw std::runtime_error("a value of its shape is out of range");
+  require_shape(network);
   for (const json& weights : header.at("weights"))
     network.weights.push_back(weights_of(weights, data));
   for (const json& layer : header.at("layers")) network.layers.push_back(layer_of(layer, network));
-  require_shape(network);
+  if (network.layers.empty()) throw std::runtime_error("has no layers");
   LayerCheck check(network);
   for (const Layer& layer : network.layers) check.check(layer);
   check.check_logits(network.layers.back());

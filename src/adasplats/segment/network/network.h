@@ -55,7 +55,7 @@ struct Network {
   std::string card;                  ///< data, licence, date, figures, intended use
 };
 
-/// Format: docs/formats.md. Errors: no_input; data, with the file: not a network, of another
+/// Format: docs/segmentation.md. Errors: no_input; data, with the file: not a network, of another
 /// version, cut off, layers that do not fit each other, weights that are not finite.
 Network read_network(const std::filesystem::path& file);
 /// The same of a file's content; errors begin with `name`.

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/mutator_test.h"
+#include "adasplats/segment/network/network.h"
+#include "adasplats/segment/network/network_text_test.h"
+#include "adasplats/segment/network/run_network.h"
+
+// Broken network files, the same in each run: nothing but adasplats::Error may escape, and what is
+// read can be run. Worth most under the sanitizers.
+namespace adasplats {
+namespace {
+
+using io_test::Mutator;
+using network_test::has_products;
+using network_test::NetworkText;
+using network_test::pole_network;
+using nlohmann::json;
+
+/// Every kind of layer, on two levels.
+NetworkText network_of_all_layers() {
+  NetworkText network;
+  const std::size_t first = network.weights(4, {1, 0, 0, 1, 0.5, 0, 0, 0.5}),
+                    strided = network.weights(4, {1, 0, 0, 1, 0.5, 0, 0, 0.5}),
+                    last = network.weights(4, {1, 0, 0, 1, 1, 0, 0, 1}),
+                    bias = network.weights(1, {0, 0.25});
+  const auto layer = [&](const char* kind, int level, int input, int output, json more) {
+    more.update({{"kind", kind}, {"level", level}, {"input", input}, {"output", output}});
+    network.header["layers"].push_back(more);
+  };
+  layer("convolution", 0, 0, 1, {{"weight", first}, {"bias", bias}, {"slope", 0.1}});
+  layer("convolution", 1, 1, 2, {{"weight", strided}, {"bias", bias}, {"strided", true}});
+  layer("largest", 1, 1, 3, json::object());
+  layer("add", 1, 2, 4, {{"second", 3}, {"slope", 0.1}});
+  layer("upsample", 0, 4, 5, json::object());
+  layer("join", 0, 5, 6, {{"second", 1}});
+  layer("unary", 0, 6, 7, {{"weight", last}, {"bias", bias}});
+  network.header["values"] = 8;
+  return network;
+}
+
+std::vector<NetworkText> seeds() { return {pole_network(), network_of_all_layers()}; }
+
+/// Every other time the whole file is broken, else its header or its weights.
+std::string broken(const NetworkText& seed, const NetworkText& other, std::size_t round,
+                   Mutator& mutator) {
+  const std::string head = seed.header.dump();
+  switch (round % 4) {
+    case 0: return NetworkText::text_of(mutator.mutate(head, other.header.dump()), seed.data);
+    case 1: return NetworkText::text_of(head, mutator.mutate(seed.data, other.data));
+    default: return mutator.mutate(seed.text(), other.text());
+  }
+}
+
+/// Whether the file was read; what was read is run on a few points.
+bool is_read_and_runs(const std::string& content) {
+  Network network;
+  try {
+    network = parse_network(content, "n.network");
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("n.network"), std::string::npos);
+    return false;
+  }
+  if (!has_products()) return true;
+  const Executor executor(1);
+  std::vector<Vec3f> points;
+  for (int i = 0; i < 12; ++i)
+    points.push_back({0.4F * static_cast<float>(i % 4), 0.3F * static_cast<float>(i / 4), 0.1F});
+  const std::vector<PyramidLevel> levels = make_pyramid(
+      means_by_cell(points, network.shape.cell_m, executor).means, network.shape, executor);
+  const std::size_t cells = levels.front().points.size();
+  const std::vector<float> logits = run_network(
+      network, levels, std::vector<float>(cells * network.features.size(), 1.0F), executor);
+  EXPECT_EQ(logits.size(), cells * network.classes.size());
+  return true;
+}
+
+TEST(NetworkFuzz, TheSeedsAreValid) {
+  for (const NetworkText& seed : seeds()) EXPECT_TRUE(is_read_and_runs(seed.text()));
+}
+
+TEST(NetworkFuzz, BrokenNetworks) {
+  const std::vector<NetworkText> all = seeds();
+  Mutator mutator(3);
+  constexpr std::size_t kRounds = 3000;
+  std::size_t was_read = 0;
+  for (std::size_t round = 0; round < kRounds; ++round)
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const std::string content = broken(all[k], all[(k + round) % all.size()], round, mutator);
+      ASSERT_NO_THROW(was_read += is_read_and_runs(content) ? 1 : 0)
+          << "seed " << k << ", round " << round;
+    }
+  // Breaking every file beyond recognition would prove little, breaking none nothing.
+  EXPECT_GT(was_read, kRounds * all.size() / 20);
+  EXPECT_LT(was_read, kRounds * all.size() * 19 / 20);
+}
+
+TEST(NetworkFuzz, EveryTruncation) {
+  for (const NetworkText& seed : seeds()) {
+    const std::string text = seed.text();
+    for (std::size_t size = 0; size < text.size(); ++size)
+      EXPECT_FALSE(is_read_and_runs(text.substr(0, size)));
+  }
+}
+
+}  // namespace
+}  // namespace adasplats

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/segment/network/matrix_product.h"
+
+// Small network files for tests.
+namespace adasplats::network_test {
+
+using nlohmann::json;
+
+/// Numbers of 16 bits that small networks need.
+inline std::uint16_t half_of(float value) {
+  const float size = std::fabs(value);
+  if (size == 0) return 0;
+  const int exponent = std::ilogb(size);
+  const auto fraction = static_cast<int>(std::ldexp(size, 10 - exponent)) & 0x3ff;
+  return static_cast<std::uint16_t>((value < 0 ? 0x8000 : 0) | (exponent + 15) << 10 | fraction);
+}
+
+/// A network file, layer by layer.
+struct NetworkText {
+  json header = {{"version", 1},
+                 {"shape",
+                  {{"cell_m", 0.5},
+                   {"levels", 2},
+                   {"radius", 2.5},
+                   {"neighbors", 32},
+                   {"sigma", 1.2},
+                   {"height_unit_m", 1.0}}},
+                 {"kernel", {{0, 0, 0}, {1, 0, 0}}},
+                 {"features", {"one", "height"}},
+                 {"classes", {"road", "pole"}},
+                 {"values", 2},
+                 {"weights", json::array()},
+                 {"layers", json::array()}};
+  std::string data;
+
+  std::size_t weights(std::size_t rows, const std::vector<float>& values) {
+    header["weights"].push_back({{"shape", {rows, values.size() / rows}}, {"offset", data.size()}});
+    for (const float value : values) {
+      const std::uint16_t half = half_of(value);
+      data.append(reinterpret_cast<const char*>(&half), 2);
+    }
+    return header["weights"].size() - 1;
+  }
+
+  std::string text() const { return text_of(header.dump(), data); }
+
+  /// A file of that header, whatever it says.
+  static std::string text_of(const std::string& head, const std::string& data) {
+    const std::uint64_t length = head.size();
+    std::string text = "adasplats-network\n";
+    text.append(reinterpret_cast<const char*>(&length), sizeof(length));
+    return text + head + data;
+  }
+};
+
+/// What is higher than a metre is a pole.
+inline NetworkText pole_network() {
+  NetworkText network;
+  const std::size_t weight = network.weights(2, {1, 0, 0, 1}), bias = network.weights(1, {0, 0});
+  network.header["layers"] = {{{"kind", "unary"},
+                               {"level", 0},
+                               {"input", 0},
+                               {"output", 1},
+                               {"weight", weight},
+                               {"bias", bias}}};
+  return network;
+}
+
+inline bool has_products() {
+  try {
+    require_products();
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace adasplats::network_test
