@@ -16,7 +16,8 @@ namespace {
 
 constexpr const char* kSegmentExamples =
     "  adasplats segment sequences/00 -o labelled\n"
-    "  adasplats segment cloud.las -o cloud.ply --network my.network\n";
+    "  adasplats segment cloud.las -o labelled.las --network my.network --class-map my.txt\n"
+    "  adasplats segment 000000.bin -o 000000.label\n";
 
 class SegmentCommand final : public Command {
  public:
@@ -32,11 +33,19 @@ class SegmentCommand final : public Command {
                    "Sequence folders, or point files (" + point_format_names() + ")")
                 ->type_name("PATH"));
     require(add_path(app, "-o,--output", job_.output,
-                     "Of sequences: folder to create; of files: PLY to write"));
+                     "Of sequences: folder to create; of files: PLY or LAS to write; of one .bin "
+                     "also .label"));
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     add_path(app, "--network", job_.network,
              "File of a network; else the one that comes with the program");
+    add_path(app, "--class-map", job_.class_map,
+             "File with your own numbers and names of the network's classes");
+    app.add_flag("--confidences", job_.segment.confidences,
+                 "Also write how probable each point's label is");
+    app.add_flag("--probabilities", job_.segment.probabilities,
+                 "Also write how probable every class is for each point");
     add_settings(app, job_.segment);
+    add_settings(app, job_.window);
     add_load_options(app, job_.load);
   }
 

@@ -3,19 +3,21 @@
 #include "adasplats/recipes/segment_points.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <utility>
 
-#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/pipeline/output/output_check.h"
 #include "adasplats/pipeline/output/output_folder.h"
+#include "adasplats/recipes/segment/labelled_points.h"
+#include "adasplats/recipes/segment/output_classes.h"
 #include "adasplats/segment/network/matrix_product.h"
 #include "adasplats/segment/network/network.h"
 
@@ -24,151 +26,235 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_finite_point(Vec3f p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+OutputClasses outputs_of(const SegmentJob& job, const Network& network) {
+  return job.class_map.empty() ? semantickitti_outputs(network.classes, job.network)
+                               : read_class_map(job.class_map, network.classes);
 }
 
-std::vector<std::uint16_t> ids_of(const Network& network, const fs::path& file) {
-  std::vector<std::uint16_t> ids;
-  for (const std::string& name : network.classes) {
-    const SemanticClass* const found = semantickitti_labels().find(name);
-    if (found == nullptr)
-      throw Error(ErrorKind::data, file.string() + ": SemanticKITTI has no class '" + name + "'");
-    ids.push_back(found->id);
-  }
-  return ids;
-}
-
-/// The scans of a sequence as one cloud, and where each scan's points are in it.
-struct PlacedScans {
-  struct Scan {
-    fs::path file;
-    std::vector<bool> has_place;  ///< of its points: those that the cloud has
-  };
-  PointCloud cloud;
-  std::vector<Scan> scans;
+/// What the points of a cloud are, as it is written.
+struct FoundLabels {
+  std::vector<std::uint16_t> labels;
+  std::vector<float> confidences, probabilities;
 };
+
+/// Numbers of the points that have a place, in the order of the scan; `nothing` for the others.
+template <class Out, class T>
+std::vector<Out> spread_over(const std::vector<bool>& has_place, std::span<const T> values,
+                             std::size_t width, Out nothing) {
+  std::vector<Out> spread(has_place.size() * width, nothing);
+  auto next = values.begin();
+  for (std::size_t i = 0; i < has_place.size(); ++i) {
+    if (!has_place[i]) continue;
+    std::copy_n(next, width, spread.begin() + static_cast<std::ptrdiff_t>(i * width));
+    next += static_cast<std::ptrdiff_t>(width);
+  }
+  return spread;
+}
 
 class PointSegmenter {
  public:
   PointSegmenter(const SegmentJob& job, Session& session)
       : job_(job),
         session_(session),
-        network_(job.network.empty() ? default_network() : read_network(job.network)) {
-    ids_ = ids_of(network_, job.network);
-    for (const std::string& name : network_.classes) result_.classes.push_back({name, 0});
+        network_(job.network.empty() ? default_network() : read_network(job.network)),
+        outputs_(outputs_of(job, network_)) {
+    for (const OutputClasses::Class& each : outputs_.classes)
+      result_.classes.push_back({each.name, 0});
   }
 
   SegmentResult run() {
     std::vector<fs::path> sequences;
-    bool any_file = false;
+    std::vector<fs::path> files;
     for (const fs::path& input : job_.inputs)
-      for (const CloudInput& part : cloud_inputs(input)) {
-        any_file = any_file || !part.is_sequence;
-        if (part.is_sequence) sequences.push_back(part.path);
-      }
-    if (any_file && !sequences.empty())
+      for (const CloudInput& part : cloud_inputs(input))
+        (part.is_sequence ? sequences : files).push_back(part.path);
+    if (!files.empty() && !sequences.empty())
       throw Error(ErrorKind::usage, "sequences and files of points have outputs of two kinds");
-    if (any_file)
-      segment_files();
-    else
+    if (files.empty())
       segment_sequences(sequences);
+    else
+      segment_files(files);
     return std::move(result_);
   }
 
  private:
-  void segment_files() {
+  /// All that is read.
+  std::vector<fs::path> read_files() const {
+    std::vector<fs::path> files = job_.inputs;
+    for (const fs::path& file : {job_.network, job_.class_map, job_.load.trajectory})
+      if (!file.empty()) files.push_back(file);
+    return files;
+  }
+
+  void segment_files(const std::vector<fs::path>& files) {
+    constexpr const char* kLabels = ".label";
+    const std::vector<std::string> endings = {".ply", ".las", kLabels};
+    require_ending(job_.output, endings);
+    require_no_input(job_.output, read_files());
     check_output_file(job_.output);
+    const std::string ending = lower_case(job_.output.extension().string());
+    if (ending == kLabels)
+      segment_single_scan(files);
+    else
+      segment_cloud_of_files(ending == ".las");
+  }
+
+  void segment_cloud_of_files(bool as_las) {
     LoadOptions load = job_.load;
     load.own_body_m = 0;
     load.driven_path_m = 0;
     const Stopwatch watch;
     auto [cloud, report] = load_cloud(job_.inputs, load, session_.executor, session_.progress);
     result_.load_seconds += watch.seconds();
+    if (cloud.empty()) throw Error(ErrorKind::data, job_.inputs.front().string() + ": no points");
     result_.points_unlabeled += report.points_read - cloud.size();
-    cloud.classes = classes_of(cloud);
-    save_cloud_ply(job_.output, cloud);
+    session_.progress.begin_step("segment", 0);
+    FoundLabels found = labels_of(cloud, cloud.size());
+    session_.progress.end_step();
+    LabelledPoints labelled{std::move(cloud), std::move(found.confidences),
+                            std::move(found.probabilities), output_ids()};
+    labelled.cloud.classes = std::move(found.labels);
+    (as_las ? save_labelled_las : save_labelled_ply)(job_.output, labelled);
+  }
+
+  /// Labels of the very points of a file, in their order.
+  void segment_single_scan(const std::vector<fs::path>& files) {
+    if (files.size() != 1 || lower_case(files[0].extension().string()) != ".bin")
+      throw Error(ErrorKind::usage, job_.output.string() +
+                                        ": labels alone are those of one scan (.bin); write PLY "
+                                        "or LAS");
+    if (job_.segment.confidences || job_.segment.probabilities)
+      throw Error(ErrorKind::usage,
+                  job_.output.string() + ": has labels alone, no confidences; write PLY or LAS");
+    KittiSequence scan;
+    scan.folder = files[0].parent_path();
+    scan.scans = files;
+    scan.trajectory.resize(1);
+    segment_scans(scan, {0}, [this](const fs::path&) { return job_.output; });
   }
 
   void segment_sequences(const std::vector<fs::path>& sequences) {
-    nlohmann::ordered_json content;
-    content["network"] = job_.network.empty() ? "default" : job_.network.filename().string();
-    OutputFolder folder(job_.output, job_.overwrite, "segment", content);
+    require_folder_apart(job_.output, read_files());
+    OutputFolder folder(job_.output, job_.overwrite, "segment", content());
     for (std::size_t k = 0; k < sequences.size(); ++k) {
       const std::string number = std::to_string(k);
-      const fs::path labels = folder.path() / "sequences" /
-                              (std::string(number.size() < 2 ? 1 : 0, '0') + number) / "labels";
-      fs::create_directories(labels);
-      segment_sequence(sequences[k], labels);
+      const fs::path tree =
+          folder.path() / "sequences" / (std::string(number.size() < 2 ? 1 : 0, '0') + number);
+      for (const char* const name : kept_folders()) fs::create_directories(tree / name);
+      const KittiSequence sequence = open_kitti_sequence(sequences[k]);
+      require_poses_that_fit(sequence);
+      const ScanRange range{job_.load.first_scan, job_.load.scan_count, job_.load.scan_stride};
+      segment_scans(sequence, chosen_scans(range, sequence.scans.size(), sequences[k]),
+                    [&](const fs::path& scan) {
+                      return tree / "labels" / scan.filename().replace_extension(".label");
+                    });
     }
     folder.commit();
   }
 
-  void segment_sequence(const fs::path& sequence, const fs::path& labels) {
-    const Stopwatch watch;
-    PlacedScans placed = placed_scans(sequence);
-    result_.load_seconds += watch.seconds();
-    const std::vector<std::uint16_t> classes = classes_of(placed.cloud);
-    std::size_t next = 0;
-    for (const PlacedScans::Scan& scan : placed.scans) {
-      std::vector<std::uint32_t> of_scan(scan.has_place.size(), 0);
-      for (std::size_t i = 0; i < of_scan.size(); ++i)
-        if (scan.has_place[i]) of_scan[i] = classes[next++];
-      AtomicFile file(labels / scan.file.filename().replace_extension(".label"));
-      file.write(of_scan.data(), of_scan.size() * sizeof(std::uint32_t));
-      file.commit();
-    }
+  std::vector<const char*> kept_folders() const {
+    std::vector<const char*> folders = {"labels"};
+    if (job_.segment.confidences) folders.push_back("confidences");
+    if (job_.segment.probabilities) folders.push_back("probabilities");
+    return folders;
   }
 
-  PlacedScans placed_scans(const fs::path& folder) {
-    const KittiSequence sequence = open_kitti_sequence(folder);
-    require_poses_that_fit(sequence);
-    const ScanRange range{job_.load.first_scan, job_.load.scan_count, job_.load.scan_stride};
-    PlacedScans placed;
-    session_.progress.begin_step("load", 0);
-    for (const std::size_t index : chosen_scans(range, sequence.scans.size(), folder)) {
-      const KittiScan scan = read_kitti_points(sequence, index);
-      const RigidTransform pose = sequence.trajectory[index].world_from_sensor;
-      if (placed.scans.empty()) placed.cloud.origin = pose.translation;
-      PlacedScans::Scan& kept = placed.scans.emplace_back();
-      kept.file = sequence.scans[index];
-      for (std::size_t i = 0; i < scan.positions.size(); ++i) {
-        kept.has_place.push_back(is_finite_point(scan.positions[i]));
-        if (!kept.has_place.back()) {
-          ++result_.points_unlabeled;
-          continue;
-        }
-        placed.cloud.positions.push_back(
-            vec_cast<float>(pose * vec_cast<double>(scan.positions[i]) - placed.cloud.origin));
-        if (!scan.intensities.empty()) placed.cloud.intensities.push_back(scan.intensities[i]);
+  nlohmann::ordered_json content() const {
+    nlohmann::ordered_json content;
+    content["network"] = job_.network.empty() ? "default" : job_.network.filename().string();
+    content["classes"] = nlohmann::ordered_json::array();
+    for (const OutputClasses::Class& each : outputs_.classes)
+      content["classes"].push_back({{"id", each.id}, {"name", each.name}});
+    content["unlabeled"] = outputs_.unlabeled;
+    return content;
+  }
+
+  /// `labels_file` gives the place of the labels of a scan's file.
+  template <class LabelsFile>
+  void segment_scans(const KittiSequence& sequence, const std::vector<std::size_t>& chosen,
+                     LabelsFile&& labels_file) {
+    ScanWindows windows(sequence, chosen, job_.window, job_.load.max_distance_m);
+    session_.progress.begin_step("segment", chosen.size());
+    std::size_t done = 0;
+    Stopwatch watch;
+    while (const std::optional<ScanWindow> window = windows.next()) {
+      result_.load_seconds += watch.seconds();
+      ++result_.windows;
+      const FoundLabels found = labels_of(window->cloud, window->points);
+      std::size_t first = 0;
+      for (const ScanWindow::Scan& scan : window->scans) {
+        first = save_scan(scan, found, first, labels_file(sequence.scans[scan.index]));
+        session_.progress.advance(++done);
       }
+      watch = {};
     }
     session_.progress.end_step();
-    return placed;
   }
 
-  /// Numbers of the scheme.
-  std::vector<std::uint16_t> classes_of(const PointCloud& cloud) {
+  /// Saves what was found for a scan, whose points are those from `first` on; gives the first of
+  /// the next scan.
+  std::size_t save_scan(const ScanWindow::Scan& scan, const FoundLabels& found, std::size_t first,
+                        const fs::path& labels_file) {
+    const auto placed = static_cast<std::size_t>(std::ranges::count(scan.has_place, true));
+    result_.points_unlabeled += scan.has_place.size() - placed;
+    const auto part = [&]<class T>(const std::vector<T>& values, std::size_t width) {
+      return std::span(values).subspan(first * width, placed * width);
+    };
+    save_labels(labels_file, spread_over<std::uint32_t>(scan.has_place, part(found.labels, 1), 1,
+                                                        std::uint32_t{outputs_.unlabeled}));
+    const auto beside = [&](const char* folder) {
+      return labels_file.parent_path().parent_path() / folder /
+             labels_file.filename().replace_extension(".bin");
+    };
+    if (job_.segment.confidences)
+      save_floats(beside("confidences"),
+                  spread_over(scan.has_place, part(found.confidences, 1), 1, 0.0F));
+    const std::size_t classes = outputs_.classes.size();
+    if (job_.segment.probabilities)
+      save_floats(beside("probabilities"),
+                  spread_over(scan.has_place, part(found.probabilities, classes), classes, 0.0F));
+    return first + placed;
+  }
+
+  std::vector<std::uint16_t> output_ids() const {
+    std::vector<std::uint16_t> ids;
+    for (const OutputClasses::Class& each : outputs_.classes) ids.push_back(each.id);
+    return ids;
+  }
+
+  /// Of the first `wanted` points; the others are their context.
+  FoundLabels labels_of(const PointCloud& cloud, std::size_t wanted) {
     const Stopwatch watch;
-    session_.progress.begin_step("segment", 0);
-    const Segmentation found = segment_cloud(cloud, network_, job_.segment, session_.executor);
-    session_.progress.end_step();
-    std::vector<std::uint16_t> classes(cloud.size());
-    for (std::size_t i = 0; i < classes.size(); ++i) {
-      classes[i] = ids_[found.classes[i]];
-      ++result_.classes[found.classes[i]].points;
+    SegmentOptions options = job_.segment;
+    options.wanted = wanted;
+    // The confidence of a label is that of all classes that are written as it.
+    const bool joins = outputs_.joins();
+    options.probabilities = options.probabilities || (options.confidences && joins);
+    Segmentation segmentation = segment_cloud(cloud, network_, options, session_.executor);
+    FoundLabels found;
+    found.labels.resize(wanted);
+    const std::size_t classes = outputs_.classes.size();
+    std::vector<float> probabilities = std::move(segmentation.probabilities);
+    if (joins && !probabilities.empty()) probabilities = outputs_.joined(probabilities);
+    found.confidences = std::move(segmentation.confidences);
+    for (std::size_t i = 0; i < wanted; ++i) {
+      const std::size_t c = outputs_.of_network[segmentation.classes[i]];
+      found.labels[i] = outputs_.classes[c].id;
+      ++result_.classes[c].points;
+      if (joins && job_.segment.confidences) found.confidences[i] = probabilities[i * classes + c];
     }
-    result_.points += classes.size();
-    result_.cells += found.cells;
-    result_.tiles += found.tiles;
+    if (job_.segment.probabilities) found.probabilities = std::move(probabilities);
+    result_.points += wanted;
+    result_.cells += segmentation.cells;
+    result_.tiles += segmentation.tiles;
     result_.segment_seconds += watch.seconds();
-    return classes;
+    return found;
   }
 
   const SegmentJob& job_;
   Session& session_;
   Network network_;
-  std::vector<std::uint16_t> ids_;  ///< of the network's classes
+  OutputClasses outputs_;
   SegmentResult result_;
 };
 
@@ -185,6 +271,7 @@ nlohmann::ordered_json to_json(const SegmentResult& result) {
   json["points_unlabeled"] = result.points_unlabeled;
   json["cells"] = result.cells;
   json["tiles"] = result.tiles;
+  json["windows"] = result.windows;
   for (const SegmentResult::ClassCount& count : result.classes)
     json["classes"][count.name] = count.points;
   json["seconds"] = {{"load", result.load_seconds}, {"segment", result.segment_seconds}};

@@ -13,6 +13,7 @@
 #include "adasplats/core/setting.h"
 #include "adasplats/pipeline/session/scan_range.h"
 #include "adasplats/pipeline/session/session.h"
+#include "adasplats/recipes/segment/scan_windows.h"
 #include "adasplats/segment/segment_cloud.h"
 
 namespace adasplats {
@@ -21,9 +22,11 @@ namespace adasplats {
 struct SegmentJob {
   std::vector<std::filesystem::path> inputs;  ///< sequences, or files of points
   LoadOptions load;
-  std::filesystem::path network;  ///< empty: default_network()
+  std::filesystem::path network;    ///< empty: default_network()
+  std::filesystem::path class_map;  ///< read_class_map(); empty: SemanticKITTI's numbers
   SegmentOptions segment;
-  std::filesystem::path output;  ///< a folder for sequences, else a PLY
+  WindowOptions window;
+  std::filesystem::path output;  ///< a folder for sequences, else a file
   bool overwrite = false;
 };
 
@@ -53,19 +56,23 @@ struct SegmentResult {
     std::size_t points = 0;
   };
   std::size_t points = 0;            ///< that have a label now
-  std::size_t points_unlabeled = 0;  ///< not finite
+  std::size_t points_unlabeled = 0;  ///< not finite, or too far away
   std::size_t cells = 0, tiles = 0;  ///< that the network saw
-  std::vector<ClassCount> classes;   ///< of the network, in its order
+  std::size_t windows = 0;           ///< of scans that were looked at together
+  std::vector<ClassCount> classes;   ///< in the order of the network
   double load_seconds = 0, segment_seconds = 0;
 };
 
 /// Gives every point the class that the network sees there. Of sequence folders (chosen scans, put
-/// in place by their poses and looked at together) OUTPUT is a SemanticKITTI tree,
+/// in place by their poses and looked at window by window) OUTPUT is a SemanticKITTI tree,
 /// sequences/00/labels/NNNNNN.label for the first folder and so on, a number for every point of the
-/// scan in its order, 0 for those that are not finite; of files of points a PLY of the points with
-/// the column `label`. Numbers are SemanticKITTI's. Errors: usage (sequences beside files), data (a
-/// class of the network that SemanticKITTI does not have), unavailable (built without OpenBLAS),
-/// those of read_network, load_cloud and OutputFolder.
+/// scan in its order; beside `labels`, on demand, confidences/NNNNNN.bin (save_floats(), a number a
+/// point) and probabilities/NNNNNN.bin (a number a class and point). Of files of points it is one
+/// PLY or LAS of all points (LabelledPoints), of a single .bin also a .label, as its name says.
+/// Numbers are SemanticKITTI's or the class map's. Errors: usage (sequences beside files, an output
+/// of another ending, that is or lies among the inputs), data (no points; a class of the network
+/// that SemanticKITTI does not have), unavailable (built without OpenBLAS), those of read_network,
+/// read_class_map, load_cloud and OutputFolder.
 SegmentResult run_segment(const SegmentJob& job, Session& session);
 
 /// The keys of the command's report.

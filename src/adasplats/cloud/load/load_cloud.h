@@ -15,6 +15,7 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/core/setting.h"
+#include "adasplats/io/base/table.h"
 
 namespace adasplats {
 
@@ -251,8 +252,9 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
 
 /// Writes a cloud as PLY with the columns x, y, z, x_lidar_position, y_lidar_position,
 /// z_lidar_position, origin_kind (OriginKind; where not all are measured), intensity, label,
-/// instance, scan_index, as far as it has them (the layout of Paris-CARLA-3D). Doubles where the
-/// origin is not zero.
-void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud);
+/// instance, scan_index, as far as it has them (the layout of Paris-CARLA-3D), and `more`, a value
+/// a point. Doubles where the origin is not zero.
+void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
+                    std::span<const ColumnView> more = {});
 
 }  // namespace adasplats

@@ -32,7 +32,8 @@ void add_vectors(std::vector<ColumnView>& columns, const Names& names, ColumnTyp
 
 }  // namespace
 
-void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud) {
+void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
+                    std::span<const ColumnView> more) {
   std::vector<ColumnView> columns;
   std::vector<Vec3d> world_positions, world_sensors;
   if (cloud.empty()) {
@@ -55,6 +56,7 @@ void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud) 
       columns.push_back({attribute.column, column_type<Value>(), values.data(), sizeof(Value)});
     }
   });
+  columns.insert(columns.end(), more.begin(), more.end());
   write_ply(path, cloud.size(), columns);
 }
 
