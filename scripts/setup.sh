@@ -49,7 +49,7 @@ test  python3-venv         -             likewise
 test  python3-pytest       -             tests of the Python package
 maybe-test clang-format-14 clang-format-14  checks, as this version does
 maybe-test clang-tidy-14   clang-tidy-14 checks, as this version does
-maybe-test python3-torch   -             the data set of examples/torch_dataset.py
+maybe-test python3-torch   -             the data set of examples/torch_dataset.py, tools/segmentation
 maybe-test libopenvdb-dev  -             IMLS meshes
 maybe-test libopen3d-dev   -             Poisson meshes
 maybe-test cloudcompare    CloudCompare  distances to compare ours with

@@ -363,6 +363,23 @@ class PointCloud:
         """(N, 3) float64, origin + positions: a new array."""
     def save(self, path: Path) -> None: ...
 
+class Network:
+    """A network that gives points semantic classes."""
+
+    def __init__(self, file: Path | None = None) -> None: ...
+    @property
+    def classes(self) -> list[str]:
+        """Names of what it tells apart."""
+    @property
+    def card(self) -> str:
+        """What it was made of, and for what."""
+    @property
+    def cell_m(self) -> float:
+        """Side of the cells whose means it sees, m."""
+    def logits(
+        self, points: ArrayLike, features: ArrayLike, *, threads: int = 0
+    ) -> NDArray[np.float32]: ...
+
 class LabelScheme:
     """What the numbers of classes mean; made by label_scheme()."""
 

@@ -22,6 +22,7 @@ void bind_meshes(py::module_& module);
 void bind_scans(py::module_& module);
 void bind_scenes(py::module_& module);
 void bind_hits(py::module_& module);
+void bind_networks(py::module_& module);
 void bind_evaluate(py::module_& module);
 void bind_synth(py::module_& module);
 void bind_recipes(py::module_& module);

@@ -25,6 +25,7 @@ PYBIND11_MODULE(_adasplats, module) {
   bindings::bind_scans(module);
   bindings::bind_hits(module);
   bindings::bind_scenes(module);
+  bindings::bind_networks(module);
   bindings::bind_evaluate(module);
   bindings::bind_synth(module);
   bindings::bind_recipes(module);

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""The classes that networks tell apart: the 19 of SemanticKITTI's single-scan benchmark."""
+"""The classes that networks tell apart: the 19 of SemanticKITTI's single-scan benchmark, or own ones."""
 import numpy as np
 
 NAMES = ["car", "bicycle", "motorcycle", "truck", "other-vehicle", "person", "bicyclist",
@@ -35,6 +35,18 @@ GROUPS = {
                 "motorcyclist"]}
 
 
+def use(names):
+    """Networks tell these apart from now on."""
+    NAMES[:] = names
+
+
+def group_of(names):
+    """Numbers of the groups of classes; None where one has no group."""
+    groups = [next((g for g, of in enumerate(GROUPS.values()) if name in of), None)
+              for name in names]
+    return None if None in groups else np.array(groups)
+
+
 def _table(classes):
     table = np.full(1 << 16, IGNORED, np.uint8)
     for name, ids in classes.items():
@@ -43,5 +55,3 @@ def _table(classes):
 
 
 TABLES = {"semantickitti": _table(_SEMANTICKITTI), "pandaset": _table(_PANDASET)}
-GROUP_OF = np.array([next(g for g, names in enumerate(GROUPS.values()) if name in names)
-                     for name in NAMES])

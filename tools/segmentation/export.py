@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""A network of train.py as the file that adasplats reads (docs/formats.md, "Networks").
+"""A network of train.py as the file that adasplats reads (docs/segmentation.md, "The file").
 
   tools/segmentation/export.py NETWORK.pt OUT.network [--card TEXT]
 
-Normalisations become part of the weights before them. Weights are written with 16 bits.
+Normalisations become part of the weights before them. Weights are written with 16 bits. The file is
+run on points by adasplats, where the package can be imported, and must give PyTorch's logits.
 """
 import argparse
 import json
@@ -16,9 +17,12 @@ import numpy as np
 import torch
 
 from network import Network
+from network_file import NetworkFile
+from pyramid import make_pyramid, means_by_cell
 
 MAGIC = b"adasplats-network\n"
 SLOPE = 0.1
+MOST_APART = 1e-3  # logits of the program and of PyTorch, with the same weights
 
 
 class Layers:
@@ -106,6 +110,32 @@ def read_trained(file):
     return network.eval(), trained["classes"]
 
 
+def points_to_check(shape, count=3000):
+    """Means of cells of a floor, a wall and clutter, and features."""
+    random = torch.Generator().manual_seed(1)
+    points = torch.rand(count, 3, generator=random) * torch.tensor([6.0, 6.0, 2.0])
+    points[:count // 3, 2] *= 0.02
+    points[count // 3:count // 2, 1] *= 0.01
+    points = means_by_cell(points, shape["cell_m"])[0]
+    return points, torch.rand(len(points), len(shape["features"]), generator=random)
+
+
+def check(file, network):
+    """(program and PyTorch with the file's weights, these and the network's own): how far logits
+    are apart at most. None for the first where the package `adasplats` cannot be imported."""
+    points, features = points_to_check(network.shape)
+    levels = make_pyramid(points, network.shape)
+    with torch.no_grad():
+        expected = NetworkFile(file).logits(features, levels).numpy()
+        rounded = np.abs(expected - network(features, levels).numpy()).max()
+    try:
+        import adasplats
+    except ImportError:
+        return None, rounded
+    found = adasplats.Network(file).logits(points.numpy(), features.numpy())
+    return np.abs(found - expected).max(), rounded
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("network", type=pathlib.Path)
@@ -114,7 +144,15 @@ def main():
     options = parser.parse_args()
     network, classes = read_trained(options.network)
     write_network(network, classes, options.card, options.out)
-    print(f"{options.out}: {options.out.stat().st_size:,} bytes")
+    apart, rounded = check(options.out, network)
+    print(f"{options.out}: {options.out.stat().st_size:,} bytes; 16 bits change logits by up to "
+          f"{rounded:.1e}")
+    if apart is None:
+        print("not checked against the program: the package adasplats cannot be imported")
+    elif not apart <= MOST_APART:
+        raise SystemExit(f"{options.out}: the program's logits are up to {apart:.1e} from PyTorch's")
+    else:
+        print(f"the program's logits are PyTorch's to {apart:.1e}")
 
 
 if __name__ == "__main__":

@@ -3,12 +3,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Labelled recordings as places that train.py reads.
 
-  tools/segmentation/prepare.py OUT.npz INPUT [--labels semantickitti|pandaset] [--scans FIRST:COUNT:STRIDE]
-      [--trajectory FILE]
+  tools/segmentation/prepare.py OUT.npz INPUT [--labels semantickitti|pandaset | --class-map FILE]
+      [--scans FIRST:COUNT:STRIDE] [--trajectory FILE]
 
 INPUT: what adasplats.read() takes; the package must be importable. Of several points in a cube of
 5 cm one is kept, by chance. Positions in cm from the middle, intensities as shares of the 99th
-percentile, each point with its scan, the elevation of its beam and its class.
+percentile, each point with its scan, the elevation of its beam and its class. --class-map: labels of
+your own (docs/segmentation.md, "Class maps"); those that it does not name teach nothing.
 """
 import argparse
 import pathlib
@@ -16,7 +17,8 @@ import pathlib
 import adasplats
 import numpy as np
 
-from classes import TABLES
+from class_map import read_class_map
+from classes import NAMES, TABLES
 
 CUBE_M = 0.05
 FARTHEST_M = 80
@@ -40,6 +42,7 @@ def main():
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("input", type=pathlib.Path)
     parser.add_argument("--labels", choices=sorted(TABLES), default="semantickitti")
+    parser.add_argument("--class-map", type=pathlib.Path)
     parser.add_argument("--scans", default="")
     parser.add_argument("--trajectory", type=pathlib.Path)
     options = parser.parse_args()
@@ -49,8 +52,12 @@ def main():
         words.update(first_scan=first, scan_count=count, scan_stride=stride)
     if options.trajectory:
         words["trajectory"] = options.trajectory
+    names, table = (read_class_map(options.class_map) if options.class_map
+                    else (NAMES, TABLES[options.labels]))
     cloud = adasplats.read(options.input, **words)
-    classes = TABLES[options.labels][cloud.classes]
+    if cloud.classes is None:
+        raise SystemExit(f"{options.input}: its points have no labels")
+    classes = table[cloud.classes]
     ways = cloud.positions - cloud.sensor_positions
     ranges = np.linalg.norm(ways, axis=1)
     elevations_deg = np.degrees(np.arcsin(np.clip(ways[:, 2] / np.maximum(ranges, 1e-3), -1, 1)))
@@ -64,7 +71,7 @@ def main():
         intensities=np.round(255 * np.clip(intensities, 0, 1)).astype(np.uint8),
         rings=np.clip((elevations_deg[kept] + 40) / RING_DEG, 0, 255).astype(np.uint8),
         scans=np.unique(cloud.scan_indices[kept], return_inverse=True)[1].astype(np.uint8),
-        classes=classes[kept])
+        classes=classes[kept], names=np.array(names))
     print(f"{options.out}: {len(kept):,} of {len(ranges):,} points")
 
 

@@ -4,10 +4,12 @@
 """Train a network on places of prepare.py.
 
   tools/segmentation/train.py OUT PLACE.npz... [--steps N] [--test PLACE.npz...] [--checkpoint-every N]
+  tools/segmentation/train.py OUT PLACE.npz... --from NETWORK.pt --minutes 10      # goes on from there
 
 OUT/checkpoint.pt is taken up again where it is there; OUT/log.jsonl has a line every 50 steps;
 OUT/network.pt and OUT/test.json (confusion, rows: truth) at the end. The same seed on the same
-machine makes nearly the same network: sums on a GPU are not in a fixed order.
+machine makes nearly the same network: sums on a GPU are not in a fixed order. --from begins with a
+trained network, at a quarter of the rate; places of other classes than its own give it a new head.
 """
 import argparse
 import json
@@ -19,8 +21,8 @@ import numpy as np
 import torch
 from torch import nn
 
-from classes import GROUP_OF, GROUPS, IGNORED, NAMES
-from network import SHAPE, Network
+from classes import GROUPS, IGNORED, NAMES, group_of, use
+from network import Network
 from places import Crops, batches, features_of, load_place, tiles_of
 from pyramid import make_pyramid, means_by_cell
 
@@ -52,7 +54,7 @@ def predictions(network, place, with_intensity, core_m=30.0, margin_m=10.0):
         if not in_core.any():
             continue
         points = place.positions[indices]
-        means, cell_of, values = means_by_cell(points, SHAPE["cell_m"],
+        means, cell_of, values = means_by_cell(points, network.shape["cell_m"],
                                                place.intensities[indices, None])
         features = features_of(means, values[:, 0], with_intensity)
         with torch.no_grad():
@@ -74,14 +76,17 @@ def ious(confusion):
 
 
 def summary(confusion, least_share=5e-4):
-    groups = np.zeros((len(GROUPS), len(GROUPS)))
-    np.add.at(groups, (GROUP_OF[:, None], GROUP_OF[None, :]), confusion)
     share = confusion.sum(1) / confusion.sum()
     of_class = ious(confusion)
     present = share >= least_share
-    return {"miou_present": float(of_class[present].mean()),
-            "groups": {"miou": float(np.nanmean(ious(groups))),
-                       "iou": dict(zip(GROUPS, ious(groups).round(4).tolist()))},
+    group = group_of(NAMES)
+    of_groups = {}
+    if group is not None:
+        groups = np.zeros((len(GROUPS), len(GROUPS)))
+        np.add.at(groups, (group[:, None], group[None, :]), confusion)
+        of_groups = {"groups": {"miou": float(np.nanmean(ious(groups))),
+                                "iou": dict(zip(GROUPS, ious(groups).round(4).tolist()))}}
+    return {"miou_present": float(of_class[present].mean()), **of_groups,
             "iou": {NAMES[k]: round(float(of_class[k]), 4) for k in np.flatnonzero(share > 0)},
             "accuracy": float(np.trace(confusion) / confusion.sum())}
 
@@ -135,9 +140,34 @@ class Progress:
             partial.replace(self.checkpoint)
 
 
+def names_of(files):
+    """The classes of places, which are the same for all."""
+    lists = {}
+    for file in files:
+        data = np.load(file)
+        lists.setdefault(tuple(data["names"].tolist() if "names" in data else NAMES), file)
+    if len(lists) > 1:
+        raise SystemExit("train: other classes in " + " than in ".join(map(str, lists.values())))
+    return next(iter(lists), NAMES)
+
+
+def network_to_train(options):
+    if options.start is None:
+        return Network(classes=len(NAMES)).to(options.device)
+    trained = torch.load(options.start, map_location="cpu")
+    network, state = Network(trained["shape"], len(NAMES)), trained["network"]
+    if list(trained["classes"]) != list(NAMES):
+        print(f"train: a new head for {len(NAMES)} classes", flush=True)
+        state = {key: value for key, value in state.items() if not key.startswith("head.")}
+    missing, unknown = network.load_state_dict(state, strict=False)
+    if unknown or any(not key.startswith("head.") for key in missing):
+        raise SystemExit(f"{options.start}: is no network of train.py")
+    return network.to(options.device)
+
+
 def train(options):
     places = [load_place(file, options.device) for file in options.places + options.procedural]
-    network = Network().to(options.device)
+    network = network_to_train(options)
     on_gpu = options.device.type == "cuda"
     optimizer = torch.optim.AdamW(network.parameters(), lr=options.rate, weight_decay=0.02,
                                   **({"fused": True} if on_gpu else {}))
@@ -175,10 +205,13 @@ def main():
     parser.add_argument("--steps", type=int, default=10_000, help="at most")
     parser.add_argument("--minutes", type=float, default=1e6, help="at most, in all")
     parser.add_argument("--crops", type=int, default=2, help="of a step")
-    parser.add_argument("--rate", type=float, default=4e-3)
+    parser.add_argument("--rate", type=float, help="4e-3, with --from 1e-3 where not given")
+    parser.add_argument("--from", dest="start", type=pathlib.Path, metavar="NETWORK.pt")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--checkpoint-every", type=int, default=500)
     options = parser.parse_args()
+    options.rate = options.rate or (4e-3 if options.start is None else 1e-3)
+    use(names_of(options.places + options.procedural + options.test))
     options.out.mkdir(parents=True, exist_ok=True)
     options.device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
     torch.manual_seed(options.seed)
