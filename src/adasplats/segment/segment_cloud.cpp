@@ -8,8 +8,7 @@
 #include <string>
 
 #include "adasplats/core/error.h"
-#include "adasplats/segment/network/run_network.h"
-#include "adasplats/segment/pyramid/heights_above_ground.h"
+#include "adasplats/segment/segment_engine.h"
 
 namespace adasplats {
 namespace {
@@ -32,19 +31,19 @@ class Segmenter {
   Segmenter(const PointCloud& cloud, const Network& network, const SegmentOptions& options,
             const Executor& executor)
       : cloud_(cloud), network_(network), options_(options), executor_(executor) {
-    has_intensity_ = options.intensity && !cloud.intensities.empty();
-    if (has_intensity_) full_intensity_ = full_intensity();
     wanted_ = std::min(options.wanted, cloud.size());
-    result_.classes.resize(wanted_);
-    if (options.confidences) result_.confidences.resize(wanted_);
-    if (options.probabilities) result_.probabilities.resize(wanted_ * network.classes.size());
   }
 
-  Segmentation run() {
+  Segmentation run(const SegmentEngine& engine) {
+    SegmentTask task{cloud_, network_, options_};
+    task.has_intensity = options_.intensity && !cloud_.intensities.empty();
+    if (task.has_intensity) task.full_intensity = full_intensity();
+    const std::unique_ptr<TileSegmenter> tiles = engine.start(task);
     sort_into_tiles();
     // The points of a tile are in their order.
     for (std::size_t t = 0; t < begins_.size(); ++t)
-      if (core_of(t).front() < wanted_) segment(t);
+      if (core_of(t).front() < wanted_) segment(t, *tiles);
+    tiles->finish(result_);
     return std::move(result_);
   }
 
@@ -72,16 +71,21 @@ class Segmenter {
   }
 
   void sort_into_tiles() {
-    order_.resize(cloud_.size());
-    for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
-    std::vector<TilePlace> places(cloud_.size());
-    for (std::size_t i = 0; i < places.size(); ++i) places[i] = place_of(cloud_.positions[i]);
-    std::ranges::stable_sort(
-        order_, [&](std::uint32_t a, std::uint32_t b) { return places[a] < places[b]; });
+    const auto key_of = [](std::int32_t place) {  // sorts as the places do
+      return static_cast<std::uint32_t>(place) ^ 0x80000000U;
+    };
+    std::vector<std::uint64_t> keys(cloud_.size());
+    executor_.for_chunks(keys.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const TilePlace place = place_of(cloud_.positions[i]);
+        keys[i] = std::uint64_t{key_of(place.x)} << 32 | key_of(place.y);
+      }
+    });
+    executor_.sort_keys(keys, order_);
     for (std::size_t k = 0; k < order_.size(); ++k) {
-      if (k > 0 && places[order_[k]] == places[order_[k - 1]]) continue;
+      if (k > 0 && keys[k] == keys[k - 1]) continue;
       begins_.push_back(k);
-      tiles_.push_back(places[order_[k]]);
+      tiles_.push_back(place_of(cloud_.positions[order_[k]]));
     }
   }
 
@@ -126,71 +130,14 @@ class Segmenter {
             0};
   }
 
-  void segment(std::size_t tile) {
+  void segment(std::size_t tile, TileSegmenter& tiles) {
     const std::vector<std::uint32_t> indices = points_of(tile);
-    const std::size_t core = core_of(tile).size();
-    const Vec3f corner = corner_of(tile);
-    std::vector<Vec3f> points;
-    points.reserve(indices.size());
-    for (const std::uint32_t i : indices) points.push_back(cloud_.positions[i] - corner);
-    CellMeans cells = means_by_cell(points, network_.shape.cell_m, executor_);
-    std::vector<float> features = features_of(cells, indices);
-    result_.cells += cells.means.size();
+    const std::span<const std::uint32_t> core = core_of(tile);
+    const auto wanted = static_cast<std::size_t>(
+        std::ranges::lower_bound(core, static_cast<std::uint32_t>(wanted_)) - core.begin());
+    const double width_m = options_.tile_m + 2 * options_.margin_m;
+    result_.cells += tiles.segment({indices, wanted, corner_of(tile), static_cast<float>(width_m)});
     ++result_.tiles;
-    const std::vector<PyramidLevel> levels =
-        make_pyramid(std::move(cells.means), network_.shape, executor_);
-    const std::vector<float> logits = run_network(network_, levels, std::move(features), executor_);
-    for (std::size_t k = 0; k < core && indices[k] < wanted_; ++k)
-      take(indices[k], cells.cell_of[k], logits);
-  }
-
-  std::vector<float> features_of(const CellMeans& cells,
-                                 const std::vector<std::uint32_t>& indices) const {
-    const std::vector<float> heights = heights_above_ground(cells.means);
-    const std::vector<float> intensities =
-        has_intensity_ ? mean_intensities(cells, indices) : std::vector<float>(heights.size());
-    std::vector<float> features;
-    features.reserve(heights.size() * network_.features.size());
-    for (std::size_t i = 0; i < heights.size(); ++i) {
-      for (const PointFeature feature : network_.features) {
-        switch (feature) {
-          case PointFeature::one: features.push_back(1); break;
-          case PointFeature::height: features.push_back(heights[i] / network_.height_unit_m); break;
-          case PointFeature::intensity: features.push_back(intensities[i]); break;
-          case PointFeature::has_intensity: features.push_back(has_intensity_ ? 1.0F : 0.0F); break;
-        }
-      }
-    }
-    return features;
-  }
-
-  std::vector<float> mean_intensities(const CellMeans& cells,
-                                      const std::vector<std::uint32_t>& indices) const {
-    std::vector<float> sums(cells.means.size()), counts(cells.means.size());
-    for (std::size_t k = 0; k < indices.size(); ++k) {
-      const float value = cloud_.intensities[indices[k]] / full_intensity_;
-      if (std::isfinite(value)) sums[cells.cell_of[k]] += std::clamp(value, 0.0F, 1.0F);
-      ++counts[cells.cell_of[k]];
-    }
-    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= counts[i];
-    return sums;
-  }
-
-  void take(std::uint32_t point, std::size_t cell, const std::vector<float>& logits) {
-    const std::size_t classes = network_.classes.size();
-    const float* const own = logits.data() + cell * classes;
-    const float* const best = std::max_element(own, own + classes);
-    result_.classes[point] = static_cast<std::uint8_t>(best - own);
-    if (!options_.confidences && !options_.probabilities) return;
-    float sum = 0;
-    for (std::size_t c = 0; c < classes; ++c) sum += std::exp(own[c] - *best);
-    // Weights that are too large for floats make logits of which nothing is known.
-    const float share = std::isfinite(sum) ? 1 / sum : 0;
-    if (options_.confidences) result_.confidences[point] = share;
-    if (!options_.probabilities) return;
-    float* const probabilities = result_.probabilities.data() + point * classes;
-    for (std::size_t c = 0; c < classes; ++c)
-      probabilities[c] = share > 0 ? share * std::exp(own[c] - *best) : 0;
   }
 
   const PointCloud& cloud_;
@@ -198,8 +145,6 @@ class Segmenter {
   const SegmentOptions& options_;
   const Executor& executor_;
   std::size_t wanted_ = 0;
-  bool has_intensity_ = false;
-  float full_intensity_ = 1;
   std::vector<std::uint32_t> order_;  ///< points, tile by tile
   std::vector<std::size_t> begins_;   ///< of the tiles in it
   std::vector<TilePlace> tiles_;
@@ -209,9 +154,15 @@ class Segmenter {
 }  // namespace
 
 Segmentation segment_cloud(const PointCloud& cloud, const Network& network,
-                           const SegmentOptions& options, const Executor& executor) {
+                           const SegmentOptions& options, const SegmentEngine& engine,
+                           const Executor& executor) {
   require_places(cloud);
-  return Segmenter(cloud, network, options, executor).run();
+  return Segmenter(cloud, network, options, executor).run(engine);
+}
+
+Segmentation segment_cloud(const PointCloud& cloud, const Network& network,
+                           const SegmentOptions& options, const Executor& executor) {
+  return segment_cloud(cloud, network, options, *make_cpu_segment_engine(executor), executor);
 }
 
 }  // namespace adasplats

@@ -28,10 +28,16 @@ struct Segmentation {
   std::size_t cells = 0, tiles = 0;   ///< that the network saw
 };
 
+class SegmentEngine;
+
 /// The class of every point. The network sees means of cells; a point has the class of its cell.
 /// Memory depends on the tiles and not on the cloud. The same for any number of threads. Errors:
 /// data (a point that is not finite or farther than 100 km from the cloud's origin), unavailable
-/// (built without OpenBLAS).
+/// (the engine's).
+Segmentation segment_cloud(const PointCloud& cloud, const Network& network,
+                           const SegmentOptions& options, const SegmentEngine& engine,
+                           const Executor& executor);
+/// The same on the CPU.
 Segmentation segment_cloud(const PointCloud& cloud, const Network& network,
                            const SegmentOptions& options, const Executor& executor);
 

@@ -229,6 +229,16 @@ Network parse_network(std::string_view content, const std::string& name) {
   }
 }
 
+std::vector<std::size_t> last_uses(const Network& network) {
+  std::vector<std::size_t> last(network.values, 0);
+  for (std::size_t k = 0; k < network.layers.size(); ++k) {
+    const Layer& layer = network.layers[k];
+    last[layer.input] = k;
+    if (layer.kind == LayerKind::add || layer.kind == LayerKind::join) last[layer.second] = k;
+  }
+  return last;
+}
+
 Network read_network(const std::filesystem::path& file) {
   return parse_network(read_file(file), file.string());
 }

@@ -55,6 +55,9 @@ struct Network {
   std::string card;                  ///< data, licence, date, figures, intended use
 };
 
+/// Layers after which values are not used again, by value.
+std::vector<std::size_t> last_uses(const Network& network);
+
 /// Format: docs/segmentation.md. Errors: no_input; data, with the file: not a network, of another
 /// version, cut off, layers that do not fit each other, weights that are not finite.
 Network read_network(const std::filesystem::path& file);

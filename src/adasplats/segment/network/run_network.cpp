@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "adasplats/segment/network/kernel_influence.h"
 #include "adasplats/segment/network/matrix_product.h"
 
 namespace adasplats {
@@ -23,19 +24,15 @@ struct Values {
   const float* of(std::size_t point) const { return numbers.data() + point * width; }
 };
 
-float activated(float value, float slope) { return value < 0 ? slope * value : value; }
-
 /// One run of a network.
 class Run {
  public:
   Run(const Network& network, std::span<const PyramidLevel> levels, const Executor& executor)
-      : network_(network), levels_(levels), executor_(executor), values_(network.values) {
-    last_use_.assign(network.values, 0);
-    for (std::size_t k = 0; k < network.layers.size(); ++k) {
-      last_use_[network.layers[k].input] = k;
-      if (takes_two(network.layers[k])) last_use_[network.layers[k].second] = k;
-    }
-  }
+      : network_(network),
+        levels_(levels),
+        executor_(executor),
+        values_(network.values),
+        last_use_(last_uses(network)) {}
 
   std::vector<float> logits(std::vector<float> features) {
     values_[0] = {network_.features.size(), std::move(features)};
@@ -51,10 +48,6 @@ class Run {
   }
 
  private:
-  static bool takes_two(const Layer& layer) {
-    return layer.kind == LayerKind::add || layer.kind == LayerKind::join;
-  }
-
   const PyramidLevel& level(int k) const { return levels_[static_cast<std::size_t>(k)]; }
 
   Values result_of(const Layer& layer) const {
@@ -141,10 +134,8 @@ class Run {
     for (const std::uint32_t j : neighbors) {
       if (j == NeighborTable::kNone) break;
       const Vec3f way = reach.supports->points[j] - point;
-      for (std::size_t k = 0; k < network_.kernel.size(); ++k) {
-        const Vec3f off = way - cell_m * network_.kernel[k];
-        influences[k] = 1 - std::sqrt(dot(off, off)) / sigma_m;
-      }
+      for (std::size_t k = 0; k < network_.kernel.size(); ++k)
+        influences[k] = kernel_influence(way, network_.kernel[k], cell_m, sigma_m);
       const float* const of_neighbor = input.of(j);
       for (std::size_t k = 0; k < network_.kernel.size(); ++k) {
         const float influence = influences[k];

@@ -8,10 +8,11 @@
 #include <limits>
 #include <utility>
 
+#include "adasplats/segment/pyramid/cell_grid.h"
+
 namespace adasplats {
 namespace {
 
-constexpr int kAxisBits = 21;
 constexpr std::size_t kQueryGrain = 1024;
 
 struct Bounds {
@@ -28,31 +29,6 @@ Bounds bounds_of(std::span<const Vec3f> points) {
   return bounds;
 }
 
-/// Cells of a grid with a corner in the origin, as keys that sort by x, then y, then z; counted
-/// from the cell of `low`, a corner of all points.
-class CellGrid {
- public:
-  CellGrid(Vec3f low, float cell_m) : cell_m_(cell_m) {
-    for (int axis = 0; axis < 3; ++axis) first_[axis] = number(low[axis]);
-  }
-
-  std::int64_t cell(Vec3f p, int axis) const { return number(p[axis]) - first_[axis]; }
-  std::uint64_t key(Vec3f p) const {
-    std::uint64_t key = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      key = key << kAxisBits | static_cast<std::uint64_t>(cell(p, axis));
-    return key;
-  }
-
- private:
-  std::int64_t number(float coordinate) const {
-    return static_cast<std::int64_t>(std::floor(coordinate / cell_m_));
-  }
-
-  Vec3<std::int64_t> first_;
-  float cell_m_;
-};
-
 std::vector<std::uint64_t> keys_of(std::span<const Vec3f> points, const CellGrid& grid,
                                    const Executor& executor) {
   std::vector<std::uint64_t> keys(points.size());
@@ -66,7 +42,7 @@ std::vector<std::uint64_t> keys_of(std::span<const Vec3f> points, const CellGrid
 class CellSearch {
  public:
   CellSearch(std::span<const Vec3f> supports, Vec3f low, float radius_m, const Executor& executor)
-      : supports_(supports), grid_(low, radius_m), radius_m_(radius_m) {
+      : supports_(supports), grid_(CellGrid::from(low, radius_m)), radius_m_(radius_m) {
     keys_ = keys_of(supports, grid_, executor);
     executor.sort_keys(keys_, order_);
   }
@@ -86,11 +62,9 @@ class CellSearch {
     for (std::int64_t dx = -1; dx <= 1; ++dx) {
       for (std::int64_t dy = -1; dy <= 1; ++dy) {
         if (x + dx < 0 || y + dy < 0) continue;
-        const auto column = static_cast<std::uint64_t>((x + dx) << kAxisBits | (y + dy))
-                            << kAxisBits;
         const std::uint64_t first =
-            column | static_cast<std::uint64_t>(std::max<std::int64_t>(0, z - 1));
-        const std::uint64_t last = column | static_cast<std::uint64_t>(z + 1);
+            CellGrid::key_of_cell(x + dx, y + dy, std::max<std::int64_t>(0, z - 1));
+        const std::uint64_t last = CellGrid::key_of_cell(x + dx, y + dy, z + 1);
         auto at = std::lower_bound(keys_.begin(), keys_.end(), first);
         for (; at != keys_.end() && *at <= last; ++at) add(at - keys_.begin(), query, found);
       }
@@ -117,7 +91,7 @@ class CellSearch {
 CellMeans means_by_cell(std::span<const Vec3f> points, float cell_m, const Executor& executor) {
   CellMeans result;
   if (points.empty()) return result;
-  const CellGrid grid(bounds_of(points).low, cell_m);
+  const CellGrid grid = CellGrid::from(bounds_of(points).low, cell_m);
   std::vector<std::uint64_t> keys = keys_of(points, grid, executor);
   std::vector<std::uint32_t> order;
   executor.sort_keys(keys, order);
