@@ -67,6 +67,8 @@ def model(
     points: PointCloud | Path | Sequence[Path],
     *,
     labels: Path | None = None,
+    segment: bool = False,
+    network: Path | None = None,
     method: Literal["consistent", "basic", "descriptors", "semantic"] = "consistent",
     neighbors: int = 40,
     alpha: float = 0.2,
@@ -129,6 +131,30 @@ def model(
     progress: Progress | None = None,
 ) -> Model: ...
 
+@overload
+def segment(
+    points: PointCloud,
+    *,
+    network: Path | None = None,
+    tile: float = 32.0,
+    margin: float = 12.0,
+    intensity: bool = True,
+    confidences: Literal[False] = False,
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> NDArray[np.uint16]: ...
+@overload
+def segment(
+    points: PointCloud,
+    *,
+    network: Path | None = None,
+    tile: float = 32.0,
+    margin: float = 12.0,
+    intensity: bool = True,
+    confidences: Literal[True],
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> tuple[NDArray[np.uint16], NDArray[np.float32]]: ...
 def mesh(
     points: PointCloud | Path | Sequence[Path],
     *,
@@ -594,6 +620,9 @@ class Model:
     @property
     def labels(self) -> str:
         """Name or path of the label scheme; empty where there is none."""
+    @property
+    def network_sha256(self) -> str:
+        """SHA-256 of the file of the network that gave the points classes; empty: none did."""
     @property
     def method(self) -> str:
         """How it was made."""

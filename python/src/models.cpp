@@ -49,6 +49,7 @@ void fields(Archive& archive, SplatModel& model) {
   archive("intensities", model.intensities);
   archive("response", model.response);
   archive("label_scheme", model.label_scheme);
+  archive("network_sha256", model.network_sha256);
   archive("method", model.method);
   archive("calibration", model.calibration);
 }
@@ -71,14 +72,17 @@ constexpr const char* kModelDoc =
     "nothing is kept twice). labels: a name or a file as label_scheme() takes them, for the "
     "method\n"
     "'semantic' and for removing what moves; sequence folders have 'semantickitti' by default. "
-    "The\n"
+    "segment:\n"
+    "a network gives the points classes of SemanticKITTI, in place of labels that they have;\n"
+    "network: its file, else the one that comes with adasplats. The\n"
     "other keywords are the options of 'adasplats model' by name; lengths in metres. Scales are\n"
     "three factors, on neighbours, radius and error bound. device: 'auto', 'cpu', 'cuda'. "
     "progress:\n"
     "a function of (step: str, done: int, total: int), 0 where the total is not known.\n"
     "The result depends on the set of points alone, not on order or threads; Model.report tells "
     "what\n"
-    "was done. Raises ValueError, OSError, RuntimeError (a GPU that is not there).";
+    "was done. Raises ValueError, OSError, RuntimeError (a GPU that is not there, segment without\n"
+    "OpenBLAS).";
 
 constexpr const char* kModelsClassDoc =
     "A place as oriented disks.\n\n"
@@ -92,6 +96,7 @@ constexpr const char* kModelsClassDoc =
 /// Loading has words of its own; `load` is for paths alone.
 void take_model(Keywords& keywords, ModelJob& job, RecipeChoice& recipe, WorkOptions& work) {
   keywords.take("labels", job.labels);
+  take_settings(keywords, job.segment);
   take_settings(keywords, recipe);
   keywords.take<DynamicRemoval>("remove", job.build.remove, kDynamicRemovals);
   keywords.take("reflectance", job.reflectance);
@@ -116,6 +121,7 @@ std::shared_ptr<ModelObject> model(py::handle points, const py::kwargs& kwargs) 
   take_model(keywords, job, recipe, options);
   keywords.finish();
   refuse_unused(unused_settings(recipe), kwargs);
+  refuse_unused(unused_settings(job.segment), kwargs);
   job.build.recipe = recipe.recipe();
   job.removal_is_asked = kwargs.contains("remove");
   const bool in_memory = py::isinstance<PointCloud>(points);
@@ -270,6 +276,9 @@ void add_properties(ModelClass& type) {
       .def_property_readonly(
           "labels", [](const ModelObject& o) { return o.model.label_scheme; },
           "Name or path of the label scheme; empty where there is none.")
+      .def_property_readonly(
+          "network_sha256", [](const ModelObject& o) { return o.model.network_sha256; },
+          "SHA-256 of the file of the network that gave the points classes; empty: none did.")
       .def_property_readonly(
           "method", [](const ModelObject& o) { return o.model.method; }, "How it was made.")
       .def_property_readonly("response", &response,

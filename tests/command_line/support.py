@@ -91,6 +91,19 @@ def write_cloud(path, points, labels=True):
     Path(path).write_bytes("\n".join(header + ["end_header\n"]).encode() + bytes(body))
 
 
+def write_network(path, classes=("road", "car"), above_m=1.13):
+    """A network of two classes: what is higher than that above the ground is of the second one."""
+    layer = {"kind": "unary", "level": 0, "input": 0, "output": 1, "weight": 0, "bias": 1}
+    header = {"version": 1, "card": "a test", "values": 2, "kernel": [[0, 0, 0]],
+              "shape": {"cell_m": 0.1, "levels": 1, "radius": 2.5, "neighbors": 8, "sigma": 1.2,
+                        "height_unit_m": above_m},
+              "features": ["one", "height"], "classes": list(classes), "layers": [layer],
+              "weights": [{"shape": [2, 2], "offset": 0}, {"shape": [1, 2], "offset": 8}]}
+    text = json.dumps(header).encode()
+    Path(path).write_bytes(b"adasplats-network\n" + struct.pack("<Q", len(text)) + text +
+                           struct.pack("<6e", 1, 0, 0, 1, 0, 0))
+
+
 def write_poses(path, count=3):
     """Poses along the road, 2 m above it."""
     lines = ["time,x,y,z,qw,qx,qy,qz"]

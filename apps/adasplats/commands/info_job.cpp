@@ -130,6 +130,8 @@ FileFacts model_facts(const fs::path& input, std::optional<LabelScheme> scheme) 
   facts.kind = "splat model";
   if (!model.method.empty()) facts.rows.emplace_back("method", model.method);
   if (!model.label_scheme.empty()) facts.rows.emplace_back("labels", model.label_scheme);
+  if (!model.network_sha256.empty())
+    facts.rows.emplace_back("SHA-256 of the network that gave classes", model.network_sha256);
   Survey survey;
   std::vector<float> radii;
   for (const Disk& disk : model.disks) {

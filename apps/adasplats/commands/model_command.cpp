@@ -20,6 +20,7 @@ namespace {
 constexpr const char* kModelExamples =
     "  adasplats model street/mapping.ply -o street.ply --method semantic --labels semantickitti\n"
     "  adasplats model sequences/00 -o place.ply --scans 0:100:2 --remove moving\n"
+    "  adasplats model cloud.laz -o place.ply --method semantic --segment\n"
     "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n";
 
 /// What the method itself counts and measures.
@@ -41,6 +42,14 @@ std::string figures_of(const BuildReport& built) {
          " splats put back where rays fell through";
 }
 
+std::string segmentation_text(const SegmentReport& segmented) {
+  constexpr std::size_t kDigits = 12;
+  return "classes by the network " + segmented.network.name + " (SHA-256 " +
+         segmented.network.sha256.substr(0, kDigits) + "...), of " +
+         grouped(segmented.classes.cells) + " cells in " + grouped(segmented.classes.tiles) +
+         " tiles" + (segmented.replaced_labels ? ", in place of the points' labels\n" : "\n");
+}
+
 class ModelCommand final : public Command {
  public:
   explicit ModelCommand(CLI::App& program)
@@ -58,6 +67,7 @@ class ModelCommand final : public Command {
                    "What labels mean: semantickitti, paris-carla-3d or a TOML file; the default is "
                    "semantickitti for sequence folders, else none")
         ->type_name("SCHEME");
+    add_settings(app, job_.segment);
     add_settings(app, recipe_);
     add_removal_option(app, job_.build.remove);
     add_switch(app, "--reflectance,!--no-reflectance", job_.reflectance,
@@ -69,8 +79,9 @@ class ModelCommand final : public Command {
   }
 
   void run(Session& session) override {
-    for (const UnusedSetting& unused : unused_settings(recipe_)) {
-      refuse({option_of(unused.setting).c_str()}, unused.why);
+    for (const auto& list : {unused_settings(recipe_), unused_settings(job_.segment)}) {
+      for (const UnusedSetting& unused : list)
+        refuse({option_of(unused.setting).c_str()}, unused.why);
     }
     job_.build.recipe = recipe_.recipe();
     job_.removal_is_asked = is_given("--remove");
@@ -85,7 +96,8 @@ class ModelCommand final : public Command {
     print(table.text() + "\n" + job_.output.string() + ": " + grouped(built.primitives) +
           " splats from " + grouped(built.points_in) + " points, " + grouped(built.points_dynamic) +
           " of them dynamic and removed" + text_of(built.removed_classes) + "\n" +
-          figures_of(built) + "\n" +
+          (result.segmented ? segmentation_text(*result.segmented) : "") + figures_of(built) +
+          "\n" +
           (result.calibrated ? calibration_text(*result.calibrated, result.calibration) : ""));
   }
 

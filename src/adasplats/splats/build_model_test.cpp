@@ -319,9 +319,12 @@ TEST(SplatModelFile, RoundTrip) {
   PaperOptions options;
   options.variant = PaperVariant::semantic;
   SplatModel model = build(small_place(3000, 0.005), options).first;
+  EXPECT_EQ(model.network_sha256, "");
+  model.network_sha256 = "0123abcd";
   save_model(path, model);
   const SplatModel near = load_model(path);
   EXPECT_TRUE(same_bytes(model, near));
+  EXPECT_EQ(near.network_sha256, "0123abcd");
   EXPECT_EQ(near.label_scheme, "semantickitti");
   EXPECT_EQ(near.method, "semantic");
   EXPECT_TRUE(near.calibration.empty());

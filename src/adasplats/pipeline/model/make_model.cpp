@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <stdexcept>
 
 #include "adasplats/core/error.h"
@@ -38,21 +39,25 @@ class ModelMaker {
  public:
   using LoadPoints = std::function<PointCloud()>;
 
-  ModelMaker(const ModelOptions& options, std::optional<LabelScheme> scheme, LoadPoints load_points,
-             Session& session)
-      : options_(options),
-        scheme_(std::move(scheme)),
-        load_points_(std::move(load_points)),
-        session_(session) {
+  /// `inputs`: what the points come from, where they come from files.
+  ModelMaker(const ModelOptions& options, std::span<const std::filesystem::path> inputs,
+             LoadPoints load_points, Session& session)
+      : options_(options), load_points_(std::move(load_points)), session_(session) {
+    if (options_.segment.on)
+      prepare_segmentation();
+    else
+      scheme_ = label_scheme_for(options_.labels, inputs);
     if (!scheme_ && method_of(options_.build.recipe) == SplatMethod::semantic) {
       throw Error(ErrorKind::usage,
-                  "the method semantic needs labels (semantickitti, paris-carla-3d or a file)");
+                  "the method semantic needs labels (semantickitti, paris-carla-3d or a file), or "
+                  "`segment`, with which a network gives the points classes");
     }
   }
 
   SplatModel run(ModelResult& result) {
     PointCloud cloud = load(result);
     if (options_.calibration.on) estimate_calibration(cloud, result);
+    if (classifier_) segment(cloud, result);
     check_label_use({options_.labels, options_.build.remove, options_.removal_is_asked}, cloud,
                     scheme_ ? &*scheme_ : nullptr, session_.progress);
     const bool has_reflectance = cloud.has_beams() && !cloud.intensities.empty();
@@ -60,6 +65,7 @@ class ModelMaker {
     require_splats(model, built);
     model.calibration = result.calibration;
     if (scheme_) model.label_scheme = scheme_reference(options_.labels, *scheme_);
+    if (classifier_) model.network_sha256 = classifier_->facts().sha256;
     result.steps.insert(result.steps.end(), built.steps.begin(), built.steps.end());
     result.built = std::move(built);
     if (options_.reflectance && has_reflectance && !model.intensities.empty())
@@ -73,7 +79,35 @@ class ModelMaker {
     PointCloud cloud = load_points_();
     result.steps.push_back({"load", watch.seconds()});
     correct(cloud, result);
+    if (!classes_.empty()) cloud.classes = classes_;
     return cloud;
+  }
+
+  /// Throws what is wrong with the choice before anything is loaded.
+  void prepare_segmentation() {
+    if (!options_.labels.empty())
+      throw Error(ErrorKind::usage,
+                  "`labels` has no effect with `segment`: the points get classes "
+                  "of SemanticKITTI from a network");
+    classifier_.emplace(options_.segment.network);
+    scheme_ = semantickitti_labels();
+    if (options_.build.remove == DynamicRemoval::moving &&
+        !classifier_->tells(options_.build.remove))
+      throw Error(ErrorKind::usage,
+                  "`remove` moving: the network does not tell what moves from "
+                  "what could (`remove` movable)");
+  }
+
+  void segment(PointCloud& cloud, ModelResult& result) {
+    const Stopwatch watch;
+    const bool had_labels = !cloud.classes.empty();
+    if (had_labels)
+      session_.progress.warn("the labels of the points are replaced by the network's (`segment`)");
+    PointClasses found = classifier_->classes_of(cloud, {}, session_);
+    classes_ = std::move(found.ids);
+    cloud.classes = classes_;
+    result.segmented = {classifier_->facts(), std::move(found), had_labels};
+    result.steps.push_back({"segment", watch.seconds()});
   }
 
   /// Before anything is calibrated: nothing.
@@ -131,6 +165,8 @@ class ModelMaker {
 
   const ModelOptions& options_;
   std::optional<LabelScheme> scheme_;
+  std::optional<PointClassifier> classifier_;
+  std::vector<std::uint16_t> classes_;  ///< by the network, of the points as they are loaded
   LoadPoints load_points_;
   Session& session_;
 };
@@ -147,6 +183,10 @@ bool uses_empty_beams(const ModelRecipe& recipe) {
 
 }  // namespace
 
+std::vector<UnusedSetting> unused_settings(const SegmentChoice& choice) {
+  return choice.on ? std::vector<UnusedSetting>() : all_unused(choice, "without segmentation");
+}
+
 std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& session) {
   for (const auto& input : job.inputs) require_input(input);
   const Stopwatch total;
@@ -158,7 +198,7 @@ std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& sess
     result.loaded = loaded;
     return std::move(cloud);
   };
-  ModelMaker maker(job, label_scheme_for(job.labels, job.inputs), load_points, session);
+  ModelMaker maker(job, job.inputs, load_points, session);
   SplatModel model = maker.run(result);
   result.seconds = total.seconds();
   return {std::move(model), std::move(result)};
@@ -170,7 +210,7 @@ std::pair<SplatModel, ModelResult> make_model(const PointCloud& cloud, const Mod
   ModelResult result;
   result.loaded.points_read = cloud.size();
   ModelMaker maker(
-      options, label_scheme_for(options.labels, {}), [&cloud] { return cloud; }, session);
+      options, {}, [&cloud] { return cloud; }, session);
   SplatModel model = maker.run(result);
   result.seconds = total.seconds();
   return {std::move(model), std::move(result)};
@@ -193,6 +233,17 @@ nlohmann::ordered_json to_json(const TimedOrigins& timed) {
   return json;
 }
 
+nlohmann::ordered_json to_json(const SegmentReport& segmented) {
+  nlohmann::ordered_json json;
+  json["network"] = to_json(segmented.network);
+  json["cells"] = segmented.classes.cells;
+  json["tiles"] = segmented.classes.tiles;
+  for (const PointClasses::ClassCount& count : segmented.classes.by_class)
+    json["classes"][count.name] = count.points;
+  json["replaced_labels"] = segmented.replaced_labels;
+  return json;
+}
+
 nlohmann::ordered_json to_json(const ModelResult& result) {
   nlohmann::ordered_json json;
   const BuildReport& built = result.built;
@@ -205,6 +256,7 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
   json["points_intensity_unknown"] = result.loaded.unknown_intensities;
   json["beams"] = result.loaded.beams;
   if (result.loaded.timed) json["timed_origins"] = to_json(*result.loaded.timed);
+  if (result.segmented) json["segmentation"] = to_json(*result.segmented);
   json["points_in"] = built.points_in;
   json["points_dynamic"] = built.points_dynamic;
   json["points_removed"] = nlohmann::ordered_json::object();

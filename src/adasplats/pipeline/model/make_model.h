@@ -11,6 +11,8 @@
 
 #include "adasplats/calibrate/calibrate.h"
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/pipeline/model/unused_settings.h"
+#include "adasplats/pipeline/segment/point_classes.h"
 #include "adasplats/pipeline/session/session.h"
 #include "adasplats/splats/build_model.h"
 
@@ -49,9 +51,30 @@ void visit_settings(CalibrationChoice& choice, Visit&& visit) {
         choice.options.mount_correction);
 }
 
+/// Whether points get their classes from a network, in place of the labels that they may have.
+struct SegmentChoice {
+  bool on = false;
+  std::filesystem::path network;  ///< a file; empty: default_network()
+};
+
+template <class Visit>
+void visit_settings(SegmentChoice& choice, Visit&& visit) {
+  visit(Setting{.name = "segment",
+                .help = "Give the points classes by a network, in place of labels that they have"},
+        choice.on);
+  visit(Setting{.name = "network",
+                .help = "File of the network that gives classes; else the one that comes with the "
+                        "program"},
+        choice.network);
+}
+
+/// What has no effect where nothing is segmented.
+std::vector<UnusedSetting> unused_settings(const SegmentChoice& choice);
+
 /// How a model is made of points.
 struct ModelOptions {
-  std::string labels;  ///< as label_scheme_for takes it
+  std::string labels;     ///< as label_scheme_for takes it; not where the points are segmented
+  SegmentChoice segment;  ///< then the scheme is semantickitti_labels()
   BuildOptions build;
   /// The user has asked for `build.remove`: where it can remove nothing, that is an error and not
   /// only said.
@@ -68,8 +91,16 @@ struct ModelJob : ModelOptions {
   LoadOptions load;
 };
 
+/// How points got their classes from a network.
+struct SegmentReport {
+  NetworkFacts network;
+  PointClasses classes;          ///< without ids and confidences
+  bool replaced_labels = false;  ///< that the input had
+};
+
 struct ModelResult {
   LoadReport loaded;  ///< points_read alone, where nothing was loaded
+  std::optional<SegmentReport> segmented;
   BuildReport built;
   bool reflectance_measured = false;
   std::optional<CalibrationReport> calibrated;  ///< nothing: it was not asked for
@@ -78,8 +109,9 @@ struct ModelResult {
   double seconds = 0;
 };
 
-/// Loads and builds on the session's device. Errors: usage (the semantic method without labels),
-/// those of load_cloud and build_model.
+/// Loads and builds on the session's device. Errors: usage (the semantic method without labels or
+/// segmentation, both of them, `remove` moving of a network that knows nothing that moves), those
+/// of load_cloud, PointClassifier and build_model.
 std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& session);
 
 /// Builds of points in memory. Errors: likewise.
@@ -88,6 +120,7 @@ std::pair<SplatModel, ModelResult> make_model(const PointCloud& cloud, const Mod
 
 /// Of a model's --report and of `info`.
 nlohmann::ordered_json to_json(const TimedOrigins& timed);
+nlohmann::ordered_json to_json(const SegmentReport& segmented);
 /// The keys of a model's --report.
 nlohmann::ordered_json to_json(const ModelResult& result);
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {
 namespace {
@@ -62,6 +63,55 @@ TEST_F(MakeModelTest, LabelsAreNamedInTheModel) {
   EXPECT_EQ(to_json(made.second)["primitives"], made.first.size());
   options.labels.clear();
   EXPECT_THROW(make_model(plane(), options, session_), Error);
+}
+
+// Oracle: the classes of PointClassifier as labels of the points.
+TEST_F(MakeModelTest, SegmentedPointsGiveTheModelOfTheNetworksLabels) {
+  ModelOptions options;
+  options.segment.on = true;
+  options.build.recipe = RecipeChoice{.method = SplatMethod::semantic}.recipe();
+  options.build.remove = DynamicRemoval::none;
+  if (!can_segment()) {
+    expect_error(ErrorKind::unavailable, {"OpenBLAS"},
+                 [&] { make_model(plane(), options, session_); });
+    return;
+  }
+  const PointCloud cloud = plane();
+  const auto [model, result] = make_model(cloud, options, session_);
+  PointCloud labelled = cloud;
+  labelled.classes = PointClassifier("").classes_of(cloud, {}, session_).ids;
+  ModelOptions by_labels = options;
+  by_labels.segment.on = false;
+  by_labels.labels = "semantickitti";
+  const SplatModel expected = make_model(labelled, by_labels, session_).first;
+  ASSERT_GT(model.size(), 0U);
+  EXPECT_EQ(model.classes, expected.classes);
+  EXPECT_EQ(model.groups, expected.groups);
+  EXPECT_EQ(model.label_scheme, "semantickitti");
+  EXPECT_EQ(model.network_sha256, default_network().sha256);
+  EXPECT_EQ(expected.network_sha256, "");
+  ASSERT_TRUE(result.segmented);
+  EXPECT_TRUE(result.segmented->replaced_labels);
+  EXPECT_EQ(to_json(result)["segmentation"]["network"]["name"], "default");
+  EXPECT_FALSE(to_json(make_model(labelled, by_labels, session_).second).contains("segmentation"));
+}
+
+TEST_F(MakeModelTest, SegmentationThatCannotBeMeantIsRefusedFirst) {
+  ModelOptions options;
+  options.segment.on = true;
+  options.labels = "semantickitti";
+  expect_error(ErrorKind::usage, {"`labels`", "`segment`"},
+               [&] { make_model(plane(), options, session_); });
+  options.labels.clear();
+  options.build.remove = DynamicRemoval::moving;
+  if (can_segment()) {
+    expect_error(ErrorKind::usage, {"`remove` moving"},
+                 [&] { make_model(plane(), options, session_); });
+  }
+  SegmentChoice unused;
+  EXPECT_EQ(unused_settings(unused).size(), 1U);
+  unused.on = true;
+  EXPECT_TRUE(unused_settings(unused).empty());
 }
 
 TEST_F(MakeModelTest, NoPointsAreAnError) {

@@ -12,6 +12,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/sha256.h"
 
 namespace adasplats {
 namespace {
@@ -221,7 +222,11 @@ Network parse_network(std::string_view content, const std::string& name) {
     if (version != kVersion)
       throw std::runtime_error("is of version " + std::to_string(version) + ", expected " +
                                std::to_string(kVersion));
-    return network_of(header, content.substr(ahead + length));
+    Network network = network_of(header, content.substr(ahead + length));
+    Sha256 hash;
+    hash.add(content);
+    network.sha256 = hash.digest();
+    return network;
   } catch (const json::exception& error) {
     throw fail(std::string("its header is damaged: ") + error.what());
   } catch (const std::runtime_error& error) {

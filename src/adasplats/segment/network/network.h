@@ -53,6 +53,7 @@ struct Network {
   std::vector<Weights> weights;
   std::vector<std::string> classes;  ///< by SemanticKITTI's names
   std::string card;                  ///< data, licence, date, figures, intended use
+  std::string sha256;                ///< of the file's bytes
 };
 
 /// Layers after which values are not used again, by value.

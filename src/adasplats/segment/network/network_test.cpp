@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/io/base/sha256.h"
 #include "adasplats/segment/network/network_text_test.h"
 #include "adasplats/segment/network/run_network.h"
 
@@ -23,6 +24,9 @@ using nlohmann::json;
 TEST(Network, IsReadAndRefusedWhereItIsWrong) {
   const Network network = parse_network(pole_network().text(), "n");
   EXPECT_EQ(network.classes, (std::vector<std::string>{"road", "pole"}));
+  Sha256 hash;
+  hash.add(pole_network().text());
+  EXPECT_EQ(network.sha256, hash.digest());
   EXPECT_EQ(network.weights[0].values, (std::vector<float>{1, 0, 0, 1}));
 
   const auto refused = [](const std::string& text, const std::string& why) {

@@ -20,6 +20,7 @@ namespace adasplats {
 namespace {
 
 constexpr const char* kLabelsComment = "adasplats.labels ";
+constexpr const char* kNetworkComment = "adasplats.network_sha256 ";
 constexpr const char* kMethodComment = "adasplats.method ";
 /// Of the response's tables, in the order of response_tables().
 constexpr std::array<const char*, 4> kResponseComments = {
@@ -251,6 +252,7 @@ void save_model(const std::filesystem::path& path, const SplatModel& model) {
   std::vector<std::string> comments = {kFormatComment};
   if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
   if (!model.label_scheme.empty()) comments.push_back(kLabelsComment + model.label_scheme);
+  if (!model.network_sha256.empty()) comments.push_back(kNetworkComment + model.network_sha256);
   add_response_comments(model.response, comments);
   add_calibration_comments(model.calibration, comments);
   write_ply(path, model.size(), columns, comments);
@@ -290,6 +292,7 @@ SplatModel load_model(const std::filesystem::path& path) {
       model.intensities.push_back(static_cast<float>(intensities->as_double(i)));
   model.method = comment_value(table, kMethodComment);
   model.label_scheme = comment_value(table, kLabelsComment);
+  model.network_sha256 = comment_value(table, kNetworkComment);
   model.response = response_of(table, path);
   model.calibration = calibration_of(table, path);
   return model;

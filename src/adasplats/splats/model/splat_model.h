@@ -27,6 +27,7 @@ struct SplatModel {
   std::vector<float> intensities;
   IntensityResponse response;  ///< of the sensor that measured the intensities; empty: not known
   std::string label_scheme;    ///< name or path as load_label_scheme takes it; may be empty
+  std::string network_sha256;  ///< of the network that gave the points classes; empty: none did
   std::string method;          ///< how it was made
   Calibration calibration;     ///< that the points were corrected with; empty: they are as given
 
@@ -39,8 +40,8 @@ std::pair<Vec3f, Vec3f> bounds(const SplatModel& model);
 
 /// Writes a PLY, one vertex a splat: x y z nx ny nz radius [class] [group] [intensity] (x y z as
 /// doubles in world coordinates where the origin is not zero). The rest is in comments
-/// "adasplats.KEY VALUE"; the response in "response_ranges_m", "response_range_gains",
-/// "response_cosines" and "response_cosine_gains"; the calibration in
+/// "adasplats.KEY VALUE", the scheme in "labels"; the response in "response_ranges_m",
+/// "response_range_gains", "response_cosines" and "response_cosine_gains"; the calibration in
 /// "calibration_range_offsets_m", "calibration_elevation_offsets_rad", "calibration_mount"
 /// (rotation vector, shift), "calibration_smooth_s" and, one a scan, "calibration_pose": time,
 /// given position, rotation vector, shift.
