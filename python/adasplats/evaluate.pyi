@@ -12,6 +12,7 @@ def c2c(
     original: PointCloud | Path,
     *,
     by_class: bool = False,
+    nearest_classes: bool = False,
     labels: Path | None = None,
     threads: int = 0,
     progress: Progress | None = None,

@@ -52,17 +52,23 @@ py::object reported(const WorkOptions& options, F&& f) {
 }
 
 struct CloudArguments {
-  bool by_class = false;
+  bool by_class = false, nearest_classes = false;
   std::string labels;
   WorkOptions work{.has_device = false};
 
   void take(Keywords& keywords) {
     keywords.take("by_class", by_class);
+    keywords.take("nearest_classes", nearest_classes);
     keywords.take("labels", labels);
     work.take(keywords);
   }
 
   py::object run(py::handle simulated, py::handle original) const {
+    if (nearest_classes && !by_class)
+      throw py::value_error("nearest_classes has no effect without by_class");
+    const ByClass classes = nearest_classes ? ByClass::nearest
+                            : by_class      ? ByClass::own
+                                            : ByClass::no;
     std::array<std::shared_ptr<const PointCloud>, 2> clouds;
     std::array<std::filesystem::path, 2> files;
     const std::array<py::handle, 2> given = {simulated, original};
@@ -81,8 +87,7 @@ struct CloudArguments {
           clouds[k] = std::make_shared<PointCloud>(
               load_cloud(std::span(files).subspan(k, 1), {}, session.executor, session.progress)
                   .first);
-      return evaluate_clouds(*clouds[0], *clouds[1], by_class, scheme ? &*scheme : nullptr,
-                             session);
+      return evaluate_clouds(*clouds[0], *clouds[1], classes, scheme ? &*scheme : nullptr, session);
     });
   }
 };
@@ -268,7 +273,9 @@ void bind_evaluate(py::module_& module) {
       evaluate, "c2c", "simulated", "original",
       "Distances between two clouds (paper: C2C), Chamfer distance, F-scores, completeness.\n\n"
       "simulated, original: PointCloud or paths. by_class: also class by class, with labels as\n"
-      "label_scheme() takes them. Raises ValueError, OSError.");
+      "label_scheme() takes them; nearest_classes: a simulated point is of the class of the "
+      "nearest\n"
+      "original one, whatever its own (a network's, or none). Raises ValueError, OSError.");
   define<ResimulateArguments>(
       evaluate, "resimulate", "model", "sequence",
       "Cast the measured beams of held-out scans again and compare ranges.\n\n"

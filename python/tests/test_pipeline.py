@@ -273,6 +273,17 @@ def test_c2c(street):
                                        adasplats.read(street.sequence), by_class=True,
                                        labels="semantickitti")
     assert in_memory == result
+    # Points without classes of their own get those of the nearest original ones.
+    bare = adasplats.PointCloud(adasplats.read(street.cloud).world_positions)
+    with pytest.raises(ValueError, match="no labels in the simulated cloud"):
+        adasplats.evaluate.c2c(bare, street.sequence, by_class=True)
+    nearest = adasplats.evaluate.c2c(bare, street.sequence, by_class=True, nearest_classes=True,
+                                     labels="semantickitti")
+    assert sum(c["points"] for c in nearest["by_class"].values()) == len(bare)
+    for part in nearest["by_class"].values():
+        assert part["points"] == 0 or part["c2c_m"] == part["c2c_to_all_m"]
+    with pytest.raises(ValueError, match="nearest_classes has no effect without by_class"):
+        adasplats.evaluate.c2c(bare, street.sequence, nearest_classes=True)
 
 
 def test_resimulate(street, scene):

@@ -108,6 +108,8 @@ class OptionsTest(ProgramTest):
             self.refuse(option, "evaluate", "c2c", self.cloud, self.cloud, option, value)
         self.refuse("--labels", "evaluate", "c2c", self.cloud, self.cloud, "--labels",
                     "semantickitti")
+        self.refuse("--nearest-classes", "evaluate", "c2c", self.cloud, self.cloud,
+                    "--nearest-classes")
 
     def test_scans(self):
         model = self.model()

@@ -146,6 +146,22 @@ std::vector<float> distances_to(const PointCloud& cloud, const PointCloud& refer
   return distances_m;
 }
 
+std::vector<std::uint16_t> nearest_classes(const PointCloud& simulated, const PointCloud& original,
+                                           const Executor& executor) {
+  require_points(simulated, "simulated");
+  require_points(original, "original");
+  require_classes(original, "original");
+  const PointIndex index = index_in_frame(original, original.origin, executor);
+  std::vector<std::uint16_t> classes;
+  classes.reserve(simulated.size());
+  for (const Neighbor& nearest :
+       index.nearest(in_frame(simulated, original.origin, executor), executor)) {
+    const bool is_found = nearest.index != Neighbor::kNone;
+    classes.push_back(is_found ? original.classes[nearest.index] : std::uint16_t{0});
+  }
+  return classes;
+}
+
 std::vector<ClassDistance> cloud_distance_by_class(const PointCloud& simulated,
                                                    const PointCloud& original,
                                                    const Executor& executor) {

@@ -42,6 +42,12 @@ CloudDistance cloud_distance(const PointCloud& simulated, const PointCloud& orig
 std::vector<float> distances_to(const PointCloud& cloud, const PointCloud& reference,
                                 const Executor& executor);
 
+/// The class of the original point nearest to each simulated one: what a simulated point is of
+/// where its own class is not the original's; 0 beyond 1e19 m. Errors: data where either cloud is
+/// empty or the original has no classes.
+std::vector<std::uint16_t> nearest_classes(const PointCloud& simulated, const PointCloud& original,
+                                           const Executor& executor);
+
 /// By class of either cloud, ascending id; both need classes (ErrorKind::data otherwise). A class
 /// that only one cloud has stays in the list with NaN for what is undefined.
 std::vector<ClassDistance> cloud_distance_by_class(const PointCloud& simulated,

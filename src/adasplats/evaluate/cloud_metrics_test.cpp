@@ -200,6 +200,28 @@ TEST(CloudDistance, EmptyCloudsAreAnError) {
   }
 }
 
+// Oracle: brute force.
+TEST(NearestClasses, AreThoseOfTheNearestOriginalPoint) {
+  PointCloud simulated = random_cloud(500, 1);
+  simulated.classes.clear();
+  simulated.origin = {100, 0, 0};
+  for (Vec3f& p : simulated.positions) p.x -= 100;
+  const PointCloud original = random_cloud(700, 2);
+  const auto found = nearest_classes(simulated, original, Executor(2));
+  ASSERT_EQ(found.size(), simulated.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    std::size_t best = 0;
+    const auto distance = [&](std::size_t k) {
+      return length(simulated.world(i) - original.world(k));
+    };
+    for (std::size_t k = 1; k < original.size(); ++k)
+      if (distance(k) < distance(best)) best = k;
+    EXPECT_EQ(found[i], original.classes[best]);
+  }
+  EXPECT_THROW(nearest_classes(original, simulated, Executor(1)), Error);
+  EXPECT_THROW(nearest_classes(simulated, PointCloud(), Executor(1)), Error);
+}
+
 TEST(CloudDistanceByClass, NeedsClasses) {
   const PointCloud bare = grid(2, 1.0F, 0.0F);
   PointCloud labelled = bare;

@@ -47,7 +47,7 @@ DemoRow run_method(const std::string& name, SplatMethod method, const fs::path& 
   const CloudPair clouds =
       load_clouds({simulation.output, street / "mapping.ply", model.labels}, session);
   row.comparison =
-      evaluate_clouds(clouds.simulated, clouds.original, true, &*clouds.labels, session);
+      evaluate_clouds(clouds.simulated, clouds.original, ByClass::own, &*clouds.labels, session);
   row.thin_c2c_m = c2c_of_classes(row.comparison, thin_classes());
 
   ResimulateOptions held_out;

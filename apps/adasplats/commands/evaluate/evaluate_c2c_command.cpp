@@ -49,7 +49,9 @@ class EvaluateC2cCommand final : public Command {
     require(add_path(app, "SIMULATED", job_.simulated,
                      "Point file, sequence folder or output of simulate"));
     require(add_path(app, "ORIGINAL", job_.original, "Likewise"));
-    app.add_flag("--by-class", job_.by_class, "Also by semantic class");
+    app.add_flag("--by-class", by_class_, "Also by semantic class");
+    app.add_flag("--nearest-classes", nearest_classes_,
+                 "A simulated point is of the class of the nearest original one, whatever its own");
     app.add_option("--labels", job_.labels,
                    "Names the classes: semantickitti, paris-carla-3d or a TOML file")
         ->type_name("SCHEME");
@@ -68,7 +70,8 @@ class EvaluateC2cCommand final : public Command {
   }
 
   void run(Session& session) override {
-    if (!job_.by_class) refuse({"--labels"}, "without --by-class");
+    if (!by_class_) refuse({"--labels", "--nearest-classes"}, "without --by-class");
+    if (by_class_) job_.by_class = nearest_classes_ ? ByClass::nearest : ByClass::own;
     if (job_.picture.empty()) {
       refuse({"--eye", "--target", "--picture-width"}, "without --picture");
     }
@@ -78,12 +81,13 @@ class EvaluateC2cCommand final : public Command {
     session.report.update(to_json(comparison));
     session.report["seconds"]["total"] = watch.seconds();
     std::string text = table_of(comparison.distance);
-    if (job_.by_class) text += "\n" + table_of(comparison.by_class);
+    if (by_class_) text += "\n" + table_of(comparison.by_class);
     print(text);
   }
 
  private:
   CloudComparisonJob job_;
+  bool by_class_ = false, nearest_classes_ = false;
 };
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace adasplats::app {
 
 struct CloudComparisonJob : CloudFiles {
-  bool by_class = false;
+  ByClass by_class = ByClass::no;
   std::filesystem::path picture;  ///< PNG of the simulated points by distance; empty: none
   std::filesystem::path errors;   ///< PLY of the simulated points with their distance; empty: none
   ViewChoice view = {.width = 1920, .height = 1080};

@@ -22,6 +22,16 @@ std::string class_name(const LabelScheme* scheme, std::uint16_t id) {
   return found == nullptr ? "class " + std::to_string(id) : found->name;
 }
 
+/// The places of the points and the classes that the original has there.
+PointCloud with_nearest_classes(const PointCloud& simulated, const PointCloud& original,
+                                const Executor& executor) {
+  PointCloud points;
+  points.origin = simulated.origin;
+  points.positions = simulated.positions;
+  points.classes = nearest_classes(simulated, original, executor);
+  return points;
+}
+
 }  // namespace
 
 CloudPair load_clouds(const CloudFiles& files, Session& session) {
@@ -39,13 +49,17 @@ CloudPair load_clouds(const CloudFiles& files, Session& session) {
 }
 
 CloudComparison evaluate_clouds(const PointCloud& simulated, const PointCloud& original,
-                                bool by_class, const LabelScheme* labels, Session& session) {
+                                ByClass by_class, const LabelScheme* labels, Session& session) {
   CloudComparison comparison;
   session.progress.begin_step("compare", kPassUnits);
   comparison.distance = cloud_distance(simulated, original, session.executor);
-  if (by_class) {
+  if (by_class != ByClass::no) {
     session.progress.begin_step("compare classes", kPassUnits);
-    for (const ClassDistance& c : cloud_distance_by_class(simulated, original, session.executor))
+    for (const ClassDistance& c :
+         by_class == ByClass::own
+             ? cloud_distance_by_class(simulated, original, session.executor)
+             : cloud_distance_by_class(with_nearest_classes(simulated, original, session.executor),
+                                       original, session.executor))
       comparison.by_class.emplace_back(class_name(labels, c.class_id), c);
   }
   session.progress.end_step();

@@ -36,9 +36,16 @@ struct CloudComparison {
   std::vector<std::pair<std::string, ClassDistance>> by_class;  ///< by name; empty: not asked for
 };
 
+/// Whether clouds are compared class by class as well, and what class a simulated point is of.
+enum class ByClass : std::uint8_t {
+  no,
+  own,     ///< the one that it has
+  nearest  ///< that of the nearest original point: where its own is a network's, or there is none
+};
+
 /// `labels` names the classes; null: they go by their numbers.
 CloudComparison evaluate_clouds(const PointCloud& simulated, const PointCloud& original,
-                                bool by_class, const LabelScheme* labels, Session& session);
+                                ByClass by_class, const LabelScheme* labels, Session& session);
 
 /// Mean C2C over the points of several classes, by name; NaN where none has points.
 double c2c_of_classes(const CloudComparison& comparison, const std::vector<std::string>& names);
