@@ -280,6 +280,7 @@ def compare(
     every: int = 0,
     picture_width: int = 960,
     poisson_depth: int = 13,
+    network: Path | None = None,
     time_limit: float = 3600.0,
     memory_limit: float = 0.0,
     retry: bool = False,

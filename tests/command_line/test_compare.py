@@ -13,7 +13,7 @@ import time
 import unittest
 from pathlib import Path
 
-from support import PROGRAM, run, tiny_place, write_cloud
+from support import PROGRAM, run, tiny_place, write_cloud, write_network
 
 # The tests work with relative paths in folders of their own.
 ABSOLUTE_PROGRAM = str(Path(shutil.which(PROGRAM) or PROGRAM).resolve())
@@ -439,6 +439,80 @@ class Presets(CompareTest):
         before = states(self.output)
         self.compare(*paper)
         self.assertEqual(self.run_again(before), set())
+
+    def network(self):
+        """A network that takes what is high for cars; skips where no network can be run."""
+        path = self.folder / "high.network"
+        write_network(path)
+        probe = run("model", self.folder / "place.ply", "-o", self.folder / "probe.ply",
+                    "--segment", "--network", path)
+        if probe.returncode == 69 and "OpenBLAS" in probe.stderr:
+            self.skipTest("built without OpenBLAS")
+        return path
+
+    def test_kpconv(self):
+        points = tiny_place()
+        write_cloud(self.folder / "place.ply", points)
+        network = self.network()
+        words = ["place.ply", "-o", "out", "--methods", "kpconv,semantic", "--picture-width", "64",
+                 "--labels", "semantickitti", "--network", network.name]
+        self.compare(*words)
+        rows = rows_of(self.output)
+        self.assertEqual([(row["title"], row["state"]) for row in rows.values()],
+                         [("AdaSplats-KPConv", "done"), ("AdaSplats, classes", "done")])
+        made = rows["kpconv"]["generate"]
+        told = made["segmentation"]
+        self.assertEqual((told["network"]["name"], told["replaced_labels"]),
+                         (network.name, True))
+        self.assertEqual(len(told["network"]["sha256"]), 64)
+        self.assertEqual(made["points_removed"], {"car": told["classes"]["car"]})
+        self.assertGreater(told["classes"]["car"], 100)
+        self.assertIn(" --segment ", made["command"])
+        self.assertIn(" --network " + network.name, made["command"])
+        self.assertNotIn("--labels", made["command"])
+        self.assertNotIn("segmentation", rows["semantic"]["generate"])
+        # Its own classes are the network's, which has no building; the original's has.
+        self.assertIn("--nearest-classes", rows["kpconv"]["c2c"]["command"])
+        self.assertNotIn("--nearest-classes", rows["semantic"]["c2c"]["command"])
+        walls = [rows[name]["c2c"]["by_class"]["building"]["points"] for name in rows]
+        self.assertGreater(walls[0], 0)
+        self.assertLess(walls[0], walls[1])
+        # Beside the paper's figures: 1064 s and 203 Hz on PC3D-Paris.
+        report = (self.output / "report.md").read_text(encoding="utf-8")
+        line = next(x for x in report.splitlines() if x.startswith("| AdaSplats-KPConv"))
+        self.assertIn("1064", line.replace(",", ""))
+        before = states(self.output)
+        self.compare(*words)
+        self.assertEqual(self.run_again(before), set())
+        write_network(network, above_m=2)
+        self.compare(*words)
+        self.assertIn("kpconv/generate", self.run_again(before))
+        self.assertNotIn("semantic/generate", self.run_again(before))
+        self.refuse(64, *words[:4], "basic", "--network", network.name,
+                    says=["--network has no effect without the method kpconv"])
+        self.refuse(66, *words[:-1], "none", says=["none"])
+
+    def test_kpconv_of_points_without_labels_or_of_another_scheme(self):
+        write_cloud(self.folder / "place.ply", tiny_place(), labels=False)
+        network = self.network()
+        words = ["place.ply", "-o", "out", "--picture-width", "64", "--network", network.name]
+        self.compare(*words, "--methods", "kpconv")
+        row = rows_of(self.output)["kpconv"]
+        self.assertEqual(row["state"], "done", row)
+        self.assertEqual(row["c2c"]["by_class"], {})
+        self.assertEqual(set(row["generate"]["points_removed"]), {"car"})
+        self.compare(*words, "--methods", "kpconv", "--remove", "none")
+        self.assertEqual(rows_of(self.output)["kpconv"]["generate"]["points_removed"], {})
+        paris = [(x, y, z, {40: 7, 50: 1, 80: 5}[label]) for x, y, z, label in tiny_place()]
+        write_cloud(self.folder / "place.ply", paris)
+        self.compare(*words, "--methods", "kpconv,basic", "--labels", "paris-carla-3d")
+        rows = rows_of(self.output)
+        for name in ["kpconv", "basic"]:
+            self.assertEqual(set(rows[name]["c2c"]["by_class"]), {"road", "building", "pole"})
+            self.assertGreater(rows[name]["c2c"]["by_class"]["road"]["points"], 1000)
+        # Nobody has to ask for it.
+        self.compare(*words, "--time-limit", "0.01")
+        self.assertIn("kpconv", rows_of(self.output))
 
     def test_what_the_paper_removes(self):
         """Section "Adaptive Splatting": moving and parked cars, pedestrians; whatever the scheme."""

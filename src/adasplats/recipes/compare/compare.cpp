@@ -12,6 +12,7 @@
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/provenance/machine.h"
 #include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/pipeline/segment/point_classes.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/recipes/compare/competitors.h"
 #include "adasplats/recipes/compare/paper_figures.h"
@@ -44,6 +45,7 @@ ComparisonData data_of(const CompareJob& job) {
     if (!path->empty()) require_input(*path);
   }
   for (const auto& [name, file] : job.meshes) require_input(file);
+  if (!job.network.empty()) require_input(job.network);
   return data;
 }
 
@@ -103,7 +105,9 @@ CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
   rules.has_classes = facts.has_classes;
   rules.labelled = facts.labelled && !data.labels.empty();
   // What can remove nothing is not asked of the steps: they would refuse it.
-  if (!facts.removed.ids.empty()) rules.removal = removal_rule_of(job).removal;
+  const DynamicRemoval removal = removal_rule_of(job).removal;
+  if (!facts.removed.ids.empty()) rules.removal = removal;
+  if (removal != DynamicRemoval::moving) rules.network_removal = removal;
   if (!facts.trajectory.empty()) {
     rules.data.trajectory = folder.work() / "trajectory.csv";
     write_if_changed(rules.data.trajectory,
@@ -148,6 +152,11 @@ Json data_json(const CompareJob& job, const CompetitionRules& rules, const Point
   return json;
 }
 
+/// Whether a competitor that nobody asked for can be made.
+bool is_possible(const Competitor& competitor, const CompetitionRules& rules) {
+  return (rules.labelled || !competitor.needs_labels) && (can_segment() || !competitor.segments);
+}
+
 void write_reports(const fs::path& folder, const Json& results) {
   write_file(folder / "compare.json",
              results.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -159,13 +168,15 @@ void write_reports(const fs::path& folder, const Json& results) {
 
 std::vector<UnusedSetting> unused_settings(const CompareJob& job) {
   const auto& methods = job.methods;
-  if (methods.empty() || std::find(methods.begin(), methods.end(), "poisson") != methods.end()) {
-    return {};
+  std::vector<UnusedSetting> unused;
+  if (methods.empty()) return unused;
+  for (const auto& [name, method] :
+       {std::pair<std::string_view, std::string>{"poisson_depth", "poisson"},
+        {"network", "kpconv"}}) {
+    if (std::ranges::find(methods, method) != methods.end()) continue;
+    for (const UnusedSetting& each : all_unused(job, "without the method " + method))
+      if (each.setting.name == name) unused.push_back(each);
   }
-  std::vector<UnusedSetting> unused = all_unused(job, "without the method poisson");
-  std::erase_if(unused, [](const UnusedSetting& each) {
-    return std::string_view(each.setting.name) != "poisson_depth";
-  });
   return unused;
 }
 
@@ -211,7 +222,7 @@ Json run_compare(const CompareJob& job, Session& session) {
   results["original"] =
       original_picture(rules, StepRunner(folder.work() / "original", steps, session.progress));
   for (const Competitor& competitor : chosen) {
-    if (competitor.needs_labels && !rules.labelled && job.methods.empty()) continue;
+    if (job.methods.empty() && !is_possible(competitor, rules)) continue;
     const StepRunner runner(folder.work() / competitor.name, steps, session.progress);
     results["competitors"].push_back(compete(competitor, rules, runner));
     // After every competitor, so that an interrupted run has shown what it knows.

@@ -59,6 +59,7 @@ struct CompareJob {
   std::size_t every = 0;    ///< 0: at most 20 poses
   int picture_width = 960;  ///< pixels; the height is 9/16 of it
   int poisson_depth = 13;
+  std::filesystem::path network;  ///< of the method kpconv; empty: default_network()
   CompareLimits limits;
   std::filesystem::path program;  ///< adasplats, which runs the steps; empty: that of PATH
   // What the steps are given where it is not the default.
@@ -86,6 +87,10 @@ void visit_settings(CompareJob& job, Visit&& visit) {
                 .least = 1,
                 .most = 16},
         job.poisson_depth);
+  visit(Setting{.name = "network",
+                .help = "File of the network of the method kpconv; else the one that comes with "
+                        "the program"},
+        job.network);
 }
 
 /// The settings of a method that is not compared.

@@ -155,12 +155,17 @@ class Run {
     if (competitor_.name == "poisson") {
       add(words, {"--depth", std::to_string(rules_.job.poisson_depth)});
     }
-    if (rules_.has_classes && !rules_.data.labels.empty()) {
+    if (rules_.has_classes && !rules_.data.labels.empty() && !competitor_.segments) {
       add(words, {"--labels", rules_.data.labels});
     }
     add_scans(words, rules_.data.scans);
-    add(words, {"--remove", std::string(name_of(rules_.removal))});
-    const Step step = {"generate", words, rules_.data.inputs, {model_}};
+    add(words, {"--remove", std::string(name_of(competitor_.segments ? rules_.network_removal
+                                                                     : rules_.removal))});
+    Step step = {"generate", words, rules_.data.inputs, {model_}};
+    if (competitor_.segments && !rules_.job.network.empty()) {
+      add(step.arguments, {"--network", rules_.job.network.string()});
+      step.inputs.push_back(rules_.job.network);
+    }
     const StepResult made = competitor_.is_mesh ? run(step) : run_on_device(step);
     entry_["generate"] = {{"command", made.command},
                           {"seconds", made.done() ? Json(made.child.seconds) : Json()},
@@ -168,6 +173,10 @@ class Run {
     if (!made.done()) entry_["generate"]["ended_after_seconds"] = made.child.seconds;
     for (const char* key : {"primitives", "points_in", "points_used"}) {
       if (made.done()) entry_["generate"][key] = made.report.value(key, Json());
+    }
+    for (const char* key : {"segmentation", "points_removed"}) {
+      if (made.done() && competitor_.segments)
+        entry_["generate"][key] = made.report.value(key, Json());
     }
     if (made.done()) entry_["generate"]["step_seconds"] = made.report.value("seconds", Json());
     note_device("generate", made);
@@ -229,6 +238,9 @@ class Run {
                 "--target=" + comma_text(rules_.view.target), "--picture-width",
                 std::to_string(rules_.job.picture_width)});
     if (rules_.labelled) add(words, {"--by-class", "--labels", rules_.data.labels});
+    // The errors of a network would hide those of the surface: metres, where it sees a fence in a
+    // facade.
+    if (rules_.labelled && competitor_.segments) words.push_back("--nearest-classes");
     const StepResult compared = run({"c2c", words, {scans_, rules_.original}, {picture}});
     store("c2c", compared, picture);
   }
@@ -291,24 +303,33 @@ class Run {
 
 const std::vector<Competitor>& known_competitors() {
   static const std::vector<Competitor> known = {
-      {"basic", "Basic splats", false, false, {"--method", "basic"}, {}},
-      {"descriptors", "AdaSplats, descriptors", false, false, {"--method", "descriptors"}, {}},
-      {"descriptors-no-resample",
-       "AdaSplats, descriptors, no resampling",
-       false,
-       false,
-       {"--method", "descriptors", "--no-resample"},
-       {}},
-      {"semantic", "AdaSplats, classes", false, true, {"--method", "semantic"}, {}},
-      {"semantic-no-resample",
-       "AdaSplats, classes, no resampling",
-       false,
-       true,
-       {"--method", "semantic", "--no-resample"},
-       {}},
-      {"consistent", "Ray-consistent splats", false, false, {"--method", "consistent"}, {}},
-      {"imls", "Mesh, IMLS", true, false, {"--method", "imls"}, {}},
-      {"poisson", "Mesh, Poisson", true, false, {"--method", "poisson"}, {}}};
+      {.name = "basic", .title = "Basic splats", .arguments = {"--method", "basic"}},
+      {.name = "descriptors",
+       .title = "AdaSplats, descriptors",
+       .arguments = {"--method", "descriptors"}},
+      {.name = "descriptors-no-resample",
+       .title = "AdaSplats, descriptors, no resampling",
+       .arguments = {"--method", "descriptors", "--no-resample"}},
+      {.name = "kpconv",
+       .title = "AdaSplats-KPConv",
+       .segments = true,
+       .arguments = {"--method", "semantic", "--segment"}},
+      {.name = "semantic",
+       .title = "AdaSplats, classes",
+       .needs_labels = true,
+       .arguments = {"--method", "semantic"}},
+      {.name = "semantic-no-resample",
+       .title = "AdaSplats, classes, no resampling",
+       .needs_labels = true,
+       .arguments = {"--method", "semantic", "--no-resample"}},
+      {.name = "consistent",
+       .title = "Ray-consistent splats",
+       .arguments = {"--method", "consistent"}},
+      {.name = "imls", .title = "Mesh, IMLS", .is_mesh = true, .arguments = {"--method", "imls"}},
+      {.name = "poisson",
+       .title = "Mesh, Poisson",
+       .is_mesh = true,
+       .arguments = {"--method", "poisson"}}};
   return known;
 }
 
@@ -334,7 +355,7 @@ std::vector<Competitor> chosen_competitors(
     if (is_taken(name, chosen)) {
       throw Error(ErrorKind::usage, "the mesh's name '" + name + "' is taken");
     }
-    chosen.push_back({name, "Mesh, " + name, true, false, {}, file});
+    chosen.push_back({.name = name, .title = "Mesh, " + name, .is_mesh = true, .file = file});
   }
   return chosen;
 }

@@ -19,6 +19,7 @@ struct Competitor {
   std::string title;
   bool is_mesh = false;
   bool needs_labels = false;
+  bool segments = false;               ///< its classes are a network's, not the data's labels
   std::vector<std::string> arguments;  ///< of `model` or `mesh`; empty for a ready-made mesh
   std::filesystem::path file;          ///< of a ready-made mesh
 };
@@ -37,6 +38,8 @@ struct CompetitionRules {
   bool has_classes = false;        ///< the points have labels
   bool labelled = false;
   DynamicRemoval removal = DynamicRemoval::none;  ///< that removes something, or none
+  /// Of a competitor that segments, whose network tells nothing that moves from what could.
+  DynamicRemoval network_removal = DynamicRemoval::none;
   Vec3d offset_m;
   std::size_t every = 1;
   PictureView view;
