@@ -112,8 +112,10 @@ Table thin_table(const std::vector<Competitor>& competitors, const Json& results
   Table table = table_of("C2C of thin structures", competitors, paper_rows_of(results), measures);
   table.definitions = {
       {"C2C of a class",
-       "C2C of the simulated points of the class to the original points of the same class. The "
-       "small figure is the number of simulated points: few of them make a weak figure."},
+       "C2C of the simulated points of the class to the original points of the same class; where "
+       "the model’s classes are a network’s (AdaSplats-KPConv), a simulated point is of the class "
+       "of the nearest original one. The small figure is the number of simulated points: few of "
+       "them make a weak figure."},
       {"mean",
        "of the three classes, each with the same weight, only where all three are there; the "
        "paper’s "
