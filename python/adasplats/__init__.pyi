@@ -140,6 +140,7 @@ def segment(
     margin: float = 12.0,
     intensity: bool = True,
     confidences: Literal[False] = False,
+    device: Device = "auto",
     threads: int = 0,
     progress: Progress | None = None,
 ) -> NDArray[np.uint16]: ...
@@ -152,6 +153,7 @@ def segment(
     margin: float = 12.0,
     intensity: bool = True,
     confidences: Literal[True],
+    device: Device = "auto",
     threads: int = 0,
     progress: Progress | None = None,
 ) -> tuple[NDArray[np.uint16], NDArray[np.float32]]: ...

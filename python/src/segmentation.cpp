@@ -21,14 +21,15 @@ constexpr const char* kSegmentDoc =
     "label scheme 'semantickitti', in the order of the points; with confidences a tuple of these "
     "and "
     "(N,)\n"
-    "float32, 0 to 1. Both are new arrays. The same on any number of threads. Raises TypeError, "
+    "float32, 0 to 1. Both are new arrays. The same on any number of threads. device: 'auto', 'cpu', "
+    "'cuda'. Raises TypeError, "
     "ValueError\n"
     "(what is in the file), OSError, RuntimeError (built without OpenBLAS).";
 
 struct SegmentCall {
   std::filesystem::path network;
   SegmentOptions options;
-  WorkOptions work{.has_device = false};
+  WorkOptions work;
 
   void take(Keywords& keywords) {
     keywords.take("network", network);

@@ -47,9 +47,12 @@ class SegmentCommand final : public Command {
     add_settings(app, job_.segment);
     add_settings(app, job_.window);
     add_load_options(app, job_.load);
+    add_device_options();
   }
 
   void run(Session& session) override {
+    // OptiX casts rays; networks are run with CUDA alone.
+    if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
     const SegmentResult result = run_segment(job_, session);
     session.report.update(to_json(result));
     TextTable table({"class", "points"});

@@ -16,6 +16,7 @@
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/pipeline/output/output_check.h"
 #include "adasplats/pipeline/output/output_folder.h"
+#include "adasplats/pipeline/segment/segment_on_device.h"
 #include "adasplats/recipes/segment/labelled_points.h"
 #include "adasplats/recipes/segment/output_classes.h"
 #include "adasplats/segment/network/matrix_product.h"
@@ -230,7 +231,7 @@ class PointSegmenter {
     // The confidence of a label is that of all classes that are written as it.
     const bool joins = outputs_.joins();
     options.probabilities = options.probabilities || (options.confidences && joins);
-    Segmentation segmentation = segment_cloud(cloud, network_, options, session_.executor);
+    Segmentation segmentation = segment_on_device(cloud, network_, options, session_);
     FoundLabels found;
     found.labels.resize(wanted);
     const std::size_t classes = outputs_.classes.size();

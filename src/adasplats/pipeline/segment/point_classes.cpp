@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
+#include "adasplats/pipeline/segment/segment_on_device.h"
 #include "adasplats/segment/network/matrix_product.h"
 
 namespace adasplats {
@@ -45,9 +46,9 @@ bool PointClassifier::tells(DynamicRemoval removal) const {
 }
 
 PointClasses PointClassifier::classes_of(const PointCloud& cloud, const SegmentOptions& options,
-                                         const Session& session) const {
+                                         Session& session) const {
   session.progress.begin_step("segment", 0);
-  Segmentation found = segment_cloud(cloud, network_, options, session.executor);
+  Segmentation found = segment_on_device(cloud, network_, options, session);
   session.progress.end_step();
   PointClasses classes;
   for (const std::string& name : network_.classes) classes.by_class.push_back({name, 0});

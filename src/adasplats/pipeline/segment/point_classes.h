@@ -55,7 +55,7 @@ class PointClassifier {
   bool tells(DynamicRemoval removal) const;
 
   PointClasses classes_of(const PointCloud& cloud, const SegmentOptions& options,
-                          const Session& session) const;
+                          Session& session) const;
 
  private:
   Network network_;

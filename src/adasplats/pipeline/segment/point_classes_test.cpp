@@ -43,7 +43,7 @@ TEST(PointClasses, AreTheNetworksAndCounted) {
   const Executor executor(2);
   ProgressSink progress;
   DeviceChoice device;
-  const Session session{executor, progress, 1, device};
+  Session session{executor, progress, 1, device};
   const PointClassifier classifier("");
   const Network network = default_network();
   EXPECT_EQ(classifier.facts().name, "default");
