@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A network of train.py as the file that adasplats reads (docs/segmentation.md, "The file").
 
-  tools/segmentation/export.py NETWORK.pt OUT.network [--card TEXT]
+  tools/segmentation/export.py NETWORK.pt OUT.network [--card TEXT] [--bits 8|16]
 
-Normalisations become part of the weights before them. Weights are written with 16 bits. The file is
+Normalisations become part of the weights before them. Weights are written with 16 or 8 bits. The file is
 run on points by adasplats, where the package can be imported, and must give PyTorch's logits.
 """
 import argparse
@@ -28,9 +28,23 @@ MOST_APART = 1e-3  # logits of the program and of PyTorch, with the same weights
 class Layers:
     """Writes down what Network.forward() does, value by value."""
 
-    def __init__(self, network):
+    def __init__(self, network, bits):
         self.network, self.layers, self.weights = network, [], []
+        self.bits = bits
         self.data, self.values = b"", 1
+
+    def keep_matrix(self, matrix):
+        """With 8 bits: a step a column (32 bits), then how many of these each weight is."""
+        if self.bits == 16:
+            return self.keep(matrix)
+        matrix = np.asarray(matrix.detach().cpu(), np.float32)
+        steps = (np.abs(matrix).max(0) / 127).astype("<f4")
+        if not np.isfinite(steps).all():
+            raise SystemExit("export: a weight is not finite")
+        counts = np.round(matrix / np.where(steps > 0, steps, 1)).astype(np.int8)
+        self.weights.append({"shape": list(matrix.shape), "offset": len(self.data), "bits": 8})
+        self.data += steps.tobytes() + counts.tobytes()
+        return len(self.weights) - 1
 
     def keep(self, matrix):
         matrix = np.asarray(matrix.detach().cpu(), np.float16)
@@ -49,7 +63,7 @@ class Layers:
 
     def weighted(self, kind, level, input_, matrix, norm, slope, **more):
         scale = norm.weight / torch.sqrt(norm.running_var + norm.eps)
-        return self.layer(kind, level, input_, weight=self.keep(matrix * scale),
+        return self.layer(kind, level, input_, weight=self.keep_matrix(matrix * scale),
                           bias=self.keep(norm.bias - norm.running_mean * scale), slope=slope,
                           **more)
 
@@ -84,12 +98,12 @@ class Layers:
             joined = self.layer("join", level, finer, second=skipped[level])
             value = self.unary(decoder, level, joined)
         head = network.head
-        self.layer("unary", 0, value, weight=self.keep(head.weight.T), bias=self.keep(head.bias),
+        self.layer("unary", 0, value, weight=self.keep_matrix(head.weight.T), bias=self.keep(head.bias),
                    slope=1.0)
 
 
-def write_network(network, classes, card, out):
-    layers = Layers(network.eval())
+def write_network(network, classes, card, out, bits=16):
+    layers = Layers(network.eval(), bits)
     layers.all()
     shape = network.shape
     header = json.dumps({
@@ -141,12 +155,13 @@ def main():
     parser.add_argument("network", type=pathlib.Path)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--card", default="")
+    parser.add_argument("--bits", type=int, choices=(8, 16), default=16, help="of a weight")
     options = parser.parse_args()
     network, classes = read_trained(options.network)
-    write_network(network, classes, options.card, options.out)
+    write_network(network, classes, options.card, options.out, options.bits)
     apart, rounded = check(options.out, network)
-    print(f"{options.out}: {options.out.stat().st_size:,} bytes; 16 bits change logits by up to "
-          f"{rounded:.1e}")
+    print(f"{options.out}: {options.out.stat().st_size:,} bytes; {options.bits} bits change "
+          f"logits by up to {rounded:.1e}")
     if apart is None:
         print("not checked against the program: the package adasplats cannot be imported")
     elif not apart <= MOST_APART:

@@ -12,6 +12,16 @@ from network import Reach, gather
 MAGIC = b"adasplats-network\n"
 
 
+def _weights_of(entry, data):
+    rows, columns = entry["shape"]
+    if entry.get("bits", 16) == 16:
+        halves = np.frombuffer(data, "<f2", rows * columns, entry["offset"])
+        return halves.astype(np.float32).reshape(rows, columns)
+    steps = np.frombuffer(data, "<f4", columns, entry["offset"])
+    counts = np.frombuffer(data, np.int8, rows * columns, entry["offset"] + 4 * columns)
+    return counts.reshape(rows, columns).astype(np.float32) * steps
+
+
 class NetworkFile:
     def __init__(self, file):
         content = file.read_bytes()
@@ -21,9 +31,7 @@ class NetworkFile:
         length, = struct.unpack("<Q", content[len(MAGIC):ahead])
         self.header = json.loads(content[ahead:ahead + length])
         data = content[ahead + length:]
-        self.weights = [
-            torch.tensor(np.frombuffer(data, "<f2", int(np.prod(w["shape"])), w["offset"])
-                         .astype(np.float32).reshape(w["shape"])) for w in self.header["weights"]]
+        self.weights = [torch.tensor(_weights_of(w, data)) for w in self.header["weights"]]
         self.kernel = torch.tensor(self.header["kernel"])
         self.shape = self.header["shape"]
         self.classes = self.header["classes"]

@@ -74,22 +74,44 @@ Layer layer_of(const json& object, const Network& network) {
   return layer;
 }
 
+template <class T>
+T number_at(std::string_view data, std::size_t offset) {
+  T number{};
+  std::memcpy(&number, data.data() + offset, sizeof(T));
+  return number;
+}
+
+/// Of 16 bits each.
+void read_halves(Weights& weights, std::string_view data) {
+  for (std::size_t i = 0; i < weights.values.size(); ++i)
+    weights.values[i] = from_half(number_at<std::uint16_t>(data, 2 * i));
+}
+
+/// Steps of the columns (32 bits each), then how many of these each weight is (8 bits, signed).
+void read_steps(Weights& weights, std::string_view data) {
+  const std::string_view counts = data.substr(4 * weights.columns);
+  for (std::size_t i = 0; i < weights.values.size(); ++i)
+    weights.values[i] = number_at<float>(data, 4 * (i % weights.columns)) *
+                        static_cast<float>(number_at<std::int8_t>(counts, i));
+}
+
 Weights weights_of(const json& object, std::string_view data) {
   Weights weights;
   weights.rows = object.at("shape").at(0).get<std::size_t>();
   weights.columns = object.at("shape").at(1).get<std::size_t>();
   const auto offset = object.at("offset").get<std::size_t>();
+  const int bits = object.value("bits", 16);
+  if (bits != 16 && bits != 8)
+    throw std::runtime_error("weights of " + std::to_string(bits) + " bits are not known");
   const std::size_t count = weights.rows * weights.columns;
+  const std::size_t bytes = bits == 16 ? 2 * count : count + 4 * weights.columns;
   if (weights.rows > kMostRows || weights.columns > kMostRows || offset > data.size() ||
-      count > (data.size() - offset) / 2)
+      bytes > data.size() - offset)
     throw std::runtime_error("weights lie beyond its end");
   weights.values.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint16_t half = 0;
-    std::memcpy(&half, data.data() + offset + 2 * i, 2);
-    weights.values[i] = from_half(half);
-    if (!std::isfinite(weights.values[i])) throw std::runtime_error("a weight is not finite");
-  }
+  (bits == 16 ? read_halves : read_steps)(weights, data.substr(offset));
+  for (const float value : weights.values)
+    if (!std::isfinite(value)) throw std::runtime_error("a weight is not finite");
   return weights;
 }
 

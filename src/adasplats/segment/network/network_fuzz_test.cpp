@@ -21,6 +21,7 @@ using io_test::Mutator;
 using network_test::has_products;
 using network_test::NetworkText;
 using network_test::pole_network;
+using network_test::pole_network_of_8_bits;
 using nlohmann::json;
 
 /// Every kind of layer, on two levels.
@@ -45,7 +46,7 @@ NetworkText network_of_all_layers() {
   return network;
 }
 
-std::vector<NetworkText> seeds() { return {pole_network(), network_of_all_layers()}; }
+std::vector<NetworkText> seeds() { return {pole_network(), pole_network_of_8_bits(), network_of_all_layers()}; }
 
 /// Every other time the whole file is broken, else its header or its weights.
 std::string broken(const NetworkText& seed, const NetworkText& other, std::size_t round,

@@ -19,6 +19,7 @@ namespace {
 using network_test::has_products;
 using network_test::NetworkText;
 using network_test::pole_network;
+using network_test::pole_network_of_8_bits;
 using nlohmann::json;
 
 TEST(Network, IsReadAndRefusedWhereItIsWrong) {
@@ -61,6 +62,21 @@ TEST(Network, IsReadAndRefusedWhereItIsWrong) {
   wrong = pole_network();
   wrong.header["weights"][0]["shape"] = {std::uint64_t{1} << 32, std::uint64_t{1} << 32};
   refused(wrong.text(), "beyond its end");
+}
+
+TEST(Network, WeightsOf8BitsAreReadAndRefusedWhereTheyAreWrong) {
+  EXPECT_EQ(parse_network(pole_network_of_8_bits().text(), "n").weights[0].values,
+            (std::vector<float>{1, 0, 0, 1}));
+  NetworkText wrong = pole_network_of_8_bits();
+  const std::string text = wrong.text();
+  expect_error(ErrorKind::data, {"n: ", "beyond its end"},
+               [&] { parse_network(text.substr(0, text.size() - 1), "n"); });
+  wrong.header["weights"][0]["bits"] = 4;
+  expect_error(ErrorKind::data, {"n: ", "of 4 bits"}, [&] { parse_network(wrong.text(), "n"); });
+  wrong = pole_network_of_8_bits();
+  wrong.data[wrong.data.size() - 9] = '\xff';  // a step that is no number
+  wrong.data[wrong.data.size() - 10] = '\xff';
+  expect_error(ErrorKind::data, {"n: ", "not finite"}, [&] { parse_network(wrong.text(), "n"); });
 }
 
 TEST(Network, ShapesOutOfRangeAreRefused) {

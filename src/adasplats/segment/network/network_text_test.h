@@ -77,6 +77,16 @@ inline NetworkText pole_network() {
   return network;
 }
 
+/// The same with its matrix in 8 bits: steps of the columns, then how many of these.
+inline NetworkText pole_network_of_8_bits() {
+  NetworkText network = pole_network();
+  network.header["weights"][0] = {{"shape", {2, 2}}, {"offset", network.data.size()}, {"bits", 8}};
+  const float steps[] = {0.5F, 0.125F};
+  network.data.append(reinterpret_cast<const char*>(steps), sizeof(steps));
+  network.data.append({2, 0, 0, 8});
+  return network;
+}
+
 inline bool has_products() {
   try {
     require_products();
