@@ -6,7 +6,7 @@
   bench/segmentation.py build/release/bin/adasplats OUT PLACES NAME:PLACE[,PLACE...]=NETWORK...
 
 PLACES: the folder `sequences` of a SemanticKITTI tree. Arguments of one NAME are pooled: the folds of
-a cross-validation are three of them. Writes OUT/segmentation.json (by name: the report of `evaluate
+a cross-validation are three of them. Writes OUT/segmentation.json (under `networks` by name: the report of `evaluate
 segmentation`, with the networks' SHA-256) and prints a Markdown table. Labels stay in OUT.
 """
 import argparse
@@ -72,11 +72,11 @@ def main():
         name, _, rest = text.partition(":")
         places, _, network = rest.partition("=")
         wanted[name].append((places.split(","), pathlib.Path(network)))
-    results = {"provenance": provenance_of(options.program)}
+    results = {"provenance": provenance_of(options.program), "networks": {}}
     print("| | groups |", " | ".join(GROUPS), "| classes |\n|---|--:|" + "--:|" * 6)
     for name, of_name in wanted.items():
         result = measured(options.program, options.out / name, options.places, of_name)
-        results[name] = result
+        results["networks"][name] = result
         groups = result["groups"]
         figures = [groups["miou"], *(groups["iou"][g] for g in GROUPS), result["miou_present"]]
         print(f"| {name} |", " | ".join(f"{100 * f:.1f} %" for f in figures), "|", flush=True)

@@ -181,11 +181,27 @@ CALIBRATION_PARTS = [
             ("without poses", "no_poses"), ("without ranges", "no_ranges"),
             ("without elevations", "no_elevations"), ("without mount", "no_mount"),
             ("driven path kept", "driven_path_kept"), ("without empty beams", "no_empty_beams")))]
+SEGMENTATION = [
+    ("groups", "groups/miou", "0.0 %"), *(
+        (group, f"groups/iou/{group}", "0.0 %")
+        for group in ("ground", "surface", "linear", "non-surface", "movable")),
+    ("classes", "miou_present", "0.0 %"), ("accuracy", "accuracy", "0.0 %")]
+SEGMENTATION_MODELS = [
+    ("splats", "primitives/network", "0.00 M"),
+    ("ratio", "primitives/network over primitives/true", "0.00x"), *(
+        (thing, f"c2c/network/nearest/{thing}/c2c_m over c2c/true/nearest/{thing}/c2c_m", "0.00x")
+        for thing in THIN),
+    ("recall", "movable/removed over movable/points", "0.0 %"),
+    ("lost", "movable/others_removed over movable/others", "0.0 %")]
+THIN_THINGS = [column for column in COMPARISON if column[0] in ("primitives", *THIN)]
 # Name: (the rows' key where the document gives none, columns). A column that no row fills is left
 # out.
 TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "calibration": ("drives", CALIBRATION),
-          "parts": ("drives", CALIBRATION_PARTS)}
+          "parts": ("drives", CALIBRATION_PARTS),
+          "segmentation": ("networks", SEGMENTATION),
+          "segmentation_models": ("places", SEGMENTATION_MODELS),
+          "thin": ("competitors", THIN_THINGS)}
 
 
 def rows_of(data, key):

@@ -26,6 +26,17 @@ class SynthWorld(ProgramTest):
                 self.assertTrue((sequence / name).exists(), name)
             self.assertTrue((self.folder / kind / "mesh.ply").exists())
 
+    def test_info_says_who_measured_a_sequence_and_when(self):
+        folder = self.folder / "known"
+        self.run_good("synth", "world", "-o", folder, "--scans", "3", "--length", "80")
+        facts = self.report("info", folder / "sequences" / "00")["files"][0]
+        self.assertEqual(facts["sensor"], "velodyne-hdl-64e-kitti")
+        self.assertTrue(facts["beams"].startswith("HDL-64E blocks"), facts["beams"])
+        times = facts["times_s"]
+        self.assertAlmostEqual(times["last"] - times["first"], 2 * times["median_step"], places=3)
+        other = self.report("info", self.make("other"))["files"][0]
+        self.assertEqual((other["sensor"], other["beams"]), ("", "frame origin"))
+
     def test_the_seed_is_the_place(self):
         def scan(name, seed):
             sequence = self.make(name, "--kind", "city", "--seed", seed)

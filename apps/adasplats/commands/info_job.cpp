@@ -176,6 +176,38 @@ FileFacts mesh_facts(const fs::path& input, std::optional<LabelScheme> scheme) {
   return facts;
 }
 
+/// From when to when, and how far scans are apart.
+void describe_times(const KittiSequence& sequence, FileFacts& facts) {
+  if (sequence.trajectory.size() < 2) return;
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < sequence.trajectory.size(); ++i)
+    steps_s.push_back(sequence.trajectory[i].time_s - sequence.trajectory[i - 1].time_s);
+  std::ranges::sort(steps_s);
+  const double first_s = sequence.trajectory.front().time_s;
+  const double last_s = sequence.trajectory.back().time_s;
+  const double median_s = steps_s[steps_s.size() / 2];
+  facts.rows.emplace_back("times", fixed(first_s, 3) + " .. " + fixed(last_s, 3) + " s, scans " +
+                                       fixed(median_s, 3) + " s apart, at most " +
+                                       fixed(steps_s.back(), 3) + " s");
+  facts.json["times_s"] = {{"first", first_s},
+                           {"last", last_s},
+                           {"median_step", median_s},
+                           {"longest_step", steps_s.back()}};
+}
+
+/// What the points are taken for: who measured them, and from where.
+void describe_beams(const ScanBeams& beams, FileFacts& facts) {
+  const std::string sensor = beams.sensor.empty() ? "not recognised" : beams.sensor;
+  facts.rows.emplace_back("sensor", sensor);
+  facts.rows.emplace_back("beams from", beams.description());
+  facts.rows.emplace_back("motion of a scan", !beams.sweeps_m.empty() ? "taken out of the points"
+                                              : !beams.raw_motions.empty()
+                                                  ? "in the points, as measured"
+                                                  : "not known: scans as if standing still");
+  facts.json["sensor"] = beams.sensor;
+  facts.json["beams"] = beams.description();
+}
+
 FileFacts sequence_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
                          const LoadOptions& options, Session& session) {
   const KittiSequence sequence = open_kitti_sequence(input);
@@ -197,6 +229,8 @@ FileFacts sequence_facts(const fs::path& input, const std::optional<LabelScheme>
   facts.json["scans"] = chosen.size();
   if (!all) facts.json["scans_in_all"] = sequence.scans.size();
   facts.json["driven_m"] = driven_m;
+  describe_times(sequence, facts);
+  describe_beams(recognize_beams(sequence), facts);
   Survey survey;
   session.progress.begin_step("read " + input.filename().string(), chosen.size());
   std::size_t done = 0;
