@@ -43,6 +43,24 @@ class Folders(ProgramTest):
                          [str(scans / "sequences" / name) for name in ("00", "01")])
         self.run_bad(64, "evaluate", "c2c", scans, self.cloud, says=["2 sequences", "name one"])
 
+    def test_poses_in_other_units_than_metres(self):
+        street = self.folder / "street"
+        self.run_good("synth", "street", "-o", street, "--points", "2000", "--driving-spacing",
+                      "1", "--most-driving-scans", "24")
+        sequence = street / "sequences" / "00"
+        poses = (sequence / "poses.txt").read_text()
+        for factor, says in ((10, "times 0.1"), (0.1, "times 10"), (1000, "times 0.001")):
+            rows = [[float(word) for word in line.split()] for line in poses.splitlines()]
+            for row in rows:
+                row[3::4] = [factor * value for value in row[3::4]]
+            (sequence / "poses.txt").write_text(
+                "".join(" ".join(map(repr, row)) + "\n" for row in rows))
+            for command in (["model", sequence, "-o", self.folder / "m.ply"], ["info", sequence]):
+                self.run_bad(65, *command, says=["contradict each other", says, "in metres?"])
+        self.assertNotIn("m.ply", self.names())
+        (sequence / "poses.txt").write_text(poses)
+        self.run_good("info", sequence)
+
     def test_tiles(self):
         tiles = self.folder / "tiles"
         tiles.mkdir()

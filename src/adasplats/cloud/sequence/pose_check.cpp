@@ -3,7 +3,9 @@
 #include "adasplats/cloud/sequence/pose_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <string>
@@ -35,6 +37,15 @@ constexpr std::array<std::string_view, PoseEvidence::kWays> kWayNames = {
     "with the poses taken as the camera's (is the 'Tr:' of calib.txt missing or the identity?)",
     "with the poses taken as the LiDAR's (is the 'Tr:' of calib.txt one too many?)",
     "with the poses inverted (are they sensor_from_world?)"};
+
+// Metres from millimetres, centimetres, decimetres and feet, and back.
+constexpr double kFoot_m = 0.3048;
+constexpr std::array kFactors = {0.001, 0.01, 0.1, kFoot_m, 1 / kFoot_m, 10.0, 100.0, 1000.0};
+
+// On sequences 00, 01, 02, 03 and 05 of SemanticKITTI the true motion has shares of 0.95 and more
+// and the best other way at most 0.66 of the given one's; where poses are wrong in one of these
+// ways, the best other way is the true one and has at least 1.36 of the given one's.
+constexpr double kLeastShare = 0.8, kLeastGain = 1.2;
 
 /// A cube of cells around a point.
 class Grid {
@@ -149,39 +160,81 @@ std::array<RigidTransform, PoseEvidence::kWays> motions(const RigidTransform& ea
           earlier * later.inverse()};
 }
 
+/// Two scans: the upright points of the later one, and where the earlier one has points.
+class ScanPair {
+ public:
+  /// Nothing where a scan cannot be read or the later one has too few upright points.
+  static std::optional<ScanPair> read(const KittiSequence& sequence, std::size_t earlier,
+                                      std::size_t later) {
+    const auto later_scan = try_kitti_points(sequence, later);
+    if (!later_scan) return std::nullopt;
+    const NearPoints source = near_points(*later_scan, kSourceReach_m);
+    std::vector<Vec3d> moved = upright_points(source);
+    if (moved.size() < kLeastPoints) return std::nullopt;
+    const auto earlier_scan = try_kitti_points(sequence, earlier);
+    if (!earlier_scan) return std::nullopt;
+    return ScanPair(source.middle, std::move(moved), near_points(*earlier_scan, kTargetReach_m));
+  }
+
+  std::size_t points() const { return moved_.size(); }
+  double middles_apart_m() const { return middles_apart_m_; }
+  /// How many of the later scan's points meet the earlier scan after a motion.
+  std::size_t met(const RigidTransform& motion) const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(moved_, [&](Vec3d p) { return occupied_.meets(motion * p); }));
+  }
+
+ private:
+  ScanPair(Vec3d middle, std::vector<Vec3d> moved, const NearPoints& target)
+      : middles_apart_m_(length(middle - target.middle)),
+        moved_(std::move(moved)),
+        occupied_(target) {}
+
+  double middles_apart_m_;
+  std::vector<Vec3d> moved_;
+  Occupied occupied_;
+};
+
 void add_pair(const KittiSequence& sequence, std::size_t earlier, std::size_t later,
               PoseEvidence& evidence) {
-  const auto later_scan = try_kitti_points(sequence, later);
-  if (!later_scan) return;
-  const NearPoints source = near_points(*later_scan, kSourceReach_m);
-  const std::vector<Vec3d> moved = upright_points(source);
-  if (moved.size() < kLeastPoints) return;
-  const auto earlier_scan = try_kitti_points(sequence, earlier);
-  if (!earlier_scan) return;
-  const NearPoints target = near_points(*earlier_scan, kTargetReach_m);
-  const Occupied occupied(target);
+  const auto pair = ScanPair::read(sequence, earlier, later);
+  if (!pair) return;
   const auto ways = motions(sequence.trajectory[earlier].world_from_sensor,
                             sequence.trajectory[later].world_from_sensor);
   // Traffic at one's own speed does not move either; points of a sensor that moves are always
   // around their frame's origin, those in world coordinates come along.
-  const bool frame_stands =
-      length(source.middle - target.middle) >= 0.5 * length(ways[0].translation);
+  const bool frame_stands = pair->middles_apart_m() >= 0.5 * length(ways[0].translation);
   ++evidence.pairs;
-  evidence.points += moved.size();
+  evidence.points += pair->points();
   for (std::size_t way = 0; way < ways.size(); ++way)
-    if (way != kWithoutMotion || frame_stands)
-      evidence.met[way] += static_cast<std::size_t>(
-          std::ranges::count_if(moved, [&](Vec3d p) { return occupied.meets(ways[way] * p); }));
+    if (way != kWithoutMotion || frame_stands) evidence.met[way] += pair->met(ways[way]);
+  evidence.met_turned += pair->met({ways[0].rotation, {}});
 }
 
-std::vector<std::pair<std::size_t, std::size_t>> pairs_of(const Trajectory& trajectory) {
+void add_pair(const KittiSequence& sequence, std::size_t earlier, std::size_t later,
+              ScaleEvidence& evidence) {
+  const auto pair = ScanPair::read(sequence, earlier, later);
+  if (!pair) return;
+  const RigidTransform given = sequence.trajectory[earlier].world_from_sensor.inverse() *
+                               sequence.trajectory[later].world_from_sensor;
+  ++evidence.pairs;
+  evidence.points += pair->points();
+  evidence.met += pair->met({given.rotation, evidence.factor * given.translation});
+  evidence.met_given += pair->met(given);
+  evidence.met_turned += pair->met({given.rotation, {}});
+}
+
+/// Up to kPairs pairs of scans that are kLeastApart_m to kMostApart_m apart, were the translations
+/// of the poses `factor` times what they are.
+std::vector<std::pair<std::size_t, std::size_t>> pairs_of(const Trajectory& trajectory,
+                                                          double factor) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   const auto place = [&](std::size_t i) { return trajectory[i].world_from_sensor.translation; };
   for (std::size_t k = 0; k < kPairs; ++k) {
     const std::size_t earlier = k * trajectory.size() / kPairs;
     if (!pairs.empty() && pairs.back().first == earlier) continue;
     for (std::size_t later = earlier + 1; later < trajectory.size(); ++later) {
-      const double apart_m = length(place(later) - place(earlier));
+      const double apart_m = factor * length(place(later) - place(earlier));
       if (!(apart_m >= kLeastApart_m)) continue;
       if (apart_m <= kMostApart_m) pairs.emplace_back(earlier, later);
       break;
@@ -192,6 +245,25 @@ std::vector<std::pair<std::size_t, std::size_t>> pairs_of(const Trajectory& traj
 
 std::string percent_text(double share) {
   return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
+}
+
+std::string factor_text(double factor) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", factor);
+  return text.data();
+}
+
+[[noreturn]] void throw_contradiction(const KittiSequence& sequence, std::size_t points,
+                                      std::size_t pairs, std::size_t given, std::size_t other,
+                                      const std::string& way) {
+  const auto share = [&](std::size_t met) {
+    return percent_text(static_cast<double>(met) / static_cast<double>(points));
+  };
+  throw Error(ErrorKind::data,
+              sequence.folder.string() + ": the poses and the points contradict each other: of " +
+                  std::to_string(points) + " points on upright things in " + std::to_string(pairs) +
+                  " pairs of scans " + share(given) + " meet the other scan " +
+                  std::string(kWayNames.front()) + ", " + share(other) + " " + way);
 }
 
 }  // namespace
@@ -205,32 +277,56 @@ std::size_t PoseEvidence::best_other() const {
 }
 
 bool PoseEvidence::contradicts() const {
-  // On sequences 00, 01, 02, 03 and 05 of SemanticKITTI the true motion has shares of 0.95 and more
-  // and the best other way at most 0.66 of the given one's; where poses are wrong in one of these
-  // ways, the best other way is the true one and has at least 1.36 of the given one's.
-  constexpr double kLeastShare = 0.8, kLeastGain = 1.2;
   const double other = share(best_other());
   return other >= kLeastShare && other >= kLeastGain * share(0);
 }
 
+bool PoseEvidence::confirms() const {
+  // Other ways than the given one say nothing against it: one of them may be the same.
+  return share(0) >= kLeastShare &&
+         static_cast<double>(met[0]) >= kLeastGain * static_cast<double>(met_turned);
+}
+
+bool ScaleEvidence::contradicts() const {
+  // Without the gain on no translation at all, traffic at one's own speed would speak for factors
+  // below 1, and a tunnel for all.
+  const auto other = static_cast<double>(std::max(met_given, met_turned));
+  return points != 0 && static_cast<double>(met) >= kLeastShare * static_cast<double>(points) &&
+         static_cast<double>(met) >= kLeastGain * other;
+}
+
 PoseEvidence weigh_poses(const KittiSequence& sequence) {
   PoseEvidence evidence;
-  for (const auto& [earlier, later] : pairs_of(sequence.trajectory))
+  for (const auto& [earlier, later] : pairs_of(sequence.trajectory, 1))
     add_pair(sequence, earlier, later, evidence);
   return evidence;
 }
 
+std::vector<ScaleEvidence> weigh_scales(const KittiSequence& sequence) {
+  std::vector<ScaleEvidence> scales;
+  for (const double factor : kFactors) {
+    ScaleEvidence evidence;
+    evidence.factor = factor;
+    for (const auto& [earlier, later] : pairs_of(sequence.trajectory, factor))
+      add_pair(sequence, earlier, later, evidence);
+    if (evidence.pairs != 0) scales.push_back(evidence);
+  }
+  return scales;
+}
+
 void require_poses_that_fit(const KittiSequence& sequence) {
   const PoseEvidence evidence = weigh_poses(sequence);
-  if (!evidence.contradicts()) return;
-  const std::size_t other = evidence.best_other();
-  throw Error(ErrorKind::data,
-              sequence.folder.string() + ": the poses and the points contradict each other: of " +
-                  std::to_string(evidence.points) + " points on upright things in " +
-                  std::to_string(evidence.pairs) + " pairs of scans " +
-                  percent_text(evidence.share(0)) + " meet the other scan " +
-                  std::string(kWayNames.front()) + ", " + percent_text(evidence.share(other)) +
-                  " " + std::string(kWayNames.at(other)));
+  if (evidence.contradicts()) {
+    const std::size_t other = evidence.best_other();
+    throw_contradiction(sequence, evidence.points, evidence.pairs, evidence.met[0],
+                        evidence.met.at(other), std::string(kWayNames.at(other)));
+  }
+  if (evidence.confirms()) return;
+  for (const ScaleEvidence& scale : weigh_scales(sequence))
+    if (scale.contradicts())
+      throw_contradiction(
+          sequence, scale.points, scale.pairs, scale.met_given, scale.met,
+          "with their translations times " + factor_text(scale.factor) + " (are they in metres?)");
 }
 
 }  // namespace adasplats

@@ -5,10 +5,24 @@
 #include <array>
 #include <cstddef>
 #include <string_view>
+#include <vector>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 
 namespace adasplats {
+
+/// How scans lie on each other with the translations of the poses times a factor.
+struct ScaleEvidence {
+  double factor = 1;
+  std::size_t pairs = 0;       ///< of scans 3 to 15 m apart, were the factor right
+  std::size_t points = 0;      ///< on upright things in the later scans of the pairs
+  std::size_t met = 0;         ///< of these, how many meet the earlier scan with the factor
+  std::size_t met_given = 0;   ///< with the poses as given
+  std::size_t met_turned = 0;  ///< with the rotations alone
+
+  /// Whether the factor is right, and the poses as given are not.
+  bool contradicts() const;
+};
 
 /// How the scans of a sequence lie on each other: with the poses as they are, and as faults that
 /// poses commonly have would have it.
@@ -20,6 +34,7 @@ struct PoseEvidence {
   std::size_t pairs = 0;                 ///< of scans that could be judged
   std::size_t points = 0;                ///< on upright things in the later scans of the pairs
   std::array<std::size_t, kWays> met{};  ///< of these, how many meet the earlier scan
+  std::size_t met_turned = 0;            ///< the same with the rotations of the poses alone
 
   /// Share of the points that meet, 0 to 1; 0 without points.
   double share(std::size_t way) const;
@@ -27,6 +42,8 @@ struct PoseEvidence {
   std::size_t best_other() const;
   /// Whether the poses cannot be those of the scans.
   bool contradicts() const;
+  /// Whether the translations of the poses are seen to be right: far better than none.
+  bool confirms() const;
 };
 
 /// Judges up to four pairs of scans that are 3 to 15 m apart by their poses. Ground looks the same
@@ -35,7 +52,13 @@ struct PoseEvidence {
 /// nor do scans that cannot be read.
 PoseEvidence weigh_poses(const KittiSequence& sequence);
 
-/// Throws data with the figures where weigh_poses(sequence) contradicts.
+/// Judges translations in other units than metres (millimetres, centimetres, decimetres, feet, and
+/// what metres taken for these become): for each factor up to four pairs that are 3 to 15 m apart
+/// by it. Without a pair there is no entry.
+std::vector<ScaleEvidence> weigh_scales(const KittiSequence& sequence);
+
+/// Throws data with the figures where weigh_poses(sequence) contradicts, or, unless it confirms, a
+/// factor of weigh_scales(sequence) does.
 void require_poses_that_fit(const KittiSequence& sequence);
 
 }  // namespace adasplats

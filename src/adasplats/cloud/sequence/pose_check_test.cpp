@@ -93,6 +93,52 @@ TEST(PoseCheck, FaultsAreNamedWithFigures) {
   refuse(kHonest, "in world coordinates already", true);
 }
 
+Way scaled_by(double factor) {
+  return [factor](const RigidTransform& pose) {
+    return RigidTransform{pose.rotation, factor * pose.translation};
+  };
+}
+
+TEST(PoseCheck, OtherUnitsThanMetresAreNamed) {
+  const TemporaryFolder folder;
+  const auto refuse = [&](double factor, const std::string& times) {
+    const KittiSequence wrong = drive(folder, street(), 12, scaled_by(factor));
+    expect_error(ErrorKind::data,
+                 {folder.path().string(), "contradict", "translations times " + times + " ("},
+                 [&] { require_poses_that_fit(wrong); });
+  };
+  refuse(1000, "0.001");
+  refuse(100, "0.01");
+  refuse(10, "0.1");
+  refuse(1 / 0.3048, "0.3048");
+  refuse(0.3048, "3.281");
+  refuse(0.1, "10");
+  refuse(0.01, "100");
+  refuse(0.001, "1000");
+}
+
+TEST(PoseCheck, ScalesSayNothingAgainstTruePoses) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(weigh_poses(drive(folder, street(), 12, kHonest)).confirms());
+  const auto believed = [](const KittiSequence& sequence) {
+    for (const ScaleEvidence& scale : weigh_scales(sequence))
+      EXPECT_FALSE(scale.contradicts()) << scale.factor;
+    require_poses_that_fit(sequence);
+  };
+  for (const double apart_m : {0.0, 0.1, 0.3, 1.0, 3.0, 8.0})  // 0: it stands
+    believed(drive(folder, street(), 12, kHonest, apart_m));
+  believed(drive(folder, street(), 12, scaled_by(1.05)));  // drift
+  believed(drive(folder, tunnel(), 12, kHonest));
+  EXPECT_TRUE(weigh_scales(KittiSequence{}).empty());
+}
+
+TEST(PoseCheck, TunnelsDoNotTellScales) {
+  const TemporaryFolder folder;
+  const KittiSequence sequence = drive(folder, tunnel(), 12, scaled_by(10));
+  EXPECT_FALSE(weigh_poses(sequence).confirms());
+  for (const ScaleEvidence& scale : weigh_scales(sequence)) EXPECT_FALSE(scale.contradicts());
+}
+
 TEST(PoseCheck, WhatTellsNothingIsBelieved) {
   const TemporaryFolder folder;
   EXPECT_FALSE(weigh_poses(drive(folder, tunnel(), 12, kHonest)).contradicts());
@@ -127,6 +173,13 @@ TEST(PoseCheck, TrafficAtOnesOwnSpeedIsNoContradiction) {
   const PoseEvidence evidence = weigh_poses(sequence);
   EXPECT_GT(evidence.pairs, 0U);
   EXPECT_FALSE(evidence.contradicts());
+  EXPECT_FALSE(evidence.confirms());
+  for (const double apart_m : {0.3, 3.0, 30.0})
+    for (std::size_t k = 0; k < sequence.trajectory.size(); ++k) {
+      sequence.trajectory[k].world_from_sensor.translation.x = apart_m * static_cast<double>(k);
+      for (const ScaleEvidence& scale : weigh_scales(sequence))
+        EXPECT_FALSE(scale.contradicts()) << scale.factor;
+    }
 }
 
 }  // namespace
