@@ -141,6 +141,7 @@ def segment(
     intensity: bool = True,
     confidences: Literal[False] = False,
     device: Device = "auto",
+    gpus: Sequence[int] | None = None,
     threads: int = 0,
     progress: Progress | None = None,
 ) -> NDArray[np.uint16]: ...
@@ -154,6 +155,7 @@ def segment(
     intensity: bool = True,
     confidences: Literal[True],
     device: Device = "auto",
+    gpus: Sequence[int] | None = None,
     threads: int = 0,
     progress: Progress | None = None,
 ) -> tuple[NDArray[np.uint16], NDArray[np.float32]]: ...

@@ -11,20 +11,13 @@ namespace {
 
 constexpr const char* kSegmentDoc =
     "Give points semantic classes by a network (kernel point convolutions, KPConv).\n\n"
-    "points: a PointCloud. network: a file; None: the one that comes with adasplats. tile: side of "
-    "the\n"
-    "squares that are looked at one after the other, m; margin: how much around each is looked at, "
-    "too,\n"
-    "m. intensity: the points' intensities are used, where they have some. Gives (N,) uint16, ids "
-    "of "
-    "the\n"
-    "label scheme 'semantickitti', in the order of the points; with confidences a tuple of these "
-    "and "
-    "(N,)\n"
-    "float32, 0 to 1. Both are new arrays. The same on any number of threads. device: 'auto', 'cpu', "
-    "'cuda'. Raises TypeError, "
-    "ValueError\n"
-    "(what is in the file), OSError, RuntimeError (built without OpenBLAS).";
+    "points: a PointCloud. network: a file; None: the one that comes with adasplats. tile: side\n"
+    "of the squares that are looked at one after the other, m; margin: how much around each is\n"
+    "looked at, too, m. intensity: the points' intensities are used, where they have some.\n"
+    "device: 'auto', 'cpu', 'cuda'. Gives (N,) uint16, ids of the label scheme 'semantickitti',\n"
+    "in the order of the points; with confidences a tuple of these and (N,) float32, 0 to 1.\n"
+    "Both are new arrays. The same on any number of threads. Raises TypeError, ValueError (what\n"
+    "is in the file), OSError, RuntimeError (built without OpenBLAS).";
 
 struct SegmentCall {
   std::filesystem::path network;

@@ -46,7 +46,9 @@ NetworkText network_of_all_layers() {
   return network;
 }
 
-std::vector<NetworkText> seeds() { return {pole_network(), pole_network_of_8_bits(), network_of_all_layers()}; }
+std::vector<NetworkText> seeds() {
+  return {pole_network(), pole_network_of_8_bits(), network_of_all_layers()};
+}
 
 /// Every other time the whole file is broken, else its header or its weights.
 std::string broken(const NetworkText& seed, const NetworkText& other, std::size_t round,
