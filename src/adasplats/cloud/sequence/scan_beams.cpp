@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <utility>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/core/error.h"
 
 namespace adasplats {
 namespace {
@@ -93,6 +95,29 @@ double median_of_all(std::vector<double> values) {
   return *middle;
 }
 
+/// What the sweeps by the poses' times are multiplied with: without motion, as the times have it,
+/// and were these milliseconds, microseconds or nanoseconds.
+constexpr std::array kSweepFactors = {0.0, 1.0, 1e3, 1e6, 1e9};
+
+/// Throws data where the points lie on the fan by times in another unit than seconds, and by no
+/// other way nearly as well.
+void require_times_in_seconds(const KittiSequence& sequence,
+                              const std::array<double, kSweepFactors.size()>& median_m,
+                              double most_m) {
+  constexpr double kClearly = 0.8;
+  const double others_m = std::min(median_m[0], median_m[1]);
+  for (std::size_t f = 2; f < kSweepFactors.size(); ++f) {
+    if (!(median_m[f] < most_m && median_m[f] < kClearly * others_m)) continue;
+    std::array<char, 300> text{};
+    std::snprintf(text.data(), text.size(),
+                  ": the times of the poses (times.txt) are not seconds: by the motion during a "
+                  "revolution points are %.1f mm from the beams of the sensor, %.1f mm with times "
+                  "divided by %.0f",
+                  1e3 * others_m, 1e3 * median_m[f], kSweepFactors[f]);
+    throw Error(ErrorKind::data, sequence.folder.string() + text.data());
+  }
+}
+
 }  // namespace
 
 MeasuredBeam ScanBeams::beam_of(std::size_t scan, Vec3d point) const {
@@ -152,7 +177,7 @@ ScanBeams recognize_beams(const KittiSequence& sequence) {
   constexpr double kMostDistance_m = 0.01;
 
   ScanBeams moving{true, sweeps_of(sequence.trajectory), {}, {}, {}, kSensor};
-  std::vector<double> as_measured_m, compensated_m;
+  std::array<std::vector<double>, kSweepFactors.size()> distances_m;
   const std::size_t scans = std::min(kScans, sequence.scans.size());
   for (std::size_t k = 0; k < scans; ++k) {
     // Not the first and the last one: their speeds are less sure.
@@ -162,14 +187,17 @@ ScanBeams recognize_beams(const KittiSequence& sequence) {
       const Vec3d point = vec_cast<double>(scan->positions[i]);
       const double range_m = length(point);
       if (!(range_m >= kLeastRange_m && range_m <= kMostRange_m)) continue;
-      as_measured_m.push_back(distance_from_fan(point));
-      compensated_m.push_back(
-          distance_from_fan(point - sweep_phase(point) * moving.sweeps_m[index]));
+      const Vec3d moved_m = sweep_phase(point) * moving.sweeps_m[index];
+      for (std::size_t f = 0; f < kSweepFactors.size(); ++f)
+        distances_m[f].push_back(distance_from_fan(point - kSweepFactors[f] * moved_m));
     }
   }
-  if (as_measured_m.size() < kLeastPoints) return {};
-  const double as_measured = median_of_all(std::move(as_measured_m));
-  const double compensated = median_of_all(std::move(compensated_m));
+  if (distances_m[0].size() < kLeastPoints) return {};
+  std::array<double, kSweepFactors.size()> median_m{};
+  for (std::size_t f = 0; f < median_m.size(); ++f)
+    median_m[f] = median_of_all(std::move(distances_m[f]));
+  const auto [as_measured, compensated] = std::pair(median_m[0], median_m[1]);
+  require_times_in_seconds(sequence, median_m, kMostDistance_m);
   if (!(std::min(as_measured, compensated) < kMostDistance_m)) return {};
   if (as_measured <= compensated) moving.sweeps_m.clear();
   return moving;

@@ -65,7 +65,8 @@ void set_raw_motions(ScanBeams& beams, const Trajectory& poses, const Trajectory
 /// Finds from the points of up to five scans whether a Velodyne HDL-64E measured them: they lie on
 /// the 64 cones that its beams sweep, to a few millimetres (two centimetres by chance), when the
 /// motion compensation is undone where there was one. Other sensors: default, all beams from the
-/// frame's origin. Errors: those of read_kitti_scan.
+/// frame's origin. Errors: data where the motion can be undone by the times of the poses only were
+/// these milli-, micro- or nanoseconds.
 ScanBeams recognize_beams(const KittiSequence& sequence);
 
 }  // namespace adasplats

@@ -235,6 +235,27 @@ TEST(RecognizeBeams, EmptyScansAndPointsThatAreNotFinite) {
   EXPECT_TRUE(recognize_beams(open_kitti_sequence(folder.path())).from_hdl64);
 }
 
+// Seconds that are none would make the vehicle stand during a revolution.
+TEST(RecognizeBeams, TimesInAnotherUnitThanSecondsAreRefused) {
+  const TemporaryFolder folder;
+  const KittiSequence sequence = write_sequence(folder, Drive{});
+  EXPECT_FALSE(recognize_beams(sequence).sweeps_m.empty());
+  for (const auto& [factor, text] :
+       {std::pair{1e3, "1000"}, {1e6, "1000000"}, {1e9, "1000000000"}}) {
+    KittiSequence wrong = sequence;
+    for (TimedPose& pose : wrong.trajectory) pose.time_s *= factor;
+    expect_error(ErrorKind::data,
+                 {folder.path().string(), "times.txt", std::string("divided by ") + text},
+                 [&] { recognize_beams(wrong); });
+  }
+  Drive drive;
+  drive.compensated = false;  // the times say nothing of such points
+  const TemporaryFolder other;
+  KittiSequence raw = write_sequence(other, drive);
+  for (TimedPose& pose : raw.trajectory) pose.time_s *= 1e3;
+  EXPECT_TRUE(recognize_beams(raw).from_hdl64);
+}
+
 TEST(RecognizeBeams, NoTimeBetweenPosesIsNoWay) {
   Drive drive;
   drive.compensated = false;
