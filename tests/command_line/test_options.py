@@ -121,6 +121,7 @@ class OptionsTest(ProgramTest):
             self.refuse(option, *run, option, "0")
         scans = self.simulate(model)
         sequence = scans / "sequences" / "00"
+        self.refuse("--fog", "simkitti32", sequence, "-o", self.folder / "new", "--fog", "0")
         self.refuse("--picture-width", "evaluate", "resimulate", model, sequence, "--picture-width",
                     "64")
         self.refuse("--keep-moving", "evaluate", "resimulate", model, sequence, "--keep-moving",

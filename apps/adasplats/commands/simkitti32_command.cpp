@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "adasplats/core/error.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/recipes/simkitti32.h"
 #include "cli/commands.h"
@@ -47,6 +48,8 @@ class SimKitti32Command final : public Command {
     for (const UnusedSetting& unused : unused_settings(job_)) {
       refuse({option_of(unused.setting).c_str()}, unused.why);
     }
+    if (is_given("--fog") && !(job_.weather.fog_visibility_m > 0))
+      throw Error(ErrorKind::usage, "--fog must be greater than 0");
     const LabelScheme labels = load_label_scheme(job_.labels);
     const SimKitti32Result result = run_simkitti32(job_, session);
     session.report.update(to_json(result, labels));
