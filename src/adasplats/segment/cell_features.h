@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "adasplats/core/host_device.h"
+#include "adasplats/core/maths/exponential.h"
 #include "adasplats/segment/network/network.h"
 
 namespace adasplats {
@@ -49,14 +50,14 @@ ADASPLATS_HD inline std::uint8_t class_of_logits(const float* logits, std::size_
 ADASPLATS_HD inline float confidence_of_logits(const float* logits, std::size_t classes,
                                                std::size_t best) {
   float sum = 0;
-  for (std::size_t c = 0; c < classes; ++c) sum += std::exp(logits[c] - logits[best]);
+  for (std::size_t c = 0; c < classes; ++c) sum += exp_of_negative(logits[c] - logits[best]);
   return std::fabs(sum) <= 3e38F ? 1 / sum : 0;
 }
 
 /// Of class c, given that of the best.
 ADASPLATS_HD inline float probability_of_logits(const float* logits, std::size_t c,
                                                 std::size_t best, float confidence) {
-  return confidence > 0 ? confidence * std::exp(logits[c] - logits[best]) : 0;
+  return confidence > 0 ? confidence * exp_of_negative(logits[c] - logits[best]) : 0;
 }
 
 }  // namespace adasplats
