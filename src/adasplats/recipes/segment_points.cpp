@@ -17,6 +17,7 @@
 #include "adasplats/pipeline/output/output_check.h"
 #include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/segment/segment_on_device.h"
+#include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/recipes/segment/labelled_points.h"
 #include "adasplats/recipes/segment/output_classes.h"
 #include "adasplats/segment/network/matrix_product.h"
@@ -262,6 +263,7 @@ class PointSegmenter {
 }  // namespace
 
 SegmentResult run_segment(const SegmentJob& job, Session& session) {
+  for (const fs::path& input : job.inputs) require_input(input);
   require_products();
   return PointSegmenter(job, session).run();
 }
