@@ -3,13 +3,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Labelled recordings as places that train.py reads.
 
-  tools/segmentation/prepare.py OUT.npz INPUT [--labels semantickitti|pandaset | --class-map FILE]
+  tools/segmentation/prepare.py OUT.npz INPUT [--labels semantickitti|pandaset|none | --class-map FILE]
       [--scans FIRST:COUNT:STRIDE] [--trajectory FILE]
 
 INPUT: what adasplats.read() takes; the package must be importable. Of several points in a cube of
 5 cm one is kept, by chance. Positions in cm from the middle, intensities as shares of the 99th
 percentile, each point with its scan, the elevation of its beam and its class. --class-map: labels of
-your own (docs/segmentation.md, "Class maps"); those that it does not name teach nothing.
+your own (docs/segmentation.md, "Class maps"); those that it does not name teach nothing. --labels none: for pseudo.py.
 """
 import argparse
 import pathlib
@@ -18,7 +18,7 @@ import adasplats
 import numpy as np
 
 from class_map import read_class_map
-from classes import NAMES, TABLES
+from classes import IGNORED, NAMES, TABLES
 
 CUBE_M = 0.05
 FARTHEST_M = 80
@@ -37,11 +37,22 @@ def inputs_of(path):
     return sorted(path.glob("*.ply")) if any(path.glob("*.ply")) else [path]
 
 
+def classes_of(cloud, options):
+    """(names of the classes, that of every point)"""
+    if options.labels == "none" and not options.class_map:
+        return NAMES, np.full(len(cloud.positions), IGNORED, np.uint8)
+    if cloud.classes is None:
+        raise SystemExit(f"{options.input}: its points have no labels")
+    names, table = (read_class_map(options.class_map) if options.class_map
+                    else (NAMES, TABLES[options.labels]))
+    return names, table[cloud.classes]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("input", type=pathlib.Path)
-    parser.add_argument("--labels", choices=sorted(TABLES), default="semantickitti")
+    parser.add_argument("--labels", choices=[*sorted(TABLES), "none"], default="semantickitti")
     parser.add_argument("--class-map", type=pathlib.Path)
     parser.add_argument("--scans", default="")
     parser.add_argument("--trajectory", type=pathlib.Path)
@@ -52,12 +63,8 @@ def main():
         words.update(first_scan=first, scan_count=count, scan_stride=stride)
     if options.trajectory:
         words["trajectory"] = options.trajectory
-    names, table = (read_class_map(options.class_map) if options.class_map
-                    else (NAMES, TABLES[options.labels]))
     cloud = adasplats.read(options.input, **words)
-    if cloud.classes is None:
-        raise SystemExit(f"{options.input}: its points have no labels")
-    classes = table[cloud.classes]
+    names, classes = classes_of(cloud, options)
     ways = cloud.positions - cloud.sensor_positions
     ranges = np.linalg.norm(ways, axis=1)
     elevations_deg = np.degrees(np.arcsin(np.clip(ways[:, 2] / np.maximum(ranges, 1e-3), -1, 1)))

@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Train a network on places of prepare.py.
 
-  tools/segmentation/train.py OUT PLACE.npz... [--steps N] [--test PLACE.npz...] [--checkpoint-every N]
+  tools/segmentation/train.py OUT PLACE.npz... [--also SHARE PLACE.npz...]... [--steps N]
+      [--test PLACE.npz...] [--checkpoint-every N]
   tools/segmentation/train.py OUT PLACE.npz... --from NETWORK.pt --minutes 10      # goes on from there
 
 OUT/checkpoint.pt is taken up again where it is there; OUT/log.jsonl has a line every 50 steps;
@@ -46,8 +47,8 @@ def class_weights(places):
     return (weights / weights[counts > 0].mean()).float()
 
 
-def predictions(network, place, with_intensity, core_m=30.0, margin_m=10.0):
-    """Class of every point, tile by tile."""
+def predictions(network, place, with_intensity, core_m=30.0, margin_m=10.0, least_probability=0.0):
+    """Class of every point, tile by tile; IGNORED where its probability is less than the least."""
     found = torch.full_like(place.classes, IGNORED)
     network.eval()
     for indices, in_core in tiles_of(place.positions, core_m, margin_m):
@@ -59,7 +60,9 @@ def predictions(network, place, with_intensity, core_m=30.0, margin_m=10.0):
         features = features_of(means, values[:, 0], with_intensity)
         with torch.no_grad():
             logits = network(features, make_pyramid(means, network.shape))
-        found[indices[in_core]] = logits.argmax(1)[cell_of[in_core]]
+        probability, best = logits.softmax(1).max(1)
+        best[probability < least_probability] = IGNORED
+        found[indices[in_core]] = best[cell_of[in_core]]
     return found
 
 
@@ -91,11 +94,15 @@ def summary(confusion, least_share=5e-4):
             "accuracy": float(np.trace(confusion) / confusion.sum())}
 
 
-def shares_of(options):
-    """How often crops are of each place."""
-    real, made = len(options.places), len(options.procedural)
-    of_made = options.procedural_share if real and made else float(made > 0)
-    return np.array([(1 - of_made) / max(real, 1)] * real + [of_made / max(made, 1)] * made)
+def sets_of(options):
+    """(share of the crops, its places), places of the command line first."""
+    also = [(float(share), [pathlib.Path(file) for file in files]) for share, *files in options.also]
+    sets = [(1 - sum(share for share, _ in also), options.places), *also]
+    sets = [(share, files) for share, files in sets if files]
+    total = sum(share for share, _ in sets)
+    if not sets or min(share for share, _ in sets) <= 0:
+        raise SystemExit("train: expected places, and shares of --also that are above 0 and leave some")
+    return [(share / total, files) for share, files in sets]
 
 
 class Progress:
@@ -165,14 +172,15 @@ def network_to_train(options):
     return network.to(options.device)
 
 
-def train(options):
-    places = [load_place(file, options.device) for file in options.places + options.procedural]
+def train(options, sets):
+    places = [load_place(file, options.device) for _, files in sets for file in files]
+    shares = np.array([share / len(files) for share, files in sets for _ in files])
     network = network_to_train(options)
     on_gpu = options.device.type == "cuda"
     optimizer = torch.optim.AdamW(network.parameters(), lr=options.rate, weight_decay=0.02,
                                   **({"fused": True} if on_gpu else {}))
     progress = Progress(options, network, optimizer)
-    crops = Crops(places, network.shape, [options.seed, progress.step], shares_of(options))
+    crops = Crops(places, network.shape, [options.seed, progress.step], shares)
     entropy = nn.CrossEntropyLoss(class_weights(places).to(options.device), ignore_index=IGNORED,
                                   label_smoothing=0.05)
     network.train()
@@ -197,10 +205,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("places", type=pathlib.Path, nargs="*")
-    parser.add_argument("--procedural", type=pathlib.Path, nargs="*", default=[],
-                        help="places, too")
-    parser.add_argument("--procedural-share", type=float, default=0.5,
-                        help="of the crops that are of these")
+    parser.add_argument("--also", nargs="+", action="append", default=[],
+                        metavar=("SHARE", "PLACE.npz"), help="places that this share of the crops "
+                        "is of, all alike; again for others")
     parser.add_argument("--test", type=pathlib.Path, nargs="*", default=[])
     parser.add_argument("--steps", type=int, default=10_000, help="at most")
     parser.add_argument("--minutes", type=float, default=1e6, help="at most, in all")
@@ -211,13 +218,15 @@ def main():
     parser.add_argument("--checkpoint-every", type=int, default=500)
     options = parser.parse_args()
     options.rate = options.rate or (4e-3 if options.start is None else 1e-3)
-    use(names_of(options.places + options.procedural + options.test))
+    sets = sets_of(options)
+    learned = [file for _, files in sets for file in files]
+    use(names_of(learned + options.test))
     options.out.mkdir(parents=True, exist_ok=True)
     options.device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
     torch.manual_seed(options.seed)
-    network, steps = train(options)
+    network, steps = train(options, sets)
     torch.save({"shape": network.shape, "classes": NAMES,
-                "places": [p.stem for p in options.places + options.procedural], "steps": steps,
+                "places": [p.stem for p in learned], "steps": steps,
                 "network": network.state_dict()}, options.out / "network.pt")
     tested = {}
     for file in options.test:
