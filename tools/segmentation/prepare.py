@@ -37,15 +37,11 @@ def inputs_of(path):
     return sorted(path.glob("*.ply")) if any(path.glob("*.ply")) else [path]
 
 
-def classes_of(cloud, options):
-    """(names of the classes, that of every point)"""
-    if options.labels == "none" and not options.class_map:
-        return NAMES, np.full(len(cloud.positions), IGNORED, np.uint8)
-    if cloud.classes is None:
-        raise SystemExit(f"{options.input}: its points have no labels")
-    names, table = (read_class_map(options.class_map) if options.class_map
-                    else (NAMES, TABLES[options.labels]))
-    return names, table[cloud.classes]
+def classes_wanted(options):
+    """(names of the classes, the class of every label's number or None: there are no labels)"""
+    if options.class_map:
+        return read_class_map(options.class_map)
+    return NAMES, TABLES.get(options.labels)
 
 
 def main():
@@ -63,8 +59,12 @@ def main():
         words.update(first_scan=first, scan_count=count, scan_stride=stride)
     if options.trajectory:
         words["trajectory"] = options.trajectory
+    names, table = classes_wanted(options)
     cloud = adasplats.read(options.input, **words)
-    names, classes = classes_of(cloud, options)
+    if table is not None and cloud.classes is None:
+        raise SystemExit(f"{options.input}: its points have no labels")
+    classes = (np.full(len(cloud.positions), IGNORED, np.uint8) if table is None
+               else table[cloud.classes])
     ways = cloud.positions - cloud.sensor_positions
     ranges = np.linalg.norm(ways, axis=1)
     elevations_deg = np.degrees(np.arcsin(np.clip(ways[:, 2] / np.maximum(ranges, 1e-3), -1, 1)))
