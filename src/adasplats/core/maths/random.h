@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "adasplats/core/host_device.h"
+#include "adasplats/core/maths/elementary.h"
 
 namespace adasplats {
 
@@ -29,12 +30,11 @@ class Random {
   ADASPLATS_HD constexpr double uniform(double low, double high) {
     return low + (high - low) * uniform();
   }
-  /// Standard normal (Box-Muller; two uniforms a draw, the second value is not kept). Not for
-  /// device code: the logarithm and the cosine of a GPU have other last bits.
-  double normal() {
+  /// Standard normal (Box-Muller; two uniforms a draw, the second value is not kept).
+  ADASPLATS_HD double normal() {
     const double u = 1.0 - uniform();  // in (0, 1]: the logarithm is finite
     const double v = uniform();
-    return std::sqrt(-2.0 * std::log(u)) * std::cos(6.283185307179586 * v);
+    return std::sqrt(-2.0 * log_of(u)) * cos_of_turns(v);
   }
 
   ADASPLATS_HD static constexpr std::uint64_t mix(std::uint64_t z) {
