@@ -5,20 +5,16 @@
 
 #include <algorithm>
 #include <chrono>
-#include <numeric>
-#include <tuple>
 
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/simulate/point_hits.h"
+#include "adasplats/gpu/simulate/scan_batches.h"
 
 namespace adasplats {
 
 namespace gpu {
 namespace {
 
-/// Scans in one launch hold about so many rays: enough to fill a GPU several times over, and few
-/// enough that copying the last launch's hits, which nothing overlaps, does not count.
-constexpr std::size_t kScanRaysAtOnce = std::size_t{1} << 21;
 constexpr int kSlots = 2;  // under way on each device
 
 using Clock = std::chrono::steady_clock;
@@ -26,90 +22,10 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Which firing is cast when: a warp's 32 rays stand one after another.
-using CastingOrder = std::vector<std::uint32_t>;
-
-template <class Key>
-CastingOrder ascending(std::span<const Firing> firings, const Key& key) {
-  CastingOrder order(firings.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::tuple_cat(key(firings[a]), std::tuple(a)) <
-           std::tuple_cat(key(firings[b]), std::tuple(b));
-  });
-  return order;
-}
-
-/// For many scans a launch: by tiles of two rings and 16 columns, which meet more of the same
-/// things than one ring's. A free pattern has rings or columns that say little; then this is as
-/// good as its own order.
-CastingOrder coherent_order(std::span<const Firing> firings) {
-  constexpr std::uint32_t kTileRings = 2, kTileColumns = 16;
-  return ascending(firings, [](const Firing& firing) {
-    return std::tuple(firing.ring / kTileRings, firing.column / kTileColumns,
-                      firing.ring % kTileRings, firing.column % kTileColumns);
-  });
-}
-
-/// For a single scan, which takes as long as its slowest warp: the rays along a street take long,
-/// and a warp full of them, each with other boxes to visit, takes far longer. So a warp's rays are
-/// four columns each of eight directions all around.
-CastingOrder spread_order(std::span<const Firing> firings) {
-  constexpr std::uint32_t kRunColumns = 4, kDirections = 8;
-  std::uint32_t columns = 0;
-  for (const Firing& firing : firings) columns = std::max(columns, firing.column + 1);
-  const std::uint32_t columns_a_direction = (columns + kDirections - 1) / kDirections;
-  return ascending(firings, [&](const Firing& firing) {
-    const std::uint32_t direction = firing.column / columns_a_direction;
-    const std::uint32_t column = firing.column % columns_a_direction;
-    return std::tuple(firing.ring, column / kRunColumns, direction, column % kRunColumns);
-  });
-}
-
 }  // namespace
 
-/// The poses of some scans on a device: the knots of all of them, and where each one's begin.
-struct BatchPoses {
-  PinnedBuffer<ScanPose> poses;
-  PinnedBuffer<std::uint32_t> first_poses;
-  DeviceBuffer<ScanPose> device_poses;
-  DeviceBuffer<std::uint32_t> device_first_poses;
-
-  /// Queues the copy, once an earlier one is over.
-  void upload(std::span<const ScanMotion> scans, Vec3d scene_origin, cudaStream_t stream) {
-    uploaded.wait("copy poses to the GPU");
-    std::size_t knots = 0;
-    for (const ScanMotion& scan : scans) knots += scan.knot_count();
-    if (poses.size() < knots) {
-      poses = PinnedBuffer<ScanPose>(knots);
-      device_poses = DeviceBuffer<ScanPose>(knots, stream);
-    }
-    if (first_poses.size() < scans.size() + 1) {
-      first_poses = PinnedBuffer<std::uint32_t>(scans.size() + 1);
-      device_first_poses = DeviceBuffer<std::uint32_t>(scans.size() + 1, stream);
-    }
-    std::uint32_t filled = 0;
-    for (std::size_t i = 0; i < scans.size(); ++i) {
-      first_poses.data()[i] = filled;
-      for (const ScanPose& pose : scan_poses(scans[i], scene_origin)) poses.data()[filled++] = pose;
-    }
-    first_poses.data()[scans.size()] = filled;
-    moving = knots > scans.size();
-    device_poses.upload(poses.span().first(knots));
-    if (moving) device_first_poses.upload(first_poses.span().first(scans.size() + 1));
-    uploaded.record(stream);
-  }
-  void set(RaySource& source) const {
-    source.poses = device_poses.data();
-    source.first_poses = moving ? device_first_poses.data() : nullptr;
-  }
-
-  Event uploaded;
-  bool moving = false;
-};
-
 /// One launch that is under way.
-struct ScanBatch {
+struct HitLaunch {
   Stream stream;
   Event begin, end;
   BatchPoses poses;
@@ -117,21 +33,6 @@ struct ScanBatch {
   DeviceBuffer<Hit> device_hits;
   DeviceBuffer<PointHit> device_points;
   std::size_t first = 0, count = 0;  ///< poses; none: idle
-};
-
-/// A sensor's firings in the order in which they are cast.
-struct OrderedFirings {
-  OrderedFirings() = default;
-  OrderedFirings(std::span<const FiringRay> firings, const CastingOrder& casting_order,
-                 cudaStream_t stream)
-      : order(std::span<const std::uint32_t>(casting_order), stream) {
-    std::vector<FiringRay> in_order(firings.size());
-    std::transform(casting_order.begin(), casting_order.end(), in_order.begin(),
-                   [&](std::uint32_t i) { return firings[i]; });
-    rays = DeviceBuffer<FiringRay>(std::span<const FiringRay>(in_order), stream);
-  }
-  DeviceBuffer<FiringRay> rays;
-  DeviceBuffer<std::uint32_t> order;
 };
 
 /// A sensor on one device.
@@ -156,7 +57,7 @@ struct DeviceScanner {
   DeviceBuffer<FiringRay> firings;  ///< as they are numbered
   OrderedFirings coherent;          ///< for launches that fill the GPU
   OrderedFirings spread;            ///< for smaller ones
-  std::array<std::unique_ptr<ScanBatch>, kSlots> batches;
+  std::array<std::unique_ptr<HitLaunch>, kSlots> batches;
 };
 
 }  // namespace gpu
@@ -166,8 +67,8 @@ using gpu::cuda_check;
 using gpu::DeviceGuard;
 using gpu::DevicePart;
 using gpu::DeviceScanner;
+using gpu::HitLaunch;
 using gpu::RaySource;
-using gpu::ScanBatch;
 using gpu::SceneParts;
 
 GpuScanner::Impl::Impl(const SceneParts& scene, const LidarModel& sensor,
@@ -245,7 +146,7 @@ DeviceHits GpuScanner::Impl::cast_on_device(std::span<const ScanMotion> scans, i
   return {kept_hits_.data(), scans.size(), firings_, device.part->device, stream};
 }
 
-void GpuScanner::Impl::reserve(ScanBatch& batch, std::size_t scans, int depth,
+void GpuScanner::Impl::reserve(HitLaunch& batch, std::size_t scans, int depth,
                                Results results) const {
   const std::size_t firings = scans * firings_;
   const std::size_t hits = firings * static_cast<std::size_t>(depth);
@@ -258,7 +159,7 @@ void GpuScanner::Impl::reserve(ScanBatch& batch, std::size_t scans, int depth,
   if (batch.results.size() < bytes) batch.results = gpu::PinnedBuffer<std::uint8_t>(bytes);
 }
 
-void GpuScanner::Impl::launch(DeviceScanner& device, ScanBatch& batch,
+void GpuScanner::Impl::launch(DeviceScanner& device, HitLaunch& batch,
                               std::span<const ScanMotion> scans, int depth, Results results) const {
   const cudaStream_t stream = batch.stream.get();
   batch.poses.upload(scans.subspan(batch.first, batch.count), scene_.origin, stream);
@@ -294,7 +195,7 @@ CastTimes GpuScanner::Impl::cast(std::span<const ScanMotion> motions, Results re
     DeviceScanner& device = *devices_[lane % devices_.size()];
     const DeviceGuard guard(device.part->device);
     auto& batch = device.batches[lane / devices_.size()];
-    if (batch == nullptr) batch = std::make_unique<ScanBatch>();
+    if (batch == nullptr) batch = std::make_unique<HitLaunch>();
     reserve(*batch, scans, depth, results);
     batch->stream.wait("prepare scans on the GPU");  // what an exception left there
     batch->count = 0;
@@ -306,7 +207,7 @@ CastTimes GpuScanner::Impl::cast(std::span<const ScanMotion> motions, Results re
   const auto begin_batch = [&](std::size_t k) {
     DeviceScanner& device = *devices_[k % lanes % devices_.size()];
     const DeviceGuard guard(device.part->device);
-    ScanBatch& batch = *device.batches[k % lanes / devices_.size()];
+    HitLaunch& batch = *device.batches[k % lanes / devices_.size()];
     batch.first = k * scans;
     batch.count = std::min(scans, motions.size() - batch.first);
     launch(device, batch, motions, depth, results);
@@ -314,7 +215,7 @@ CastTimes GpuScanner::Impl::cast(std::span<const ScanMotion> motions, Results re
   const auto end_batch = [&](std::size_t k) {
     DeviceScanner& device = *devices_[k % lanes % devices_.size()];
     const DeviceGuard guard(device.part->device);
-    ScanBatch& batch = *device.batches[k % lanes / devices_.size()];
+    HitLaunch& batch = *device.batches[k % lanes / devices_.size()];
     batch.stream.wait("cast scans on the GPU");
     times.traced_s += batch.end.seconds_since(batch.begin);
     const auto sink_start = gpu::Clock::now();

@@ -16,7 +16,7 @@ namespace adasplats {
 namespace gpu {
 struct BatchPoses;
 struct DeviceScanner;
-struct ScanBatch;
+struct HitLaunch;
 }  // namespace gpu
 
 /// Private to gpu/: how a GpuScanner works. Two launches are under way on every device: the hits of
@@ -39,8 +39,8 @@ struct GpuScanner::Impl {
  private:
   /// What a launch of so many scans casts, without poses.
   gpu::RaySource source_of(const gpu::DeviceScanner& device, std::size_t scans) const;
-  void reserve(gpu::ScanBatch& batch, std::size_t scans, int depth, Results results) const;
-  void launch(gpu::DeviceScanner& device, gpu::ScanBatch& batch, std::span<const ScanMotion> scans,
+  void reserve(gpu::HitLaunch& batch, std::size_t scans, int depth, Results results) const;
+  void launch(gpu::DeviceScanner& device, gpu::HitLaunch& batch, std::span<const ScanMotion> scans,
               int depth, Results results) const;
 
   const gpu::SceneParts& scene_;
