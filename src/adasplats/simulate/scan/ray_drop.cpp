@@ -132,18 +132,22 @@ bool is_blocked(const std::map<std::uint32_t, SectorCount>& scans) {
 
 std::array<double, RayDropModel::kFeatures> RayDropModel::features(
     const EchoConditions& echo) const {
-  constexpr double kLeastRange = 0.01, kLeastReflectance = 0.005;  // logarithms are finite
-  const double range = std::max(static_cast<double>(echo.range_m) / 10, kLeastRange);
-  const double slant = 1 - std::clamp(static_cast<double>(echo.cos_incidence), 0.0, 1.0);
-  const double reflectance =
-      std::isfinite(echo.reflectance) ? static_cast<double>(echo.reflectance) : usual_reflectance;
-  const double dim = std::log(std::max(reflectance, kLeastReflectance));
-  return {1, range, range * range, std::log(range), slant, slant * slant, dim, range * dim};
+  const DropFeatures features =
+      drop_features(echo.range_m, echo.cos_incidence, echo.reflectance, usual_reflectance);
+  std::array<double, kFeatures> values{};
+  std::copy_n(features.of, kFeatures, values.begin());
+  return values;
+}
+
+DropRules RayDropModel::rules() const {
+  DropRules rules{true, {}, usual_reflectance};
+  std::copy_n(weights.begin(), kFeatures, rules.weights);
+  return rules;
 }
 
 double RayDropModel::probability(const EchoConditions& echo) const {
   if (blocks(echo.direction)) return 1;
-  return logistic(product(weights, features(echo)));
+  return drop_chance(rules(), echo.range_m, echo.cos_incidence, echo.reflectance);
 }
 
 bool RayDropModel::blocks(Vec3f direction) const {

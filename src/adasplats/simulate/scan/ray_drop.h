@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adasplats/core/maths/vec3.h"
+#include "adasplats/simulate/scan/drop_chance.h"
 
 namespace adasplats {
 
@@ -35,7 +36,7 @@ struct BlockedSector {
 struct RayDropModel {
   /// Of 1, r, r^2, log(r), 1 - cos, (1 - cos)^2, log(reflectance), r * log(reflectance), with r in
   /// units of 10 m; see features().
-  static constexpr std::size_t kFeatures = 8;
+  static constexpr std::size_t kFeatures = kDropFeatures;
   std::array<double, kFeatures> weights = {};
   /// Stands for the reflectance where it is not known.
   double usual_reflectance = 0.3;
@@ -44,6 +45,8 @@ struct RayDropModel {
   std::vector<BlockedSector> blocked;
 
   std::array<double, kFeatures> features(const EchoConditions& echo) const;
+  /// Without the blocked directions.
+  DropRules rules() const;
   /// 0..1; 1 in a blocked direction.
   double probability(const EchoConditions& echo) const;
   /// Whether the sector of the nearest blocked elevation, within 0.3 degrees, holds the direction.

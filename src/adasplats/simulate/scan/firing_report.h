@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "adasplats/core/maths/random.h"
+#include "adasplats/sensors/lidar_model.h"
+#include "adasplats/simulate/scan/air.h"
+#include "adasplats/simulate/scan/drop_chance.h"
+#include "adasplats/simulate/scan/echoes.h"
+#include "adasplats/simulate/scan/scan_ray.h"
+#include "adasplats/splats/reflectance/response_gain.h"
+
+namespace adasplats {
+
+// THE body of a scan: what a sensor reports of one firing, from the hits of its rays to points, on
+// CPU and GPU with the same bytes. ScanRules (scan_rules.h) makes the rules.
+
+/// What one primitive carries.
+struct PrimitiveValues {
+  Vec3f normal;           ///< {0, 0, 0}: not known, beams meet it head on
+  float reflectance = 0;  ///< or intensity, where there is no response; NaN: none
+  std::uint16_t class_id = 0;
+  std::uint16_t instance = 0;
+};
+static_assert(sizeof(PrimitiveValues) == 20);
+
+/// How a sensor reports in a place: plain values and pointers, of the host or of a device.
+struct FiringRules {
+  // the sensor
+  const Firing* firings = nullptr;
+  double rotation_hz = 0;
+  float min_range_m = 0;
+  float max_range_m = 0;
+  double range_noise_m = 0;                 ///< 0: without noise
+  double angular_noise_rad = 0;             ///< likewise
+  double range_resolution_m = 0;            ///< likewise
+  const double* range_offsets_m = nullptr;  ///< of rings; null: not applied
+  std::uint32_t range_offset_count = 0;
+  // the beam
+  BeamOptions beam;
+  const float* weights = nullptr;  ///< of sub-rays
+  DropRules drop;
+  const std::uint8_t* blocked = nullptr;  ///< of firings; null: none is
+  AirRules air;
+  // the place
+  const PrimitiveValues* primitives = nullptr;
+  std::uint32_t primitive_count = 0;
+  bool has_intensities = false;
+  bool has_response = false;
+  GainTable range_gain;
+  GainTable incidence_gain;
+  std::uint64_t seed = 0;
+};
+
+/// What is of one scan alone.
+struct ScanState {
+  const ScanPose* knots = nullptr;  ///< scene from sensor, as rays are cast
+  std::uint32_t knot_count = 0;
+  /// Reference from sensor, as many; null: points stay in the sensor's frame when they are
+  /// measured.
+  const ScanPose* frame_knots = nullptr;
+  std::uint64_t scan_index = 0;
+};
+
+/// One return that a sensor reports.
+struct ReportedReturn {
+  float range_m = 0;
+  std::uint32_t primitive = 0;  ///< Hit::kNone: a particle in the air
+  float intensity = 0;
+  std::uint16_t class_id = 0;
+  std::uint16_t index = 0;  ///< among the firing's
+};
+static_assert(sizeof(ReportedReturn) == 16);
+
+/// What a ray's random numbers are for; each has a stream of its own.
+enum class Draw : std::uint64_t { range = 0, angles = 1, drop = 2 };
+
+/// By (seed, scan, firing) and what for. Range noise of a firing's first return has the stream of
+/// the scan alone, as it always had.
+ADASPLATS_HD inline Random scan_draw(std::uint64_t seed, Draw what, std::uint64_t scan_index,
+                                     std::uint32_t firing, std::uint32_t return_index) {
+  const std::uint64_t stream = scan_index ^ (static_cast<std::uint64_t>(what) << 56 |
+                                             static_cast<std::uint64_t>(return_index) << 48);
+  return {seed, stream, firing};
+}
+
+/// Not the numbers that the scan's own noise is drawn from.
+ADASPLATS_HD inline std::uint64_t weather_seed(std::uint64_t seed) {
+  return Random::mix(seed ^ 0x7765617468657221ULL);
+}
+
+ADASPLATS_HD inline float share_of_revolution(const Firing& firing, double rotation_hz) {
+  const double share = static_cast<double>(firing.time_s) * rotation_hz;
+  return static_cast<float>(share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share);
+}
+
+ADASPLATS_HD inline FiringRay firing_ray(const Firing& firing, double rotation_hz) {
+  return {firing.direction, share_of_revolution(firing, rotation_hz), firing.origin, 0};
+}
+
+/// Of the beam and the primitive, 0..1.
+ADASPLATS_HD inline float cos_incidence_of(const FiringRules& rules, const ScanState& scan,
+                                           const Firing& firing, Vec3f normal) {
+  if (normal == Vec3f{}) return 1.0F;
+  const Ray ray =
+      scan_ray(scan.knots, scan.knot_count, firing_ray(firing, rules.rotation_hz), 0.0F, 0.0F);
+  const float cosine = std::fabs(dot(ray.direction, normal));
+  return cosine < 1.0F ? cosine : 1.0F;
+}
+
+ADASPLATS_HD inline bool in_range(const FiringRules& rules, float range_m) {
+  return range_m > rules.min_range_m && range_m <= rules.max_range_m;
+}
+
+/// A multiple of the sensor's resolution.
+ADASPLATS_HD inline double quantised(const FiringRules& rules, double range_m) {
+  const double step_m = rules.range_resolution_m;
+  return step_m > 0 ? step_m * std::round(range_m / step_m) : range_m;
+}
+
+/// What the sensor reports of return `k` of a firing in clear air; false: nothing. The intensity is
+/// NaN where the place has none.
+ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanState& scan,
+                                        std::uint32_t firing, const Return& echo, std::uint32_t k,
+                                        ReportedReturn& reported) {
+  const Firing& fired = rules.firings[firing];
+  const bool known = echo.primitive < rules.primitive_count;
+  const PrimitiveValues none{{}, std::numeric_limits<float>::quiet_NaN(), 0, 0};
+  const PrimitiveValues values = known ? rules.primitives[echo.primitive] : none;
+  float cosine = 1;
+  if (rules.drop.on || rules.has_response)
+    cosine = cos_incidence_of(rules, scan, fired, values.normal);
+  if (rules.drop.on) {
+    const bool blocked = rules.blocked != nullptr && rules.blocked[firing] != 0;
+    const double chance =
+        blocked ? 1.0 : drop_chance(rules.drop, echo.range_m, cosine, values.reflectance);
+    if (scan_draw(rules.seed, Draw::drop, scan.scan_index, firing, k).uniform() < chance)
+      return false;
+  }
+  auto range_m = static_cast<double>(echo.range_m);
+  if (fired.ring < rules.range_offset_count) range_m -= rules.range_offsets_m[fired.ring];
+  if (rules.range_noise_m > 0)
+    range_m += rules.range_noise_m *
+               scan_draw(rules.seed, Draw::range, scan.scan_index, firing, k).normal();
+  reported.range_m = static_cast<float>(quantised(rules, range_m));
+  if (!in_range(rules, reported.range_m)) return false;
+  reported.primitive = echo.primitive;
+  reported.class_id = values.class_id;
+  reported.intensity = values.reflectance;
+  // Things without a reflectance, as inserted meshes, send back nothing that could be reported.
+  if (rules.has_intensities && !(values.reflectance == values.reflectance)) {
+    reported.intensity = 0;
+  } else if (rules.has_response) {
+    reported.intensity *=
+        gain_of(rules.range_gain, reported.range_m) * gain_of(rules.incidence_gain, cosine);
+  }
+  return true;
+}
+
+/// What weather makes of the `count` returns of one firing, in place, by three steps: a particle in
+/// the air may answer nearer than the farthest of them; each gets lost or fainter; of all that is
+/// left the sensor reports some, where the particle is among them in an order of its own. Gives how
+/// many. kRoom: of `returns` and more than `count`.
+template <int kRoom>
+ADASPLATS_HD inline int in_air(const FiringRules& rules, ReportedReturn* returns, int count,
+                               Random random) {
+  const AirRules& air = rules.air;
+  double end_m = count == 0 ? air.max_range_m : 0.0;
+  for (int i = 0; i < count; ++i) {
+    const auto range_m = static_cast<double>(returns[i].range_m);
+    end_m = end_m > range_m ? end_m : range_m;
+  }
+  Speck speck;
+  const bool has_speck = nearest_speck(air, end_m, random, speck);
+  Return pulses[kRoom];        // NOLINT: filled as far as it is read
+  ReportedReturn left[kRoom];  // NOLINT: likewise
+  int left_count = 0;
+  const auto add = [&](ReportedReturn one, double power) {
+    insert_by_range(
+        pulses, left_count,
+        {one.range_m, static_cast<std::uint32_t>(left_count), static_cast<float>(power)});
+    left[left_count++] = one;
+  };
+  for (int i = 0; i < count; ++i) {
+    ReportedReturn one = returns[i];
+    const auto range_m = static_cast<double>(one.range_m);
+    const auto intensity = static_cast<double>(one.intensity);
+    const double power = usable_reflectance(intensity / air.white_intensity) /
+                         needed_reflectance(range_m, air.max_range_m);
+    const bool lost = random.uniform() >= reported_share(air.extinction_per_m, range_m, power);
+    const double normal = random.normal();
+    if (lost) continue;
+    const double through = exp_of(-2.0 * air.extinction_per_m * range_m);
+    // Noise is as the inverse root of the power: sigma exp(alpha r), of which sigma is in already.
+    const double sigma_m =
+        rules.range_noise_m * std::sqrt(expm1_of(2.0 * air.extinction_per_m * range_m));
+    if (sigma_m > 0) {
+      one.range_m = static_cast<float>(quantised(rules, range_m + sigma_m * normal));
+      if (!in_range(rules, one.range_m)) continue;
+    }
+    one.intensity = static_cast<float>(intensity * through);
+    add(one, power * through);
+  }
+  int kept = left_count;
+  for (int i = 0; i < kept; ++i) returns[i] = left[i];
+  if (has_speck) {
+    const auto range_m = static_cast<float>(quantised(rules, speck.range_m));
+    if (in_range(rules, range_m)) {
+      const double reflectance = speck.power * needed_reflectance(speck.range_m, air.max_range_m);
+      add({range_m, Hit::kNone, static_cast<float>(air.white_intensity * reflectance), 0, 0},
+          speck.power);
+    }
+    kept = select_returns(pulses, left_count, rules.beam);
+    for (int i = 0; i < kept; ++i) returns[i] = left[pulses[i].primitive];
+  }
+  for (int i = 0; i < kept; ++i) returns[i].index = static_cast<std::uint16_t>(i);
+  return kept;
+}
+
+/// What most beams with sub-rays have at most: report_firing() needs less room for them.
+inline constexpr int kFewSubRays = 8;
+
+/// All that a sensor reports of a firing from the hits of its rays, hits[ray * depth + k]: at most
+/// rules.beam.returns, in the order in which it reports them. kMost: at least as many as there are
+/// sub-rays. `out` has room for kMost + 1.
+template <int kMost>
+ADASPLATS_HD inline int report_firing(const FiringRules& rules, const ScanState& scan,
+                                      std::uint32_t firing, const Hit* hits, ReportedReturn* out) {
+  const auto class_of = [&](std::uint32_t primitive) -> std::uint16_t {
+    return primitive < rules.primitive_count ? rules.primitives[primitive].class_id : 0;
+  };
+  Return echoes[kMost];  // NOLINT: filled as far as it is read
+  const int echo_count = firing_returns<kMost>(hits, rules.weights, rules.beam, class_of, echoes);
+  int count = 0;
+  for (int k = 0; k < echo_count; ++k) {
+    ReportedReturn reported;
+    if (!measure_return(rules, scan, firing, echoes[k], static_cast<std::uint32_t>(k), reported))
+      continue;
+    reported.index = static_cast<std::uint16_t>(count);
+    out[count++] = reported;
+  }
+  if (rules.air.is_clear()) return count;
+  return in_air<kMost + 1>(rules, out, count,
+                           Random(weather_seed(rules.seed), scan.scan_index, firing));
+}
+
+/// The firing's direction with the error of the angles that the sensor reports.
+ADASPLATS_HD inline Vec3f reported_direction(const FiringRules& rules, const ScanState& scan,
+                                             std::uint32_t firing) {
+  const Vec3f direction = rules.firings[firing].direction;
+  if (!(rules.angular_noise_rad > 0)) return direction;
+  const Vec3d d = vec_cast<double>(direction);
+  Random random = scan_draw(rules.seed, Draw::angles, scan.scan_index, firing, 0);
+  const double left = rules.angular_noise_rad * random.normal();
+  const double up = rules.angular_noise_rad * random.normal();
+  const double flat = std::sqrt(d.x * d.x + d.y * d.y);
+  // Straight up there is no left: any direction will do.
+  const Vec3d to_left = flat > 0 ? Vec3d{-d.y / flat, d.x / flat, 0} : Vec3d{0, 1, 0};
+  return vec_cast<float>(normalized(d + left * to_left + up * cross(d, to_left)));
+}
+
+/// Where the sensor reports a return to be, m.
+ADASPLATS_HD inline Vec3f reported_position(const FiringRules& rules, const ScanState& scan,
+                                            std::uint32_t firing, float range_m) {
+  const Firing& fired = rules.firings[firing];
+  const Vec3f direction = reported_direction(rules, scan, firing);
+  if (scan.frame_knots == nullptr) return fired.origin + range_m * direction;
+  const FiringRay beam{direction, share_of_revolution(fired, rules.rotation_hz), fired.origin, 0};
+  const Ray ray = scan_ray(scan.frame_knots, scan.knot_count, beam, 0.0F, 0.0F);
+  return ray.origin + range_m * ray.direction;
+}
+
+}  // namespace adasplats
