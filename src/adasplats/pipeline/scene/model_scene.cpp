@@ -72,6 +72,15 @@ void ModelScene::add_objects(FunctionRef<void(World&)> fill) {
   world_.emplace(static_cast<std::uint32_t>(view().primitive_count()), origin(), executor_);
   fill(*world_);
   attributes_ = world_->attributes(place_attributes());
+  primitive_table_.reset();
+}
+
+std::shared_ptr<const PrimitiveTable> ModelScene::primitive_table() const {
+  const std::lock_guard lock(table_mutex_);
+  if (!primitive_table_)
+    primitive_table_ =
+        std::make_shared<PrimitiveTable>(adasplats::primitive_table(attributes_, executor_));
+  return primitive_table_;
 }
 
 void ModelScene::make_tracers(Session& session) {

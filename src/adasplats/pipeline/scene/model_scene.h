@@ -14,6 +14,7 @@
 #include "adasplats/pipeline/session/session.h"
 #include "adasplats/simulate/image/image.h"
 #include "adasplats/simulate/scan/scan_caster.h"
+#include "adasplats/simulate/scan/scan_rules.h"
 #include "adasplats/simulate/world/world.h"
 #include "adasplats/simulate/world/world_file.h"
 #include "adasplats/splats/model/place.h"
@@ -49,6 +50,8 @@ class ModelScene {
   const ScanCaster& scan_caster() const { return gpu_ ? gpu_->scan_caster() : *caster_; }
   /// Of the place and, behind it, its objects.
   const PrimitiveAttributes& attributes() const { return attributes_; }
+  /// The same, made when it is first asked for. It is shared by all sensors in the scene.
+  std::shared_ptr<const PrimitiveTable> primitive_table() const;
   /// What was put into the place; null where nothing was.
   const World* world() const { return world_ ? &*world_ : nullptr; }
   /// Null where it is a mesh.
@@ -83,7 +86,9 @@ class ModelScene {
   std::unique_ptr<ScanCaster> caster_;  ///< likewise
   std::optional<World> world_;
   PrimitiveAttributes attributes_;
+  mutable std::shared_ptr<const PrimitiveTable> primitive_table_;
   mutable std::mutex renderer_mutex_;  ///< of `renderer_` and its options
+  mutable std::mutex table_mutex_;     ///< of `primitive_table_`
 };
 
 }  // namespace adasplats

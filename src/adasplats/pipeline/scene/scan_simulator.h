@@ -17,6 +17,7 @@
 #include "adasplats/sensors/sensor_overrides.h"
 #include "adasplats/simulate/scan/ray_drop.h"
 #include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/scan_rules.h"
 #include "adasplats/simulate/scan/weather.h"
 
 namespace adasplats {
@@ -30,6 +31,7 @@ struct ScanSettings {
   PointFrame frame = PointFrame::raw;
   std::optional<RayDropModel> ray_drop;  ///< none: every echo is reported
   Weather weather;
+  ScanFields fields;  ///< attributes that are wanted
   std::uint64_t seed = 1;
 };
 
@@ -76,46 +78,37 @@ void visit_settings(ScanChoice& scan, Visit&& visit) {
   visit_settings(scan.weather, visit);
 }
 
-/// What scans took. Where devices and copies overlap, the sums of parts are larger than the whole.
-struct SimulationTimes {
-  double traced_s = 0;     ///< in the tracer, or in the kernels of all GPUs
-  double returned_s = 0;   ///< until the hits were in host memory
-  double assembled_s = 0;  ///< until they were points with noise, classes and times
-};
-
 /// A LiDAR in a place: poses in, scans out.
 class ScanSimulator {
  public:
-  /// Takes scan i of a run; called in their order on the caller's thread. An exception ends the
-  /// run and reaches the caller.
-  using Sink = FunctionRef<void(std::size_t i, Scan scan)>;
+  /// Takes scan i of a run; called in their order on the caller's thread. What it moves out of
+  /// `scan` is its own; memory that it leaves is used again. An exception ends the run and reaches
+  /// the caller.
+  using Sink = ScanCaster::ScanSink;
 
   /// Scene and executor must outlive it. Errors: those of check().
   ScanSimulator(const ModelScene& scene, ScanSettings settings, const Executor& executor);
 
   const ScanSettings& settings() const { return settings_; }
   /// Of a scan; where the pattern does not repeat, of the last one that was simulated.
-  std::span<const Firing> firings() const { return firings_; }
+  std::span<const Firing> firings() const { return rules_.firings(); }
   const ModelScene& scene() const { return scene_; }
+  const ScanRules& rules() const { return rules_; }
 
   /// Scan i has the number `first_number` + i, which names its noise, the firings of a pattern that
   /// does not repeat, and what moves in the world.
-  SimulationTimes run(std::span<const ScanMotion> scans, std::uint64_t first_number, Sink sink);
+  ReportTimes run(std::span<const ScanMotion> scans, std::uint64_t first_number, Sink sink);
   /// One scan.
   Scan scan(const ScanMotion& motion, std::uint64_t number);
 
  private:
-  void make_firings(std::uint64_t number);
-  SimulationTimes run_repeating(std::span<const ScanMotion> scans, std::uint64_t first_number,
-                                Sink sink);
-  Scan assemble(std::span<const Hit> hits, const ScanMotion& motion, std::uint64_t number) const;
+  ReportTimes run_repeating(std::span<const ScanMotion> scans, std::uint64_t first_number,
+                            Sink sink);
 
   const ModelScene& scene_;
   ScanSettings settings_;
   const Executor& executor_;
-  PrimitiveAttributes attributes_;
-  std::vector<Firing> firings_;       ///< what it reports points of
-  std::vector<Firing> cast_firings_;  ///< sub-rays of those
+  ScanRules rules_;
 };
 
 }  // namespace adasplats

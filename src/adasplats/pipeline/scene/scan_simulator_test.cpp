@@ -53,12 +53,12 @@ class ScanSimulatorTest : public testing::Test {
                         std::uint64_t first_number) {
     ScanSimulator simulator(scene_, settings, executor_);
     std::vector<Scan> taken;
-    const SimulationTimes times = simulator.run(scans, first_number, [&](std::size_t i, Scan scan) {
+    const ReportTimes times = simulator.run(scans, first_number, [&](std::size_t i, Scan scan) {
       EXPECT_EQ(i, taken.size());
       taken.push_back(std::move(scan));
     });
     EXPECT_GT(times.traced_s, 0);
-    EXPECT_GE(times.assembled_s, times.returned_s);
+    EXPECT_GT(times.reported_s, 0);
     return taken;
   }
 

@@ -11,6 +11,7 @@
 #include "adasplats/simulate/scan/ray_drop.h"
 #include "adasplats/simulate/scan/returns.h"
 #include "adasplats/simulate/scan/scan_motion.h"
+#include "adasplats/simulate/scan/weather.h"
 #include "adasplats/splats/reflectance/reflectance.h"
 #include "adasplats/trace/tracer.h"
 
@@ -43,41 +44,59 @@ struct Scan {
   /// 0 for the first that the sensor reports of a firing; empty where no firing can return twice.
   std::vector<std::uint8_t> return_indices;
 
-  std::size_t size() const { return positions.size(); }
+  /// Returns.
+  std::size_t size() const;
+};
+
+/// Which attributes are wanted. Of the others scans have empty arrays, and nobody computes them.
+struct ScanFields {
+  bool positions = true;
+  bool ranges = true;
+  bool intensities = true;
+  bool classes = true;
+  bool instances = true;
+  bool rings = true;
+  bool columns = true;
+  bool times = true;
+  bool return_indices = true;
 };
 
 /// One attribute of returns with all its names; of(scan) is its array.
 template <class Of>
 struct ScanAttribute {
   Of of;
+  bool ScanFields::*wanted;
   const char* name;    ///< in Python and in pickles
   const char* column;  ///< of scan_columns(); arrays of NPZ files have its plural
   bool is_optional;    ///< not every scan has it
   const char* about;   ///< what the numbers are
 };
 template <class Of>
-ScanAttribute(Of, const char*, const char*, bool, const char*) -> ScanAttribute<Of>;
+ScanAttribute(Of, bool ScanFields::*, const char*, const char*, bool, const char*)
+    -> ScanAttribute<Of>;
 
 /// Calls visit(ScanAttribute) for every attribute, in the order of files; positions are none. A new
-/// one is a member and an entry here, and whoever computes it.
+/// one is a member, a field and an entry here, and whoever computes it.
 template <class Visit>
 void for_each_scan_attribute(Visit&& visit) {
   visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.intensities); },
-                      "intensities", "intensity", true, "in the unit of the scene's intensities"});
-  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.classes); }, "classes",
-                      "label", true, "ids of the scene's label scheme"});
-  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.instances); }, "instances",
-                      "instance", true, "0 for none"});
-  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.rings); }, "rings", "ring",
-                      false, "0 the topmost"});
-  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.columns); }, "columns",
-                      "column", false, "azimuth steps"});
-  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.times_s); }, "times", "time",
-                      false, "s since the revolution began"});
-  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.ranges_m); }, "ranges",
-                      "range", false, "m"});
+                      &ScanFields::intensities, "intensities", "intensity", true,
+                      "in the unit of the scene's intensities"});
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.classes); },
+                      &ScanFields::classes, "classes", "label", true,
+                      "ids of the scene's label scheme"});
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.instances); },
+                      &ScanFields::instances, "instances", "instance", true, "0 for none"});
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.rings); }, &ScanFields::rings,
+                      "rings", "ring", false, "0 the topmost"});
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.columns); },
+                      &ScanFields::columns, "columns", "column", false, "azimuth steps"});
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.times_s); },
+                      &ScanFields::times, "times", "time", false, "s since the revolution began"});
+  visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.ranges_m); },
+                      &ScanFields::ranges, "ranges", "range", false, "m"});
   visit(ScanAttribute{[](auto& scan) -> decltype(auto) { return (scan.return_indices); },
-                      "return_indices", "return_index", true,
+                      &ScanFields::return_indices, "return_indices", "return_index", true,
                       "0 for the first that the sensor reports of a firing"});
 }
 
@@ -94,12 +113,14 @@ inline constexpr std::pair<std::string_view, PointFrame> kPointFrames[] = {
 inline Words<PointFrame> words_of(PointFrame) { return kPointFrames; }
 
 struct SimulateOptions {
-  std::uint64_t seed = 0;     ///< of noise and drop; drawn by (seed, scan index, ray index)
+  std::uint64_t seed = 0;     ///< of noise, drop, weather; drawn by (seed, scan index, firing)
   bool noise = true;          ///< apply the sensor's range and angular noise
   bool unit_offsets = false;  ///< apply LidarModel::range_offsets_m
   BeamOptions beam;
   const RayDropModel* ray_drop = nullptr;  ///< none: every echo is reported
   PointFrame frame = PointFrame::raw;
+  Weather weather;
+  ScanFields fields;
 };
 
 /// Where rays of a sensor start and end as floats, one a firing, and when.
@@ -112,9 +133,9 @@ std::vector<Ray> scan_rays(const LidarModel& sensor, std::span<const Firing> fir
 
 /// What the sensor measures where its rays met the scene: hits[(i * sub_rays + s) * depth + k] of
 /// firings[i], in the sensor's range (BeamOptions; the rays are those of sub_firings()). Finds the
-/// returns, drops some, adds noise, and gathers what the primitives carry. `scan_index` names the
-/// noise. Throws std::logic_error where there are not that many hits a firing, or an attribute has
-/// fewer values than the scene has primitives.
+/// returns, drops some, adds noise and weather, and gathers what the primitives carry. `scan_index`
+/// names the noise. Throws std::logic_error where there are not that many hits a firing, or an
+/// attribute has not one value a primitive. For many scans see scan_caster.h.
 Scan scan_of_hits(std::span<const Hit> hits, const PrimitiveAttributes& attributes,
                   const LidarModel& sensor, std::span<const Firing> firings,
                   const ScanMotion& motion, std::uint64_t scan_index,

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/simulate/scan/scan_caster.h"
 
+#include <atomic>
 #include <chrono>
+#include <utility>
 #include <vector>
 
-#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/scan_reporter.h"
 
 namespace adasplats {
 namespace {
@@ -41,7 +43,53 @@ class CpuScanCaster final : public ScanCaster {
     return times;
   }
 
+  /// Rays are made, cast and reported chunk by chunk.
+  ReportTimes report(const ScanRules& rules, std::span<const ScanMotion> scans,
+                     std::uint64_t first_number, const Executor& executor,
+                     ScanSink sink) const override {
+    ReportTimes times;
+    ScanReporter reporter(rules, executor);
+    const std::vector<FiringRay> firings = firing_rays(rules.sensor(), rules.cast_firings());
+    Scan scan;
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+      const Clock::time_point start = Clock::now();
+      const ScanPoses poses(rules, scans[i], scene_origin_);
+      std::atomic<std::int64_t> traced_ns = 0;
+      reporter.report(
+          scans[i], poses, first_number + i,
+          [&](std::size_t begin, std::size_t end, std::span<Hit> hits) {
+            traced_ns += cast_firings(rules, firings, poses.knots, begin, end, hits, executor);
+          },
+          scan);
+      times.traced_s += 1e-9 * static_cast<double>(traced_ns) / executor.threads();
+      times.reported_s += seconds_since(start);
+      sink(i, std::move(scan));
+    }
+    return times;
+  }
+
  private:
+  /// The hits of firings [begin, end); gives the nanoseconds in the tracer.
+  std::int64_t cast_firings(const ScanRules& rules, std::span<const FiringRay> firings,
+                            std::span<const ScanPose> knots, std::size_t begin, std::size_t end,
+                            std::span<Hit> hits, const Executor& executor) const {
+    const auto sub_rays = static_cast<std::size_t>(rules.beam().sub_rays);
+    const auto t_min = static_cast<float>(rules.sensor().min_range_m);
+    const auto t_max = static_cast<float>(rules.sensor().max_range_m);
+    std::vector<Ray> rays;
+    rays.reserve((end - begin) * sub_rays);
+    for (const FiringRay& firing : firings.subspan(begin * sub_rays, (end - begin) * sub_rays))
+      rays.push_back(
+          scan_ray(knots.data(), static_cast<std::uint32_t>(knots.size()), firing, t_min, t_max));
+    const Clock::time_point start = Clock::now();
+    if (rules.beam().depth == 1) {
+      tracer_.nearest(rays, hits, executor);
+    } else {
+      tracer_.nearest_hits(rays, rules.beam().depth, hits, executor);
+    }
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count();
+  }
+
   const Tracer& tracer_;
   Vec3d scene_origin_;
   const Executor& executor_;

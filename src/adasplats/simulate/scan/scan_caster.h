@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -14,12 +15,22 @@
 
 namespace adasplats {
 
+struct Scan;
+class ScanRules;
+
 /// What casting the scans of a trajectory took. Where devices and copies overlap, the sums of parts
 /// are larger than the whole.
 struct CastTimes {
   double traced_s = 0;    ///< in the tracer, or in the kernels of a GPU
   double returned_s = 0;  ///< from the first launch until the last hit was in host memory, without
                           ///< the time that the sink took
+};
+
+/// What simulating scans took.
+struct ReportTimes {
+  /// In the tracer, as if it had run alone: on the CPU the threads' share, on a GPU its kernels.
+  double traced_s = 0;
+  double reported_s = 0;  ///< until the last scan was there, without the time that the sink took
 };
 
 /// Casts the firings of a sensor from many poses into one scene, on the CPU or on GPUs.
@@ -35,6 +46,18 @@ class ScanCaster {
   /// scan_rays(). An exception of the sink ends the casting and reaches the caller.
   virtual CastTimes cast(const LidarModel& sensor, std::span<const Firing> firings,
                          std::span<const ScanMotion> scans, int depth, Sink sink) const = 0;
+
+  /// Takes scan i of a call. What it moves out of `scan` is its own; memory that it leaves is used
+  /// for the next scans.
+  using ScanSink = FunctionRef<void(std::size_t i, Scan&& scan)>;
+
+  /// From rays to points: what a sensor reports by `rules`, scan by scan in their order, on the
+  /// caller's thread, with work on the executor's. Scan i has the number `first_number` + i. The
+  /// same bytes on the CPU and on GPUs, for any number of threads. An exception of the sink ends
+  /// the casting and reaches the caller.
+  virtual ReportTimes report(const ScanRules& rules, std::span<const ScanMotion> scans,
+                             std::uint64_t first_number, const Executor& executor,
+                             ScanSink sink) const = 0;
 };
 
 /// Casts with a tracer, scan by scan. `scene_origin`: world coordinates of the scene's local

@@ -4,12 +4,11 @@
 
 #include <cstdint>
 #include <limits>
-#include <span>
+#include <vector>
 
 #include "adasplats/core/setting.h"
 #include "adasplats/sensors/lidar_model.h"
-#include "adasplats/simulate/scan/returns.h"
-#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/air.h"
 
 namespace adasplats {
 
@@ -76,17 +75,11 @@ double clutter_share(const Weather& weather, const LidarModel& sensor, double ra
 /// Errors: usage (a setting out of range, no greatest range).
 void check_weather(const Weather& weather, const LidarModel& sensor);
 
-/// The scan as it is in such weather. Intensities fall by exp(-2 alpha r); returns get lost
-/// (reported_share); the sensor's range noise grows by exp(alpha r); particles in the air answer
-/// nearer than the farthest return of their firing (clutter_share): class and instance 0. Which of
-/// them and of the returns are reported is up to `beam` (reported_returns). What attributes `clear`
-/// has none of are not there either. Without weather the scan itself.
-///
-/// `firings`: those of the scan, in the frame of its points (for de-skewed scans moved like these).
-/// Drawn by (seed, scan_index, firing). Where beam.returns > 1, return_indices are there.
-/// Errors: those of check_weather(). Throws std::logic_error where a return has no firing.
-Scan in_weather(const Scan& clear, std::span<const Firing> firings, const LidarModel& sensor,
-                const BeamOptions& beam, const Weather& weather, std::uint64_t seed,
-                std::uint64_t scan_index);
+/// The weather as a beam of the sensor meets it. Intensities fall by exp(-2 alpha r); returns get
+/// lost (reported_share); the sensor's range noise grows by exp(alpha r); particles in the air
+/// answer nearer than the farthest return of their firing (clutter_share): class and instance 0.
+/// in_air() of firing_report.h does that to the returns of a firing. The table that it points to is
+/// put into `expected`, which must outlive it. Errors: those of check_weather().
+AirRules air_rules(const Weather& weather, const LidarModel& sensor, std::vector<double>& expected);
 
 }  // namespace adasplats

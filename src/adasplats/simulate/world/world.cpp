@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
+#include "adasplats/simulate/scan/scan_reporter.h"
 #include "adasplats/simulate/world/object_hits.h"
 #include "adasplats/simulate/world/placed_object.h"
 
@@ -101,6 +102,7 @@ void World::add_object(WorldObject object) {
 
 bool World::empty() const { return impl_->objects.empty(); }
 std::size_t World::object_count() const { return impl_->objects.size(); }
+Vec3d World::scene_origin() const { return impl_->scene_origin; }
 
 void World::add_hits(std::uint64_t scan_index, const LidarModel& sensor,
                      std::span<const Firing> firings, const ScanMotion& motion,
@@ -176,7 +178,11 @@ class WorldCaster final : public ScanCaster {
  public:
   WorldCaster(const ScanCaster& place, const World& world, const Executor& executor,
               std::uint64_t first_scan)
-      : place_(place), world_(world), executor_(executor), first_scan_(first_scan) {}
+      : place_(place),
+        world_(world),
+        executor_(executor),
+        scene_origin_(world.scene_origin()),
+        first_scan_(first_scan) {}
 
   CastTimes cast(const LidarModel& sensor, std::span<const Firing> firings,
                  std::span<const ScanMotion> scans, int depth, Sink sink) const override {
@@ -196,10 +202,32 @@ class WorldCaster final : public ScanCaster {
     return times;
   }
 
+  ReportTimes report(const ScanRules& rules, std::span<const ScanMotion> scans,
+                     std::uint64_t first_number, const Executor& executor,
+                     ScanSink sink) const override {
+    ScanReporter reporter(rules, executor);
+    ReportTimes times;
+    Scan scan;
+    const auto report_hits = [&](std::size_t i, std::span<const Hit> hits) {
+      const auto start = std::chrono::steady_clock::now();
+      reporter.report(scans[i], ScanPoses(rules, scans[i], scene_origin_), first_number + i, hits,
+                      scan);
+      times.reported_s +=
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      sink(i, std::move(scan));
+    };
+    const CastTimes cast_times =
+        cast(rules.sensor(), rules.cast_firings(), scans, rules.beam().depth, report_hits);
+    times.traced_s = cast_times.traced_s;
+    times.reported_s += cast_times.returned_s;
+    return times;
+  }
+
  private:
   const ScanCaster& place_;
   const World& world_;
   const Executor& executor_;
+  Vec3d scene_origin_;
   std::uint64_t first_scan_;
 };
 

@@ -66,6 +66,7 @@ class World {
 
   bool empty() const;
   std::size_t object_count() const;
+  Vec3d scene_origin() const;
 
   /// Merges hits of the objects that are there in scan `scan_index` into hits[i * depth + k] of
   /// firing i, ascending, for the poses in which sensor and objects are when it fires. Primitives

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/simulate/scan/scan_reporter.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+namespace adasplats {
+namespace {
+
+/// Firings of a chunk: as many as have about kFineGrain hits, which stay in a core's cache.
+std::size_t chunk_of(const BeamOptions& beam) {
+  return std::clamp<std::size_t>(kFineGrain / beam.hits_per_firing(), 64, kFineGrain);
+}
+
+}  // namespace
+
+ScanReporter::ScanReporter(const ScanRules& rules, const Executor& executor)
+    : rules_(rules),
+      executor_(executor),
+      view_(rules.view()),
+      firings_a_chunk_(chunk_of(rules.beam())) {}
+
+template <int kMost>
+void ScanReporter::report_each(const ScanState& state, std::size_t begin, std::size_t end,
+                               const Hit* hits, Chunk& chunk) const {
+  const std::size_t hits_a_firing = view_.beam.hits_per_firing();
+  // What primitives carry is all over the memory: it is asked for before it is needed.
+  constexpr std::size_t kAhead = 24;
+  const auto prefetch = [&](const Hit& hit) {
+    if (hit.primitive < view_.primitive_count) __builtin_prefetch(view_.primitives + hit.primitive);
+  };
+  for (std::size_t i = begin; i < std::min(end, begin + kAhead); ++i)
+    prefetch(hits[(i - begin) * hits_a_firing]);
+  ReportedReturn* const returns = chunk.returns.data();
+  std::uint32_t* const firings = chunk.firings.data();
+  std::size_t filled = 0;
+  std::array<ReportedReturn, kMost + 1> found{};
+  for (std::size_t i = begin; i < end; ++i, hits += hits_a_firing) {
+    if (i + kAhead < end) prefetch(hits[kAhead * hits_a_firing]);
+    const auto firing = static_cast<std::uint32_t>(i);
+    const int count = report_firing<kMost>(view_, state, firing, hits, found.data());
+    for (int k = 0; k < count; ++k) {
+      returns[filled] = found[static_cast<std::size_t>(k)];
+      firings[filled++] = firing;
+    }
+  }
+  chunk.count = filled;
+}
+
+void ScanReporter::report_firings(const ScanState& state, std::size_t begin, std::size_t end,
+                                  const Hit* hits, Chunk& chunk) const {
+  const std::size_t most = (end - begin) * static_cast<std::size_t>(view_.beam.returns);
+  if (chunk.returns.size() < most) {
+    chunk.returns.resize(most);
+    chunk.firings.resize(most);
+  }
+  if (view_.beam.sub_rays == 1) {
+    report_each<1>(state, begin, end, hits, chunk);
+  } else if (view_.beam.sub_rays <= kFewSubRays) {
+    report_each<kFewSubRays>(state, begin, end, hits, chunk);
+  } else {
+    report_each<static_cast<int>(kMostSubRays)>(state, begin, end, hits, chunk);
+  }
+}
+
+void ScanReporter::report(const ScanMotion& motion, const ScanPoses& poses,
+                          std::uint64_t scan_index, HitsOf hits_of, Scan& scan) {
+  const ScanState state = poses.state(scan_index);
+  const std::size_t hits_a_firing = view_.beam.hits_per_firing();
+  report_chunks(
+      motion, state,
+      [&](std::size_t begin, std::size_t end, Chunk& chunk) {
+        std::vector<Hit> hits((end - begin) * hits_a_firing);
+        hits_of(begin, end, hits);
+        report_firings(state, begin, end, hits.data(), chunk);
+      },
+      scan);
+}
+
+void ScanReporter::report(const ScanMotion& motion, const ScanPoses& poses,
+                          std::uint64_t scan_index, std::span<const Hit> hits, Scan& scan) {
+  const std::size_t hits_a_firing = view_.beam.hits_per_firing();
+  if (hits.size() != rules_.firings().size() * hits_a_firing)
+    throw std::logic_error("a scan needs the hits of every firing's rays");
+  const ScanState state = poses.state(scan_index);
+  report_chunks(
+      motion, state,
+      [&](std::size_t begin, std::size_t end, Chunk& chunk) {
+        report_firings(state, begin, end, hits.data() + begin * hits_a_firing, chunk);
+      },
+      scan);
+}
+
+/// Chunk by chunk, in their order, so that threads do not show.
+void ScanReporter::report_chunks(const ScanMotion& motion, const ScanState& state,
+                                 ReportChunk report_chunk, Scan& scan) {
+  const std::size_t firings = rules_.firings().size();
+  chunks_.resize((firings + firings_a_chunk_ - 1) / firings_a_chunk_);
+  executor_.for_chunks(firings, firings_a_chunk_, [&](std::size_t begin, std::size_t end) {
+    report_chunk(begin, end, chunks_[begin / firings_a_chunk_]);
+  });
+  std::size_t returns = 0;
+  for (Chunk& chunk : chunks_) {
+    chunk.first = returns;
+    returns += chunk.count;
+  }
+  scan.world_from_sensor = motion.reference.world_from_sensor;
+  scan.time_s = motion.reference.time_s;
+  scan.rays = firings;
+  resize(scan, returns);
+  executor_.for_chunks(chunks_.size(), 1,
+                       [&](std::size_t chunk, std::size_t) { fill(scan, state, chunks_[chunk]); });
+}
+
+void ScanReporter::resize(Scan& scan, std::size_t returns) const {
+  const ScanFields fields = rules_.fields();
+  scan.positions.resize(fields.positions ? returns : 0);
+  for_each_scan_attribute([&](const auto& attribute) {
+    attribute.of(scan).resize(fields.*attribute.wanted ? returns : 0);
+  });
+}
+
+/// The returns of one chunk, in every attribute that the scan has.
+void ScanReporter::fill(Scan& scan, const ScanState& state, const Chunk& chunk) const {
+  const auto each = [&](auto& values, const auto& value_of) {
+    if (values.empty()) return;
+    auto* to = values.data() + chunk.first;
+    for (std::size_t i = 0; i < chunk.count; ++i) *to++ = value_of(i);
+  };
+  const auto firing = [&](std::size_t i) -> const Firing& {
+    return view_.firings[chunk.firings[i]];
+  };
+  // A particle in the air has class and instance 0.
+  const auto instance = [&](std::size_t i) -> std::uint16_t {
+    const std::uint32_t primitive = chunk.returns[i].primitive;
+    return primitive < view_.primitive_count ? view_.primitives[primitive].instance : 0;
+  };
+  each(scan.positions, [&](std::size_t i) {
+    return reported_position(view_, state, chunk.firings[i], chunk.returns[i].range_m);
+  });
+  each(scan.ranges_m, [&](std::size_t i) { return chunk.returns[i].range_m; });
+  each(scan.intensities, [&](std::size_t i) { return chunk.returns[i].intensity; });
+  each(scan.classes, [&](std::size_t i) { return chunk.returns[i].class_id; });
+  each(scan.instances, instance);
+  each(scan.rings, [&](std::size_t i) { return firing(i).ring; });
+  each(scan.columns, [&](std::size_t i) { return firing(i).column; });
+  each(scan.times_s, [&](std::size_t i) { return firing(i).time_s; });
+  each(scan.return_indices,
+       [&](std::size_t i) { return static_cast<std::uint8_t>(chunk.returns[i].index); });
+}
+
+}  // namespace adasplats
