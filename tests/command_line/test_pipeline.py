@@ -41,8 +41,8 @@ class Pipeline(ProgramTest):
         self.assertEqual(report["rays"], 3 * 16 * 180)
         self.assertTrue(0 < report["hits"] <= report["rays"])
         rates = report["scans_per_second"]
-        self.assertGreaterEqual(rates["traced"], rates["returned"])
-        self.assertGreaterEqual(rates["returned"], rates["written"])
+        self.assertGreaterEqual(rates["traced"], rates["assembled"])
+        self.assertGreaterEqual(rates["assembled"], rates["written"])
 
         report = self.report("evaluate", "c2c", scans, self.cloud, "--by-class")
         self.assertLessEqual({"c2c_m", "completeness_m", "chamfer_m", "chamfer_m2", "by_class"},

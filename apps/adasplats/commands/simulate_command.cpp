@@ -19,9 +19,9 @@ constexpr const char* kSimulateExamples =
     "  adasplats simulate street.ply --sensor ouster-os1-64 --trajectory poses.csv \\\n"
     "      --rolling-shutter --sub-rays 7 --returns 2 --fog 200 -o scans\n"
     "  adasplats simulate street.ply --trajectory poses.csv -o scans --device cuda --gpus 0,1\n"
-    "Rates: traced, in the tracer or in the kernels of all GPUs; returned, until the hits were in\n"
-    "host memory; assembled, until they were points with noise, classes and times; written, until\n"
-    "the scans were on disk. Each one holds those before it.\n";
+    "Rates: traced, in the tracer or in the kernels of all GPUs; assembled, until the scans were\n"
+    "complete, points with all their attributes in host memory; written, until they were on disk.\n"
+    "Each one holds those before it.\n";
 
 class SimulateCommand final : public Command {
  public:

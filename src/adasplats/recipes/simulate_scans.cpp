@@ -81,14 +81,13 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
     result.hits += scan.size();
     session.progress.advance(i + 1);
   };
-  const SimulationTimes times = simulator.run(scans, 0, take_scan);
+  const ReportTimes times = simulator.run(scans, 0, take_scan);
   require_returns(result, scene, scans, settings.sensor);
   writer->finish();
   session.progress.end_step();
   folder.commit();
   result.seconds_traced = times.traced_s;
-  result.seconds_returned = times.returned_s;
-  result.seconds_assembled = times.assembled_s;
+  result.seconds_assembled = times.reported_s;
   result.seconds_written = all.seconds();
   result.seconds = total.seconds();
   return result;
@@ -101,12 +100,10 @@ nlohmann::ordered_json to_json(const SimulateResult& result) {
   json["rays"] = result.rays;
   json["hits"] = result.hits;
   json["scans_per_second"] = {{"traced", scans / result.seconds_traced},
-                              {"returned", scans / result.seconds_returned},
                               {"assembled", scans / result.seconds_assembled},
                               {"written", scans / result.seconds_written}};
   json["seconds"] = {{"total", result.seconds},
                      {"traced", result.seconds_traced},
-                     {"returned", result.seconds_returned},
                      {"assembled", result.seconds_assembled},
                      {"written", result.seconds_written}};
   return json;

@@ -32,7 +32,6 @@ struct SimulateResult {
   std::size_t hits = 0;
   // Each one includes those before it; only several GPUs trace longer in sum than the clock runs.
   double seconds_traced = 0;     ///< in the tracer, or in the kernels of all GPUs
-  double seconds_returned = 0;   ///< until the hits were in host memory
   double seconds_assembled = 0;  ///< until they were points with noise, classes and times
   double seconds_written = 0;    ///< until the scans were on disk
   double seconds = 0;            ///< of everything, with loading the model

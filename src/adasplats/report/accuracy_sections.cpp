@@ -119,13 +119,13 @@ Section cost_section(const std::vector<Competitor>& competitors) {
        {"rays", Better::neither, read({"simulate", "rays"}), count_text},
        {"hits", Better::neither, read({"simulate", "hits"}), count_text},
        {"traced (scans/s)", Better::higher, read({"simulate", "scans_per_second", "traced"})},
-       {"returned (scans/s)", Better::higher, read({"simulate", "scans_per_second", "returned"})},
+       {"complete (scans/s)", Better::higher, read({"simulate", "scans_per_second", "assembled"})},
        {"written (scans/s)", Better::higher, read({"simulate", "scans_per_second", "written"})}});
   table.definitions = {
       {"peak memory", "the largest resident memory of the program that generated the model."},
       {"points used", "input points that the model was made from, after filters."},
-      {"traced, returned, written",
-       "scans a second: rays cast only; with making the rays and the points; with writing files."}};
+      {"traced, complete, written",
+       "scans a second: rays cast only; with making the points; with writing files."}};
   table.charts = {
       {ChartKind::bars, "Time to generate", "", "seconds", columns_named(table, "generate (s)")},
       {ChartKind::bars, "Primitives", "", "disks or triangles",

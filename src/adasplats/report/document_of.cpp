@@ -200,7 +200,7 @@ Section best_section(const std::vector<Competitor>& competitors) {
       {"Fastest to generate", {"", Better::lower, read({"generate", "seconds"})}, " s"},
       {"Fewest primitives", {"", Better::lower, read({"generate", "primitives"}), count_text}, ""},
       {"Most LiDAR scans a second",
-       {"", Better::higher, read({"simulate", "scans_per_second", "returned"})},
+       {"", Better::higher, read({"simulate", "scans_per_second", "assembled"})},
        " Hz"}};
   Section section;
   for (const Prize& prize : prizes) {

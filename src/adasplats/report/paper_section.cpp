@@ -25,7 +25,7 @@ Measure primitives() {
 }
 
 Measure lidar_frequency() {
-  return {"LiDAR (Hz)", Better::higher, read({"simulate", "scans_per_second", "returned"}),
+  return {"LiDAR (Hz)", Better::higher, read({"simulate", "scans_per_second", "assembled"}),
           measure_text, read({"lidar_hz"})};
 }
 

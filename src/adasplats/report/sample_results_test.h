@@ -56,7 +56,7 @@ inline nlohmann::ordered_json sample_competitor(const std::string& name, const s
                    {"rays", 2304000},
                    {"hits", 2100000},
                    {"scans_per_second",
-                    {{"traced", 43.6 / badness}, {"returned", 39.5 / badness}, {"written", 32.7}}},
+                    {{"traced", 43.6 / badness}, {"assembled", 39.5 / badness}, {"written", 32.7}}},
                    {"sensor", "hdl-64-paper"}};
   c["c2c"] = {{"c2c_m", 0.0196 * badness},
               {"completeness_m", 0.18},

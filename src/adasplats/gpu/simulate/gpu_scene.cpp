@@ -13,6 +13,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/gpu/simulate/gpu_renderer.h"
+#include "adasplats/gpu/simulate/gpu_reporter.h"
 #include "adasplats/gpu/simulate/gpu_scanner.h"
 #include "adasplats/gpu/trace/gpu_tracer.h"
 #include "adasplats/simulate/image/shading.h"
@@ -51,7 +52,49 @@ class SceneScanCaster final : public ScanCaster {
     return cast_with(kept_->scanner, scans, depth, sink);
   }
 
+  ReportTimes report(const ScanRules& rules, std::span<const ScanMotion> scans,
+                     std::uint64_t first_number, const Executor& executor,
+                     ScanSink sink) const override {
+    std::vector<Scan> taken;
+    return with_reporter(rules, [&](GpuReporter& reporter) {
+      return reporter.report(
+          scans, first_number, GpuScene::Results::host, [&](const ScanBatch& batch) {
+            if (taken.size() < batch.scans()) taken.resize(batch.scans());
+            executor.for_chunks(batch.scans(), 1, [&](std::size_t i, std::size_t) {
+              copy_scan(batch, i, scans[batch.first + i], rules.firings().size(), taken[i]);
+            });
+            for (std::size_t i = 0; i < batch.scans(); ++i)
+              sink(batch.first + i, std::move(taken[i]));
+          });
+    });
+  }
+
+  ReportTimes report_batches(const ScanRules& rules, std::span<const ScanMotion> scans,
+                             std::uint64_t first_number, GpuScene::Results results,
+                             GpuScene::BatchSink sink) const {
+    return with_reporter(rules, [&](GpuReporter& reporter) {
+      return reporter.report(scans, first_number, results, sink);
+    });
+  }
+
  private:
+  /// With the one that is kept, where these are its rules and nobody else has it.
+  template <class F>
+  ReportTimes with_reporter(const ScanRules& rules, F&& use) const {
+    const std::unique_lock lock(reporter_mutex_, std::try_to_lock);
+    if (!lock) {
+      GpuReporter reporter(parts_, rules);
+      return use(reporter);
+    }
+    if (!reporter_ || reporter_rules_ != rules.identity()) {
+      reporter_.reset();
+      reporter_rules_ = nullptr;
+      reporter_.emplace(parts_, rules);
+      reporter_rules_ = rules.identity();
+    }
+    return use(*reporter_);
+  }
+
   struct Kept {
     Kept(const SceneParts& parts, const LidarModel& sensor, std::span<const Firing> firings_in)
         : scanner(parts, sensor, firings_in),
@@ -85,6 +128,9 @@ class SceneScanCaster final : public ScanCaster {
   const SceneParts& parts_;
   mutable std::mutex mutex_;
   mutable std::optional<Kept> kept_;
+  mutable std::mutex reporter_mutex_;
+  mutable std::optional<GpuReporter> reporter_;
+  mutable std::shared_ptr<const int> reporter_rules_;  ///< identity of the rules of `reporter_`
 };
 
 void check_devices(const std::vector<int>& devices) {
@@ -147,6 +193,10 @@ std::string_view GpuScene::name() const { return impl_->parts.first().scene->nam
 double GpuScene::build_seconds() const { return impl_->build_seconds; }
 const Tracer& GpuScene::tracer() const { return *impl_->tracer; }
 const ScanCaster& GpuScene::scan_caster() const { return *impl_->caster; }
+ReportTimes GpuScene::report(const ScanRules& rules, std::span<const ScanMotion> scans,
+                             std::uint64_t first_number, Results results, BatchSink sink) const {
+  return impl_->caster->report_batches(rules, scans, first_number, results, sink);
+}
 
 std::unique_ptr<GpuScanner> GpuScene::scanner(const LidarModel& sensor,
                                               std::span<const Firing> firings) const {

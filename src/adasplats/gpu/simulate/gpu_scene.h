@@ -12,7 +12,9 @@
 #include "adasplats/scene/scene.h"
 #include "adasplats/sensors/camera.h"
 #include "adasplats/simulate/image/image.h"
+#include "adasplats/simulate/scan/scan_batch.h"
 #include "adasplats/simulate/scan/scan_caster.h"
+#include "adasplats/simulate/scan/scan_rules.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {
@@ -126,6 +128,15 @@ class GpuScene {
   const ScanCaster& scan_caster() const;
   std::unique_ptr<GpuScanner> scanner(const LidarModel& sensor,
                                       std::span<const Firing> firings) const;
+
+  /// Where batches of scans are: page-locked host memory that is used again when nobody holds the
+  /// batch any more, or memory of the first device, where they are complete.
+  enum class Results : std::uint8_t { host, device };
+  using BatchSink = FunctionRef<void(ScanBatch&& batch)>;
+  /// ScanCaster::report() without a copy: as many scans at once as a launch has. Less GPU memory
+  /// makes batches smaller. Errors: unavailable (not enough for one scan).
+  ReportTimes report(const ScanRules& rules, std::span<const ScanMotion> scans,
+                     std::uint64_t first_number, Results results, BatchSink sink) const;
 
   /// `scene.view` must be what the GpuScene was made from.
   std::unique_ptr<GpuRenderer> renderer(const ImageScene& scene, const ImageOptions& options) const;

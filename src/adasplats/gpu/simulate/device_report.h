@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "adasplats/gpu/base/device_memory.h"
+#include "adasplats/simulate/scan/scan_batch.h"
+#include "adasplats/simulate/scan/scan_rules.h"
+
+namespace adasplats::gpu {
+
+/// Private to gpu/: what primitives carry, on the current device.
+DeviceBuffer<PrimitiveValues> upload_primitives(const PrimitiveTable& table, cudaStream_t stream);
+
+/// The tables behind FiringRules on the current device. `primitives` must outlive it.
+class DeviceRules {
+ public:
+  DeviceRules(const ScanRules& rules, const DeviceBuffer<PrimitiveValues>& primitives,
+              cudaStream_t stream);
+  const FiringRules& view() const { return view_; }
+
+ private:
+  FiringRules view_;
+  DeviceBuffer<Firing> firings_;
+  DeviceBuffer<double> range_offsets_m_;
+  DeviceBuffer<float> weights_;
+  DeviceBuffer<std::uint8_t> blocked_;
+  DeviceBuffer<double> expected_;
+  DeviceBuffer<float> gains_;
+};
+
+/// The poses of the scans of a launch, on the device.
+struct LaunchPoses {
+  const ScanPose* knots = nullptr;
+  const ScanPose* frame_knots = nullptr;       ///< null: points stay as they are measured
+  const std::uint32_t* first_knots = nullptr;  ///< null: one a scan
+  std::uint64_t first_scan = 0;                ///< its number
+  std::uint32_t scans = 0;
+  std::uint32_t firings = 0;  ///< of each
+};
+
+/// What a report needs while it is made, on the device.
+struct ReportSpace {
+  ReportedReturn* returns = nullptr;      ///< beam.returns of each firing
+  std::uint8_t* counts = nullptr;         ///< of firings
+  std::uint32_t* block_counts = nullptr;  ///< report_blocks(), then their sum
+  std::uint32_t* offsets = nullptr;       ///< of scans, one more than there are
+};
+
+/// How many counts of blocks a launch has.
+std::size_t report_blocks(std::size_t scans, std::size_t firings);
+
+/// Queues the making of returns of hits[(i * sub_rays + s) * depth + k], i all firings of all
+/// scans: `space.offsets` says how many each scan has.
+void queue_reports(const FiringRules& rules, const LaunchPoses& poses, const Hit* hits,
+                   const ReportSpace& space, cudaStream_t stream);
+
+/// Queues the writing of their attributes, in the order of scans and firings.
+void queue_returns(const FiringRules& rules, const LaunchPoses& poses, const ReportSpace& space,
+                   const ReturnArrays& arrays, cudaStream_t stream);
+
+}  // namespace adasplats::gpu

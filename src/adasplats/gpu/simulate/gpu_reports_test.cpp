@@ -1,0 +1,283 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/maths/random.h"
+#include "adasplats/gpu/base/device.h"
+#include "adasplats/gpu/simulate/gpu_scene.h"
+#include "adasplats/simulate/scan/scan_rules.h"
+
+namespace adasplats {
+namespace {
+
+constexpr Vec3d kPlaceOrigin = {1000, 2000, 30};
+
+Vec3f any_direction(Random& random) {
+  const Vec3d v = {random.normal(), random.normal(), random.normal()};
+  return vec_cast<float>(normalized(v));
+}
+
+/// Everything that decides what is reported.
+struct ReportCase {
+  LidarModel sensor;
+  SimulateOptions options;
+  RayDropModel ray_drop;
+  bool drops = false;
+  bool moves = false;
+  bool has_classes = false;
+  bool has_intensities = false;
+  bool has_response = false;
+};
+
+/// An option with its name; `of` sets it.
+struct Option {
+  const char* name;
+  std::function<void(ReportCase&)> of;
+};
+
+std::vector<Option> options() {
+  return {
+      {"noise", [](ReportCase& s) { s.sensor.range_noise_m = 0.02; }},
+      {"angles", [](ReportCase& s) { s.sensor.angular_noise_rad = 1e-3; }},
+      {"resolution", [](ReportCase& s) { s.sensor.range_resolution_m = 0.004; }},
+      {"offsets",
+       [](ReportCase& s) {
+         s.sensor.range_offsets_m = {0.03, -0.02, 0.1, 0, -0.05};
+         s.options.unit_offsets = true;
+       }},
+      {"depth", [](ReportCase& s) { s.options.beam.depth = 5; }},
+      {"sub-rays", [](ReportCase& s) { s.options.beam.sub_rays = 7; }},
+      {"many sub-rays", [](ReportCase& s) { s.options.beam.sub_rays = 19; }},
+      {"two returns", [](ReportCase& s) { s.options.beam.returns = 2; }},
+      {"last", [](ReportCase& s) { s.options.beam.mode = ReturnMode::last; }},
+      {"drop", [](ReportCase& s) { s.drops = true; }},
+      {"rain", [](ReportCase& s) { s.options.weather.rain_mm_h = 60; }},
+      {"fog", [](ReportCase& s) { s.options.weather.fog_visibility_m = 40; }},
+      {"snow", [](ReportCase& s) { s.options.weather.snow_mm_h = 10; }},
+      {"motion", [](ReportCase& s) { s.moves = true; }},
+      {"deskewed",
+       [](ReportCase& s) {
+         s.moves = true;
+         s.options.frame = PointFrame::deskewed;
+       }},
+      {"classes", [](ReportCase& s) { s.has_classes = true; }},
+      {"intensities", [](ReportCase& s) { s.has_intensities = true; }},
+      {"response", [](ReportCase& s) { s.has_intensities = s.has_response = true; }},
+      {"few fields",
+       [](ReportCase& s) { s.options.fields.rings = s.options.fields.times = false; }},
+  };
+}
+
+class ReportsOnGpu : public testing::TestWithParam<GpuBackend> {
+ protected:
+  void SetUp() override {
+    const GpuSearch search = find_gpus();
+    if (search.devices.empty()) GTEST_SKIP() << search.reason;
+    for (std::uint64_t i = 0; i < 8000; ++i) {
+      Random random(11, 0, i);
+      const Vec3f outward = any_direction(random);
+      const auto distance = static_cast<float>(random.uniform(3, 20));
+      disks_.push_back({distance * outward, static_cast<float>(random.uniform(0.1, 0.6)),
+                        any_direction(random)});
+      classes_.push_back(static_cast<std::uint16_t>(i % 5));
+      instances_.push_back(static_cast<std::uint16_t>(i % 300));
+      intensities_.push_back(i % 17 == 0 ? std::numeric_limits<float>::quiet_NaN()
+                                         : static_cast<float>(random.uniform(0, 1)));
+    }
+    response_.ranges_m = {5, 10, 15};
+    response_.range_gains = {1.3F, 1.0F, 0.6F};
+    response_.cos_incidences = {0, 0.5F, 1};
+    response_.incidence_gains = {0.1F, 0.7F, 1};
+    scene_.emplace(SceneView{disks_, nullptr}, kPlaceOrigin, GetParam(), std::vector<int>{0});
+    tracer_ = make_cpu_tracer({disks_, nullptr}, executor_);
+    caster_ = make_cpu_scan_caster(*tracer_, kPlaceOrigin, executor_);
+  }
+
+  static ReportCase plain() {
+    ReportCase setup;
+    setup.sensor.elevations_rad = {0.3, 0.2, 0.1, 0, -0.1};
+    setup.sensor.columns = 181;  // no multiple of a block
+    for (int i = 0; i < 5; ++i) {
+      setup.sensor.beam_origins_m.push_back({0.05, 0.01 * i, 0.1});
+      setup.sensor.firing_times_s.push_back(2e-6 * i);
+    }
+    setup.sensor.min_range_m = 0.5;
+    setup.sensor.max_range_m = 18;
+    setup.sensor.divergence_rad[0] = 0.02;
+    setup.sensor.divergence_rad[1] = 0.01;
+    setup.options.seed = 5;
+    setup.ray_drop.weights = {-2, 0.5, 0.1, 0, 1, 0.5, -0.2, 0};
+    setup.ray_drop.blocked = {{0.1F, -1.0F, 1.0F}};
+    return setup;
+  }
+
+  std::unique_ptr<ScanRules> rules_of(ReportCase& setup) {
+    if (setup.drops) setup.options.ray_drop = &setup.ray_drop;
+    PrimitiveAttributes attributes;
+    attributes.view = {disks_, nullptr};
+    if (setup.has_classes) {
+      attributes.classes = classes_;
+      attributes.instances = instances_;
+    }
+    if (setup.has_intensities) attributes.intensities = intensities_;
+    if (setup.has_response) attributes.response = &response_;
+    return std::make_unique<ScanRules>(
+        setup.sensor, firings_of(setup.sensor), setup.options,
+        std::make_shared<PrimitiveTable>(primitive_table(attributes, executor_)));
+  }
+
+  /// Some stand still, where `moves` others move.
+  static std::vector<ScanMotion> scans_of(bool moves) {
+    const auto pose = [](double t) {
+      return RigidTransform{rotation_from_yaw_pitch_roll(t, 0.1, -0.05),
+                            kPlaceOrigin + Vec3d{t, -0.5 * t, 0.1}};
+    };
+    std::vector<ScanMotion> scans;
+    for (std::size_t i = 0; i < 5; ++i) {
+      const double t = 0.1 * static_cast<double>(i);
+      scans.push_back({{t, pose(t)}, {}});
+      for (std::size_t k = 0; moves && k < 2 * (i % 3); ++k)
+        scans.back().knots.push_back(pose(t + 0.005 * static_cast<double>(k)));
+    }
+    return scans;
+  }
+
+  static std::vector<Scan> reported_by(const ScanCaster& caster, const ScanRules& rules,
+                                       std::span<const ScanMotion> motions,
+                                       const Executor& executor) {
+    std::vector<Scan> scans;
+    caster.report(rules, motions, 7, executor, [&](std::size_t i, Scan&& scan) {
+      EXPECT_EQ(i, scans.size());
+      scans.push_back(std::move(scan));
+    });
+    return scans;
+  }
+
+  static void expect_same(const std::vector<Scan>& found, const std::vector<Scan>& expected) {
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].rays, expected[i].rays);
+      EXPECT_EQ(found[i].time_s, expected[i].time_s);
+      EXPECT_TRUE(found[i].positions == expected[i].positions) << "positions of scan " << i;
+      for_each_scan_attribute([&](const auto& attribute) {
+        EXPECT_TRUE(attribute.of(found[i]) == attribute.of(expected[i]))
+            << attribute.name << " of scan " << i;
+      });
+    }
+  }
+
+  Executor executor_{2};
+  std::vector<Disk> disks_;
+  std::vector<std::uint16_t> classes_, instances_;
+  std::vector<float> intensities_;
+  IntensityResponse response_;
+  std::optional<GpuScene> scene_;
+  std::unique_ptr<Tracer> tracer_;
+  std::unique_ptr<ScanCaster> caster_;
+};
+
+// The published guarantee: the bytes of the CPU for every option. Oracle: the CPU.
+TEST_P(ReportsOnGpu, AnyTwoOptionsGiveTheBytesOfTheCpu) {
+  const std::vector<Option> all = options();
+  std::size_t returns = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = i; j < all.size(); ++j) {
+      SCOPED_TRACE(std::string(all[i].name) + " and " + all[j].name);
+      ReportCase setup = plain();
+      all[i].of(setup);
+      all[j].of(setup);
+      const auto rules = rules_of(setup);
+      const std::vector<ScanMotion> motions = scans_of(setup.moves);
+      const std::vector<Scan> expected = reported_by(*caster_, *rules, motions, executor_);
+      expect_same(reported_by(scene_->scan_caster(), *rules, motions, executor_), expected);
+      for (const Scan& scan : expected) returns += scan.size();
+      if (HasFailure()) return;
+    }
+  }
+  EXPECT_GT(returns, 100'000U) << "the place is hardly seen";
+}
+
+TEST_P(ReportsOnGpu, AllOptionsAtOnce) {
+  ReportCase setup = plain();
+  for (const Option& option : options()) option.of(setup);
+  const auto rules = rules_of(setup);
+  const std::vector<ScanMotion> motions = scans_of(true);
+  expect_same(reported_by(scene_->scan_caster(), *rules, motions, executor_),
+              reported_by(*caster_, *rules, motions, executor_));
+}
+
+TEST_P(ReportsOnGpu, BatchesHoldTheScans) {
+  ReportCase setup = plain();
+  setup.has_classes = setup.has_intensities = true;
+  setup.sensor.range_noise_m = 0.02;
+  const auto rules = rules_of(setup);
+  std::vector<ScanMotion> motions;
+  for (int i = 0; i < 40; ++i)
+    for (const ScanMotion& motion : scans_of(false)) motions.push_back(motion);
+  const std::vector<Scan> expected = reported_by(*caster_, *rules, motions, executor_);
+  std::vector<ScanBatch> kept;  // as Python may: their memory is theirs
+  std::size_t next = 0;
+  scene_->report(*rules, motions, 7, GpuScene::Results::host, [&](ScanBatch&& batch) {
+    EXPECT_EQ(batch.first, next);
+    EXPECT_EQ(batch.device, -1);
+    next += batch.scans();
+    kept.push_back(std::move(batch));
+  });
+  ASSERT_EQ(next, motions.size());
+  EXPECT_GT(kept.size(), 1U);
+  std::vector<Scan> found;
+  for (const ScanBatch& batch : kept) {
+    for (std::size_t i = 0; i < batch.scans(); ++i) {
+      found.emplace_back();
+      copy_scan(batch, i, motions[batch.first + i], rules->firings().size(), found.back());
+    }
+  }
+  expect_same(found, expected);
+}
+
+TEST_P(ReportsOnGpu, BatchesOnTheDeviceAreCounted) {
+  ReportCase setup = plain();
+  const auto rules = rules_of(setup);
+  const std::vector<ScanMotion> motions = scans_of(false);
+  const std::vector<Scan> expected = reported_by(*caster_, *rules, motions, executor_);
+  std::vector<ScanBatch> kept;
+  scene_->report(*rules, motions, 7, GpuScene::Results::device,
+                 [&](ScanBatch&& batch) { kept.push_back(std::move(batch)); });
+  std::size_t scan = 0;
+  for (const ScanBatch& batch : kept) {
+    EXPECT_EQ(batch.device, 0);
+    EXPECT_NE(batch.arrays.positions, nullptr);
+    EXPECT_EQ(batch.arrays.classes, nullptr);
+    for (std::size_t i = 0; i < batch.scans(); ++i)
+      EXPECT_EQ(batch.offsets[i + 1] - batch.offsets[i], expected[scan++].size());
+  }
+  EXPECT_EQ(scan, motions.size());
+}
+
+TEST_P(ReportsOnGpu, NoScansAndOtherRules) {
+  ReportCase setup = plain();
+  const auto rules = rules_of(setup);
+  EXPECT_TRUE(reported_by(scene_->scan_caster(), *rules, {}, executor_).empty());
+  const std::vector<ScanMotion> motions = scans_of(false);
+  const auto first = reported_by(scene_->scan_caster(), *rules, motions, executor_);
+  auto fewer = firings_of(setup.sensor);
+  fewer.resize(100);
+  rules->set_firings(fewer);
+  expect_same(reported_by(scene_->scan_caster(), *rules, motions, executor_),
+              reported_by(*caster_, *rules, motions, executor_));
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, ReportsOnGpu,
+                         testing::Values(GpuBackend::cuda, GpuBackend::optix),
+                         [](const auto& backend) {
+                           return std::string(backend.param == GpuBackend::cuda ? "Cuda" : "Optix");
+                         });
+
+}  // namespace
+}  // namespace adasplats
