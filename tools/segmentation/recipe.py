@@ -32,7 +32,7 @@ OWN_SENSOR = "velodyne-hdl-64e-kitti"  # of 7 places in 10
 SENSORS = ["hesai-pandar64", "hesai-pandar64", "ouster-os1-128", "velodyne-hdl-32e",
            "velodyne-vlp-32c", "velodyne-vls-128", "velodyne-hdl-64e-s3"]
 TRAINING = ["--crops", 6, "--rate", 4e-3]
-UNLABELLED_SCANS = 90
+UNLABELLED_SCANS = 70
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ def main():
     parser.add_argument("--program", type=pathlib.Path, required=True)
     parser.add_argument("--semantickitti", type=pathlib.Path, required=True)
     parser.add_argument("--pandaset", type=pathlib.Path, required=True)
-    parser.add_argument("--unlabelled", type=pathlib.Path, help="a drive of 90 scans or more for "
+    parser.add_argument("--unlabelled", type=pathlib.Path, help="a drive of 70 scans or more for "
                         "pseudo-labels")
     parser.add_argument("--worlds", type=int, default=16, help="of each kind")
     parser.add_argument("--steps", type=int, default=100_000, help="of a training, at most")
