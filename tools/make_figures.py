@@ -186,6 +186,11 @@ SEGMENTATION = [
         (group, f"groups/iou/{group}", "0.0 %")
         for group in ("ground", "surface", "linear", "non-surface", "movable")),
     ("classes", "miou_present", "0.0 %"), ("accuracy", "accuracy", "0.0 %")]
+SEGMENTATION_ABLATION = [
+    ("steps", "steps", "0,000"), ("groups", "with/groups", "0.0 %"), *(
+        (f"fold {fold}", f"folds/{fold}/with/groups", "0.0 %") for fold in "abc"),
+    ("classes", "with/classes", "0.0 %"), ("groups without intensities", "without/groups", "0.0 %"),
+    ("classes without", "without/classes", "0.0 %")]
 SEGMENTATION_MODELS = [
     ("splats", "primitives/network", "0.00 M"),
     ("ratio", "primitives/network over primitives/true", "0.00x"), *(
@@ -200,6 +205,7 @@ TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "calibration": ("drives", CALIBRATION),
           "parts": ("drives", CALIBRATION_PARTS),
           "segmentation": ("networks", SEGMENTATION),
+          "segmentation_ablation": ("lessons", SEGMENTATION_ABLATION),
           "segmentation_models": ("places", SEGMENTATION_MODELS),
           "thin": ("competitors", THIN_THINGS)}
 
