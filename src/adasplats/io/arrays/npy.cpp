@@ -69,11 +69,14 @@ std::string npy_header(const NpyArray& array) {
   return header + dictionary;
 }
 
-void write_npy(const std::filesystem::path& path, const NpyArray& array) {
-  const std::string header = npy_header(array);
-  AtomicFile file(path);
-  file.write(header);
+void put_npy(ByteSink& file, const NpyArray& array) {
+  file.write(npy_header(array));
   file.write(array.data, array.size_bytes());
+}
+
+void write_npy(const std::filesystem::path& path, const NpyArray& array) {
+  AtomicFile file(path);
+  put_npy(file, array);
   file.commit();
 }
 

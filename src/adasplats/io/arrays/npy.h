@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/io/base/byte_sink.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
@@ -25,6 +26,9 @@ struct NpyArray {
 /// What stands before the values in a NumPy .npy 1.0. Throws std::logic_error without a dimension
 /// and where the size overflows.
 std::string npy_header(const NpyArray& array);
+
+/// The bytes of a .npy 1.0.
+void put_npy(ByteSink& file, const NpyArray& array);
 
 /// Writes an array of any shape as NumPy .npy 1.0.
 void write_npy(const std::filesystem::path& path, const NpyArray& array);

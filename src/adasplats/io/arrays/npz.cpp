@@ -119,10 +119,10 @@ std::vector<Member> members_of(const std::filesystem::path& path,
 
 }  // namespace
 
-void write_npz(const std::filesystem::path& path, std::span<const NamedArray> arrays) {
+void put_npz(ByteSink& file, const std::filesystem::path& path,
+             std::span<const NamedArray> arrays) {
   check_names(arrays);
   const std::vector<Member> members = members_of(path, arrays);
-  AtomicFile file(path);
   std::string directory;
   std::uint64_t directory_offset = 0;
   for (const Member& member : members) {
@@ -137,6 +137,11 @@ void write_npz(const std::filesystem::path& path, std::span<const NamedArray> ar
   Bytes end;
   end.u32(kEndOfCentral).u16(0).u16(0).u16(members.size()).u16(members.size());
   file.write(end.u32(directory.size()).u32(directory_offset).u16(0).get());
+}
+
+void write_npz(const std::filesystem::path& path, std::span<const NamedArray> arrays) {
+  AtomicFile file(path);
+  put_npz(file, path, arrays);
   file.commit();
 }
 

@@ -22,4 +22,7 @@ struct NamedArray {
 /// data (4 GiB or more in all, which needs another kind of zip).
 void write_npz(const std::filesystem::path& path, std::span<const NamedArray> arrays);
 
+/// The bytes of that file; errors name `path`.
+void put_npz(ByteSink& file, const std::filesystem::path& path, std::span<const NamedArray> arrays);
+
 }  // namespace adasplats

@@ -19,8 +19,8 @@ std::size_t values_of(int width, int height, std::size_t channels) {
 }
 
 /// `bytes`: of all pixels, in `format`.
-void write_image(const std::filesystem::path& path, int width, int height, png_uint_32 format,
-                 std::size_t bytes, const void* pixels) {
+std::string encoded_image(int width, int height, png_uint_32 format, std::size_t bytes,
+                          const void* pixels) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = static_cast<png_uint_32>(width);
@@ -34,26 +34,34 @@ void write_image(const std::filesystem::path& path, int width, int height, png_u
   // libpng's simplified interface catches its own errors, so no longjmp crosses our frames.
   if (png_image_write_to_memory(&image, encoded.data(), &encoded_bytes, 0, pixels, 0, nullptr) == 0)
     throw Error(ErrorKind::software,
-                path.string() + ": the image cannot be encoded: " + std::string(image.message));
+                "an image cannot be encoded as PNG: " + std::string(image.message));
   encoded.resize(encoded_bytes);
-  write_file(path, encoded);
+  return encoded;
 }
 
 }  // namespace
 
+std::string png_bytes(int width, int height, std::span<const std::uint8_t> pixels) {
+  if (pixels.empty() || pixels.size() != values_of(width, height, 3))
+    throw std::logic_error("png_bytes: pixels.size() is not width * height * 3");
+  return encoded_image(width, height, PNG_FORMAT_RGB, pixels.size_bytes(), pixels.data());
+}
+
+std::string png16_bytes(int width, int height, std::span<const std::uint16_t> levels) {
+  if (levels.empty() || levels.size() != values_of(width, height, 1))
+    throw std::logic_error("png16_bytes: levels.size() is not width * height");
+  // libpng's "linear" format is 16 bits a channel, stored as they are.
+  return encoded_image(width, height, PNG_FORMAT_LINEAR_Y, levels.size_bytes(), levels.data());
+}
+
 void write_png(const std::filesystem::path& path, int width, int height,
                std::span<const std::uint8_t> pixels) {
-  if (pixels.empty() || pixels.size() != values_of(width, height, 3))
-    throw std::logic_error("write_png: pixels.size() is not width * height * 3");
-  write_image(path, width, height, PNG_FORMAT_RGB, pixels.size_bytes(), pixels.data());
+  write_file(path, png_bytes(width, height, pixels));
 }
 
 void write_png16(const std::filesystem::path& path, int width, int height,
                  std::span<const std::uint16_t> levels) {
-  if (levels.empty() || levels.size() != values_of(width, height, 1))
-    throw std::logic_error("write_png16: levels.size() is not width * height");
-  // libpng's "linear" format is 16 bits a channel, stored as they are.
-  write_image(path, width, height, PNG_FORMAT_LINEAR_Y, levels.size_bytes(), levels.data());
+  write_file(path, png16_bytes(width, height, levels));
 }
 
 }  // namespace adasplats

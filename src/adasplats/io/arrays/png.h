@@ -5,8 +5,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace adasplats {
+
+/// The bytes of the files below.
+std::string png_bytes(int width, int height, std::span<const std::uint8_t> pixels);
+std::string png16_bytes(int width, int height, std::span<const std::uint16_t> levels);
 
 /// Writes an 8-bit RGB image, rows from the top, `pixels` of width * height * 3 bytes.
 void write_png(const std::filesystem::path& path, int width, int height,

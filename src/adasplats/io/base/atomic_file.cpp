@@ -45,6 +45,25 @@ void flush_folder(const std::filesystem::path& folder) {
     throw system_error(ErrorKind::io, folder, "the folder cannot be flushed to disk", error);
 }
 
+void write_all(int descriptor, const std::filesystem::path& path, const char* data,
+               std::size_t bytes) {
+  while (bytes > 0) {
+    const ssize_t put = ::write(descriptor, data, std::min(bytes, kLargestCallBytes));
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) throw system_error(ErrorKind::io, path, "cannot be written", errno);
+    data += put;
+    bytes -= static_cast<std::size_t>(put);
+  }
+}
+
+/// Closes a descriptor that an exception passes by.
+struct OpenDescriptor {
+  int number;
+  ~OpenDescriptor() {
+    if (number >= 0) ::close(number);
+  }
+};
+
 }  // namespace
 
 AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(target_of(path)) {
@@ -85,13 +104,7 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
 
 void AtomicFile::write_through(const char* data, std::size_t bytes) {
   if (descriptor_ < 0) throw std::logic_error("AtomicFile: used after commit()");
-  while (bytes > 0) {
-    const ssize_t put = ::write(descriptor_, data, std::min(bytes, kLargestCallBytes));
-    if (put < 0 && errno == EINTR) continue;
-    if (put < 0) throw system_error(ErrorKind::io, path_, "cannot be written", errno);
-    data += put;
-    bytes -= static_cast<std::size_t>(put);
-  }
+  write_all(descriptor_, path_, data, bytes);
 }
 
 void AtomicFile::commit() {
@@ -112,6 +125,18 @@ void write_file(const std::filesystem::path& path, std::string_view content) {
   AtomicFile file(path);
   file.write(content);
   file.commit();
+}
+
+void write_file_in_place(const std::filesystem::path& path, std::string_view content) {
+  OpenDescriptor file{-1};
+  do {
+    file.number = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  } while (file.number < 0 && errno == EINTR);
+  if (file.number < 0)
+    throw system_error(ErrorKind::cannot_create, path, "cannot be created", errno);
+  write_all(file.number, path, content.data(), content.size());
+  if (::close(std::exchange(file.number, -1)) != 0)
+    throw system_error(ErrorKind::io, path, "cannot be closed", errno);
 }
 
 std::string read_file(const std::filesystem::path& path) {

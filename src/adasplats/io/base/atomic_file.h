@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "adasplats/io/base/byte_sink.h"
+
 namespace adasplats {
 
 /// An output file that appears whole or not at all: written beside its place under a temporary
@@ -14,15 +16,13 @@ namespace adasplats {
 /// temporary is removed and an older file of that name stays as it was. Small writes are buffered.
 /// A symbolic link is followed; anything else that is not a regular file is refused.
 /// Errors: ErrorKind::cannot_create (no such folder, no permission), ErrorKind::io (disk full).
-class AtomicFile {
+class AtomicFile final : public ByteSink {
  public:
   explicit AtomicFile(const std::filesystem::path& path);
-  ~AtomicFile();
-  AtomicFile(const AtomicFile&) = delete;
-  AtomicFile& operator=(const AtomicFile&) = delete;
+  ~AtomicFile() override;
 
-  void write(const void* data, std::size_t bytes);
-  void write(std::string_view text) { write(text.data(), text.size()); }
+  using ByteSink::write;
+  void write(const void* data, std::size_t bytes) override;
   /// Makes the file durable and visible under its name. Call once, last.
   void commit();
 
@@ -35,8 +35,13 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
-/// Writes a whole file at once.
+/// Writes a whole file at once, as AtomicFile does.
 void write_file(const std::filesystem::path& path, std::string_view content);
+
+/// Writes a whole file at once under its own name, without waiting for the disk: for folders that
+/// get their name when they are whole. What was there is replaced; an error or a kill can leave the
+/// file half written. Errors: as AtomicFile's.
+void write_file_in_place(const std::filesystem::path& path, std::string_view content);
 
 /// A whole file's bytes. Errors: no_input (missing, a folder, not a regular file), io.
 std::string read_file(const std::filesystem::path& path);

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/byte_sink.h"
 #include "adasplats/io/base/records.h"
 #include "adasplats/io/base/table.h"
 
@@ -33,7 +33,7 @@ inline void spread_column(const ColumnView& column, std::size_t first_row, std::
 /// Writes `rows` records: `prefix_bytes` that `fill_prefix(row, place)` fills, then the columns,
 /// without gaps.
 template <class FillPrefix>
-void write_records(AtomicFile& file, std::size_t rows, std::span<const ColumnView> columns,
+void write_records(ByteSink& file, std::size_t rows, std::span<const ColumnView> columns,
                    std::size_t prefix_bytes, FillPrefix&& fill_prefix) {
   constexpr std::size_t kChunkBytes = std::size_t{256} << 10;
   std::size_t record_bytes = prefix_bytes;
@@ -54,7 +54,7 @@ void write_records(AtomicFile& file, std::size_t rows, std::span<const ColumnVie
   }
 }
 
-inline void write_records(AtomicFile& file, std::size_t rows, std::span<const ColumnView> columns) {
+inline void write_records(ByteSink& file, std::size_t rows, std::span<const ColumnView> columns) {
   write_records(file, rows, columns, 0, [](std::size_t, char*) {});
 }
 

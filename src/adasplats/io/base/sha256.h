@@ -21,13 +21,16 @@ class Sha256 {
   std::string digest();
 
  private:
-  void mix_block(const unsigned char* block);
+  void mix_blocks(const unsigned char* data, std::size_t blocks);
 
   std::array<std::uint32_t, 8> state_ = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
                                          0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
   std::array<unsigned char, 64> block_ = {};
   std::uint64_t bytes_ = 0;
 };
+
+/// Of bytes in memory.
+std::string sha256_of(std::string_view bytes);
 
 /// Of a file's bytes. Errors: no_input, io.
 std::string sha256_of_file(const std::filesystem::path& path);

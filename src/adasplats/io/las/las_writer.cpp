@@ -253,8 +253,8 @@ std::string header_of(std::size_t rows, const Summary& summary, const Grid& grid
 
 }  // namespace
 
-void write_las(const std::filesystem::path& path, std::size_t rows,
-               std::span<const ColumnView> columns, const LasWriteOptions& options) {
+void put_las(ByteSink& file, const std::filesystem::path& path, std::size_t rows,
+             std::span<const ColumnView> columns, const LasWriteOptions& options) {
   const PointColumns points(columns);
   const Grid grid(path, options);
   const Summary summary = summary_of(points, rows, grid);
@@ -262,7 +262,6 @@ void write_las(const std::filesystem::path& path, std::size_t rows,
   std::size_t record_bytes = fixed_bytes;
   for (const ColumnView& extra : points.extras()) record_bytes += type_bytes(extra.type);
   const std::string extras = extra_record(points.extras());
-  AtomicFile file(path);
   file.write(header_of(rows, summary, grid, record_bytes, extras.size()));
   file.write(extras);
   write_records(file, rows, points.extras(), fixed_bytes, [&](std::size_t row, char* record) {
@@ -273,6 +272,12 @@ void write_las(const std::filesystem::path& path, std::size_t rows,
     put(record, kReturnsOffset, static_cast<std::uint8_t>(returns));
     points.copy_fields(row, record);
   });
+}
+
+void write_las(const std::filesystem::path& path, std::size_t rows,
+               std::span<const ColumnView> columns, const LasWriteOptions& options) {
+  AtomicFile file(path);
+  put_las(file, path, rows, columns, options);
   file.commit();
 }
 

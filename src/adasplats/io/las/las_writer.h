@@ -7,6 +7,7 @@
 #include <span>
 
 #include "adasplats/core/maths/vec3.h"
+#include "adasplats/io/base/byte_sink.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
@@ -28,5 +29,9 @@ struct LasWriteOptions {
 /// return number out of range, with the point's number).
 void write_las(const std::filesystem::path& path, std::size_t rows,
                std::span<const ColumnView> columns, const LasWriteOptions& options = {});
+
+/// The bytes of that file; errors name `path`.
+void put_las(ByteSink& file, const std::filesystem::path& path, std::size_t rows,
+             std::span<const ColumnView> columns, const LasWriteOptions& options = {});
 
 }  // namespace adasplats

@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 
 namespace adasplats {
 namespace {
@@ -66,6 +67,11 @@ unsigned long crc_of(unsigned long crc, std::string_view bytes) {
 
 }  // namespace
 
+McapMessage mcap_message(std::uint16_t channel, std::uint64_t time_ns, std::string bytes) {
+  const auto crc = static_cast<std::uint32_t>(crc_of(0, bytes));
+  return {channel, time_ns, std::move(bytes), crc};
+}
+
 void McapFile::Times::add(std::uint64_t time_ns) {
   first = std::min(first, time_ns);
   last = std::max(last, time_ns);
@@ -100,23 +106,27 @@ std::uint16_t McapFile::add_channel(const McapChannel& channel) {
   return id;
 }
 
-void McapFile::add_message(std::uint16_t channel, std::uint64_t time_ns, std::string_view message) {
-  ChannelState& state = channels_.at(channel);
-  Fields head;
-  head.number(channel).number(state.messages).number(time_ns).number(time_ns);
-  state.in_chunk.emplace_back(time_ns, chunk_.size());
-  chunk_ += record_header(Opcode::message, head.get().size() + message.size());
-  chunk_ += head.get();
-  chunk_ += message;
-  chunk_times_.add(time_ns);
-  times_.add(time_ns);
+void McapFile::add_message(const McapMessage& message) {
+  ChannelState& state = channels_.at(message.channel);
+  Fields fields;
+  fields.number(message.channel).number(state.messages);
+  fields.number(message.time_ns).number(message.time_ns);
+  state.in_chunk.emplace_back(message.time_ns, chunk_.size());
+  const std::string head =
+      record_header(Opcode::message, fields.get().size() + message.bytes.size()) + fields.get();
+  chunk_ += head;
+  chunk_ += message.bytes;
+  chunk_crc_ = crc32_combine(crc_of(chunk_crc_, head), message.crc,
+                             static_cast<z_off_t>(message.bytes.size()));
+  chunk_times_.add(message.time_ns);
+  times_.add(message.time_ns);
   ++state.messages;
   if (chunk_.size() >= kChunkBytes) put_chunk();
 }
 
 void McapFile::put_chunk() {
   if (chunk_.empty()) return;
-  const unsigned long records_crc = crc_of(0, chunk_);
+  const unsigned long records_crc = std::exchange(chunk_crc_, 0);
   Fields head;
   head.number(chunk_times_.begin()).number(chunk_times_.last);
   head.number(std::uint64_t{chunk_.size()}).number(static_cast<std::uint32_t>(records_crc));

@@ -22,6 +22,17 @@ struct McapChannel {
   std::string schema;
 };
 
+/// A message with its checksum, which is most of the work and can be done before its turn.
+struct McapMessage {
+  std::uint16_t channel = 0;
+  std::uint64_t time_ns = 0;  ///< nanoseconds since an epoch of the user's choice
+  std::string bytes;
+  std::uint32_t crc = 0;  ///< of `bytes`, as zlib has it
+};
+
+/// Several threads may call it at once.
+McapMessage mcap_message(std::uint16_t channel, std::uint64_t time_ns, std::string bytes);
+
 /// Writes an MCAP file (Foxglove, "MCAP Format Specification", version 0), message by message:
 /// chunks without compression, an index of every chunk and its messages, statistics, summary
 /// offsets, and the checksums of chunks, data and summary. Atomic (see AtomicFile).
@@ -33,8 +44,11 @@ class McapFile {
 
   /// The number by which add_message() knows the channel; 65535 at most.
   std::uint16_t add_channel(const McapChannel& channel);
-  /// `time_ns`: nanoseconds since an epoch of the user's choice. Errors: io.
-  void add_message(std::uint16_t channel, std::uint64_t time_ns, std::string_view message);
+  /// A message of mcap_message(). Errors: io.
+  void add_message(const McapMessage& message);
+  void add_message(std::uint16_t channel, std::uint64_t time_ns, std::string_view message) {
+    add_message(mcap_message(channel, time_ns, std::string(message)));
+  }
   /// Makes the file whole and visible. Call once, last. Errors: io, cannot_create.
   void finish();
 
@@ -64,6 +78,7 @@ class McapFile {
   std::uint64_t offset_ = 0;  ///< bytes written
   unsigned long crc_ = 0;     ///< of the bytes of this section, as zlib has it
   std::string chunk_;         ///< the records of the open chunk
+  unsigned long chunk_crc_ = 0;
   Times chunk_times_, times_;
   std::vector<ChannelState> channels_;
   std::vector<std::string> chunk_indexes_;

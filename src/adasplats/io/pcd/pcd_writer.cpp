@@ -49,12 +49,16 @@ std::string header_text(std::size_t rows, std::span<const ColumnView> columns,
 
 }  // namespace
 
+void put_pcd(ByteSink& file, std::size_t rows, std::span<const ColumnView> columns,
+             const PcdViewpoint& viewpoint) {
+  file.write(header_text(rows, columns, viewpoint));
+  write_records(file, rows, columns);
+}
+
 void write_pcd(const std::filesystem::path& path, std::size_t rows,
                std::span<const ColumnView> columns, const PcdViewpoint& viewpoint) {
-  const std::string header = header_text(rows, columns, viewpoint);
   AtomicFile file(path);
-  file.write(header);
-  write_records(file, rows, columns);
+  put_pcd(file, rows, columns, viewpoint);
   file.commit();
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <span>
 
+#include "adasplats/io/base/byte_sink.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
@@ -20,5 +21,9 @@ using PcdViewpoint = std::array<double, 7>;
 void write_pcd(const std::filesystem::path& path, std::size_t rows,
                std::span<const ColumnView> columns,
                const PcdViewpoint& viewpoint = {0, 0, 0, 1, 0, 0, 0});
+
+/// The bytes of that file.
+void put_pcd(ByteSink& file, std::size_t rows, std::span<const ColumnView> columns,
+             const PcdViewpoint& viewpoint = {0, 0, 0, 1, 0, 0, 0});
 
 }  // namespace adasplats

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/io/base/byte_sink.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
@@ -31,6 +32,10 @@ bool ply_has_faces(const std::filesystem::path& path);
 /// Columns may be i8..i32, u8..u32, f32, f64 (PLY has no 64-bit integers: std::logic_error).
 void write_ply(const std::filesystem::path& path, std::size_t rows,
                std::span<const ColumnView> columns, std::span<const std::string> comments = {});
+
+/// The bytes of that file.
+void put_ply(ByteSink& file, std::size_t rows, std::span<const ColumnView> columns,
+             std::span<const std::string> comments = {});
 
 /// Writes `vertex` and `face` elements; `triangle_vertices` has three indices a face, each below
 /// `vertices` (else std::logic_error); `face_columns` have a row a triangle.

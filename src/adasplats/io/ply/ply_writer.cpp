@@ -53,13 +53,18 @@ std::string header_start(std::span<const std::string> comments) {
 
 }  // namespace
 
-void write_ply(const std::filesystem::path& path, std::size_t rows,
-               std::span<const ColumnView> columns, std::span<const std::string> comments) {
+void put_ply(ByteSink& file, std::size_t rows, std::span<const ColumnView> columns,
+             std::span<const std::string> comments) {
   const std::string header = header_start(comments) + "element vertex " + std::to_string(rows) +
                              "\n" + property_lines(columns) + "end_header\n";
-  AtomicFile file(path);
   file.write(header);
   write_records(file, rows, columns);
+}
+
+void write_ply(const std::filesystem::path& path, std::size_t rows,
+               std::span<const ColumnView> columns, std::span<const std::string> comments) {
+  AtomicFile file(path);
+  put_ply(file, rows, columns, comments);
   file.commit();
 }
 
