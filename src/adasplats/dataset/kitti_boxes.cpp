@@ -97,19 +97,24 @@ std::vector<SensedBox> sensed_boxes(std::span<const ObjectBox> boxes, const Scan
   return sensed;
 }
 
-void write_kitti_boxes(const std::filesystem::path& folder, std::size_t index,
-                       std::span<const SensedBox> boxes, std::size_t least_points) {
+std::vector<EncodedFile> encode_kitti_boxes(const std::string& folder, std::size_t index,
+                                            std::span<const SensedBox> boxes,
+                                            std::size_t least_points) {
   std::string camera, velodyne;
   for (const SensedBox& box : boxes) {
     if (box.points < least_points) continue;
     camera += camera_line(box);
     velodyne += velodyne_line(box);
   }
+  const std::filesystem::path below(folder);
   const std::string name = scan_name(index) + ".txt";
-  create_folder(folder / "label_2");
-  create_folder(folder / "label_velodyne");
-  write_file(folder / "label_2" / name, camera);
-  write_file(folder / "label_velodyne" / name, velodyne);
+  return {{(below / "label_2" / name).string(), camera},
+          {(below / "label_velodyne" / name).string(), velodyne}};
+}
+
+void write_kitti_boxes(const std::filesystem::path& folder, std::size_t index,
+                       std::span<const SensedBox> boxes, std::size_t least_points) {
+  write_encoded(folder, encode_kitti_boxes("", index, boxes, least_points), FileWrites::atomic);
 }
 
 }  // namespace adasplats

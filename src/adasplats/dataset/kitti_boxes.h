@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/dataset/encoded_scan.h"
 #include "adasplats/simulate/world/world.h"
 
 namespace adasplats {
@@ -44,5 +45,10 @@ std::vector<SensedBox> sensed_boxes(std::span<const ObjectBox> boxes, const Scan
 /// Metres, radians. The folders are created. Errors: cannot_create, io.
 void write_kitti_boxes(const std::filesystem::path& folder, std::size_t index,
                        std::span<const SensedBox> boxes, std::size_t least_points = 1);
+
+/// The same as bytes; `folder` stands before the names.
+std::vector<EncodedFile> encode_kitti_boxes(const std::string& folder, std::size_t index,
+                                            std::span<const SensedBox> boxes,
+                                            std::size_t least_points = 1);
 
 }  // namespace adasplats

@@ -3,6 +3,7 @@
 #include "adasplats/dataset/mcap_writer.h"
 
 #include <string>
+#include <utility>
 
 #include "adasplats/dataset/ros_messages.h"
 
@@ -24,14 +25,18 @@ McapWriter::McapWriter(const std::filesystem::path& path)
       points_(
           file_.add_channel(ros_channel("/points", kPointCloud2Type, point_cloud2_definition()))) {}
 
-void McapWriter::write(const Scan& scan) {
+std::vector<McapMessage> McapWriter::messages(const Scan& scan) const {
   const std::uint64_t time_ns = ros_time_ns(scan.time_s);
-  // Both before either is added: a scan that cannot be written leaves no half of it.
-  const std::string transform =
-      transform_message(scan.world_from_sensor, scan.time_s, kWorldFrame, kSensorFrame);
-  const std::string points = point_cloud2_message(scan, kSensorFrame);
-  file_.add_message(transforms_, time_ns, transform);
-  file_.add_message(points_, time_ns, points);
+  std::vector<McapMessage> messages;
+  messages.push_back(mcap_message(
+      transforms_, time_ns,
+      transform_message(scan.world_from_sensor, scan.time_s, kWorldFrame, kSensorFrame)));
+  messages.push_back(mcap_message(points_, time_ns, point_cloud2_message(scan, kSensorFrame)));
+  return messages;
+}
+
+void McapWriter::append(std::span<const McapMessage> messages) {
+  for (const McapMessage& message : messages) file_.add_message(message);
 }
 
 }  // namespace adasplats

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
+#include <vector>
 
 #include "adasplats/io/mcap/mcap_file.h"
 #include "adasplats/simulate/scan/scan.h"
@@ -19,8 +21,13 @@ class McapWriter {
   /// Errors: cannot_create, io.
   explicit McapWriter(const std::filesystem::path& path);
 
-  /// Scans by ascending time. Errors: io; data (a time that ROS cannot express: ros_time_ns).
-  void write(const Scan& scan);
+  /// The messages of a scan. Several threads may call it at once.
+  /// Errors: data (a time that ROS cannot express: ros_time_ns).
+  std::vector<McapMessage> messages(const Scan& scan) const;
+  /// The messages of the next scan, by ascending time. Errors: io.
+  void append(std::span<const McapMessage> messages);
+  /// Both. Errors: of either.
+  void write(const Scan& scan) { append(messages(scan)); }
   /// Makes the file whole. Call once, last.
   void finish() { file_.finish(); }
 

@@ -69,19 +69,30 @@ RangeImage range_image(const Scan& scan, ImageSize size) {
   return image;
 }
 
-void write_range_image(const std::filesystem::path& folder, const std::string& stem,
-                       const RangeImage& image, const LabelScheme* labels) {
+std::vector<EncodedFile> encode_range_image(const std::string& stem, const RangeImage& image,
+                                            const LabelScheme* labels) {
   const std::vector<std::size_t> shape = {image.size.rings, image.size.columns};
   const auto width = static_cast<int>(image.size.columns);
   const auto height = static_cast<int>(image.size.rings);
   const bool has_pixels = !image.ranges_m.empty();
-  write_npy(folder / (stem + "_range.npy"),
-            NpyArray{ColumnType::f32, shape, image.ranges_m.data()});
+  std::vector<EncodedFile> files;
+  const auto add_array = [&](const char* ending, ColumnType type, const void* values) {
+    ByteBuffer file;
+    put_npy(file, NpyArray{type, shape, values});
+    files.push_back({stem + ending, file.take()});
+  };
+  add_array("_range.npy", ColumnType::f32, image.ranges_m.data());
   if (has_pixels)
-    write_png16(folder / (stem + "_range.png"), width, height, levels_of(image.ranges_m));
-  if (image.labels.empty()) return;
-  write_npy(folder / (stem + "_label.npy"), NpyArray{ColumnType::u32, shape, image.labels.data()});
-  write_png(folder / (stem + "_label.png"), width, height, pixels_of(image, labels));
+    files.push_back({stem + "_range.png", png16_bytes(width, height, levels_of(image.ranges_m))});
+  if (image.labels.empty()) return files;
+  add_array("_label.npy", ColumnType::u32, image.labels.data());
+  files.push_back({stem + "_label.png", png_bytes(width, height, pixels_of(image, labels))});
+  return files;
+}
+
+void write_range_image(const std::filesystem::path& folder, const std::string& stem,
+                       const RangeImage& image, const LabelScheme* labels) {
+  write_encoded(folder, encode_range_image(stem, image, labels), FileWrites::atomic);
 }
 
 }  // namespace adasplats

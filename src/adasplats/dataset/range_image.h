@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/dataset/encoded_scan.h"
 #include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
@@ -40,5 +42,9 @@ RangeImage range_image(const Scan& scan, ImageSize size);
 /// know). Pictures need a pixel: an image without one is its .npy alone.
 void write_range_image(const std::filesystem::path& folder, const std::string& stem,
                        const RangeImage& image, const LabelScheme* labels);
+
+/// The same as bytes.
+std::vector<EncodedFile> encode_range_image(const std::string& stem, const RangeImage& image,
+                                            const LabelScheme* labels);
 
 }  // namespace adasplats

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/io/arrays/npy.h"
 #include "adasplats/io/arrays/npz.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/las/las_writer.h"
 #include "adasplats/io/pcd/pcd_writer.h"
 #include "adasplats/io/ply/ply.h"
@@ -53,6 +55,7 @@ struct LasFields {
   std::vector<double> times;
 
   LasFields(const Scan& scan, double full_intensity) : returns(returns_of_firings(scan)) {
+    intensities.reserve(scan.intensities.size());
     for (const float value : scan.intensities) {
       const double share = std::isnan(value) ? 0.0 : static_cast<double>(value) / full_intensity;
       intensities.push_back(
@@ -79,20 +82,22 @@ struct LasFields {
   }
 };
 
-}  // namespace
+/// Most formats have as many bytes a point.
+constexpr std::size_t kExpectedPointBytes = 48;
 
-void write_scan_ply(const std::filesystem::path& path, const Scan& scan) {
-  write_ply(path, scan.size(), scan_columns(scan));
+std::string ply_bytes(const Scan& scan) {
+  ByteBuffer file(scan.size() * kExpectedPointBytes);
+  put_ply(file, scan.size(), scan_columns(scan));
+  return file.take();
 }
 
-void write_scan_npy(const std::filesystem::path& path, const Scan& scan) {
-  write_npy(path, points_with_intensity(scan), scan.size(), 4);
-  std::filesystem::path labels_path = path;
-  labels_path.replace_filename(path.stem().string() + "_label" + path.extension().string());
-  write_npy(labels_path, packed_labels(scan));
+std::string pcd_bytes(const Scan& scan) {
+  ByteBuffer file(scan.size() * kExpectedPointBytes);
+  put_pcd(file, scan.size(), scan_columns(scan), viewpoint_of(scan.world_from_sensor));
+  return file.take();
 }
 
-void write_scan_npz(const std::filesystem::path& path, const Scan& scan) {
+std::string npz_bytes(const std::filesystem::path& path, const Scan& scan) {
   static_assert(sizeof(Vec3f) == 3 * sizeof(float));
   std::vector<NamedArray> arrays = {
       {"points", {ColumnType::f32, {scan.size(), 3}, scan.positions.data()}}};
@@ -104,14 +109,12 @@ void write_scan_npz(const std::filesystem::path& path, const Scan& scan) {
   const std::array<double, 16> pose = matrix_of(scan.world_from_sensor);
   arrays.push_back({"world_from_sensor", {ColumnType::f64, {4, 4}, pose.data()}});
   arrays.push_back({"time", {ColumnType::f64, {1}, &scan.time_s}});
-  write_npz(path, arrays);
+  ByteBuffer file(scan.size() * kExpectedPointBytes);
+  put_npz(file, path, arrays);
+  return file.take();
 }
 
-void write_scan_pcd(const std::filesystem::path& path, const Scan& scan) {
-  write_pcd(path, scan.size(), scan_columns(scan), viewpoint_of(scan.world_from_sensor));
-}
-
-void write_scan_las(const std::filesystem::path& path, const Scan& scan, double full_intensity) {
+std::string las_bytes(const std::filesystem::path& path, const Scan& scan, double full_intensity) {
   const LasFields fields(scan, full_intensity);
   std::vector<ColumnView> columns = fields.columns();
   for (ColumnView column : scan_columns(scan)) {
@@ -119,7 +122,71 @@ void write_scan_las(const std::filesystem::path& path, const Scan& scan, double 
     if (column.name == "intensity") column.name = "intensity_value";
     columns.push_back(column);
   }
-  write_las(path, scan.size(), columns);
+  ByteBuffer file(scan.size() * (kExpectedPointBytes + 16));
+  put_las(file, path, scan.size(), columns);
+  return file.take();
+}
+
+std::string npy_bytes(const NpyArray& array) {
+  ByteBuffer file(array.size_bytes() + 128);
+  put_npy(file, array);
+  return file.take();
+}
+
+std::string npy_points(const Scan& scan) {
+  const std::vector<PointWithIntensity> points = points_with_intensity(scan);
+  return npy_bytes({ColumnType::f32, {scan.size(), 4}, points.data()});
+}
+
+std::string npy_labels(const Scan& scan) {
+  const std::vector<std::uint32_t> labels = packed_labels(scan);
+  return npy_bytes({ColumnType::u32, {scan.size()}, labels.data()});
+}
+
+}  // namespace
+
+void write_scan_ply(const std::filesystem::path& path, const Scan& scan) {
+  write_file(path, ply_bytes(scan));
+}
+
+void write_scan_npy(const std::filesystem::path& path, const Scan& scan) {
+  write_file(path, npy_points(scan));
+  std::filesystem::path labels_path = path;
+  labels_path.replace_filename(path.stem().string() + "_label" + path.extension().string());
+  write_file(labels_path, npy_labels(scan));
+}
+
+void write_scan_npz(const std::filesystem::path& path, const Scan& scan) {
+  write_file(path, npz_bytes(path, scan));
+}
+
+void write_scan_pcd(const std::filesystem::path& path, const Scan& scan) {
+  write_file(path, pcd_bytes(scan));
+}
+
+void write_scan_las(const std::filesystem::path& path, const Scan& scan, double full_intensity) {
+  write_file(path, las_bytes(path, scan, full_intensity));
+}
+
+std::vector<EncodedFile> encode_scan_files(ScanFormat format, const std::string& stem,
+                                           const Scan& scan, double full_intensity) {
+  std::vector<EncodedFile> files;
+  switch (format) {
+    case ScanFormat::ply: files.push_back({stem + ".ply", ply_bytes(scan)}); break;
+    case ScanFormat::pcd: files.push_back({stem + ".pcd", pcd_bytes(scan)}); break;
+    case ScanFormat::npz: files.push_back({stem + ".npz", npz_bytes(stem + ".npz", scan)}); break;
+    case ScanFormat::las:
+      files.push_back({stem + ".las", las_bytes(stem + ".las", scan, full_intensity)});
+      break;
+    case ScanFormat::npy:
+      files.push_back({stem + ".npy", npy_points(scan)});
+      files.push_back({stem + "_label.npy", npy_labels(scan)});
+      break;
+    case ScanFormat::semantickitti:
+    case ScanFormat::range_image:
+    case ScanFormat::mcap: throw std::logic_error("encode_scan_files: no format of points");
+  }
+  return files;
 }
 
 }  // namespace adasplats

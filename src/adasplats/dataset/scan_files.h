@@ -4,9 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "adasplats/dataset/encoded_scan.h"
 #include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
@@ -45,5 +48,10 @@ void write_scan_pcd(const std::filesystem::path& path, const Scan& scan);
 /// bytes: intensity_value, label, instance, ring, column, range, as far as the scan has them.
 void write_scan_las(const std::filesystem::path& path, const Scan& scan,
                     double full_intensity = 1.0);
+
+/// The same as bytes: the files of `format` (ply, npy, npz, pcd or las, else std::logic_error) that
+/// a scan becomes, named `stem` with their extensions. Errors: those of the formats.
+std::vector<EncodedFile> encode_scan_files(ScanFormat format, const std::string& stem,
+                                           const Scan& scan, double full_intensity = 1.0);
 
 }  // namespace adasplats

@@ -154,8 +154,8 @@ TEST(ScanValues, ReturnsOfFirings) {
 TEST(ScanValues, UnknownIntensityIsZero) {
   Scan scan = scan_number(0, 2);
   scan.intensities[1] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(points_with_intensity(scan)[3], scan.intensities[0]);
-  EXPECT_EQ(points_with_intensity(scan)[7], 0.0F);
+  EXPECT_EQ(points_with_intensity(scan)[0].intensity, scan.intensities[0]);
+  EXPECT_EQ(points_with_intensity(scan)[1].intensity, 0.0F);
 }
 
 // Oracle: the .npy format, version 1.0: magic, header length at byte 8, then the values.

@@ -9,15 +9,14 @@
 #include "adasplats/core/error.h"
 
 namespace adasplats {
-std::vector<float> points_with_intensity(const Scan& scan) {
-  std::vector<float> values;
-  values.reserve(4 * scan.size());
+std::vector<PointWithIntensity> points_with_intensity(const Scan& scan) {
+  std::vector<PointWithIntensity> values(scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const Vec3f p = scan.positions[i];
     // Networks that are trained on such files do not survive a NaN.
     const float intensity =
         scan.intensities.empty() || std::isnan(scan.intensities[i]) ? 0.0F : scan.intensities[i];
-    values.insert(values.end(), {p.x, p.y, p.z, intensity});
+    values[i] = {p.x, p.y, p.z, intensity};
   }
   return values;
 }

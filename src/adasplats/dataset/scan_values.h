@@ -14,7 +14,11 @@
 namespace adasplats {
 
 /// x, y, z (sensor frame, m) and intensity of each point; intensity 0 where it is not known.
-std::vector<float> points_with_intensity(const Scan& scan);
+struct PointWithIntensity {
+  float x, y, z, intensity;
+};
+static_assert(sizeof(PointWithIntensity) == 4 * sizeof(float));
+std::vector<PointWithIntensity> points_with_intensity(const Scan& scan);
 
 /// instance << 16 | class of each point, 0 for what the scan does not have.
 std::vector<std::uint32_t> packed_labels(const Scan& scan);

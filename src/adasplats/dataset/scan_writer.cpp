@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/dataset/scan_writer.h"
 
-#include <stdexcept>
+#include <algorithm>
 #include <utility>
 
 #include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/core/words.h"
 #include "adasplats/dataset/mcap_writer.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/semantickitti_writer.h"
@@ -13,75 +14,109 @@
 namespace adasplats {
 namespace {
 
+const std::string kSequence = "sequences/00";
+
 class SequenceWriter final : public ScanWriter {
  public:
   explicit SequenceWriter(const std::filesystem::path& folder)
-      : writer_(folder / "sequences" / "00") {}
-  void write(std::size_t index, const Scan& scan) override { writer_.write_scan(index, scan); }
+      : ScanWriter(folder), writer_(folder / kSequence) {}
+
+  EncodedScan encode(std::size_t index, const Scan& scan) const override {
+    EncodedScan encoded = SemanticKittiWriter::encode(index, scan);
+    for (EncodedFile& file : encoded.files) file.name = kSequence + "/" + file.name;
+    return encoded;
+  }
+  void append(std::size_t index, const EncodedScan& scan) override {
+    writer_.note_written(index, scan);
+  }
+  std::string main_file(std::size_t index) const override {
+    return kSequence + "/velodyne/" + scan_name(index) + ".bin";
+  }
+  void keep(std::size_t index, const TimedPose& pose) override { writer_.keep_scan(index, pose); }
   void finish() override { writer_.finish(); }
 
  private:
   SemanticKittiWriter writer_;
 };
 
-/// Files of their own for every scan, and poses.csv.
-class FileWriter final : public ScanWriter {
+/// What stands beside the scans: poses.csv.
+class WriterWithPoses : public ScanWriter {
  public:
-  FileWriter(std::filesystem::path folder, ScanFormat format, const ScanWriterOptions& options)
-      : folder_(std::move(folder)), format_(format), options_(options) {}
-
-  void write(std::size_t index, const Scan& scan) override {
-    write_file_of(scan_name(index), scan);
-    trajectory_.push_back({scan.time_s, scan.world_from_sensor});
+  using ScanWriter::ScanWriter;
+  void append(std::size_t /*index*/, const EncodedScan& scan) override {
+    trajectory_.push_back(scan.pose);
   }
-  void finish() override { write_trajectory_csv(folder_ / "poses.csv", trajectory_); }
+  void keep(std::size_t /*index*/, const TimedPose& pose) override { trajectory_.push_back(pose); }
+  void finish() override { write_trajectory_csv(folder() / "poses.csv", trajectory_); }
 
  private:
-  void write_file_of(const std::string& stem, const Scan& scan) const {
-    switch (format_) {
-      case ScanFormat::ply: return write_scan_ply(folder_ / (stem + ".ply"), scan);
-      case ScanFormat::npy: return write_scan_npy(folder_ / (stem + ".npy"), scan);
-      case ScanFormat::npz: return write_scan_npz(folder_ / (stem + ".npz"), scan);
-      case ScanFormat::pcd: return write_scan_pcd(folder_ / (stem + ".pcd"), scan);
-      case ScanFormat::las:
-        return write_scan_las(folder_ / (stem + ".las"), scan, options_.full_intensity);
-      case ScanFormat::range_image:
-        return write_range_image(folder_, stem, range_image(scan, options_.image_size),
-                                 options_.labels);
-      case ScanFormat::semantickitti:
-      case ScanFormat::mcap: break;
-    }
-    throw std::logic_error("ScanWriter: no format of single files");
-  }
-
-  std::filesystem::path folder_;
-  ScanFormat format_;
-  ScanWriterOptions options_;
   Trajectory trajectory_;
 };
 
-/// All scans as messages of one file, and poses.csv.
-class MessageWriter final : public ScanWriter {
+/// Files of their own for every scan.
+class FileWriter final : public WriterWithPoses {
  public:
-  explicit MessageWriter(std::filesystem::path folder)
-      : folder_(std::move(folder)), writer_(folder_ / "scans.mcap") {}
+  FileWriter(std::filesystem::path folder, ScanFormat format, const ScanWriterOptions& options)
+      : WriterWithPoses(std::move(folder)), format_(format), options_(options) {}
 
-  void write(std::size_t /*index*/, const Scan& scan) override {
-    writer_.write(scan);
-    trajectory_.push_back({scan.time_s, scan.world_from_sensor});
+  EncodedScan encode(std::size_t index, const Scan& scan) const override {
+    EncodedScan encoded;
+    encoded.pose = {scan.time_s, scan.world_from_sensor};
+    encoded.points = scan.size();
+    const std::string stem = scan_name(index);
+    encoded.files =
+        format_ == ScanFormat::range_image
+            ? encode_range_image(stem, range_image(scan, options_.image_size), options_.labels)
+            : encode_scan_files(format_, stem, scan, options_.full_intensity);
+    // The main file comes first there.
+    std::rotate(encoded.files.begin(), encoded.files.begin() + 1, encoded.files.end());
+    return encoded;
   }
-  void finish() override {
-    writer_.finish();
-    write_trajectory_csv(folder_ / "poses.csv", trajectory_);
+  std::string main_file(std::size_t index) const override {
+    const std::string stem = scan_name(index);
+    if (format_ == ScanFormat::range_image) return stem + "_range.npy";
+    return stem + "." + std::string(word_of(format_, kScanFormats));
   }
 
  private:
-  std::filesystem::path folder_;
+  ScanFormat format_;
+  ScanWriterOptions options_;
+};
+
+/// All scans as messages of one file.
+class MessageWriter final : public WriterWithPoses {
+ public:
+  explicit MessageWriter(std::filesystem::path folder)
+      : WriterWithPoses(std::move(folder)), writer_(this->folder() / "scans.mcap") {}
+
+  EncodedScan encode(std::size_t /*index*/, const Scan& scan) const override {
+    EncodedScan encoded;
+    encoded.pose = {scan.time_s, scan.world_from_sensor};
+    encoded.points = scan.size();
+    encoded.messages = writer_.messages(scan);
+    return encoded;
+  }
+  void append(std::size_t index, const EncodedScan& scan) override {
+    writer_.append(scan.messages);
+    WriterWithPoses::append(index, scan);
+  }
+  std::string main_file(std::size_t /*index*/) const override { return ""; }
+  void finish() override {
+    writer_.finish();
+    WriterWithPoses::finish();
+  }
+
+ private:
   McapWriter writer_;
-  Trajectory trajectory_;
 };
 
 }  // namespace
+
+void ScanWriter::write(std::size_t index, const Scan& scan) {
+  const EncodedScan encoded = encode(index, scan);
+  write_encoded(folder_, encoded.files, FileWrites::atomic);
+  append(index, encoded);
+}
 
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
                                              const ScanWriterOptions& options) {

@@ -5,8 +5,11 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/dataset/encoded_scan.h"
 #include "adasplats/dataset/range_image.h"
 #include "adasplats/dataset/scan_files.h"
 #include "adasplats/simulate/scan/scan.h"
@@ -19,18 +22,37 @@ struct ScanWriterOptions {
   const LabelScheme* labels = nullptr;  ///< colours of range images; outlives the writer
 };
 
-/// Writes the scans of one drive into a folder.
+/// Makes scans of one drive files of a folder. What a scan becomes can be worked out and written by
+/// several threads at once (encode(), write_encoded()); what all scans have in common is made in
+/// their order (append(), finish()). ParallelScanWriter does that.
 class ScanWriter {
  public:
-  ScanWriter() = default;
+  explicit ScanWriter(std::filesystem::path folder) : folder_(std::move(folder)) {}
   virtual ~ScanWriter() = default;
   ScanWriter(const ScanWriter&) = delete;
   ScanWriter& operator=(const ScanWriter&) = delete;
 
-  /// Writes scan number `index`; one call at a time, in the order of the numbers.
-  virtual void write(std::size_t index, const Scan& scan) = 0;
-  /// Writes what all scans have in common. To be called once, last.
+  const std::filesystem::path& folder() const { return folder_; }
+
+  /// Scan number `index` as bytes; its main_file() is the last of its files. Several threads may
+  /// call it at once. Errors: those of the formats.
+  virtual EncodedScan encode(std::size_t index, const Scan& scan) const = 0;
+  /// Takes scan number `index`, whose own files are written: what it adds to files of all scans.
+  /// One call at a time, in the order of the numbers. Errors: io.
+  virtual void append(std::size_t index, const EncodedScan& scan) = 0;
+  /// The name of the file that every scan has, relative to folder(); empty where scans have no
+  /// files of their own, so that a run that was interrupted begins anew.
+  virtual std::string main_file(std::size_t index) const = 0;
+  /// As append(), for a scan whose files an interrupted run wrote. Errors: io (they are missing).
+  virtual void keep(std::size_t index, const TimedPose& pose) = 0;
+  /// Writes what all scans have in common. To be called once, last. Errors: cannot_create, io.
   virtual void finish() = 0;
+
+  /// Encodes scan number `index`, writes its files (atomic) and appends it.
+  void write(std::size_t index, const Scan& scan);
+
+ private:
+  std::filesystem::path folder_;
 };
 
 /// A writer into `folder`, which exists. semantickitti: FOLDER/sequences/00 as SemanticKittiWriter;

@@ -46,10 +46,8 @@ std::size_t size_of(const std::filesystem::path& path) {
 }
 
 template <class T>
-void write_values(const std::filesystem::path& path, const std::vector<T>& values) {
-  AtomicFile file(path);
-  file.write(values.data(), values.size() * sizeof(T));
-  file.commit();
+std::string bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
 /// Scans of an earlier, longer run would belong to no pose.
@@ -87,19 +85,35 @@ SemanticKittiWriter::SemanticKittiWriter(std::filesystem::path sequence_folder)
   create_folder(folder_ / "velodyne");
 }
 
-void SemanticKittiWriter::write_scan(std::size_t index, const Scan& scan) {
-  const std::filesystem::path labels = folder_ / "labels";
-  if (!scan.classes.empty() && !has_labels_) {
-    create_folder(labels);
-    has_labels_ = true;
-  }
-  if (scan.classes.empty() && scan.size() != 0) has_unlabelled_ = true;
+EncodedScan SemanticKittiWriter::encode(std::size_t index, const Scan& scan) {
+  EncodedScan encoded;
+  encoded.pose = {scan.time_s, scan.world_from_sensor};
+  encoded.points = scan.size();
+  encoded.has_classes = !scan.classes.empty();
+  const std::string name = scan_name(index);
+  if (encoded.has_classes)
+    encoded.files.push_back({"labels/" + name + ".label", bytes_of(packed_labels(scan))});
+  encoded.files.push_back({"velodyne/" + name + ".bin", bytes_of(points_with_intensity(scan))});
+  return encoded;
+}
+
+void SemanticKittiWriter::require_alike(const EncodedScan& scan) {
+  has_labels_ = has_labels_ || scan.has_classes;
+  has_unlabelled_ = has_unlabelled_ || (!scan.has_classes && scan.points != 0);
   if (has_labels_ && has_unlabelled_)
     throw std::logic_error("SemanticKittiWriter: scans with and without classes");
-  const std::string name = scan_name(index);
-  write_values(folder_ / "velodyne" / (name + ".bin"), points_with_intensity(scan));
-  if (!scan.classes.empty()) write_values(labels / (name + ".label"), packed_labels(scan));
-  note(index, {scan.time_s, scan.world_from_sensor}, scan.size());
+}
+
+void SemanticKittiWriter::note_written(std::size_t index, const EncodedScan& scan) {
+  require_alike(scan);
+  note(index, scan.pose, scan.points);
+}
+
+void SemanticKittiWriter::write_scan(std::size_t index, const Scan& scan) {
+  const EncodedScan encoded = encode(index, scan);
+  require_alike(encoded);
+  write_encoded(folder_, encoded.files, FileWrites::atomic);
+  note_written(index, encoded);
 }
 
 void SemanticKittiWriter::keep_scan(std::size_t index, const TimedPose& pose) {

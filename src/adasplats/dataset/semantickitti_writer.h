@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/dataset/encoded_scan.h"
 #include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
@@ -22,8 +23,13 @@ class SemanticKittiWriter {
   /// Errors: cannot_create (also where the folder already holds a whole sequence).
   explicit SemanticKittiWriter(std::filesystem::path sequence_folder);
 
-  /// Writes scan number `index`; the pose is kept for finish(). One call at a time. Scans have
+  /// The files of scan number `index`, named relative to the sequence folder. Several threads may
+  /// call it at once.
+  static EncodedScan encode(std::size_t index, const Scan& scan);
+  /// Scan number `index` is written: its pose is kept for finish(). One call at a time. Scans have
   /// classes all or none (std::logic_error otherwise; empty ones fit both).
+  void note_written(std::size_t index, const EncodedScan& scan);
+  /// Encodes, writes and notes scan number `index`. One call at a time.
   void write_scan(std::size_t index, const Scan& scan);
   /// Scan number `index` was written before an interruption: keeps its pose for finish(). Throws
   /// Errors of kind io where its files are missing or have other numbers of points.
@@ -32,6 +38,7 @@ class SemanticKittiWriter {
   void finish();
 
  private:
+  void require_alike(const EncodedScan& scan);
   void note(std::size_t index, const TimedPose& pose, std::size_t points);
 
   std::filesystem::path folder_;

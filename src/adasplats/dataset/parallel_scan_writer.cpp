@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/dataset/parallel_scan_writer.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <iterator>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "adasplats/io/base/sha256.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kScansUnderWayPerThread = 3;
+
+}  // namespace
+
+/// `turn` counts the calls of write(), so that what is appended follows them whatever scans those
+/// were of.
+struct ParallelScanWriter::Impl {
+  struct Waiting {
+    std::size_t turn = 0;
+    std::size_t index = 0;
+    std::shared_ptr<const Scan> scan;
+  };
+  struct Written {
+    std::size_t index = 0;
+    EncodedScan scan;
+    std::vector<WrittenFile> files;
+  };
+
+  ScanWriter& writer;
+  const ParallelWriteOptions options;
+  std::mutex mutex;
+  std::condition_variable work, room;  ///< for threads; for the caller
+  std::deque<Waiting> waiting;
+  std::map<std::size_t, Written> written;  ///< by turn, whose turn has not come
+  std::size_t taken = 0, appended = 0;     ///< turns
+  bool is_appending = false;
+  bool closed = false;
+  std::exception_ptr failure;
+  std::vector<std::thread> threads;
+
+  Impl(ScanWriter& writer_in, ParallelWriteOptions options_in)
+      : writer(writer_in), options(std::move(options_in)) {}
+
+  void run() {
+    while (true) {
+      std::unique_lock lock(mutex);
+      work.wait(lock, [&] { return closed || !waiting.empty(); });
+      if (waiting.empty()) return;
+      Waiting next = std::move(waiting.front());
+      waiting.pop_front();
+      lock.unlock();
+      try {
+        Written done = write_files(next);
+        next.scan.reset();
+        append_in_turn(next.turn, std::move(done));
+      } catch (...) {
+        fail();
+      }
+    }
+  }
+
+  Written write_files(const Waiting& next) const {
+    Written done{next.index, writer.encode(next.index, *next.scan), {}};
+    std::vector<EncodedFile>& files = done.scan.files;
+    if (options.more_files) {
+      std::vector<EncodedFile> more = options.more_files(next.index, *next.scan);
+      files.insert(files.begin(), std::make_move_iterator(more.begin()),
+                   std::make_move_iterator(more.end()));
+    }
+    write_encoded(writer.folder(), files, options.writes);
+    for (EncodedFile& file : files)
+      done.files.push_back({std::move(file.name), options.hashed ? sha256_of(file.bytes) : ""});
+    files.clear();
+    return done;
+  }
+
+  /// Whoever finishes the scan whose turn it is appends it and those behind it that are ready.
+  void append_in_turn(std::size_t turn, Written done) {
+    std::unique_lock lock(mutex);
+    written.emplace(turn, std::move(done));
+    if (is_appending) return;
+    is_appending = true;
+    for (auto next = written.find(appended); next != written.end() && !failure;
+         next = written.find(appended)) {
+      const Written now = std::move(next->second);
+      written.erase(next);
+      lock.unlock();
+      writer.append(now.index, now.scan);
+      if (options.written) options.written(now.index, now.scan.points, now.files);
+      lock.lock();
+      ++appended;
+      room.notify_all();
+    }
+    is_appending = false;
+  }
+
+  void fail() {
+    const std::lock_guard lock(mutex);
+    if (!failure) failure = std::current_exception();
+    waiting.clear();
+    room.notify_all();
+  }
+
+  void close() {
+    {
+      const std::lock_guard lock(mutex);
+      closed = true;
+      work.notify_all();
+    }
+    for (std::thread& thread : threads) thread.join();
+    threads.clear();
+  }
+};
+
+ParallelScanWriter::ParallelScanWriter(ScanWriter& writer, ParallelWriteOptions options)
+    : impl_(std::make_unique<Impl>(writer, std::move(options))) {
+  for (int k = 0; k < std::max(1, impl_->options.threads); ++k)
+    impl_->threads.emplace_back([impl = impl_.get()] { impl->run(); });
+}
+
+ParallelScanWriter::~ParallelScanWriter() {
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->waiting.clear();
+  }
+  impl_->close();
+}
+
+void ParallelScanWriter::write(std::size_t index, std::shared_ptr<const Scan> scan) {
+  Impl& impl = *impl_;
+  const std::size_t most = kScansUnderWayPerThread * impl.threads.size();
+  std::unique_lock lock(impl.mutex);
+  impl.room.wait(lock, [&] { return impl.failure || impl.taken - impl.appended < most; });
+  if (impl.failure) std::rethrow_exception(impl.failure);
+  impl.waiting.push_back({impl.taken++, index, std::move(scan)});
+  impl.work.notify_one();
+}
+
+void ParallelScanWriter::finish() {
+  {
+    std::unique_lock lock(impl_->mutex);
+    impl_->room.wait(lock, [&] { return impl_->failure || impl_->appended == impl_->taken; });
+  }
+  impl_->close();
+  if (impl_->failure) std::rethrow_exception(impl_->failure);
+  impl_->writer.finish();
+}
+
+}  // namespace adasplats
