@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 """The manifest of simulate: all that decides the scans, and nothing else."""
+import hashlib
 import json
 import shutil
 import unittest
@@ -35,7 +36,7 @@ class Manifest(ProgramTest):
         return path
 
     def manifest(self, *words, model=None, trajectory=None):
-        """The text of the manifest of a simulation, and its folder."""
+        """The text of the manifest of a simulation, but for what came out, and its folder."""
         self.count += 1
         folder = self.folder / f"scans {self.count}"
         defaults = [] if "--trajectory" in words else ["--trajectory", trajectory or self.poses]
@@ -44,7 +45,10 @@ class Manifest(ProgramTest):
         self.run_good("simulate", model or self.place, *defaults, "-o", folder, *words)
         text = (folder / "adasplats.json").read_text(encoding="utf-8")
         self.assertNotIn(str(self.folder), text, "a path of this machine")
-        return text, folder
+        manifest = json.loads(text)
+        for name, digest in manifest.pop("outputs").items():
+            self.assertEqual(hashlib.sha256((folder / name).read_bytes()).hexdigest(), digest)
+        return json.dumps(manifest), folder
 
     def changes(self):
         """By option: words without it, and with it, which must make another manifest."""

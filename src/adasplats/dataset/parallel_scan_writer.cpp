@@ -32,7 +32,7 @@ struct ParallelScanWriter::Impl {
   struct Written {
     std::size_t index = 0;
     EncodedScan scan;
-    std::vector<WrittenFile> files;
+    std::vector<FileDigest> files;
   };
 
   ScanWriter& writer;

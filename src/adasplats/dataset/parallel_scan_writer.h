@@ -6,29 +6,25 @@
 #include <functional>
 #include <memory>
 #include <span>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "adasplats/dataset/encoded_scan.h"
 #include "adasplats/dataset/scan_writer.h"
+#include "adasplats/io/base/sha256.h"
 #include "adasplats/simulate/scan/scan.h"
 
 namespace adasplats {
 
-struct WrittenFile {
-  std::string name;    ///< relative to the folder
-  std::string sha256;  ///< empty where none was asked for
-};
-
 struct ParallelWriteOptions {
   int threads = 1;  ///< that encode and write, beside the caller's; at least 1
   FileWrites writes = FileWrites::atomic;
-  bool hashed = false;  ///< whether `written` needs the SHA-256 of files
+  bool hashed = false;  ///< whether `written` needs the SHA-256 of files; else they are empty
   /// More files of a scan; several threads call it at once.
   std::function<std::vector<EncodedFile>(std::size_t index, const Scan& scan)> more_files;
   /// Hears of every scan whose files are written, in the order of write() and one at a time, on any
   /// thread; the main file is the last one.
-  std::function<void(std::size_t index, std::size_t points, std::span<const WrittenFile> files)>
+  std::function<void(std::size_t index, std::size_t points, std::span<const FileDigest> files)>
       written;
 };
 

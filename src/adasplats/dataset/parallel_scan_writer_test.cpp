@@ -76,13 +76,13 @@ TEST(ParallelScanWriter, TellsOfWholeScansInTheirOrder) {
     return std::vector<EncodedFile>{
         {"more/" + std::to_string(index) + ".txt", std::to_string(scan.size())}};
   };
-  options.written = [&](std::size_t index, std::size_t points, std::span<const WrittenFile> files) {
+  options.written = [&](std::size_t index, std::size_t points, std::span<const FileDigest> files) {
     told.push_back(index);
     EXPECT_EQ(points, points_of(index));
     ASSERT_EQ(files.size(), 3U);
     EXPECT_EQ(files[0].name, "more/" + std::to_string(index) + ".txt");
     EXPECT_EQ(files.back().name, writer->main_file(index));
-    for (const WrittenFile& file : files)
+    for (const FileDigest& file : files)
       EXPECT_EQ(file.sha256, sha256_of_file(folder.path() / file.name));
   };
   ParallelScanWriter parallel(*writer, options);

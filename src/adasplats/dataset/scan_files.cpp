@@ -145,6 +145,22 @@ std::string npy_labels(const Scan& scan) {
 
 }  // namespace
 
+ScanBytes scan_bytes(ScanFormat format) {
+  // Position, ring, column, time and range; then intensity, label, instance and return index.
+  constexpr double kLeast = 12 + 2 + 4 + 4 + 4, kMost = kLeast + 4 + 2 + 2 + 1;
+  switch (format) {
+    case ScanFormat::semantickitti: return {16, 20, 0, 0};
+    case ScanFormat::npy: return {20, 20, 0, 0};
+    case ScanFormat::ply:
+    case ScanFormat::pcd:
+    case ScanFormat::npz: return {kLeast, kMost, 0, 0};
+    case ScanFormat::las: return {30 + 10, 30 + 18, 0, 0};  // point format 6 and extra bytes
+    case ScanFormat::range_image: return {0, 0, 4, 4 + 2 + 4 + 3};
+    case ScanFormat::mcap: return {20, 28, 0, 0};  // fields are aligned, without range and column
+  }
+  throw std::logic_error("scan_bytes: no such format");
+}
+
 void write_scan_ply(const std::filesystem::path& path, const Scan& scan) {
   write_file(path, ply_bytes(scan));
 }

@@ -26,6 +26,15 @@ inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"range-image", ScanFormat::range_image},
     {"mcap", ScanFormat::mcap}};
 
+/// Bytes that scans become, but for headers and what all have in common.
+struct ScanBytes {
+  double least_a_return;  ///< positions and what every scan has
+  double most_a_return;   ///< with everything that a scan can have
+  double least_a_ray;     ///< whether it returns or not
+  double most_a_ray;      ///< likewise, before compression
+};
+ScanBytes scan_bytes(ScanFormat format);
+
 // One scan as a file, in the sensor frame. All are atomic.
 
 /// PLY with the columns of scan_columns().

@@ -14,28 +14,27 @@
 namespace adasplats {
 namespace {
 
-const std::string kSequence = "sequences/00";
-
 class SequenceWriter final : public ScanWriter {
  public:
-  explicit SequenceWriter(const std::filesystem::path& folder)
-      : ScanWriter(folder), writer_(folder / kSequence) {}
+  SequenceWriter(const std::filesystem::path& folder, const std::string& name)
+      : ScanWriter(folder), sequence_("sequences/" + name + "/"), writer_(folder / sequence_) {}
 
   EncodedScan encode(std::size_t index, const Scan& scan) const override {
     EncodedScan encoded = SemanticKittiWriter::encode(index, scan);
-    for (EncodedFile& file : encoded.files) file.name = kSequence + "/" + file.name;
+    for (EncodedFile& file : encoded.files) file.name = sequence_ + file.name;
     return encoded;
   }
   void append(std::size_t index, const EncodedScan& scan) override {
     writer_.note_written(index, scan);
   }
   std::string main_file(std::size_t index) const override {
-    return kSequence + "/velodyne/" + scan_name(index) + ".bin";
+    return sequence_ + "velodyne/" + scan_name(index) + ".bin";
   }
   void keep(std::size_t index, const TimedPose& pose) override { writer_.keep_scan(index, pose); }
   void finish() override { writer_.finish(); }
 
  private:
+  std::string sequence_;
   SemanticKittiWriter writer_;
 };
 
@@ -118,9 +117,14 @@ void ScanWriter::write(std::size_t index, const Scan& scan) {
   append(index, encoded);
 }
 
+std::unique_ptr<ScanWriter> make_sequence_writer(const std::filesystem::path& folder,
+                                                 const std::string& name) {
+  return std::make_unique<SequenceWriter>(folder, name);
+}
+
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
                                              const ScanWriterOptions& options) {
-  if (format == ScanFormat::semantickitti) return std::make_unique<SequenceWriter>(folder);
+  if (format == ScanFormat::semantickitti) return make_sequence_writer(folder, "00");
   if (format == ScanFormat::mcap) return std::make_unique<MessageWriter>(folder);
   return std::make_unique<FileWriter>(folder, format, options);
 }

@@ -62,4 +62,8 @@ class ScanWriter {
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
                                              const ScanWriterOptions& options = {});
 
+/// SemanticKITTI's layout with a sequence of that name: FOLDER/sequences/NAME.
+std::unique_ptr<ScanWriter> make_sequence_writer(const std::filesystem::path& folder,
+                                                 const std::string& name);
+
 }  // namespace adasplats

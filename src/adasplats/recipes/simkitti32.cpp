@@ -11,8 +11,9 @@
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
+#include "adasplats/dataset/parallel_scan_writer.h"
 #include "adasplats/dataset/scan_values.h"
-#include "adasplats/dataset/semantickitti_writer.h"
+#include "adasplats/dataset/scan_writer.h"
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/pipeline/output/resumable_folder.h"
 #include "adasplats/pipeline/scene/model_scene.h"
@@ -123,7 +124,7 @@ class Simulation {
         session_(session),
         sequence_(fs::path("sequences") / source.name),
         scans_(still_scans(poses())),
-        writer_(prepared_sequence()) {}
+        writer_(prepared_writer()) {}
 
   void run(SimKitti32Result& result) {
     const std::vector<std::size_t> missing = keep_what_is_there();
@@ -132,8 +133,9 @@ class Simulation {
     if (!missing.empty()) {
       make_model(result);
       simulate(missing, result);
+    } else {
+      writer_->finish();
     }
-    writer_.finish();
   }
 
  private:
@@ -145,10 +147,9 @@ class Simulation {
   }
 
   /// An attempt that was interrupted at its very end had been given the poses already.
-  fs::path prepared_sequence() const {
-    fs::path path = folder_.path() / sequence_;
-    fs::remove(path / "poses.txt");
-    return path;
+  std::unique_ptr<ScanWriter> prepared_writer() const {
+    fs::remove(folder_.path() / sequence_ / "poses.txt");
+    return make_sequence_writer(folder_.path(), source_.name);
   }
 
   /// Points and labels of a scan that is written; labels of an empty scan come with the poses.
@@ -165,7 +166,7 @@ class Simulation {
     std::vector<std::size_t> missing;
     for (std::size_t i = 0; i < source_.numbers.size(); ++i) {
       if (folder_.has(files_of(i))) {
-        writer_.keep_scan(i, scans_[i].reference);
+        writer_->keep(i, scans_[i].reference);
       } else {
         missing.push_back(i);
       }
@@ -202,6 +203,14 @@ class Simulation {
           [&](World& world) { result.moving_splats = add_moving(missing, response, world); });
     }
     ScanSimulator simulator(scene, settings_, session_.executor);
+    ParallelWriteOptions parallel;
+    parallel.threads = session_.executor.threads();
+    parallel.writes = FileWrites::in_place;
+    parallel.hashed = true;
+    parallel.written = [this](std::size_t, std::size_t, std::span<const FileDigest> files) {
+      folder_.record(files);
+    };
+    ParallelScanWriter files(*writer_, parallel);
     session_.progress.begin_step("simulate", missing.size());
     std::size_t done = 0;
     // Scans that follow one another are cast together; what is missing is the end of the sequence
@@ -209,9 +218,10 @@ class Simulation {
     for (std::size_t begin = 0; begin < missing.size();) {
       std::size_t end = begin + 1;
       while (end < missing.size() && follows(missing[end - 1], missing[end])) ++end;
-      write_run(simulator, missing[begin], end - begin, done);
+      write_run(simulator, missing[begin], end - begin, files, done);
       begin = end;
     }
+    files.finish();
     session_.progress.end_step();
     result.seconds_simulated = watch.seconds();
   }
@@ -222,11 +232,10 @@ class Simulation {
   }
 
   void write_run(ScanSimulator& simulator, std::size_t first, std::size_t count,
-                 std::size_t& done) {
+                 ParallelScanWriter& files, std::size_t& done) {
     simulator.run(std::span(scans_).subspan(first, count), source_.numbers[first],
-                  [&](std::size_t i, const Scan& scan) {
-                    writer_.write_scan(first + i, scan);
-                    folder_.record(files_of(first + i));
+                  [&](std::size_t i, Scan scan) {
+                    files.write(first + i, std::move(scan));
                     session_.progress.advance(++done);
                   });
   }
@@ -273,7 +282,7 @@ class Simulation {
   Session& session_;
   fs::path sequence_;  ///< in the folder
   std::vector<ScanMotion> scans_;
-  SemanticKittiWriter writer_;
+  std::unique_ptr<ScanWriter> writer_;
 };
 
 void count_classes(const fs::path& written, const Source& source, SimKitti32Result& result) {

@@ -7,14 +7,19 @@
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/dataset/kitti_boxes.h"
+#include "adasplats/dataset/parallel_scan_writer.h"
 #include "adasplats/pipeline/output/output_folder.h"
+#include "adasplats/pipeline/output/resumable_folder.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/recipes/scan_folder.h"
 #include "adasplats/recipes/scan_manifest.h"
 
 namespace adasplats {
@@ -23,10 +28,9 @@ namespace {
 constexpr const char* kCommand = "simulate";
 
 /// Boxes around the objects that a scan sees.
-void write_boxes(const ModelScene& scene, const std::filesystem::path& folder, std::size_t index,
-                 const Scan& scan) {
+std::vector<EncodedFile> boxes_of(const ModelScene& scene, std::size_t index, const Scan& scan) {
   const std::vector<ObjectBox> boxes = scene.world()->boxes(index, scan.time_s);
-  write_kitti_boxes(folder, index, sensed_boxes(boxes, scan, scene.labels()));
+  return encode_kitti_boxes("boxes", index, sensed_boxes(boxes, scan, scene.labels()));
 }
 
 /// "12.3".
@@ -38,8 +42,8 @@ std::string decimetres(double metres) {
 
 /// Throws data where no ray met anything, with how far from the model the sensor was.
 void require_returns(const SimulateResult& result, const ModelScene& scene,
-                     const std::vector<ScanMotion>& scans, const LidarModel& sensor) {
-  if (result.hits != 0) return;
+                     std::span<const ScanMotion> scans, const LidarModel& sensor) {
+  if (result.hits != 0 || result.scans_resumed != 0) return;
   const auto [low, high] = scene.middle_box();
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const ScanMotion& scan : scans) {
@@ -54,6 +58,52 @@ void require_returns(const SimulateResult& result, const ModelScene& scene,
                   " m (are trajectory and model in one frame? offset and mount shift it)");
 }
 
+ScanWriterOptions writing_options(const ScanSimulator& simulator) {
+  ScanWriterOptions writing;
+  writing.image_size = image_size_of(simulator.firings());
+  writing.labels = simulator.scene().labels();
+  return writing;
+}
+
+/// Casts the scans that are not there yet and writes them beside that.
+ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> scans,
+                            ScanFormat format, ResumableFolder& folder, Session& session,
+                            SimulateResult& result) {
+  const ModelScene& scene = simulator.scene();
+  // An attempt that was interrupted at its very end had been given the poses already.
+  std::filesystem::remove(folder.path() / "sequences" / "00" / "poses.txt");
+  const auto writer = make_scan_writer(folder.path(), format, writing_options(simulator));
+  const std::size_t first = keep_written_scans(*writer, folder, scans);
+  const LidarModel& sensor = simulator.settings().sensor;
+  require_room(folder.path(), format, scans.size() - first, sensor.rays_per_scan(),
+               simulator.settings().beam.returns);
+  result.scans = scans.size();
+  result.scans_resumed = first;
+  ScanJournal journal(folder);
+  ParallelWriteOptions parallel;
+  parallel.threads = session.executor.threads();
+  parallel.writes = FileWrites::in_place;
+  parallel.hashed = true;
+  if (scene.world() != nullptr)
+    parallel.more_files = [&scene](std::size_t i, const Scan& scan) {
+      return boxes_of(scene, i, scan);
+    };
+  parallel.written = [&journal](std::size_t, std::size_t points,
+                                std::span<const FileDigest> files) { journal.note(points, files); };
+  ParallelScanWriter files(*writer, parallel);
+  const auto take_scan = [&](std::size_t i, Scan scan) {
+    result.rays += scan.rays;
+    result.hits += scan.size();
+    files.write(first + i, std::move(scan));
+    session.progress.advance(first + i + 1);
+  };
+  ReportTimes times;
+  if (first < scans.size()) times = simulator.run(scans.subspan(first), first, take_scan);
+  require_returns(result, scene, scans, sensor);
+  files.finish();
+  return times;
+}
+
 }  // namespace
 
 SimulateResult run_simulate(const SimulateJob& job, Session& session) {
@@ -63,29 +113,20 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   const std::vector<ScanMotion> scans = scans_along(job.drive, settings.sensor);
   checked_output_folder(job.output, job.overwrite, kCommand);  // before long work
   const ModelScene scene(job.model, job.labels, session, WorldFiles::taken);
-  OutputFolder folder(job.output, job.overwrite, kCommand, simulate_content(job, settings, scene));
+  ResumableFolder folder(job.output, job.overwrite, kCommand,
+                         simulate_content(job, settings, scene));
   ScanSimulator simulator(scene, settings, session.executor);
-
-  ScanWriterOptions writing;
-  writing.image_size = image_size_of(simulator.firings());
-  writing.labels = scene.labels();
-  const auto writer = make_scan_writer(folder.path(), job.format, writing);
   SimulateResult result;
   session.progress.begin_step("simulate", scans.size());
   const Stopwatch all;
-  const auto take_scan = [&](std::size_t i, const Scan& scan) {
-    writer->write(i, scan);
-    if (scene.world() != nullptr) write_boxes(scene, folder.path() / "boxes", i, scan);
-    ++result.scans;
-    result.rays += scan.rays;
-    result.hits += scan.size();
-    session.progress.advance(i + 1);
-  };
-  const ReportTimes times = simulator.run(scans, 0, take_scan);
-  require_returns(result, scene, scans, settings.sensor);
-  writer->finish();
-  session.progress.end_step();
-  folder.commit();
+  ReportTimes times;
+  try {
+    times = write_scans(simulator, scans, job.format, folder, session, result);
+    session.progress.end_step();
+    folder.commit(nlohmann::ordered_json::object(), {});
+  } catch (const Error&) {
+    rethrow_with_what_is_kept(folder);
+  }
   result.seconds_traced = times.traced_s;
   result.seconds_assembled = times.reported_s;
   result.seconds_written = all.seconds();
@@ -94,14 +135,18 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
 }
 
 nlohmann::ordered_json to_json(const SimulateResult& result) {
-  const double scans = static_cast<double>(result.scans);
+  const std::size_t made = result.scans - result.scans_resumed;
+  const auto rate = [made](double seconds) {
+    return made == 0 ? 0.0 : static_cast<double>(made) / seconds;
+  };
   nlohmann::ordered_json json;
   json["scans"] = result.scans;
+  json["scans_resumed"] = result.scans_resumed;
   json["rays"] = result.rays;
   json["hits"] = result.hits;
-  json["scans_per_second"] = {{"traced", scans / result.seconds_traced},
-                              {"assembled", scans / result.seconds_assembled},
-                              {"written", scans / result.seconds_written}};
+  json["scans_per_second"] = {{"traced", rate(result.seconds_traced)},
+                              {"assembled", rate(result.seconds_assembled)},
+                              {"written", rate(result.seconds_written)}};
   json["seconds"] = {{"total", result.seconds},
                      {"traced", result.seconds_traced},
                      {"assembled", result.seconds_assembled},

@@ -28,16 +28,22 @@ struct SimulateJob {
 
 struct SimulateResult {
   std::size_t scans = 0;
-  std::size_t rays = 0;
+  std::size_t scans_resumed = 0;  ///< of them an interrupted run had written
+  std::size_t rays = 0;           ///< of the scans that this run made, as all below
   std::size_t hits = 0;
   // Each one includes those before it; only several GPUs trace longer in sum than the clock runs.
+  // Files are written beside the casting.
   double seconds_traced = 0;     ///< in the tracer, or in the kernels of all GPUs
   double seconds_assembled = 0;  ///< until they were points with noise, classes and times
-  double seconds_written = 0;    ///< until the scans were on disk
+  double seconds_written = 0;    ///< until the last scan was on disk and the folder had its name
   double seconds = 0;            ///< of everything, with loading the model
 };
 
-/// Simulates and writes.
+/// Simulates and writes. Interrupted at any moment, the same job goes on after the last whole scan
+/// and gives the same bytes; formats of one file for all scans (mcap) begin anew.
+/// Errors: cannot_create (also where what was left unfinished is of another job, other inputs or
+/// another version), io (also where the disk has no room for the scans), data (no ray met
+/// anything).
 SimulateResult run_simulate(const SimulateJob& job, Session& session);
 
 /// The keys of a simulation's --report.

@@ -29,6 +29,12 @@ class Sha256 {
   std::uint64_t bytes_ = 0;
 };
 
+/// A file as `sha256sum` has it in a line.
+struct FileDigest {
+  std::string name;  ///< relative to a folder
+  std::string sha256;
+};
+
 /// Of bytes in memory.
 std::string sha256_of(std::string_view bytes);
 

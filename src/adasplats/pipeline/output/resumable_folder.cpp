@@ -10,10 +10,10 @@
 #include <set>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/io/base/sha256.h"
 #include "adasplats/pipeline/output/output_folder.h"
 
 namespace adasplats {
@@ -161,11 +161,17 @@ bool ResumableFolder::has(std::span<const std::string> files) const {
 }
 
 void ResumableFolder::record(std::span<const std::string> files) {
+  std::vector<FileDigest> digests;
+  for (const std::string& file : files)
+    digests.push_back({file, sha256_of_file(unfinished_ / file)});
+  record(digests);
+}
+
+void ResumableFolder::record(std::span<const FileDigest> files) {
   std::string lines;
-  for (const std::string& file : files) {
-    const std::string digest = sha256_of_file(unfinished_ / file);
-    recorded_[file] = digest;
-    lines += digest + "  " + file + "\n";
+  for (const auto& [name, digest] : files) {
+    recorded_[name] = digest;
+    lines.append(digest).append("  ").append(name).append("\n");
   }
   const fs::path journal = unfinished_ / kJournalFile;
   const ssize_t put = write(journal_, lines.data(), lines.size());
@@ -189,6 +195,9 @@ void ResumableFolder::commit(const Json& summary, std::span<const std::string> a
   }
   content["outputs"] = outputs;
   write_file(unfinished_ / kContentFile, content_text(command_, content));
+  // One call for all files: each by itself would wait for the disk as often as there are files.
+  if (syncfs(lock_) != 0)
+    throw system_error(ErrorKind::io, unfinished_, "cannot be flushed to disk", errno);
   close(journal_);
   journal_ = -1;
   fs::remove(unfinished_ / kJournalFile);

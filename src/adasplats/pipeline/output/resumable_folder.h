@@ -9,11 +9,14 @@
 #include <span>
 #include <string>
 
+#include "adasplats/io/base/sha256.h"
+
 namespace adasplats {
 
 /// An output folder that appears whole or not at all, whose making can be interrupted at any moment
 /// and goes on where it stopped. It is filled beside its place under the name ".NAME.unfinished",
-/// where a journal says which files are whole, with their SHA-256; commit() renames it.
+/// where a journal says which files are whole, with their SHA-256; commit() renames it. So files in
+/// it need neither temporary names nor to be flushed one by one.
 class ResumableFolder {
  public:
   /// `content` says what the folder is made of and how: all that its files depend on. It goes into
@@ -36,9 +39,13 @@ class ResumableFolder {
   /// Notes that files are whole, one after another; to be called when they are on disk.
   void record(std::span<const std::string> files);
   void record(const std::string& file) { record(std::span(&file, 1)); }
+  /// The same where their SHA-256 is known.
+  void record(std::span<const FileDigest> files);
+  /// SHA-256 of what was recorded, by name.
+  const std::map<std::string, std::string>& recorded() const { return recorded_; }
 
   /// Removes the files `aids`, adds `summary` and the SHA-256 of every file, as "outputs", to
-  /// adasplats.json, and gives the folder its name.
+  /// adasplats.json, flushes all of it to the disk and gives the folder its name.
   void commit(const nlohmann::ordered_json& summary, std::span<const std::string> aids);
 
  private:

@@ -69,6 +69,23 @@ TEST(ResumableFolder, GoesOnWhereItStopped) {
   EXPECT_EQ(content["outputs"]["part/1"], sha256_of_file(folder.path() / "whole/part/1"));
 }
 
+// Oracle: what is recorded by reading the file.
+TEST(ResumableFolder, KnownDigestsAreRecordedAsTheyAre) {
+  const TemporaryFolder folder;
+  {
+    ResumableFolder output(folder.path() / "o", false, "test", kContent);
+    write_file(output.path() / "a", "abc");
+    write_file(output.path() / "b", "abcd");
+    const FileDigest known[] = {{"a", sha256_of("abc")}, {"b", sha256_of("abc")}};
+    output.record(known);
+    EXPECT_TRUE(output.has("a"));
+    EXPECT_FALSE(output.has("b"));
+  }
+  ResumableFolder output(folder.path() / "o", false, "test", kContent);
+  EXPECT_TRUE(output.has("a"));
+  EXPECT_EQ(output.recorded().size(), 2U);
+}
+
 TEST(ResumableFolder, DamagedFilesAreMadeAgain) {
   const TemporaryFolder folder;
   attempt(folder.path() / "whole", 9);

@@ -138,8 +138,9 @@ std::optional<StepResult> remembered(const fs::path& file, const Step& step, con
 void remove_unfinished(const Step& step) {
   for (const fs::path& output : step.outputs) {
     std::error_code failure;
-    std::vector<fs::path> unfinished = {output.parent_path() /
-                                        ("." + output.filename().string() + ".partial")};
+    const std::string hidden = "." + output.filename().string();
+    std::vector<fs::path> unfinished = {output.parent_path() / (hidden + ".partial"),
+                                        output.parent_path() / (hidden + ".unfinished")};
     for (fs::directory_iterator entry(output.parent_path(), failure), end; !failure && entry != end;
          entry.increment(failure)) {
       const std::string name = entry->path().filename().string();
