@@ -83,10 +83,12 @@ std::vector<EncodedFile> encode_range_image(const std::string& stem, const Range
   };
   add_array("_range.npy", ColumnType::f32, image.ranges_m.data());
   if (has_pixels)
-    files.push_back({stem + "_range.png", png16_bytes(width, height, levels_of(image.ranges_m))});
+    files.push_back({stem + "_range.png",
+                     png16_bytes(width, height, levels_of(image.ranges_m), PngEffort::fast)});
   if (image.labels.empty()) return files;
   add_array("_label.npy", ColumnType::u32, image.labels.data());
-  files.push_back({stem + "_label.png", png_bytes(width, height, pixels_of(image, labels))});
+  files.push_back(
+      {stem + "_label.png", png_bytes(width, height, pixels_of(image, labels), PngEffort::fast)});
   return files;
 }
 

@@ -20,12 +20,13 @@ std::size_t values_of(int width, int height, std::size_t channels) {
 
 /// `bytes`: of all pixels, in `format`.
 std::string encoded_image(int width, int height, png_uint_32 format, std::size_t bytes,
-                          const void* pixels) {
+                          const void* pixels, PngEffort effort) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = static_cast<png_uint_32>(width);
   image.height = static_cast<png_uint_32>(height);
   image.format = format;
+  if (effort == PngEffort::fast) image.flags = PNG_IMAGE_FLAG_FAST;
   // What deflate adds to noise (5 bytes each 16 KiB) and the chunk frames (12 bytes each 8 KiB)
   // are below 1/64; libpng fails cleanly where that should ever not be enough.
   const std::size_t raw_bytes = bytes + static_cast<std::size_t>(height);
@@ -41,17 +42,20 @@ std::string encoded_image(int width, int height, png_uint_32 format, std::size_t
 
 }  // namespace
 
-std::string png_bytes(int width, int height, std::span<const std::uint8_t> pixels) {
+std::string png_bytes(int width, int height, std::span<const std::uint8_t> pixels,
+                      PngEffort effort) {
   if (pixels.empty() || pixels.size() != values_of(width, height, 3))
     throw std::logic_error("png_bytes: pixels.size() is not width * height * 3");
-  return encoded_image(width, height, PNG_FORMAT_RGB, pixels.size_bytes(), pixels.data());
+  return encoded_image(width, height, PNG_FORMAT_RGB, pixels.size_bytes(), pixels.data(), effort);
 }
 
-std::string png16_bytes(int width, int height, std::span<const std::uint16_t> levels) {
+std::string png16_bytes(int width, int height, std::span<const std::uint16_t> levels,
+                        PngEffort effort) {
   if (levels.empty() || levels.size() != values_of(width, height, 1))
     throw std::logic_error("png16_bytes: levels.size() is not width * height");
   // libpng's "linear" format is 16 bits a channel, stored as they are.
-  return encoded_image(width, height, PNG_FORMAT_LINEAR_Y, levels.size_bytes(), levels.data());
+  return encoded_image(width, height, PNG_FORMAT_LINEAR_Y, levels.size_bytes(), levels.data(),
+                       effort);
 }
 
 void write_png(const std::filesystem::path& path, int width, int height,

@@ -9,9 +9,15 @@
 
 namespace adasplats {
 
+/// What a picture is compressed with: filters that suit photographs, or none, which takes a quarter
+/// of the time, and for range images and classes no more bytes.
+enum class PngEffort : bool { small, fast };
+
 /// The bytes of the files below.
-std::string png_bytes(int width, int height, std::span<const std::uint8_t> pixels);
-std::string png16_bytes(int width, int height, std::span<const std::uint16_t> levels);
+std::string png_bytes(int width, int height, std::span<const std::uint8_t> pixels,
+                      PngEffort effort = PngEffort::small);
+std::string png16_bytes(int width, int height, std::span<const std::uint16_t> levels,
+                        PngEffort effort = PngEffort::small);
 
 /// Writes an 8-bit RGB image, rows from the top, `pixels` of width * height * 3 bytes.
 void write_png(const std::filesystem::path& path, int width, int height,
