@@ -39,7 +39,8 @@ class Manifest(ProgramTest):
         """The text of the manifest of a simulation, but for what came out, and its folder."""
         self.count += 1
         folder = self.folder / f"scans {self.count}"
-        defaults = [] if "--trajectory" in words else ["--trajectory", trajectory or self.poses]
+        places = {"--trajectory", "--at", "--path"}
+        defaults = [] if places & set(words) else ["--trajectory", trajectory or self.poses]
         if "--sensor" not in words:
             defaults += ["--sensor", self.sensor]
         self.run_good("simulate", model or self.place, *defaults, "-o", folder, *words)
@@ -60,6 +61,10 @@ class Manifest(ProgramTest):
             "--sensor": ([], ["--sensor", sensor]),
             "--labels": ([], ["--labels", self.file("scheme.toml", SCHEME)]),
             "--trajectory": ([], ["--trajectory", more]),
+            "--at": (["--at", "5,0"], ["--at", "5,0", "--at", "6,0,2,90"]),
+            "--path": (["--path", "4,0;8,0"], ["--path", "4,0;8,0.5"]),
+            "--speed": (["--path", "4,0;8,0"], ["--path", "4,0;8,0", "--speed", "5"]),
+            "--height": (["--at", "5,0"], ["--at", "5,0", "--height", "2"]),
             "--offset": ([], ["--offset", "0.5,0,0"]),
             "--mount": ([], ["--mount", "0,0,0.1"]),
             "--mount-rotation": ([], ["--mount-rotation", "0,1,0"]),

@@ -19,9 +19,16 @@ constexpr const char* kSimulateExamples =
     "  adasplats simulate street.ply --sensor ouster-os1-64 --trajectory poses.csv \\\n"
     "      --rolling-shutter --sub-rays 7 --returns 2 --fog 200 -o scans\n"
     "  adasplats simulate street.ply --trajectory poses.csv -o scans --device cuda --gpus 0,1\n"
-    "Rates: traced, in the tracer or in the kernels of all GPUs; assembled, until the scans were\n"
-    "complete, points with all their attributes in host memory; written, until they were on disk.\n"
-    "Each one holds those before it.\n";
+    "  adasplats simulate street.ply --at 12,3 --at 20,3,,90 -o scans
+"
+    "  adasplats simulate street.ply --path '0,0;50,0;50,30' --speed 8 -o scans
+"
+    "Rates: traced, in the tracer or in the kernels of all GPUs; assembled, until the scans were
+"
+    "complete, points with all their attributes in host memory; written, until the last file was on
+"
+    "disk. Each one holds those before it. A run that ended early goes on with the same command.
+";
 
 class SimulateCommand final : public Command {
  public:
@@ -78,8 +85,13 @@ class SimulateCommand final : public Command {
   }
 
   void add_drive_options(OptionSet& app) {
-    require(add_path(app, "--trajectory", job_.drive.trajectory,
-                     "Poses of the sensor: KITTI poses.txt, CSV, TUM, or a sequence folder"));
+    add_path(app, "--trajectory", job_.drive.trajectory,
+             "Poses of the sensor: KITTI poses.txt, CSV, TUM, or a sequence folder");
+    add_places(app, "--at", job_.drive.at,
+               "Instead: a place where it stands; without Z above the ground of the model. May be "
+               "given several times, a scan each");
+    add_corners(app, "--path", job_.drive.path,
+                "Instead: a way along straight lines, above the ground of the model");
     add_settings(app, job_.drive);
     add_settings(app, mount_);
   }

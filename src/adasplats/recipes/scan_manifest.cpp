@@ -52,15 +52,27 @@ Json matrix_content(const RigidTransform& transform) {
   return rows;
 }
 
+/// A trajectory, or what stands for one.
+Json where_content(const DriveOptions& drive) {
+  if (!drive.trajectory.empty()) return {{"trajectory", trajectory_content(drive.trajectory)}};
+  Json json = {{"height_m", drive.height_m.value_or(kRoofHeight_m)}};
+  Json& places = json[drive.path.empty() ? "at" : "path"] = Json::array();
+  for (const SensorPlace& place : drive.at)
+    places.push_back({place.x_m, place.y_m, place.z_m ? Json(*place.z_m) : Json(), place.yaw_deg});
+  for (const PathCorner& corner : drive.path) places.push_back({corner.x_m, corner.y_m});
+  if (!drive.path.empty()) json["speed_mps"] = drive.speed_mps.value_or(kTownSpeed_mps);
+  return json;
+}
+
 Json drive_content(const DriveOptions& drive) {
   const auto given = [](std::optional<double> value) { return value ? Json(*value) : Json(); };
-  Json json = {{"trajectory", trajectory_content(drive.trajectory)},
-               {"offset_m", {drive.offset_m.x, drive.offset_m.y, drive.offset_m.z}},
-               {"mount", matrix_content(drive.mount)},
-               {"every", drive.every},
-               {"rate_hz", given(drive.rate_hz)},
-               {"spacing_m", given(drive.spacing_m)},
-               {"rolling_shutter", drive.rolling_shutter}};
+  Json json = where_content(drive);
+  json.update(Json{{"offset_m", {drive.offset_m.x, drive.offset_m.y, drive.offset_m.z}},
+                   {"mount", matrix_content(drive.mount)},
+                   {"every", drive.every},
+                   {"rate_hz", given(drive.rate_hz)},
+                   {"spacing_m", given(drive.spacing_m)},
+                   {"rolling_shutter", drive.rolling_shutter}});
   if (!drive.motion.empty()) json["motion"] = trajectory_content(drive.motion);
   return json;
 }

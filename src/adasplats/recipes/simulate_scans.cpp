@@ -110,9 +110,13 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   const Stopwatch total;
   require_input(job.model);
   const ScanSettings settings = job.scan.settings(session.seed);
-  const std::vector<ScanMotion> scans = scans_along(job.drive, settings.sensor);
+  check_drive(job.drive);
+  std::vector<ScanMotion> scans;
+  if (!job.drive.trajectory.empty()) scans = scans_along(job.drive, settings.sensor);
   checked_output_folder(job.output, job.overwrite, kCommand);  // before long work
   const ModelScene scene(job.model, job.labels, session, WorldFiles::taken);
+  if (job.drive.trajectory.empty())
+    scans = scans_along(job.drive, settings.sensor, scene, session.executor);
   ResumableFolder folder(job.output, job.overwrite, kCommand,
                          simulate_content(job, settings, scene));
   ScanSimulator simulator(scene, settings, session.executor);

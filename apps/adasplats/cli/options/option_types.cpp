@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/options/option_types.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -45,6 +46,23 @@ std::array<double, 3> parse_three(const std::string& option, const std::string& 
     refuse_value(option, "expected three numbers with commas between them, found '" + text + "'");
   }
   return numbers;
+}
+
+/// "1,2", "1,2,3", "1,2,3,90" or "1,2,,90": finite numbers, a part of the value of `option`.
+SensorPlace parse_place(const std::string& option, const std::string& text) {
+  const std::vector<std::string> parts = split(text, ',');
+  std::array<double, 4> numbers{};
+  const bool has_z = parts.size() > 2 && !(parts.size() == 4 && parts[2].empty());
+  bool good = parts.size() >= 2 && parts.size() <= numbers.size();
+  for (std::size_t i = 0; good && i < parts.size(); ++i) {
+    if (i == 2 && !has_z) continue;
+    good = parse_whole(parts[i], numbers[i]) && std::isfinite(numbers[i]);
+  }
+  if (!good)
+    refuse_value(option, "expected X,Y, X,Y,Z, X,Y,Z,YAW or X,Y,,YAW, found '" + text + "'");
+  SensorPlace place{numbers[0], numbers[1], {}, numbers[3]};
+  if (has_z) place.z_m = numbers[2];
+  return place;
 }
 
 }  // namespace
@@ -105,6 +123,31 @@ Option* add_vector(OptionSet& app, const std::string& name, Vec3d& target,
       ->type_name("X,Y,Z")
       ->default_str(short_number(target.x) + "," + short_number(target.y) + "," +
                     short_number(target.z));
+}
+
+Option* add_places(OptionSet& app, const std::string& name, std::vector<SensorPlace>& target,
+                   const std::string& help) {
+  const auto take = [&target, name](const std::vector<std::string>& texts) {
+    target.clear();
+    for (const std::string& text : texts) target.push_back(parse_place(name, text));
+  };
+  return app.add_option_function<std::vector<std::string>>(name, take, help)
+      ->type_name("X,Y[,Z[,YAW]]")
+      ->repeatable();
+}
+
+Option* add_corners(OptionSet& app, const std::string& name, std::vector<PathCorner>& target,
+                    const std::string& help) {
+  const auto take = [&target, name](const std::string& text) {
+    target.clear();
+    for (const std::string& corner : split(text, ';')) {
+      const SensorPlace place = parse_place(name, corner);
+      if (std::ranges::count(corner, ',') != 1)
+        refuse_value(name, "expected X,Y;X,Y;..., found '" + text + "'");
+      target.push_back({place.x_m, place.y_m});
+    }
+  };
+  return app.add_option_function<std::string>(name, take, help)->type_name("X,Y;X,Y;...");
 }
 
 Option* add_scale(OptionSet& app, const std::string& name, GroupScale& target,

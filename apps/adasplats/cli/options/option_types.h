@@ -13,6 +13,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/words.h"
+#include "adasplats/pipeline/scene/placed_poses.h"
 #include "adasplats/pipeline/session/scan_range.h"
 #include "adasplats/splats/build_model.h"
 #include "cli/options/option_set.h"
@@ -29,6 +30,12 @@ Option* add_path(OptionSet& app, const std::string& name, std::filesystem::path&
 Option* add_vector(OptionSet& app, const std::string& name, std::optional<Vec3d>& target,
                    const std::string& help);
 Option* add_vector(OptionSet& app, const std::string& name, Vec3d& target, const std::string& help);
+/// Places "X,Y[,Z[,YAW_DEG]]", Z may be empty; may be given several times.
+Option* add_places(OptionSet& app, const std::string& name, std::vector<SensorPlace>& target,
+                   const std::string& help);
+/// Corners "X,Y;X,Y;...".
+Option* add_corners(OptionSet& app, const std::string& name, std::vector<PathCorner>& target,
+                    const std::string& help);
 Option* add_scale(OptionSet& app, const std::string& name, GroupScale& target,
                   const std::string& help);
 /// --picture-width, pixels of a picture of 16:9.

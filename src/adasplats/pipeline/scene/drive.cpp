@@ -2,35 +2,91 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/scene/drive.h"
 
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
 #include "adasplats/core/error.h"
 #include "adasplats/pipeline/session/inputs.h"
 
 namespace adasplats {
+namespace {
 
-Trajectory sensor_poses(const DriveOptions& drive) {
-  check_settings(drive);
-  if (drive.rate_hz && drive.spacing_m)
-    throw Error(ErrorKind::usage, "`rate` and `spacing` cannot stand together");
-  Trajectory all = load_trajectory(drive.trajectory);
-  if (drive.rate_hz) all = resampled_by_time(all, *drive.rate_hz);
-  if (drive.spacing_m) all = resampled_by_distance(all, *drive.spacing_m);
+void require_effect(bool is_given, bool has_effect, const char* setting, const char* where) {
+  if (is_given && !has_effect)
+    throw Error(ErrorKind::usage, std::string("`") + setting + "` is of use with " + where);
+}
+
+void require_finite(const DriveOptions& drive) {
+  bool good = true;
+  for (const SensorPlace& place : drive.at)
+    good = good && std::isfinite(place.x_m) && std::isfinite(place.y_m) &&
+           std::isfinite(place.z_m.value_or(0)) && std::isfinite(place.yaw_deg);
+  for (const PathCorner& corner : drive.path)
+    good = good && std::isfinite(corner.x_m) && std::isfinite(corner.y_m);
+  if (!good) throw Error(ErrorKind::usage, "`at` and `path` take finite numbers");
+}
+
+/// The scans at poses that are given or made.
+std::vector<ScanMotion> scans_at(const DriveOptions& drive, const LidarModel& sensor,
+                                 const Trajectory& all, const Trajectory& motion) {
   Trajectory taken;
   for (std::size_t i = 0; i < all.size(); i += drive.every) taken.push_back(all[i]);
   if (taken.empty()) throw Error(ErrorKind::data, drive.trajectory.string() + ": no poses");
-  return shifted(mounted(std::move(taken), drive.mount), drive.offset_m);
-}
-
-std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor) {
-  const Trajectory poses = sensor_poses(drive);
-  if (!drive.rolling_shutter) {
-    if (!drive.motion.empty())
-      throw Error(ErrorKind::usage, "`motion` is of use with `rolling_shutter` alone");
-    return still_scans(poses);
-  }
-  const Trajectory motion = load_trajectory(drive.motion.empty() ? drive.trajectory : drive.motion);
+  const Trajectory poses = shifted(mounted(std::move(taken), drive.mount), drive.offset_m);
+  if (!drive.rolling_shutter) return still_scans(poses);
   if (motion.size() < 2)
     throw Error(ErrorKind::data, "a rolling shutter needs at least two poses to know the motion");
   return moving_scans(poses, mounted(motion, drive.mount), 1 / sensor.rotation_hz);
+}
+
+}  // namespace
+
+void check_drive(const DriveOptions& drive) {
+  check_settings(drive);
+  const bool has_file = !drive.trajectory.empty(), has_path = !drive.path.empty();
+  if (has_file + has_path + !drive.at.empty() != 1)
+    throw Error(ErrorKind::usage, "give `trajectory`, `at` or `path`, one of them");
+  if (drive.rate_hz && drive.spacing_m)
+    throw Error(ErrorKind::usage, "`rate` and `spacing` cannot stand together");
+  if (!drive.motion.empty() && !drive.rolling_shutter)
+    throw Error(ErrorKind::usage, "`motion` is of use with `rolling_shutter` alone");
+  require_effect(!drive.motion.empty(), has_file, "motion", "`trajectory` alone");
+  require_effect(drive.speed_mps.has_value(), has_path, "speed", "`path` alone");
+  require_effect(drive.height_m.has_value(), !has_file, "height", "`at` and `path` alone");
+  require_effect(drive.rate_hz.has_value(), drive.at.empty(), "rate", "`trajectory` and `path`");
+  require_effect(drive.spacing_m.has_value(), drive.at.empty(), "spacing",
+                 "`trajectory` and `path`");
+  require_effect(drive.rolling_shutter, drive.at.empty(), "rolling_shutter",
+                 "`trajectory` and `path`: at a place the sensor stands");
+  require_finite(drive);
+}
+
+std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor) {
+  check_drive(drive);
+  if (drive.trajectory.empty()) throw std::logic_error("scans_along: a path without a model");
+  const Trajectory given = load_trajectory(drive.trajectory);
+  Trajectory all = given;
+  if (drive.rate_hz) all = resampled_by_time(all, *drive.rate_hz);
+  if (drive.spacing_m) all = resampled_by_distance(all, *drive.spacing_m);
+  if (drive.motion.empty()) return scans_at(drive, sensor, all, given);
+  return scans_at(drive, sensor, all, load_trajectory(drive.motion));
+}
+
+std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
+                                    const ModelScene& scene, const Executor& executor) {
+  if (!drive.trajectory.empty()) return scans_along(drive, sensor);
+  check_drive(drive);
+  PathDrive how;
+  how.height_m = drive.height_m.value_or(kRoofHeight_m);
+  if (!drive.at.empty())
+    return scans_at(drive, sensor, poses_at(scene, drive.at, how.height_m, executor), {});
+  how.speed_mps = drive.speed_mps.value_or(kTownSpeed_mps);
+  how.rate_hz = drive.rate_hz.value_or(kUsualRate_hz);
+  how.spacing_m = drive.spacing_m;
+  const Trajectory poses = poses_on_path(scene, drive.path, how, executor);
+  return scans_at(drive, sensor, poses, poses);
 }
 
 }  // namespace adasplats

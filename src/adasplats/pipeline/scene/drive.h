@@ -9,38 +9,56 @@
 #include "adasplats/cloud/poses/mount.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/setting.h"
+#include "adasplats/pipeline/scene/placed_poses.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/simulate/scan/scan_motion.h"
 
 namespace adasplats {
 
-/// Where a sensor drives.
+/// Where a sensor drives: by `trajectory`, or without a recording by `at` or `path`.
 struct DriveOptions {
   std::filesystem::path trajectory;  ///< pose file or sequence folder
+  std::vector<SensorPlace> at;       ///< places where it stands, one scan each
+  std::vector<PathCorner> path;      ///< along straight lines
+  std::optional<double> speed_mps;   ///< on a path; kTownSpeed_mps
+  std::optional<double> height_m;    ///< above the ground, of places and paths; kRoofHeight_m
   RigidTransform mount;              ///< of the sensor in the frame of the poses
   Vec3d offset_m;                    ///< in world axes
   std::size_t every = 1;             ///< takes every n-th pose
-  std::optional<double> rate_hz;     ///< poses at that rate instead of those of the file
+  std::optional<double> rate_hz;     ///< poses at that rate instead of those of the file or
+                                     ///< kUsualRate_hz of a path
   std::optional<double> spacing_m;   ///< poses at that distance instead
   bool rolling_shutter = false;      ///< the sensor moves during a scan
   std::filesystem::path motion;      ///< how; empty: as `trajectory`
 };
 
-/// All but the trajectory, and the mount, which users give as MountSettings.
+/// All but the trajectory, the places, the path, and the mount, which users give as MountSettings.
 template <class Visit>
 void visit_settings(DriveOptions& drive, Visit&& visit) {
+  visit(Setting{.name = "speed",
+                .help = "On a path, m/s; without it 10",
+                .value = "M/S",
+                .key = "speed_mps",
+                .least = 0,
+                .above_least = true},
+        drive.speed_mps);
+  visit(Setting{.name = "height",
+                .help = "Above the ground at places and on paths, m; without it 1.73, a car's roof",
+                .value = "M",
+                .key = "height_m"},
+        drive.height_m);
   visit(Setting{.name = "offset", .help = "Shift of the trajectory in world axes, m"},
         drive.offset_m);
   visit(Setting{.name = "every", .help = "Take every n-th pose", .value = "N", .least = 1},
         drive.every);
   visit(Setting{.name = "rate",
-                .help = "Poses a second instead of those of the file",
+                .help = "Poses a second instead of those of the file, or 10 on a path",
                 .value = "HZ",
                 .least = 0,
                 .above_least = true},
         drive.rate_hz);
   visit(Setting{.name = "spacing",
-                .help = "Poses so far apart instead of those of the file",
+                .help = "Poses so far apart instead of those of the file or the path",
                 .value = "M",
                 .least = 0,
                 .above_least = true},
@@ -55,10 +73,15 @@ void visit_settings(DriveOptions& drive, Visit&& visit) {
         drive.motion);
 }
 
-/// Poses of the sensor. Errors: usage, data (no poses).
-Trajectory sensor_poses(const DriveOptions& drive);
+/// Throws usage where there is not exactly one of trajectory, places and path, and where a setting
+/// has no effect or is out of range.
+void check_drive(const DriveOptions& drive);
 
-/// The scans at those poses. Errors: likewise.
+/// The scans of a trajectory. Errors: those of check_drive(); usage, data (no poses).
 std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor);
+
+/// Likewise of a trajectory, places or a path in a model. Errors: likewise; data (no ground).
+std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
+                                    const ModelScene& scene, const Executor& executor);
 
 }  // namespace adasplats

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/pipeline/scene/placed_poses.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+namespace {
+
+constexpr double kPeriod_s = 0.1;  // as read_trajectory has it for poses without times
+constexpr std::array<double, 4> kGroundRadii_m = {0.5, 1, 2, 4};
+constexpr int kGridSteps = 3;          // of rays from the middle to the radius: 29 in all
+constexpr int kGroundHits = 32;        // of a ray, from below: roofs are farther up
+constexpr double kBeyondModel_m = 50;  // above and below the model's middle 98 %
+constexpr float kLeastLevel = 0.7F;    // z of a unit normal: 45 degrees
+constexpr double kLeastShareOfRays = 0.4;
+constexpr double kMostPoses = 1e7;
+
+/// Whether a primitive is as level as ground can be.
+bool is_level(const SceneView& view, std::uint32_t primitive) {
+  Vec3f normal;
+  if (primitive < view.disk_count()) {
+    normal = view.disks[primitive].normal;
+  } else {
+    const Triangle t = view.mesh->triangle(primitive - view.disk_count());
+    normal = cross(t.b - t.a, t.c - t.a);
+  }
+  return std::abs(normal.z) >= kLeastLevel * length(normal);
+}
+
+/// A level thing above a place of the grid.
+struct LevelHit {
+  double z_m;  ///< world
+  std::size_t ray;
+};
+
+/// Rays upwards from below the model, `radius_m` about a place; gives their number.
+std::size_t cast_upwards(const ModelScene& scene, double x_m, double y_m, double radius_m,
+                         const std::pair<Vec3d, Vec3d>& box, const Executor& executor,
+                         std::vector<LevelHit>& found) {
+  std::vector<Ray> rays;
+  const double from_z = box.first.z - kBeyondModel_m;
+  const auto reach = static_cast<float>(box.second.z + kBeyondModel_m - from_z);
+  for (int i = -kGridSteps; i <= kGridSteps; ++i) {
+    for (int j = -kGridSteps; j <= kGridSteps; ++j) {
+      if (i * i + j * j > kGridSteps * kGridSteps) continue;
+      const double step_m = radius_m / kGridSteps;
+      const Vec3d from = Vec3d{x_m + i * step_m, y_m + j * step_m, from_z} - scene.origin();
+      rays.push_back({vec_cast<float>(from), 0, {0, 0, 1}, reach});
+    }
+  }
+  std::vector<Hit> hits(rays.size() * kGroundHits);
+  scene.tracer().nearest_hits(rays, kGroundHits, hits, executor);
+  const SceneView view = scene.view();
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    const Hit& hit = hits[k];
+    if (!hit.valid() || !is_level(view, hit.primitive)) continue;
+    found.push_back({from_z + static_cast<double>(hit.t), k / kGroundHits});
+  }
+  return rays.size();
+}
+
+/// The median of the lowest level that enough rays meet within `thickness_m`, each counted once.
+std::optional<double> lowest_level(std::vector<LevelHit> hits, std::size_t least_rays,
+                                   double thickness_m) {
+  std::ranges::sort(hits, {}, &LevelHit::z_m);
+  for (std::size_t begin = 0; begin < hits.size(); ++begin) {
+    std::set<std::size_t> rays;
+    std::vector<double> heights;
+    for (std::size_t k = begin; k < hits.size() && hits[k].z_m <= hits[begin].z_m + thickness_m;
+         ++k)
+      if (rays.insert(hits[k].ray).second) heights.push_back(hits[k].z_m);
+    if (rays.size() >= least_rays) return heights[heights.size() / 2];
+  }
+  return std::nullopt;
+}
+
+/// "12.50,-3.00".
+std::string place_text(double x_m, double y_m) {
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(), "%.2f,%.2f", x_m, y_m);
+  return text.data();
+}
+
+double required_ground(const ModelScene& scene, double x_m, double y_m, const Executor& executor) {
+  if (const std::optional<double> z_m = ground_height(scene, x_m, y_m, executor)) return *z_m;
+  const auto [low, high] = scene.middle_box();
+  throw Error(ErrorKind::data,
+              "no ground at " + place_text(x_m, y_m) + ": within " +
+                  std::to_string(static_cast<int>(kGroundRadii_m.back())) +
+                  " m the model has nothing level that most rays from below meet; most of it lies "
+                  "between " +
+                  place_text(low.x, low.y) + " and " + place_text(high.x, high.y));
+}
+
+RigidTransform level_pose(double yaw_rad, Vec3d place) {
+  return {rotation_from_yaw_pitch_roll(yaw_rad, 0, 0), place};
+}
+
+/// Straight lines, by the way along them.
+class PathLine {
+ public:
+  explicit PathLine(std::span<const PathCorner> corners) {
+    for (const PathCorner& corner : corners) {
+      const double step_m = corners_.empty() ? 0
+                                             : std::hypot(corner.x_m - corners_.back().x_m,
+                                                          corner.y_m - corners_.back().y_m);
+      if (!corners_.empty() && step_m == 0) continue;  // the same corner again
+      ways_m_.push_back(ways_m_.empty() ? 0 : ways_m_.back() + step_m);
+      corners_.push_back(corner);
+    }
+    if (corners_.size() < 2)
+      throw Error(ErrorKind::usage, "`path` needs at least two corners that differ");
+  }
+
+  double length_m() const { return ways_m_.back(); }
+
+  PathCorner at(double way_m) const {
+    const double way = std::clamp(way_m, 0.0, length_m());
+    const auto above = std::ranges::upper_bound(ways_m_, way);
+    const auto next = std::clamp<std::size_t>(static_cast<std::size_t>(above - ways_m_.begin()), 1,
+                                              corners_.size() - 1);
+    const PathCorner &a = corners_[next - 1], &b = corners_[next];
+    const double share = (way - ways_m_[next - 1]) / (ways_m_[next] - ways_m_[next - 1]);
+    return {a.x_m + share * (b.x_m - a.x_m), a.y_m + share * (b.y_m - a.y_m)};
+  }
+
+  /// From a metre before to a metre behind: vehicles do not turn on the spot.
+  double yaw_rad(double way_m) const {
+    constexpr double kTurn_m = 1;
+    PathCorner back = at(way_m - kTurn_m), front = at(way_m + kTurn_m);
+    if (back.x_m == front.x_m && back.y_m == front.y_m) {  // at the tip of a way there and back
+      back = at(way_m);
+      front = at(way_m + kTurn_m / 2);
+    }
+    return std::atan2(front.y_m - back.y_m, front.x_m - back.x_m);
+  }
+
+ private:
+  std::vector<PathCorner> corners_;
+  std::vector<double> ways_m_;
+};
+
+}  // namespace
+
+std::optional<double> ground_height(const ModelScene& scene, double x_m, double y_m,
+                                    const Executor& executor) {
+  const std::pair<Vec3d, Vec3d> box = scene.middle_box();
+  for (const double radius_m : kGroundRadii_m) {
+    std::vector<LevelHit> hits;
+    const std::size_t rays = cast_upwards(scene, x_m, y_m, radius_m, box, executor, hits);
+    const auto least =
+        static_cast<std::size_t>(std::ceil(kLeastShareOfRays * static_cast<double>(rays)));
+    // Streets rise by up to a fifth of the way.
+    const double thickness_m = 0.2 + 2 * 0.2 * radius_m;
+    if (const auto z_m = lowest_level(std::move(hits), least, thickness_m)) return z_m;
+  }
+  return std::nullopt;
+}
+
+Trajectory poses_at(const ModelScene& scene, std::span<const SensorPlace> places, double height_m,
+                    const Executor& executor) {
+  Trajectory trajectory;
+  for (const SensorPlace& place : places) {
+    const double z_m =
+        place.z_m ? *place.z_m : required_ground(scene, place.x_m, place.y_m, executor) + height_m;
+    const double time_s = kPeriod_s * static_cast<double>(trajectory.size());
+    trajectory.push_back(
+        {time_s, level_pose(place.yaw_deg * std::numbers::pi / 180, {place.x_m, place.y_m, z_m})});
+  }
+  return trajectory;
+}
+
+Trajectory poses_on_path(const ModelScene& scene, std::span<const PathCorner> corners,
+                         const PathDrive& drive, const Executor& executor) {
+  const PathLine line(corners);
+  const double step_m = drive.spacing_m ? *drive.spacing_m : drive.speed_mps / drive.rate_hz;
+  // The last pose may miss the last corner by rounding alone.
+  const double steps = std::floor(line.length_m() / step_m * (1 + 1e-12));
+  if (!(steps < kMostPoses))
+    throw Error(ErrorKind::usage, "`path` would have more than ten million poses");
+  Trajectory trajectory;
+  for (std::size_t k = 0; k <= static_cast<std::size_t>(steps); ++k) {
+    executor.check_interruption();
+    const double way_m = static_cast<double>(k) * step_m;
+    const PathCorner place = line.at(way_m);
+    const double ground_m = required_ground(scene, place.x_m, place.y_m, executor);
+    trajectory.push_back(
+        {way_m / drive.speed_mps,
+         level_pose(line.yaw_rad(way_m), {place.x_m, place.y_m, ground_m + drive.height_m})});
+  }
+  return trajectory;
+}
+
+}  // namespace adasplats
