@@ -867,6 +867,16 @@ class Scene:
         first_number: int = 0,
         progress: Progress | None = None,
     ) -> Iterator[Scan]: ...
+    def poses_at(self, places: ArrayLike, *, height: float = 1.73) -> Trajectory: ...
+    def poses_on_path(
+        self,
+        corners: ArrayLike,
+        *,
+        speed: float = 10.0,
+        rate: float = 10.0,
+        spacing: float | None = None,
+        height: float = 1.73,
+    ) -> Trajectory: ...
     def render(
         self,
         *,

@@ -4,6 +4,8 @@
 
 #include <pybind11/stl.h>
 
+#include "adasplats/core/executor.h"
+#include "adasplats/dataset/parallel_scan_writer.h"
 #include "adasplats/dataset/scan_writer.h"
 #include "clouds.h"
 #include "pickles.h"
@@ -126,8 +128,12 @@ void save_scans(const ScanList& list, py::handle folder, const py::kwargs& kwarg
   writing.image_size = list.image_size;
   writing.labels = list.labels.get();
   const auto writer = make_scan_writer(path, format, writing);
-  for (std::size_t i = 0; i < list.scans.size(); ++i) writer->write(i, *list.scans[i]);
-  writer->finish();
+  const Executor executor;
+  ParallelWriteOptions parallel;
+  parallel.threads = executor.threads();
+  ParallelScanWriter files(*writer, parallel);
+  for (std::size_t i = 0; i < list.scans.size(); ++i) files.write(i, list.scans[i]);
+  files.finish();
 }
 
 }  // namespace

@@ -97,6 +97,7 @@ void bind_scenes(py::module_& module) {
       .def_property_readonly("labels", &labels_of, "The LabelScheme of its classes, or None.");
   add_casting(type);
   add_simulation(type);
+  add_places(type);
   add_rendering(type);
   add_device_results(type);
 }

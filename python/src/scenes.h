@@ -32,6 +32,7 @@ using SceneClass = py::class_<SceneObject, std::shared_ptr<SceneObject>>;
 /// Each adds methods to Scene.
 void add_casting(SceneClass& type);
 void add_simulation(SceneClass& type);
+void add_places(SceneClass& type);
 void add_rendering(SceneClass& type);
 void add_device_results(SceneClass& type);
 

@@ -128,6 +128,10 @@ Trajectory trajectory_of(py::handle value, const char* name) {
   return trajectory;
 }
 
+py::object trajectory_object(Trajectory poses) {
+  return py::cast(TrajectoryObject{std::move(poses)});
+}
+
 void bind_trajectories(py::module_& module) {
   TrajectoryClass type(module, "Trajectory", kTrajectoriesDoc);
   type.def(py::init([](py::handle poses, py::handle times) {

@@ -11,4 +11,7 @@ namespace adasplats::python {
 /// 0.1 s apart. Errors: TypeError, ValueError.
 Trajectory trajectory_of(py::handle value, const char* name);
 
+/// A Trajectory of Python's.
+py::object trajectory_object(Trajectory poses);
+
 }  // namespace adasplats::python
