@@ -134,7 +134,7 @@ std::string npy_bytes(const NpyArray& array) {
 }
 
 std::string npy_points(const Scan& scan) {
-  const std::vector<PointWithIntensity> points = points_with_intensity(scan);
+  const std::string points = points_with_intensity(scan);
   return npy_bytes({ColumnType::f32, {scan.size(), 4}, points.data()});
 }
 

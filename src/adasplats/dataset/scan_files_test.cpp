@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -154,8 +155,12 @@ TEST(ScanValues, ReturnsOfFirings) {
 TEST(ScanValues, UnknownIntensityIsZero) {
   Scan scan = scan_number(0, 2);
   scan.intensities[1] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(points_with_intensity(scan)[0].intensity, scan.intensities[0]);
-  EXPECT_EQ(points_with_intensity(scan)[1].intensity, 0.0F);
+  std::array<float, 8> values;
+  const std::string bytes = points_with_intensity(scan);
+  ASSERT_EQ(bytes.size(), sizeof(values));
+  std::memcpy(values.data(), bytes.data(), sizeof(values));
+  EXPECT_EQ(values[3], scan.intensities[0]);
+  EXPECT_EQ(values[7], 0.0F);
 }
 
 // Oracle: the .npy format, version 1.0: magic, header length at byte 8, then the values.

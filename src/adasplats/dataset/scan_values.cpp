@@ -3,22 +3,27 @@
 #include "adasplats/dataset/scan_values.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <type_traits>
 
 #include "adasplats/core/error.h"
 
 namespace adasplats {
-std::vector<PointWithIntensity> points_with_intensity(const Scan& scan) {
-  std::vector<PointWithIntensity> values(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i) {
+std::string points_with_intensity(const Scan& scan) {
+  using Record = std::array<float, 4>;
+  std::string bytes(scan.size() * sizeof(Record), '\0');
+  char* to = bytes.data();
+  for (std::size_t i = 0; i < scan.size(); ++i, to += sizeof(Record)) {
     const Vec3f p = scan.positions[i];
     // Networks that are trained on such files do not survive a NaN.
     const float intensity =
         scan.intensities.empty() || std::isnan(scan.intensities[i]) ? 0.0F : scan.intensities[i];
-    values[i] = {p.x, p.y, p.z, intensity};
+    const Record record = {p.x, p.y, p.z, intensity};
+    std::memcpy(to, record.data(), sizeof(record));
   }
-  return values;
+  return bytes;
 }
 
 std::vector<std::uint32_t> packed_labels(const Scan& scan) {

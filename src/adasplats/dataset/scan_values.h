@@ -13,12 +13,9 @@
 
 namespace adasplats {
 
-/// x, y, z (sensor frame, m) and intensity of each point; intensity 0 where it is not known.
-struct PointWithIntensity {
-  float x, y, z, intensity;
-};
-static_assert(sizeof(PointWithIntensity) == 4 * sizeof(float));
-std::vector<PointWithIntensity> points_with_intensity(const Scan& scan);
+/// x, y, z (sensor frame, m) and intensity of each point, four floats; intensity 0 where it is not
+/// known. As the bytes of a file: a copy less of what is most of a data set.
+std::string points_with_intensity(const Scan& scan);
 
 /// instance << 16 | class of each point, 0 for what the scan does not have.
 std::vector<std::uint32_t> packed_labels(const Scan& scan);

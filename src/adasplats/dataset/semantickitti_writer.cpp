@@ -93,7 +93,7 @@ EncodedScan SemanticKittiWriter::encode(std::size_t index, const Scan& scan) {
   const std::string name = scan_name(index);
   if (encoded.has_classes)
     encoded.files.push_back({"labels/" + name + ".label", bytes_of(packed_labels(scan))});
-  encoded.files.push_back({"velodyne/" + name + ".bin", bytes_of(points_with_intensity(scan))});
+  encoded.files.push_back({"velodyne/" + name + ".bin", points_with_intensity(scan)});
   return encoded;
 }
 
