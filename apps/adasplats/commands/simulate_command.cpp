@@ -19,16 +19,11 @@ constexpr const char* kSimulateExamples =
     "  adasplats simulate street.ply --sensor ouster-os1-64 --trajectory poses.csv \\\n"
     "      --rolling-shutter --sub-rays 7 --returns 2 --fog 200 -o scans\n"
     "  adasplats simulate street.ply --trajectory poses.csv -o scans --device cuda --gpus 0,1\n"
-    "  adasplats simulate street.ply --at 12,3 --at 20,3,,90 -o scans
-"
-    "  adasplats simulate street.ply --path '0,0;50,0;50,30' --speed 8 -o scans
-"
-    "Rates: traced, in the tracer or in the kernels of all GPUs; assembled, until the scans were
-"
-    "complete, points with all their attributes in host memory; written, until the last file was on
-"
-    "disk. Each one holds those before it. A run that ended early goes on with the same command.
-";
+    "  adasplats simulate street.ply --at 12,3 --at 20,3,,90 -o scans\n"
+    "  adasplats simulate street.ply --path '0,0;50,0;50,30' --speed 8 -o scans\n"
+    "Rates: traced, in the tracer or in the kernels of all GPUs; assembled, until the scans were\n"
+    "complete, points with all their attributes in host memory; written, until the last file was on\n"
+    "disk. Each one holds those before it. A run that ended early goes on with the same command.\n";
 
 class SimulateCommand final : public Command {
  public:

@@ -67,8 +67,8 @@ ScanWriterOptions writing_options(const ScanSimulator& simulator) {
 
 /// Casts the scans that are not there yet and writes them beside that.
 ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> scans,
-                            ScanFormat format, ResumableFolder& folder, Session& session,
-                            SimulateResult& result) {
+                        ScanFormat format, ResumableFolder& folder, Session& session,
+                        SimulateResult& result) {
   const ModelScene& scene = simulator.scene();
   // An attempt that was interrupted at its very end had been given the poses already.
   std::filesystem::remove(folder.path() / "sequences" / "00" / "poses.txt");
