@@ -99,7 +99,7 @@ void take_model(Keywords& keywords, ModelJob& job, RecipeChoice& recipe, WorkOpt
   take_settings(keywords, job.segment);
   take_settings(keywords, recipe);
   keywords.take<DynamicRemoval>("remove", job.build.remove, kDynamicRemovals);
-  keywords.take("reflectance", job.reflectance);
+  keywords.take("reflectance", job.build.reflectances);
   take_settings(keywords, job.calibration);
   take_load_options(keywords, job.load);
   work.has_seed = true;

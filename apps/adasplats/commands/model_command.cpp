@@ -70,7 +70,7 @@ class ModelCommand final : public Command {
     add_settings(app, job_.segment);
     add_settings(app, recipe_);
     add_removal_option(app, job_.build.remove);
-    add_switch(app, "--reflectance,!--no-reflectance", job_.reflectance,
+    add_switch(app, "--reflectance,!--no-reflectance", job_.build.reflectances,
                "Make reflectances of intensities: without what range and incidence did to them, "
                "which simulate applies again");
     add_settings(app, job_.calibration);

@@ -27,6 +27,11 @@ class CudaModelEngine final : public ModelEngine {
   std::unique_ptr<ConsistentSteps> consistent_steps() const override {
     return gpu::make_cuda_consistent_steps(device_, executor_);
   }
+  Reflectances measure_reflectances(const std::vector<Disk>& disks,
+                                    const std::vector<float>& fallback,
+                                    const PointCloud& cloud) const override {
+    return gpu::measure_reflectances(device_, disks, fallback, cloud);
+  }
 
  private:
   int device_;

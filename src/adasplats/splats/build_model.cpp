@@ -104,9 +104,31 @@ void put_splats(ConsistentSplats made, SplatModel& model) {
   model.intensities = std::move(made.intensities);
 }
 
+void put_reflectances(Reflectances made, SplatModel& model, BuildReport& report) {
+  model.intensities = std::move(made.values);
+  model.response = std::move(made.response);
+  report.reflectance_measured = !model.response.empty();
+}
+
+bool shows_reflectances(const PointCloud& cloud) {
+  return cloud.has_beams() && !cloud.intensities.empty();
+}
+
+/// What measuring reflectances needs of a cloud; nothing where it cannot be.
+PointCloud rays_with_intensities(const PointCloud& cloud) {
+  PointCloud rays;
+  rays.origin = cloud.origin;
+  if (!shows_reflectances(cloud)) return rays;
+  rays.positions = cloud.positions;
+  rays.sensor_positions = cloud.sensor_positions;
+  rays.origin_kinds = cloud.origin_kinds;
+  rays.intensities = cloud.intensities;
+  return rays;
+}
+
 /// The paper's methods.
-void run(const PaperOptions& options, const ModelEngine& engine, PointCloud cloud,
-         const ClassTables& tables, StepSink step, SplatModel& model, BuildReport& report) {
+void make_splats(const PaperOptions& options, const ModelEngine& engine, PointCloud cloud,
+                 const ClassTables& tables, StepSink step, SplatModel& model, BuildReport& report) {
   const std::unique_ptr<PaperSteps> made = engine.paper_steps();
   PaperSteps& steps = *made;
   step("order", 0);
@@ -128,6 +150,18 @@ void run(const PaperOptions& options, const ModelEngine& engine, PointCloud clou
     steps.generate(options, step);
   }
   put_splats(steps.take_splats(), model, report);
+}
+
+/// Their steps change the points that they have, so those that were measured are kept beside them.
+void run(const PaperOptions& options, const ModelEngine& engine, PointCloud cloud,
+         const ClassTables& tables, bool reflectances, StepSink step, SplatModel& model,
+         BuildReport& report) {
+  const PointCloud measured = reflectances ? rays_with_intensities(cloud) : PointCloud();
+  make_splats(options, engine, std::move(cloud), tables, step, model, report);
+  if (measured.empty() || model.intensities.empty()) return;
+  step("reflectances", 1);
+  put_reflectances(engine.measure_reflectances(model.disks, model.intensities, measured), model,
+                   report);
 }
 
 /// Takes out points that no cell of the consistent method is for, and gives their number.
@@ -158,17 +192,23 @@ void report_beyond(std::size_t removed, std::size_t all, double reach_m, Progres
 
 /// Ours.
 void run(const ConsistentOptions& options, const ModelEngine& engine, PointCloud cloud,
-         const ClassTables& tables, StepSink step, SplatModel& model, BuildReport& report) {
+         const ClassTables& tables, bool reflectances, StepSink step, SplatModel& model,
+         BuildReport& report) {
   const std::unique_ptr<ConsistentSteps> made = engine.consistent_steps();
   ConsistentSteps& steps = *made;
   step("order", 0);
   const bool has_rays = cloud.has_beams();
+  const bool has_reflectances = reflectances && shows_reflectances(cloud);
   report.points_used = steps.load(std::move(cloud), tables);
   report.points_dynamic = report.points_in - report.points_noise - report.points_used;
   require_points(report.points_used);
   report.consistent = consistent_disks(steps, has_rays, options, step);
   report.ray_checked = report.consistent->checked;
   put_splats(steps.take_splats(), model);
+  if (!has_reflectances || model.disks.empty()) return;
+  step("reflectances", 1);
+  put_reflectances(steps.measure_reflectances(model.disks, model.intensities, options), model,
+                   report);
 }
 
 std::size_t count_of(const OriginCounts& counts, OriginKind kind) {
@@ -239,7 +279,7 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
     const auto step = [&](std::string_view name, int passes) { clock.begin(name, passes); };
     std::visit(
         [&](const auto& chosen) {
-          run(chosen, *engine, std::move(cloud), tables, step, model, report);
+          run(chosen, *engine, std::move(cloud), tables, options.reflectances, step, model, report);
         },
         options.recipe);
     clock.end();

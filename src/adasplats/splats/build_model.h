@@ -21,6 +21,9 @@ namespace adasplats {
 struct BuildOptions {
   ModelRecipe recipe;  ///< ours without options, else a method of the paper
   DynamicRemoval remove = DynamicRemoval::movable;
+  /// Intensities become reflectances with the sensor's response, where points have known beams and
+  /// intensities (ReflectancesOn); else they stay as measured.
+  bool reflectances = true;
 };
 
 /// One step of the work and what it took.
@@ -40,9 +43,10 @@ struct BuildReport {
   double radius_m = 0;                         ///< the paper's methods: R of the last generation
   double error_m = 0;                          ///< the paper's methods: E of the last generation
   std::optional<ConsistentReport> consistent;  ///< of that method
-  bool ray_checked = false;  ///< consistent: splats were checked against measured rays
-  OriginCounts origins{};    ///< of the points, by OriginKind
-  bool oriented = true;      ///< normals face the sensors; false: not all origins are known
+  bool ray_checked = false;           ///< consistent: splats were checked against measured rays
+  bool reflectance_measured = false;  ///< enough rays show reflectances
+  OriginCounts origins{};             ///< of the points, by OriginKind
+  bool oriented = true;  ///< normals face the sensors; false: not all origins are known
   std::vector<StepTime> steps;
 };
 

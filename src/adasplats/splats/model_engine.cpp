@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/splats/model_engine.h"
 
+#include "adasplats/splats/model/rays_on_cpu.h"
+#include "adasplats/splats/reflectance/reflectances_on.h"
+
 namespace adasplats {
 namespace {
 
@@ -15,6 +18,15 @@ class CpuModelEngine final : public ModelEngine {
   }
   std::unique_ptr<ConsistentSteps> consistent_steps() const override {
     return make_cpu_consistent_steps(executor_);
+  }
+  Reflectances measure_reflectances(const std::vector<Disk>& disks,
+                                    const std::vector<float>& fallback,
+                                    const PointCloud& cloud) const override {
+    const RaysOnCpu place(executor_);
+    if (!cloud.has_beams() || cloud.intensities.empty()) return {fallback, {}};
+    const MeasuredRays rays(cloud, kLeastReflectanceRange_m, executor_);
+    const RaysWithIntensities<RaysOnCpu> measured = {&rays, &cloud.intensities};
+    return ReflectancesOn<RaysOnCpu>(place, disks, fallback).run({&measured, 1});
   }
 
  private:

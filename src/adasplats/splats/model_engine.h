@@ -4,10 +4,13 @@
 
 #include <memory>
 #include <string_view>
+#include <vector>
 
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/splats/consistent/consistent_steps.h"
 #include "adasplats/splats/paper/paper_steps.h"
+#include "adasplats/splats/reflectance/reflectance.h"
 
 namespace adasplats {
 
@@ -18,6 +21,10 @@ class ModelEngine {
   virtual std::string_view name() const = 0;
   virtual std::unique_ptr<PaperSteps> paper_steps() const = 0;
   virtual std::unique_ptr<ConsistentSteps> consistent_steps() const = 0;
+  /// Of disks by the measured rays of a cloud. See ReflectancesOn.
+  virtual Reflectances measure_reflectances(const std::vector<Disk>& disks,
+                                            const std::vector<float>& fallback,
+                                            const PointCloud& cloud) const = 0;
 };
 
 /// The executor must outlive the engine.

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
+#include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/splats/consistent/consistent_steps.h"
 
@@ -15,5 +17,10 @@ namespace adasplats::gpu {
 /// Errors: unavailable (no such GPU, not enough memory), usage (neighbourhoods of more than 512
 /// cells), with what helps; after one, the steps can only be destroyed.
 std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int device, const Executor& executor);
+
+/// ModelEngine::measure_reflectances() on one GPU. Errors: unavailable (no such GPU, not enough
+/// memory), with what helps.
+Reflectances measure_reflectances(int device, const std::vector<Disk>& disks,
+                                  const std::vector<float>& fallback, const PointCloud& cloud);
 
 }  // namespace adasplats::gpu

@@ -11,5 +11,10 @@ std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int, const Executor&
   throw Error(ErrorKind::unavailable, "cannot build models on a GPU: " + find_gpus().reason);
 }
 
+Reflectances measure_reflectances(int, const std::vector<Disk>&, const std::vector<float>&,
+                                  const PointCloud&) {
+  throw Error(ErrorKind::unavailable, "cannot build models on a GPU: " + find_gpus().reason);
+}
+
 }  // namespace adasplats::gpu
 #endif

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "adasplats/gpu/consistent/consistent_cuda.h"
 #include "adasplats/splats/consistent/consistent_state.h"
 #include "adasplats/splats/consistent/scanned_room_test.h"
+#include "adasplats/splats/model_engine.h"
 
 // The oracle of all tests here is the CPU's steps on the same cloud.
 namespace adasplats {
@@ -69,6 +71,13 @@ void expect_same(const ConsistentSplats& a, const ConsistentSplats& b) {
   EXPECT_EQ(count_different(a.intensities, b.intensities), 0U);
 }
 
+void expect_same(const Reflectances& a, const Reflectances& b) {
+  EXPECT_EQ(count_different(a.values, b.values), 0U) << "reflectances";
+  EXPECT_EQ(count_different(a.response.range_gains, b.response.range_gains), 0U);
+  EXPECT_EQ(count_different(a.response.incidence_gains, b.response.incidence_gains), 0U);
+  EXPECT_EQ(a.response.empty(), b.response.empty());
+}
+
 /// CPU and GPU side by side: after every step not one bit may differ.
 class SideBySide {
  public:
@@ -100,6 +109,18 @@ class SideBySide {
     const ConsistentSplats cpu = cpu_->take_splats(), gpu = gpu_->take_splats();
     expect_same(cpu, gpu);
     return gpu.disks.size();
+  }
+
+  /// Of all steps, and of the splats; gives whether enough rays show reflectances.
+  bool reflectances(const ConsistentOptions& options) {
+    const auto finish = [&](const Steps& steps) {
+      consistent_disks(*steps, true, options, [](std::string_view, int) {});
+      const ConsistentSplats splats = steps->take_splats();
+      return steps->measure_reflectances(splats.disks, splats.intensities, options);
+    };
+    const Reflectances cpu = finish(cpu_), gpu = finish(gpu_);
+    expect_same(cpu, gpu);
+    return !gpu.response.empty();
   }
 
  private:
@@ -227,6 +248,53 @@ TEST_F(ConsistentOnGpu, RemovedClassesAreLeftOut) {
   tables.removed.resize(1 << 16);
   tables.removed[kPerson] = 1;
   EXPECT_GT(compare(scanned_room(), {}, tables), 1000U);
+}
+
+/// Intensities that fall with the range, of several units, some not known.
+PointCloud room_with_intensities(float unit) {
+  PointCloud cloud = scanned_room();
+  cloud.intensities.clear();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const float range_m = length(cloud.positions[i] - cloud.sensor_positions[i]);
+    const float noise = static_cast<float>(i % 13) / 26;
+    cloud.intensities.push_back(unit * (0.25F + noise) / (1 + range_m));
+    if (i % 100 == 7) cloud.intensities[i] = std::numeric_limits<float>::quiet_NaN();
+  }
+  return cloud;
+}
+
+TEST_F(ConsistentOnGpu, ReflectancesAreTheSame) {
+  ClassTables tables;
+  tables.removed.resize(1 << 16);
+  for (const bool removes : {false, true}) {
+    tables.removed[kPerson] = removes ? 1 : 0;
+    for (const float unit : {1.0F, 255.0F, 1e-20F})
+      EXPECT_TRUE(SideBySide(room_with_intensities(unit), tables).reflectances({}));
+  }
+  ConsistentOptions unchecked;
+  unchecked.balance_rounds = 0;
+  EXPECT_TRUE(SideBySide(room_with_intensities(1)).reflectances(unchecked));
+  PointCloud dark = room_with_intensities(0);
+  EXPECT_TRUE(SideBySide(dark).reflectances({}));
+  dark.intensities.assign(dark.size(), std::numeric_limits<float>::quiet_NaN());
+  EXPECT_FALSE(SideBySide(dark).reflectances({}));
+}
+
+// Oracle: the CPU's engine. What the methods of the paper end with.
+TEST_F(ConsistentOnGpu, ReflectancesOfGivenDisksAreTheSame) {
+  const Executor executor(2);
+  const PointCloud cloud = room_with_intensities(1);
+  std::vector<Disk> disks;
+  for (std::size_t i = 0; i < cloud.size(); i += 20)
+    disks.push_back(
+        {cloud.positions[i], 0.1F, normalized(cloud.sensor_positions[i] - cloud.positions[i])});
+  const std::vector<float> fallback(disks.size(), 0.5F);
+  const Reflectances cpu =
+      make_cpu_model_engine(executor)->measure_reflectances(disks, fallback, cloud);
+  EXPECT_FALSE(cpu.response.empty());
+  expect_same(cpu, gpu::measure_reflectances(0, disks, fallback, cloud));
+  EXPECT_EQ(gpu::measure_reflectances(0, disks, fallback, without_sensors(cloud)).values, fallback);
+  EXPECT_TRUE(gpu::measure_reflectances(0, {}, {}, cloud).values.empty());
 }
 
 TEST_F(ConsistentOnGpu, SmallAndDegenerateClouds) {

@@ -29,8 +29,8 @@ std::size_t taken_of(std::size_t rays, std::size_t first, std::size_t stride) {
   return rays > first ? (rays - first + stride - 1) / stride : 0;
 }
 
-/// Calls body(point, ray, hit) on the device for the rays of `casting` with the nearest hit of
-/// each, which may be none.
+/// Calls body(i, point, ray, hit) on the device for the rays of `casting`, i counting them, with
+/// the nearest hit of each, which may be none.
 template <class Body>
 void cast_nearest(const Disk* disks, std::size_t count, const MeasuredPoints& points,
                   const DeviceBuffer<std::uint32_t>& numbers, const RayCasting& casting,
@@ -54,8 +54,10 @@ void cast_nearest(const Disk* disks, std::size_t count, const MeasuredPoints& po
              });
     scene->cast(source, batch, 1, hits.data(), stream);
     for_each(batch, stream, "count rays",
-             [first, stride = casting.stride, from = rays.data(), found = hits.data(),
-              body] __device__(std::uint64_t k) { body(first[k * stride], from[k], found[k]); });
+             [first, done, stride = casting.stride, from = rays.data(), found = hits.data(),
+              body] __device__(std::uint64_t k) {
+               body(done + k, first[k * stride], from[k], found[k]);
+             });
   }
 }
 
@@ -163,7 +165,7 @@ DeviceBuffer<ShiftSums> DeviceRays::shifts(const Disk* disks, std::size_t count,
   casting.beyond_m = static_cast<float>(options.reach_m);
   cast_nearest(disks, count, points_, numbers_, casting, stream_,
                [disks, options, points = points_, to = sums.data()] __device__(
-                   std::uint32_t point, const Ray& ray, Hit hit) {
+                   std::uint64_t, std::uint32_t point, const Ray& ray, Hit hit) {
                  if (!hit.valid()) return;
                  const float range_m = length(points.positions[point] - points.sensors[point]);
                  const std::uint32_t disk = hit.primitive;
@@ -182,11 +184,23 @@ DeviceBuffer<std::uint8_t> DeviceRays::missed(const Disk* disks, std::size_t cou
   if (!any_present(disks, count, stream_)) return missed;
   RayCasting casting;
   casting.beyond_m = beyond_m;
-  cast_nearest(disks, count, points_, numbers_, casting, stream_,
-               [to = missed.data()] __device__(std::uint32_t point, const Ray&, Hit hit) {
-                 if (!hit.valid()) to[point] = 1;
-               });
+  cast_nearest(
+      disks, count, points_, numbers_, casting, stream_,
+      [to = missed.data()] __device__(std::uint64_t, std::uint32_t point, const Ray&, Hit hit) {
+        if (!hit.valid()) to[point] = 1;
+      });
   return missed;
+}
+
+void DeviceRays::observe(const Disk* disks, std::size_t count, const ObserveRay& observe) const {
+  RayCasting casting;
+  casting.beyond_m = ObserveRay::kBeyond_m;
+  cast_nearest(disks, count, points_, numbers_, casting, stream_,
+               [observe, points = points_] __device__(std::uint64_t i, std::uint32_t point,
+                                                      const Ray& ray, Hit hit) {
+                 const float range_m = length(points.positions[point] - points.sensors[point]);
+                 observe(i, point, ray, range_m, hit);
+               });
 }
 
 }  // namespace adasplats::gpu

@@ -11,6 +11,7 @@
 #include "adasplats/splats/rays/disk_evidence.h"
 #include "adasplats/splats/rays/disk_shift.h"
 #include "adasplats/splats/rays/measured_rays.h"
+#include "adasplats/splats/reflectance/element_steps.h"
 
 namespace adasplats::gpu {
 
@@ -42,6 +43,8 @@ class DeviceRays {
   /// What every disk's rays say of its place: one sum a disk.
   DeviceBuffer<ShiftSums> shifts(const Disk* disks, std::size_t count,
                                  const SettleOptions& options) const;
+  /// Calls `observe` for all rays with their nearest hits.
+  void observe(const Disk* disks, std::size_t count, const ObserveRay& observe) const;
   /// One flag a point: whether its ray meets no disk up to `beyond_m` behind it. Where there is no
   /// disk at all, none is missed. Waits for the stream.
   DeviceBuffer<std::uint8_t> missed(const Disk* disks, std::size_t count, float beyond_m) const;

@@ -9,25 +9,22 @@
 #include "adasplats/gpu/consistent/consistent_planes.h"
 #include "adasplats/gpu/consistent/consistent_rays.h"
 #include "adasplats/gpu/consistent/consistent_seeds.h"
-#include "adasplats/gpu/neighbors/gpu_place.cuh"
+#include "adasplats/gpu/consistent/rays_on_gpu.cuh"
 #include "adasplats/gpu/neighbors/neighborhoods.h"
 #include "adasplats/splats/consistent/consistent_steps_on.h"
+#include "adasplats/splats/reflectance/reflectances_on.h"
 
 namespace adasplats::gpu {
 namespace {
 
 /// What the steps of the consistent method need of a GPU.
-class ConsistentOnGpu : public GpuPlace {
+class ConsistentOnGpu : public RaysOnGpu {
  public:
   using Cells = DeviceCells;
   using Index = DevicePointIndex;
-  using Rays = DeviceRays;
   using Cover = DeviceCover;
-  using GpuPlace::GpuPlace;
+  using RaysOnGpu::RaysOnGpu;
 
-  DeviceBuffer<Disk> copied(const std::vector<Disk>& disks) const {
-    return {std::span(disks), stream()};
-  }
   DeviceCells fuse(const DeviceCloud& cloud, double cell_m) const {
     return fuse_on_device(cloud.positions.data(), cloud.size(), cell_m, stream());
   }
@@ -81,6 +78,19 @@ class ConsistentOnGpu : public GpuPlace {
 std::unique_ptr<ConsistentSteps> make_cuda_consistent_steps(int device, const Executor&) {
   const DeviceGuard guard(device);
   return std::make_unique<ConsistentStepsOn<ConsistentOnGpu>>(device);
+}
+
+Reflectances measure_reflectances(int device, const std::vector<Disk>& disks,
+                                  const std::vector<float>& fallback, const PointCloud& cloud) {
+  if (!cloud.has_beams() || cloud.intensities.empty()) return {fallback, {}};
+  const DeviceGuard guard(device);
+  const RaysOnGpu place(device);
+  const DeviceCloud copy = copy_to_device(cloud, place.stream());
+  const MeasuredPoints points = {copy.positions.data(), copy.sensor_positions.data(),
+                                 data_or_null(copy.origin_kinds)};
+  const DeviceRays rays(points, copy.size(), kLeastReflectanceRange_m, place.stream());
+  const RaysWithIntensities<RaysOnGpu> measured = {&rays, &copy.intensities};
+  return ReflectancesOn<RaysOnGpu>(place, disks, fallback).run({&measured, 1});
 }
 
 }  // namespace adasplats::gpu

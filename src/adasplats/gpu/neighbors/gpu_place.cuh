@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,6 +15,27 @@
 #include "adasplats/gpu/neighbors/cloud_on_device.h"
 
 namespace adasplats::gpu {
+
+/// Adds what every `strands`-th element says, from the strand's own number on.
+template <class Sums, class Step>
+struct SumStrand {
+  Step step;
+  std::uint64_t count, strands;
+  Sums* sums;  ///< one a strand
+
+  __device__ void operator()(std::uint64_t strand) const {
+    Sums sum{};
+    for (std::uint64_t i = strand; i < count; i += strands) step(i, sum);
+    sums[strand] = sum;
+  }
+};
+
+template <class Sums>
+struct AddPart {
+  const Sums* parts;
+
+  __device__ void operator()(std::uint64_t i, Sums& sum) const { sum += parts[i]; }
+};
 
 /// Private to gpu/: where the steps of a method run and what they keep is, as CpuPlace: a stream
 /// and the memory of one GPU. Nothing else of the GPU may live longer than the place.
@@ -38,9 +60,31 @@ class GpuPlace {
   DeviceBuffer<T> array(std::size_t size) const {
     return DeviceBuffer<T>(size, stream());
   }
+  template <class T>
+  DeviceBuffer<T> zeros(std::size_t size) const {
+    DeviceBuffer<T> values(size, stream());
+    values.fill_bytes(0);
+    return values;
+  }
+  template <class T>
+  DeviceBuffer<T> copied(const std::vector<T>& values) const {
+    return {std::span<const T>(values), stream()};
+  }
   template <class Step>
   void for_each(std::size_t count, const char* doing, const Step& step) const {
     gpu::for_each(count, stream(), doing, step);
+  }
+  /// Waits for the stream.
+  template <class Sums, class Step>
+  Sums sum(std::size_t count, const char* doing, const Step& step) const {
+    // Sums stand in the memory of a thread: 2^15 of them fill a GPU and are soon added up.
+    constexpr std::size_t kStrands = std::size_t{1} << 15, kParts = std::size_t{1} << 9;
+    const DeviceBuffer<Sums> strands = in_strands<Sums>(count, kStrands, doing, step);
+    Sums all{};
+    for (const Sums& part :
+         in_strands<Sums>(strands.size(), kParts, doing, AddPart<Sums>{strands.data()}).download())
+      all += part;
+    return all;
   }
   template <class OnDevice>
   static auto on_host(const OnDevice& values) {
@@ -54,11 +98,30 @@ class GpuPlace {
   Values gather(const Values& values, const DeviceBuffer<std::uint32_t>& at) const {
     return gpu::gather(values, at, stream());
   }
+  DeviceBuffer<std::uint32_t> sort(DeviceBuffer<std::uint64_t>& keys) const {
+    return sort_order(keys, stream());
+  }
+  DeviceBuffer<std::uint32_t> run_begins(const DeviceBuffer<std::uint64_t>& sorted_keys) const {
+    return gpu::run_begins(sorted_keys.data(), sorted_keys.size(), stream());
+  }
+  DeviceBuffer<std::uint64_t> running_sums(const DeviceBuffer<std::uint32_t>& counts) const {
+    return gpu::running_sums(counts.data(), counts.size(), stream());
+  }
   DeviceBuffer<std::uint32_t> flagged(const DeviceBuffer<std::uint8_t>& flags) const {
     return gpu::flagged(flags.data(), flags.size(), stream());
   }
 
  private:
+  template <class Sums, class Step>
+  DeviceBuffer<Sums> in_strands(std::size_t count, std::size_t most, const char* doing,
+                                const Step& step) const {
+    const std::size_t strands = std::min(count, most);
+    DeviceBuffer<Sums> sums(strands, stream());
+    gpu::for_each(strands, stream(), doing,
+                  SumStrand<Sums, Step>{step, count, strands, sums.data()});
+    return sums;
+  }
+
   int device_;
   MemoryPoolGuard pool_;
   Stream stream_;

@@ -14,8 +14,6 @@
 #include "adasplats/pipeline/model/calibration_json.h"
 #include "adasplats/pipeline/model/label_use.h"
 #include "adasplats/pipeline/session/inputs.h"
-#include "adasplats/splats/reflectance/reflectance.h"
-#include "adasplats/trace/tracer.h"
 
 namespace adasplats {
 namespace {
@@ -33,8 +31,8 @@ void require_splats(const SplatModel& model, const BuildReport& built) {
                   "each surface (see cell, neighbors, denoise and remove)");
 }
 
-/// Makes one model; the points come from `load_points`, as often as they are asked for: building
-/// takes the memory that they stand in, so that they are loaded again rather than kept.
+/// Makes one model; the points come from `load_points`. Building takes the memory that they stand
+/// in: where it fails on a GPU they are loaded again.
 class ModelMaker {
  public:
   using LoadPoints = std::function<PointCloud()>;
@@ -60,7 +58,6 @@ class ModelMaker {
     if (classifier_) segment(cloud, result);
     check_label_use({options_.labels, options_.build.remove, options_.removal_is_asked}, cloud,
                     scheme_ ? &*scheme_ : nullptr, session_.progress);
-    const bool has_reflectance = cloud.has_beams() && !cloud.intensities.empty();
     auto [model, built] = build_on_device(std::move(cloud), result);
     require_splats(model, built);
     model.calibration = result.calibration;
@@ -68,8 +65,6 @@ class ModelMaker {
     if (classifier_) model.network_sha256 = classifier_->facts().sha256;
     result.steps.insert(result.steps.end(), built.steps.begin(), built.steps.end());
     result.built = std::move(built);
-    if (options_.reflectance && has_reflectance && !model.intensities.empty())
-      result.reflectance_measured = add_reflectances(model, result);
     return std::move(model);
   }
 
@@ -146,21 +141,6 @@ class ModelMaker {
     if (on_gpu) return built;
     if (tries_gpu) cloud = load(result);
     return build(std::move(cloud), nullptr);
-  }
-
-  /// Makes reflectances of the model's intensities; false: too few points show them.
-  bool add_reflectances(SplatModel& model, ModelResult& result) {
-    const PointCloud cloud = load(result);
-    const Stopwatch watch;
-    session_.progress.begin_step("measure reflectances", 2 * kPassUnits);
-    const auto tracer = make_cpu_tracer(model.view(), session_.executor);
-    Reflectances measured = measure_reflectances(model.disks, *tracer, cloud, model.origin,
-                                                 model.intensities, session_.executor);
-    model.intensities = std::move(measured.values);
-    model.response = std::move(measured.response);
-    session_.progress.end_step();
-    result.steps.push_back({"reflectances", watch.seconds()});
-    return !model.response.empty();
   }
 
   const ModelOptions& options_;
@@ -284,7 +264,7 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
                      {"measured", built.origins[3]}};
   json["oriented"] = built.oriented;
   json["ray_checked"] = built.ray_checked;
-  json["reflectance_measured"] = result.reflectance_measured;
+  json["reflectance_measured"] = built.reflectance_measured;
   if (result.calibrated)
     json["calibration"] = calibration_json(*result.calibrated, result.calibration);
   json["seconds"]["total"] = result.seconds;

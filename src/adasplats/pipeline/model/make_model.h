@@ -79,9 +79,6 @@ struct ModelOptions {
   /// The user has asked for `build.remove`: where it can remove nothing, that is an error and not
   /// only said.
   bool removal_is_asked = false;
-  /// Intensities become reflectances with the sensor's response, where points have known beams
-  /// and intensities (measure_reflectances); else they stay as measured.
-  bool reflectance = true;
   CalibrationChoice calibration;
 };
 
@@ -102,7 +99,6 @@ struct ModelResult {
   LoadReport loaded;  ///< points_read alone, where nothing was loaded
   std::optional<SegmentReport> segmented;
   BuildReport built;
-  bool reflectance_measured = false;
   std::optional<CalibrationReport> calibrated;  ///< nothing: it was not asked for
   Calibration calibration;                      ///< what was applied
   std::vector<StepTime> steps;                  ///< of loading, building and what the caller adds

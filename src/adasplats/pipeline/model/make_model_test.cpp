@@ -40,7 +40,6 @@ TEST_F(MakeModelTest, PointsInMemoryGiveTheModelOfTheStageBelow) {
     ModelOptions options;
     options.build.recipe = RecipeChoice{.method = method}.recipe();
     options.build.remove = DynamicRemoval::none;
-    options.reflectance = false;
     const PointCloud cloud = plane();
     const auto [model, result] = make_model(cloud, options, session_);
     const auto [expected, report] =

@@ -33,6 +33,7 @@ struct Warnings : ProgressSink {
 BuildOptions consistent_options() {
   BuildOptions options;
   options.remove = DynamicRemoval::none;
+  options.reflectances = false;
   return options;
 }
 

@@ -8,7 +8,7 @@
 #include "adasplats/splats/consistent/cell_attributes.h"
 #include "adasplats/splats/consistent/consistent_steps_on.h"
 #include "adasplats/splats/consistent/surface_cover.h"
-#include "adasplats/splats/model/cpu_place.h"
+#include "adasplats/splats/model/rays_on_cpu.h"
 #include "adasplats/splats/rays/measured_rays.h"
 #include "adasplats/splats/rays/present_disks.h"
 #include "adasplats/splats/rays/ray_check.h"
@@ -19,18 +19,16 @@ namespace adasplats {
 namespace {
 
 /// What the steps of the consistent method need of the CPU.
-class ConsistentOnCpu : public CpuPlace {
+class ConsistentOnCpu : public RaysOnCpu {
  public:
   using Cells = FusedPoints;
   using Index = PointIndex;
-  using Rays = MeasuredRays;
   using Cover = SurfaceCover;
-  using CpuPlace::CpuPlace;
   using CpuPlace::on_host;
+  using RaysOnCpu::RaysOnCpu;
 
   static const FusedPoints& on_host(const FusedPoints& cells) { return cells; }
   static RayEvidence on_host(RayEvidence evidence) { return evidence; }
-  static const std::vector<Disk>& copied(const std::vector<Disk>& disks) { return disks; }
 
   FusedPoints fuse(const PointCloud& cloud, double cell_m) const {
     return fuse_points(cloud.positions, cell_m, executor());

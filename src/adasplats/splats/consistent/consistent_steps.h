@@ -12,6 +12,7 @@
 #include "adasplats/scene/intersect.h"
 #include "adasplats/splats/consistent/consistent_model.h"
 #include "adasplats/splats/model/class_tables.h"
+#include "adasplats/splats/reflectance/reflectance.h"
 
 namespace adasplats {
 
@@ -64,8 +65,14 @@ class ConsistentSteps {
 
   virtual ConsistentCounts counts() const = 0;
 
-  /// The chosen disks with a radius, on the host.
+  /// The chosen disks with a radius, on the host. Of the other steps only measure_reflectances()
+  /// may come after it.
   virtual ConsistentSplats take_splats() = 0;
+
+  /// Of the splats that were taken; needs known beams. See ReflectancesOn.
+  virtual Reflectances measure_reflectances(const std::vector<Disk>& disks,
+                                            const std::vector<float>& fallback,
+                                            const ConsistentOptions& options) = 0;
 };
 
 std::unique_ptr<ConsistentSteps> make_cpu_consistent_steps(const Executor& executor);

@@ -11,6 +11,8 @@
 #include "adasplats/splats/consistent/consistent_state.h"
 #include "adasplats/splats/consistent/consistent_steps.h"
 #include "adasplats/splats/consistent/element_steps.h"
+#include "adasplats/splats/model/canonical_order.h"
+#include "adasplats/splats/reflectance/reflectances_on.h"
 
 namespace adasplats {
 
@@ -27,6 +29,8 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
     [[maybe_unused]] const auto entered = place_.enter();
     const std::vector<EmptyBeam> empty = std::exchange(cloud.empty_beams, {});
     if (!empty.empty()) empty_ = place_.load(ends_of(empty, empty_reach_m(cloud)), {});
+    if (cloud.has_beams() && !cloud.intensities.empty())
+      removed_ = place_.load(points_of_classes(cloud, tables.removed), {});
     cloud_ = place_.load(cloud, tables.removed);
     place_.wait("order the points");
     return cloud_.size();
@@ -123,7 +127,29 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
 
   ConsistentSplats take_splats() override {
     [[maybe_unused]] const auto entered = place_.enter();
-    return place_.splats(chosen_, cells_, cloud_);
+    ConsistentSplats splats = place_.splats(chosen_, cells_, cloud_);
+    chosen_ = {};
+    cover_.reset();
+    seeds_ = {};
+    planes_ = {};
+    index_.reset();
+    cells_ = {};
+    return splats;
+  }
+
+  Reflectances measure_reflectances(const std::vector<Disk>& disks,
+                                    const std::vector<float>& fallback,
+                                    const ConsistentOptions& options) override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    if (!rays_) order_rays(options);
+    std::vector<RaysWithIntensities<Place>> measured = {{&*rays_, &cloud_.intensities}};
+    std::optional<typename Place::Rays> others;
+    if (removed_.size() > 0) {
+      others.emplace(
+          place_.rays(removed_, points_of(removed_), options.least_range_m, RayEnds::at_surfaces));
+      measured.push_back({&*others, &removed_.intensities});
+    }
+    return ReflectancesOn<Place>(place_, disks, fallback).run(measured);
   }
 
   ConsistentState state() const override {
@@ -181,7 +207,8 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   // In the order in which they are made; memory goes back to the place before it ends.
   Place place_;
   typename Place::Cloud cloud_;
-  typename Place::Cloud empty_;  ///< ends_of() empty beams
+  typename Place::Cloud empty_;    ///< ends_of() empty beams
+  typename Place::Cloud removed_;  ///< points of removed classes, where intensities are measured
   typename Place::Cells cells_;
   std::optional<typename Place::Index> index_;  ///< of the cells
   Array<LocalPlane> planes_;

@@ -81,4 +81,18 @@ PointCloud load_in_order(const PointCloud& cloud, std::span<const std::uint8_t> 
   return gather(cloud, order);
 }
 
+PointCloud points_of_classes(const PointCloud& cloud, std::span<const std::uint8_t> flags) {
+  PointCloud points;
+  if (flags.empty() || cloud.classes.empty()) return points;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (flags[cloud.classes[i]] == 0) continue;
+    points.positions.push_back(cloud.positions[i]);
+    if (!cloud.sensor_positions.empty())
+      points.sensor_positions.push_back(cloud.sensor_positions[i]);
+    if (!cloud.origin_kinds.empty()) points.origin_kinds.push_back(cloud.origin_kinds[i]);
+    if (!cloud.intensities.empty()) points.intensities.push_back(cloud.intensities[i]);
+  }
+  return points;
+}
+
 }  // namespace adasplats

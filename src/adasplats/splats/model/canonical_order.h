@@ -20,4 +20,8 @@ std::vector<std::uint32_t> canonical_order(const PointCloud& cloud, const Execut
 PointCloud load_in_order(const PointCloud& cloud, std::span<const std::uint8_t> removed,
                          const Executor& executor);
 
+/// The points of classes that have a flag in `flags` (one a class id; may be empty), with what
+/// measured rays are made of: positions, sensors, kinds and intensities.
+PointCloud points_of_classes(const PointCloud& cloud, std::span<const std::uint8_t> flags);
+
 }  // namespace adasplats

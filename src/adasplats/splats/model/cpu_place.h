@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -36,12 +38,33 @@ class CpuPlace {
   std::vector<T> array(std::size_t size) const {
     return std::vector<T>(size);
   }
+  /// Likewise, all of their bytes 0.
+  template <class T>
+  std::vector<T> zeros(std::size_t size) const {
+    return std::vector<T>(size);
+  }
+  /// Values of the host where the steps find them.
+  template <class T>
+  static const std::vector<T>& copied(const std::vector<T>& values) {
+    return values;
+  }
   /// Calls step(i) for i in [0, count), in any order.
   template <class Step>
   void for_each(std::size_t count, const char* /*doing*/, const Step& step) const {
     executor_.for_chunks(count, kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) step(i);
     });
+  }
+  /// What step(i, sums) adds for i in [0, count) to `Sums`, whose += must give the same in any
+  /// order.
+  template <class Sums, class Step>
+  Sums sum(std::size_t count, const char* /*doing*/, const Step& step) const {
+    return executor_.sum_chunks(count, kCoarseGrain, Sums{},
+                                [&](std::size_t begin, std::size_t end) {
+                                  Sums part{};
+                                  for (std::size_t i = begin; i < end; ++i) step(i, part);
+                                  return part;
+                                });
   }
   template <class T>
   static const std::vector<T>& on_host(const std::vector<T>& values) {
@@ -66,6 +89,28 @@ class CpuPlace {
   }
   PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> at) const {
     return adasplats::gather(cloud, at);
+  }
+  /// Sorts keys and gives their order, as Executor::sort_keys().
+  std::vector<std::uint32_t> sort(std::vector<std::uint64_t>& keys) const {
+    std::vector<std::uint32_t> order;
+    executor_.sort_keys(keys, order);
+    return order;
+  }
+  /// Where runs of equal keys begin in sorted keys, ascending, and their number behind the last.
+  static std::vector<std::uint32_t> run_begins(const std::vector<std::uint64_t>& sorted_keys) {
+    std::vector<std::uint32_t> begins;
+    for (std::size_t i = 0; i < sorted_keys.size(); ++i)
+      if (i == 0 || sorted_keys[i] != sorted_keys[i - 1])
+        begins.push_back(static_cast<std::uint32_t>(i));
+    begins.push_back(static_cast<std::uint32_t>(sorted_keys.size()));
+    return begins;
+  }
+  /// 0, counts[0], counts[0] + counts[1], ... up to the sum of all.
+  static std::vector<std::uint64_t> running_sums(const std::vector<std::uint32_t>& counts) {
+    std::vector<std::uint64_t> sums(counts.size() + 1);
+    std::inclusive_scan(counts.begin(), counts.end(), sums.begin() + 1, std::plus<>(),
+                        std::uint64_t{0});
+    return sums;
   }
   /// The indices of flags that are not zero, ascending.
   std::vector<std::uint32_t> flagged(const std::vector<std::uint8_t>& flags) const {

@@ -2,13 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
 #include <vector>
-
-#include "adasplats/cloud/points/point_cloud.h"
-#include "adasplats/core/executor.h"
-#include "adasplats/scene/scene.h"
-#include "adasplats/trace/tracer.h"
 
 namespace adasplats {
 
@@ -25,22 +19,10 @@ struct IntensityResponse {
   float gain(float range_m, float cos_incidence) const;
 };
 
-/// Reflectances of splats with the response of the sensor that measured them.
+/// Reflectances of splats with the response of the sensor that measured them (ReflectancesOn).
 struct Reflectances {
   std::vector<float> values;  ///< one a disk; 0 or more
   IntensityResponse response;
 };
-
-/// Casts every measured ray of `cloud` (points with sensor positions and intensities) into its
-/// model, and finds by turns the reflectance of every disk and the response of the sensor that
-/// explain the intensities of the rays whose first hit lies within 0.2 m (0.5 % of the range more)
-/// of the measured point: least squares by turns, five of them. A disk that few rays met is drawn
-/// to the disks that face alike in the same 0.4 m cell (as if three rays had said so), that one to
-/// the mean of all. The same bytes for any number of threads. `fallback`: values for disks in cells
-/// that no ray met, one a disk; NaN: the mean of all. Memory: up to 50 bytes a ray. Without sensor
-/// beams, or with fewer than 1000 rays that meet their point: `fallback` and an empty response.
-Reflectances measure_reflectances(std::span<const Disk> disks, const Tracer& tracer,
-                                  const PointCloud& cloud, Vec3d model_origin,
-                                  std::span<const float> fallback, const Executor& executor);
 
 }  // namespace adasplats

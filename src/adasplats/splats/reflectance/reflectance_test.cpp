@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -14,6 +15,8 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/splats/model/splat_model.h"
+#include "adasplats/splats/model_engine.h"
+#include "adasplats/splats/reflectance/table_fit.h"
 
 namespace adasplats {
 namespace {
@@ -59,11 +62,10 @@ PointCloud measured_ground(std::size_t rays) {
 }
 
 Reflectances measure(const std::vector<Disk>& disks, const PointCloud& cloud, int threads = 2,
-                     Vec3d model_origin = {}, float fallback = 0.5F) {
+                     float fallback = 0.5F) {
   const Executor executor(threads);
-  const auto tracer = make_wide_tracer({disks, nullptr}, executor);
-  return measure_reflectances(disks, *tracer, cloud, model_origin,
-                              std::vector<float>(disks.size(), fallback), executor);
+  return make_cpu_model_engine(executor)->measure_reflectances(
+      disks, std::vector<float>(disks.size(), fallback), cloud);
 }
 
 /// Oracle: the reflectances and gains that the intensities were made with, within 2 %.
@@ -120,14 +122,50 @@ TEST(Reflectance, RaysThatEndElsewhereAndIntensitiesNotFiniteDoNotCount) {
   expect_truth(disks, measure(disks, cloud));
 }
 
-TEST(Reflectance, CloudAndModelMayHaveOriginsOfTheirOwn) {
+// Without the units, whole numbers would hold nothing of some sensors and overflow with others.
+TEST(Reflectance, UnitsOfIntensitiesDoNotMatter) {
   const std::vector<Disk> disks = ground();
-  PointCloud cloud = measured_ground(150000);
-  cloud.origin = {5000, 2000, 0};
-  for (auto* positions : {&cloud.positions, &cloud.sensor_positions}) {
-    for (Vec3f& position : *positions) position = position - Vec3f{1, 2, 0};
+  const PointCloud cloud = measured_ground(20000);
+  const Reflectances expected = measure(disks, cloud);
+  for (const float unit : {0x1p-70F, 0x1p16F, 0x1p90F}) {
+    PointCloud scaled = cloud;
+    for (float& intensity : scaled.intensities) intensity *= unit;
+    const Reflectances found = measure(disks, scaled, 2, 0.5F * unit);
+    EXPECT_EQ(found.response.range_gains, expected.response.range_gains);
+    EXPECT_EQ(found.response.incidence_gains, expected.response.incidence_gains);
+    for (std::size_t d = 0; d < disks.size(); ++d)
+      EXPECT_EQ(found.values[d], unit * expected.values[d]) << d;
   }
-  expect_truth(disks, measure(disks, cloud, 2, {4999, 1998, 0}));
+}
+
+TEST(TableFit, NodesWithoutRaysTakeTheirNeighboursValues) {
+  TableSums<4> sums;
+  for (int k = 0; k < 1000; ++k) {
+    sums.add(0, 0.5, 0.5);   // a value of 1 at node 0
+    sums.add(1, 0.25, 0.5);  // 0.5 at node 1
+  }
+  const std::array<float, 4> values = solved(sums, 0);
+  EXPECT_EQ(values[0], 1.0F);
+  for (const std::size_t node : {1U, 2U, 3U}) EXPECT_NEAR(values[node], 0.5F, 2e-3F) << node;
+  EXPECT_EQ(solved(TableSums<4>{}, 2), (std::array<float, 4>{1, 1, 1, 1}));
+}
+
+TEST(TableFit, PowersOfTwoAbove) {
+  EXPECT_EQ(power_of_two_above(0), 1.0);
+  EXPECT_EQ(power_of_two_above(0.75), 1.0);
+  EXPECT_EQ(power_of_two_above(1), 2.0);
+  EXPECT_EQ(power_of_two_above(300), 512.0);
+}
+
+TEST(ResponseTables, PlacesAmongNodes) {
+  const std::array<float, 3> nodes = {2, 4, 8};
+  EXPECT_EQ(place_among(nodes, 1), 0.0F);
+  EXPECT_EQ(place_among(nodes, 3), 0.5F);
+  EXPECT_EQ(place_among(nodes, 4), 1.0F);
+  EXPECT_EQ(place_among(nodes, 5), 1.25F);
+  EXPECT_EQ(place_among(nodes, 90), 2.0F);
+  EXPECT_EQ(value_at(std::array<float, 3>{1, 2, 6}, 1.25F), 3.0F);
+  EXPECT_EQ(value_at(std::array<float, 3>{1, 2, 6}, 2.0F), 6.0F);
 }
 
 TEST(Reflectance, DisksThatNoRayIsNearHaveTheFallback) {
@@ -135,7 +173,7 @@ TEST(Reflectance, DisksThatNoRayIsNearHaveTheFallback) {
   disks.push_back({{50, 50, 0}, 0.5F, {0, 0, 1}});
   EXPECT_EQ(measure(disks, measured_ground(20000)).values.back(), 0.5F);
   // Nothing is known of it: what is usual stands in.
-  const float usual = measure(disks, measured_ground(20000), 2, {}, kNan).values.back();
+  const float usual = measure(disks, measured_ground(20000), 2, kNan).values.back();
   EXPECT_GT(usual, 0.2F);
   EXPECT_LT(usual, 0.6F);
 }
@@ -168,7 +206,7 @@ TEST(Reflectance, BlackWorldIsBlack) {
   const std::vector<Disk> disks = ground();
   PointCloud cloud = measured_ground(20000);
   for (float& intensity : cloud.intensities) intensity = 0;
-  const Reflectances found = measure(disks, cloud, 2, {}, 0.0F);
+  const Reflectances found = measure(disks, cloud, 2, 0.0F);
   for (const float value : found.values) EXPECT_EQ(value, 0.0F);
   EXPECT_EQ(found.response.gain(20, 0.5F), 1.0F);
 }

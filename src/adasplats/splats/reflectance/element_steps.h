@@ -1,0 +1,253 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "adasplats/core/fetch_add.h"
+#include "adasplats/core/host_device.h"
+#include "adasplats/core/maths/ray.h"
+#include "adasplats/scene/intersect.h"
+#include "adasplats/splats/reflectance/response_tables.h"
+
+namespace adasplats {
+
+// What the steps of measuring reflectances do with one element, in the steps' order. What several
+// elements add to are whole numbers, so a loop on any device runs it (for_each and sum of a place).
+
+/// The largest of some numbers that are 0 or more.
+struct LargestOf {
+  float value = 0;
+
+  ADASPLATS_HD void add(float other) { value = std::max(value, other); }
+  ADASPLATS_HD LargestOf& operator+=(const LargestOf& other) {
+    add(other.value);
+    return *this;
+  }
+};
+
+/// Of the numbers that are finite.
+struct FindLargest {
+  const float* values;
+
+  ADASPLATS_HD void operator()(std::size_t i, LargestOf& largest) const {
+    if (std::isfinite(values[i])) largest.add(values[i]);
+  }
+};
+
+struct RayCount {
+  std::uint64_t rays = 0;
+
+  ADASPLATS_HD RayCount& operator+=(const RayCount& other) {
+    rays += other.rays;
+    return *this;
+  }
+};
+
+/// Of the rays that met each disk.
+struct AddCounts {
+  const std::uint32_t* counts;
+
+  ADASPLATS_HD void operator()(std::size_t i, RayCount& all) const { all.rays += counts[i]; }
+};
+
+/// What one measured ray says of the disk that it met.
+struct Observation {
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+  std::uint32_t disk = kNone;
+  float intensity = 0;     ///< as a share of the unit, 0..1
+  float range_place = 0;   ///< place_among() the nodes
+  float cosine_place = 0;  ///< likewise, of the incidence
+};
+
+/// Keeps what the rays say that meet the model where they ended, and counts them by disk.
+struct ObserveRay {
+  const Disk* disks;
+  const float* intensities;  ///< of the points
+  double per_intensity;      ///< 1 over the unit of intensities
+  ResponseNodes nodes;
+  Observation* observations;  ///< one a ray
+  std::uint32_t* counts;      ///< one a disk
+
+  /// So much farther than their points rays are cast, m.
+  static constexpr float kBeyond_m = 1.0F;
+
+  /// Ray `i`, of the point, with its nearest hit.
+  ADASPLATS_HD void operator()(std::size_t i, std::uint32_t point, const Ray& ray, float range_m,
+                               Hit hit) const {
+    const Observation seen = observation(intensities[point], ray, range_m, hit);
+    observations[i] = seen;
+    if (seen.disk != Observation::kNone) fetch_add(counts[seen.disk], 1);
+  }
+
+ private:
+  ADASPLATS_HD Observation observation(float intensity, const Ray& ray, float range_m,
+                                       Hit hit) const {
+    // A choice, well beyond the model's errors (a median of 3 cm, docs/fidelity.md): a ray that
+    // ends farther away met something else.
+    const float tolerance_m = 0.2F + 0.005F * range_m;
+    if (!hit.valid() || !std::isfinite(intensity)) return {};
+    if (!(std::fabs(hit.t - range_m) < tolerance_m)) return {};
+    const float cosine = std::min(std::fabs(dot(ray.direction, disks[hit.primitive].normal)), 1.0F);
+    const double share = static_cast<double>(std::max(intensity, 0.0F)) * per_intensity;
+    return {hit.primitive, static_cast<float>(share), place_among(nodes.ranges_m, range_m),
+            place_among(nodes.cosines, cosine)};
+  }
+};
+
+/// Puts observations disk by disk, those of one disk in any order.
+struct PutByDisk {
+  const Observation* from;
+  const std::uint64_t* begins;  ///< of the disks
+  std::uint32_t* left;          ///< that a disk still gets
+  Observation* to;
+
+  ADASPLATS_HD void operator()(std::size_t i) const {
+    const std::uint32_t disk = from[i].disk;
+    if (disk == Observation::kNone) return;
+    to[begins[disk] + fetch_add(left[disk], 0U - 1U) - 1] = from[i];
+  }
+};
+
+/// Splats that lie near each other and face alike have the same key.
+struct FindCell {
+  /// A choice: larger cells mix materials, smaller ones have no more rays than the splat itself.
+  static constexpr float kCell_m = 0.4F;
+
+  const Disk* disks;
+  std::uint64_t* keys;
+
+  ADASPLATS_HD void operator()(std::size_t i) const {
+    constexpr std::uint64_t kMask = (1 << 20) - 1;
+    const Disk& disk = disks[i];
+    const Vec3f n = {std::fabs(disk.normal.x), std::fabs(disk.normal.y), std::fabs(disk.normal.z)};
+    std::uint64_t key = n.y >= n.z ? 1 : 2;
+    if (n.x >= n.y && n.x >= n.z) key = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto cell = static_cast<std::int64_t>(std::floor(disk.center[axis] / kCell_m));
+      key = key << 20 | (static_cast<std::uint64_t>(cell) & kMask);
+    }
+    keys[i] = key;
+  }
+};
+
+/// Least squares of one value, intensity = value * gain, in units of kShareUnit.
+struct ValueSums {
+  std::int64_t product = 0;  ///< of intensities and gains
+  std::int64_t square = 0;   ///< of gains
+
+  ADASPLATS_HD ValueSums& operator+=(const ValueSums& other) {
+    product += other.product;
+    square += other.square;
+    return *this;
+  }
+};
+
+/// The sums of a disk over its rays.
+struct SumOfDisk {
+  const Observation* observations;
+  const std::uint64_t* begins;
+  ResponseGains gains;
+  double per_gain;  ///< 1 over the unit of gains, than which none is larger
+  ValueSums* sums;
+
+  ADASPLATS_HD void operator()(std::size_t disk) const {
+    ValueSums sum;
+    for (std::uint64_t k = begins[disk]; k < begins[disk + 1]; ++k) {
+      const Observation& seen = observations[k];
+      const float gain = value_at(gains.of_ranges, seen.range_place) *
+                         value_at(gains.of_cosines, seen.cosine_place);
+      const double share = static_cast<double>(gain) * per_gain;
+      sum.product += whole_units(static_cast<double>(seen.intensity) * share);
+      sum.square += whole_units(share * share);
+    }
+    sums[disk] = sum;
+  }
+};
+
+struct AddSums {
+  const ValueSums* sums;
+
+  ADASPLATS_HD void operator()(std::size_t i, ValueSums& all) const { all += sums[i]; }
+};
+
+/// Sets the reflectances of a cell's disks: each drawn to what the cell has, that to what is usual.
+struct SetReflectances {
+  /// Rays that count where a splat has few: of the splats in the same cell, and of all splats
+  /// there. Intensities scatter by a third from ray to ray; with kitti-0005, 1 to 8 do equally
+  /// well.
+  static constexpr double kCellRays = 3;
+  static constexpr double kModelRays = 4;
+
+  const std::uint32_t* order;   ///< disks, cell by cell
+  const std::uint32_t* begins;  ///< of the cells
+  const ValueSums* sums;        ///< of the disks
+  double gain_unit;
+  double usual;
+  const float* fallback;  ///< of the disks, intensities
+  double per_intensity;
+  float* values;  ///< of the disks, as shares of the unit of intensities
+
+  ADASPLATS_HD void operator()(std::size_t cell) const {
+    ValueSums all;
+    for (std::uint32_t k = begins[cell]; k < begins[cell + 1]; ++k) all += sums[order[k]];
+    const double of_cell = value(all, usual, kModelRays);
+    for (std::uint32_t k = begins[cell]; k < begins[cell + 1]; ++k) {
+      const std::uint32_t disk = order[k];
+      const double found = all.square > 0 ? value(sums[disk], of_cell, kCellRays) : unseen(disk);
+      values[disk] = static_cast<float>(found);
+    }
+  }
+
+ private:
+  /// As if `rays` more had said `otherwise`.
+  ADASPLATS_HD double value(const ValueSums& sum, double otherwise, double rays) const {
+    const double product = static_cast<double>(sum.product) * (kShareUnit * gain_unit);
+    const double square = static_cast<double>(sum.square) * (kShareUnit * gain_unit * gain_unit);
+    return (product + rays * otherwise) / (square + rays);
+  }
+  /// Of a disk in a cell that no ray met.
+  ADASPLATS_HD double unseen(std::uint32_t disk) const {
+    if (!std::isfinite(fallback[disk])) return usual;
+    return static_cast<double>(std::max(fallback[disk], 0.0F)) * per_intensity;
+  }
+};
+
+using RangeSums = TableSums<ResponseNodes::kRanges>;
+using CosineSums = TableSums<ResponseNodes::kCosines>;
+
+/// Adds what an observation says of the table of ranges, the other table and the reflectances
+/// known.
+struct AddToRanges {
+  const Observation* observations;
+  const float* values;  ///< of the disks
+  ResponseGains gains;
+  double per_factor;  ///< 1 over the unit of values times gains, than which none is larger
+
+  ADASPLATS_HD void operator()(std::size_t i, RangeSums& sums) const {
+    const Observation& seen = observations[i];
+    const auto gain = static_cast<double>(value_at(gains.of_cosines, seen.cosine_place));
+    sums.add(seen.range_place, static_cast<double>(seen.intensity),
+             static_cast<double>(values[seen.disk]) * gain * per_factor);
+  }
+};
+
+/// Likewise of the table of incidences.
+struct AddToCosines {
+  const Observation* observations;
+  const float* values;
+  ResponseGains gains;
+  double per_factor;
+
+  ADASPLATS_HD void operator()(std::size_t i, CosineSums& sums) const {
+    const Observation& seen = observations[i];
+    const auto gain = static_cast<double>(value_at(gains.of_ranges, seen.range_place));
+    sums.add(seen.cosine_place, static_cast<double>(seen.intensity),
+             static_cast<double>(values[seen.disk]) * gain * per_factor);
+  }
+};
+
+}  // namespace adasplats
