@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <string>
 
 #include "adasplats/core/error.h"
@@ -31,12 +32,13 @@ class WideTracer final : public Tracer {
 
   void nearest_hits(std::span<const Ray> rays, int depth, std::span<Hit> hits,
                     const Executor& executor) const override {
-    clear_hits(rays, depth, hits);
-    if (bvh_.root.kind() == WideRef::Kind::nothing) return;
     const auto slots = static_cast<std::size_t>(depth);
+    require_slots(rays, depth, hits);
     executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
-      cast_(bvh_, rays.subspan(begin, end - begin), slots,
-            hits.subspan(begin * slots, (end - begin) * slots));
+      const auto own = hits.subspan(begin * slots, (end - begin) * slots);
+      std::ranges::fill(own, Hit{});  // here: as many threads as there are, and in their caches
+      if (bvh_.root.kind() == WideRef::Kind::nothing) return;
+      cast_(bvh_, rays.subspan(begin, end - begin), slots, own);
     });
   }
 

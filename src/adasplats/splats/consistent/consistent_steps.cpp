@@ -74,9 +74,10 @@ class ConsistentOnCpu : public RaysOnCpu {
     RayCasting casting;
     casting.beyond_m = beyond_m;
     PresentDisks(disks, executor())
-        .cast(rays, casting, executor(), [&](std::size_t i, const Ray&, std::span<const Hit> hits) {
-          if (hits.empty()) missed[rays.point(i)] = 1;
-        });
+        .cast(rays, casting, executor(),
+              [&](std::size_t i, const Ray&, float, std::span<const Hit> hits) {
+                if (hits.empty()) missed[rays.point(i)] = 1;
+              });
     return missed;
   }
 

@@ -27,9 +27,9 @@ class RaysOnCpu : public CpuPlace {
     casting.beyond_m = ObserveRay::kBeyond_m;
     const PresentDisks present(disks, executor());
     for (const auto& part : parts) {
-      const auto look = [&](std::size_t i, const Ray& ray, std::span<const Hit> hits) {
-        const MeasuredRays& rays = *part.first;
-        part.second(i, rays.point(i), ray, rays.range_m(i), hits.empty() ? Hit{} : hits[0]);
+      const auto look = [&](std::size_t i, const Ray& ray, float range_m,
+                            std::span<const Hit> hits) {
+        part.second(i, part.first->point(i), ray, range_m, hits.empty() ? Hit{} : hits[0]);
       };
       present.cast(*part.first, casting, executor(), look);
     }

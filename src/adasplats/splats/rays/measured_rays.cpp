@@ -83,16 +83,22 @@ RayEvidence collect_evidence(std::span<const Disk> disks, const MeasuredRays& ra
   evidence.contradicted.resize(disks.size() * RayEvidence::kBins);
   const PresentDisks present(disks, executor);
   const auto count_rays = [&](const MeasuredRays& cast) {
-    const auto count = [&](std::size_t i, const Ray& ray, std::span<const Hit> hits) {
-      const float range_m = cast.range_m(i);
+    const auto count = [&](std::size_t, const Ray& ray, float range_m, std::span<const Hit> hits) {
+      thread_local std::vector<std::uint32_t*> counters;  // its memory is used again
+      counters.clear();
       for (const Hit& hit : hits) {
         const Disk& disk = disks[hit.primitive];
         const RayWord word = word_of_ray(disk, ray, hit.t, range_m, options);
         if (word == RayWord::nothing) continue;
         const std::size_t bin = evidence_ring(disk, ray, hit.t);
         auto& counts = word == RayWord::confirms ? evidence.confirmed : evidence.contradicted;
-        count_one(counts[static_cast<std::size_t>(hit.primitive) * RayEvidence::kBins + bin]);
+        std::uint32_t& counter =
+            counts[static_cast<std::size_t>(hit.primitive) * RayEvidence::kBins + bin];
+        __builtin_prefetch(&counter, 1);
+        counters.push_back(&counter);
       }
+      // Apart: where an atomic operation stands between them, loads do not overlap.
+      for (std::uint32_t* counter : counters) count_one(*counter);
     };
     const float beyond_m = cast.ends() == RayEnds::nowhere ? 0 : options.most_margin_m();
     present.cast(cast, {options.phase, options.stride, beyond_m, RayCasting::Hits::all}, executor,

@@ -9,7 +9,6 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kRaysAtOnce = std::size_t{1} << 17;
 /// Most rays cross fewer disks; those that do not are cast again for several times as many.
 constexpr std::size_t kHitsAtFirst = 48, kTimesAsMany = 4;
 
@@ -24,66 +23,66 @@ PresentDisks::PresentDisks(std::span<const Disk> disks, const Executor& executor
   tracer_ = make_cpu_tracer({disks_, nullptr}, executor);
 }
 
-/// Some rays with their numbers.
+/// Some rays with their numbers, and their hits: few enough to stay in a core's cache.
 struct PresentDisks::Batch {
   std::vector<Ray> rays;
+  std::vector<float> ranges_m;
   std::vector<std::size_t> numbers;
+  std::vector<Hit> hits;
 };
 
-void PresentDisks::cast(const Batch& batch, std::size_t depth, bool all, const Executor& executor,
+void PresentDisks::cast(Batch& batch, std::size_t depth, bool all, const Executor& executor,
                         Body body) const {
-  std::vector<Hit> hits(batch.rays.size() * depth);
-  tracer_->nearest_hits(batch.rays, static_cast<int>(depth), hits, executor);
+  batch.hits.resize(batch.rays.size() * depth);
+  tracer_->nearest_hits(batch.rays, static_cast<int>(depth), batch.hits, executor);
   // No ray has more hits than there are disks.
   const bool may_be_cut = all && depth < disks_.size();
-  executor.for_chunks(batch.rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto own = std::span(hits).subspan(k * depth, depth);
-      if (may_be_cut && own.back().valid()) continue;
-      std::size_t found = 0;
-      for (; found < depth && own[found].valid(); ++found) {
-        own[found].primitive = ids_[own[found].primitive];
-      }
-      body(batch.numbers[k], batch.rays[k], own.first(found));
-    }
-  });
-  if (!may_be_cut) return;
-
-  const std::size_t more = std::min(kTimesAsMany * depth, disks_.size());
-  const std::size_t most = std::max<std::size_t>(1, kRaysAtOnce * kHitsAtFirst / more);
   Batch again;
   for (std::size_t k = 0; k < batch.rays.size(); ++k) {
-    if (hits[k * depth + depth - 1].valid()) {
+    const auto own = std::span(batch.hits).subspan(k * depth, depth);
+    if (may_be_cut && own.back().valid()) {
       again.rays.push_back(batch.rays[k]);
+      again.ranges_m.push_back(batch.ranges_m[k]);
       again.numbers.push_back(batch.numbers[k]);
+      continue;
     }
-    if (again.rays.size() == most || k + 1 == batch.rays.size()) {
-      if (!again.rays.empty()) cast(again, more, all, executor, body);
-      again = {};
-    }
+    std::size_t found = 0;
+    for (; found < depth && own[found].valid(); ++found)
+      own[found].primitive = ids_[own[found].primitive];
+    body(batch.numbers[k], batch.rays[k], batch.ranges_m[k], own.first(found));
+  }
+  if (again.rays.empty()) return;
+
+  const std::size_t more = std::min(kTimesAsMany * depth, disks_.size());
+  const std::size_t most = std::max<std::size_t>(1, kFineGrain * kHitsAtFirst / more);
+  Batch part;
+  for (std::size_t begin = 0; begin < again.rays.size(); begin += most) {
+    const std::size_t size = std::min(most, again.rays.size() - begin);
+    const auto part_of = [&](const auto& values) { return std::span(values).subspan(begin, size); };
+    part.rays.assign(part_of(again.rays).begin(), part_of(again.rays).end());
+    part.ranges_m.assign(part_of(again.ranges_m).begin(), part_of(again.ranges_m).end());
+    part.numbers.assign(part_of(again.numbers).begin(), part_of(again.numbers).end());
+    cast(part, more, all, executor, body);
   }
 }
 
 void PresentDisks::cast(const MeasuredRays& rays, const RayCasting& casting,
                         const Executor& executor, Body body) const {
-  if (empty()) return;
+  if (empty() || rays.size() <= casting.first) return;
   const bool all = casting.hits == RayCasting::Hits::all;
-  // Each ray is made, cast and looked at: three loops.
-  const ProgressPass pass(executor, 3 * (rays.size() / casting.stride + 1));
-  Batch batch;
-  for (std::size_t first = casting.first; first < rays.size();
-       first += kRaysAtOnce * casting.stride) {
-    const std::size_t left = (rays.size() - first + casting.stride - 1) / casting.stride;
-    batch.rays.resize(std::min(kRaysAtOnce, left));
-    batch.numbers.resize(batch.rays.size());
-    executor.for_chunks(batch.rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        batch.numbers[k] = first + k * casting.stride;
-        batch.rays[k] = rays.ray(batch.numbers[k], casting.beyond_m);
-      }
-    });
-    cast(batch, all ? std::min(kHitsAtFirst, disks_.size()) : 1, all, executor, body);
-  }
+  const std::size_t count = (rays.size() - casting.first + casting.stride - 1) / casting.stride;
+  const std::size_t depth = all ? std::min(kHitsAtFirst, disks_.size()) : 1;
+  const ProgressPass pass(executor, count);
+  executor.for_chunks(count, kFineGrain, [&](std::size_t begin, std::size_t end) {
+    Batch batch;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t number = casting.first + k * casting.stride;
+      batch.numbers.push_back(number);
+      batch.rays.push_back(rays.ray(number, casting.beyond_m));
+      batch.ranges_m.push_back(rays.range_m(number));
+    }
+    cast(batch, depth, all, executor, body);
+  });
 }
 
 }  // namespace adasplats

@@ -31,17 +31,17 @@ class PresentDisks {
 
   bool empty() const { return disks_.empty(); }
 
-  /// Calls body(i, ray, hits) once for each of the rays, in any order and on any thread: `hits` are
-  /// those of ray i, ascending, their primitives the numbers of the disks. Without disks nothing is
-  /// cast and the body is not called.
-  using Body = FunctionRef<void(std::size_t i, const Ray& ray, std::span<const Hit> hits)>;
+  /// Calls body(i, ray, range_m, hits) once for each of the rays, in any order and on any thread:
+  /// `hits` are those of ray i (which was measured to end at `range_m`), ascending, their
+  /// primitives the numbers of the disks. Without disks nothing is cast and the body is not called.
+  using Body =
+      FunctionRef<void(std::size_t i, const Ray& ray, float range_m, std::span<const Hit> hits)>;
   void cast(const MeasuredRays& rays, const RayCasting& casting, const Executor& executor,
             Body body) const;
 
  private:
   struct Batch;
-  void cast(const Batch& batch, std::size_t depth, bool all, const Executor& executor,
-            Body body) const;
+  void cast(Batch& batch, std::size_t depth, bool all, const Executor& executor, Body body) const;
 
   std::vector<Disk> disks_;
   std::vector<std::uint32_t> ids_;  ///< numbers of the disks among all

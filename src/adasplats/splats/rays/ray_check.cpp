@@ -21,10 +21,10 @@ std::vector<ShiftSums> sum_shifts(std::span<const Disk> disks, const MeasuredRay
                                   const SettleOptions& options, const Executor& executor) {
   std::vector<ShiftSums> sums(disks.size());
   const PresentDisks present(disks, executor);
-  const auto add_ray = [&](std::size_t i, const Ray& ray, std::span<const Hit> hits) {
+  const auto add_ray = [&](std::size_t, const Ray& ray, float range_m, std::span<const Hit> hits) {
     if (hits.empty()) return;
     const std::uint32_t id = hits[0].primitive;
-    const ShiftSums part = shift_of_ray(disks[id], ray, hits[0].t, rays.range_m(i), options);
+    const ShiftSums part = shift_of_ray(disks[id], ray, hits[0].t, range_m, options);
     add(sums[id].weight, part.weight);
     add(sums[id].shift, part.shift);
     add(sums[id].rays, part.rays);
