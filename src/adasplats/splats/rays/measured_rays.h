@@ -37,6 +37,11 @@ class MeasuredRays {
   RayEnds ends() const { return ends_; }
   /// From the sensor through the point and `beyond_m` farther.
   Ray ray(std::size_t i, float beyond_m) const;
+  /// Begins to load what ray(i) reads: rays that stand side by side have points all over the cloud.
+  void prefetch(std::size_t i) const {
+    __builtin_prefetch(&cloud_.positions[points_[i]]);
+    __builtin_prefetch(&cloud_.sensor_positions[points_[i]]);
+  }
 
  private:
   const PointCloud& cloud_;

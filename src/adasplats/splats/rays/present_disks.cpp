@@ -9,6 +9,8 @@
 namespace adasplats {
 namespace {
 
+/// So many rays before they are made their points begin to be loaded.
+constexpr std::size_t kLoadedAhead = 16;
 /// Most rays cross fewer disks; those that do not are cast again for several times as many.
 constexpr std::size_t kHitsAtFirst = 48, kTimesAsMany = 4;
 
@@ -77,6 +79,8 @@ void PresentDisks::cast(const MeasuredRays& rays, const RayCasting& casting,
     Batch batch;
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t number = casting.first + k * casting.stride;
+      const std::size_t later = number + kLoadedAhead * casting.stride;
+      if (later < rays.size()) rays.prefetch(later);
       batch.numbers.push_back(number);
       batch.rays.push_back(rays.ray(number, casting.beyond_m));
       batch.ranges_m.push_back(rays.range_m(number));
