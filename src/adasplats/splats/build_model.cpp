@@ -165,15 +165,24 @@ void run(const PaperOptions& options, const ModelEngine& engine, PointCloud clou
 }
 
 /// Takes out points that no cell of the consistent method is for, and gives their number.
-std::size_t remove_beyond(double reach_m, PointCloud& cloud) {
-  std::vector<std::uint32_t> near;
-  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+std::size_t remove_beyond(double reach_m, PointCloud& cloud, const Executor& executor) {
+  const auto is_near = [&](std::size_t i) {
     const Vec3f p = cloud.positions[i];
     const float farthest = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
-    if (static_cast<double>(farthest) < reach_m) near.push_back(i);
-  }
-  const std::size_t removed = cloud.size() - near.size();
-  if (removed > 0) cloud = gather(cloud, near);
+    return static_cast<double>(farthest) < reach_m;
+  };
+  const auto removed = executor.sum_chunks(cloud.size(), kCoarseGrain, std::size_t{0},
+                                           [&](std::size_t begin, std::size_t end) {
+                                             std::size_t far = 0;
+                                             for (std::size_t i = begin; i < end; ++i)
+                                               far += is_near(i) ? 0 : 1;
+                                             return far;
+                                           });
+  if (removed == 0) return 0;
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i)
+    if (is_near(i)) near.push_back(i);
+  cloud = gather(cloud, near);
   return removed;
 }
 
@@ -260,7 +269,7 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
   if (!warning.empty()) progress.warn(warning);
   if (ours != nullptr) {
     const double reach_m = kMostFusionCells * ours->smallest_cell_m();
-    report.points_noise = remove_beyond(reach_m, cloud);
+    report.points_noise = remove_beyond(reach_m, cloud, executor);
     report_beyond(report.points_noise, report.points_in, reach_m, progress);
   }
   model.origin = cloud.origin;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -172,14 +173,18 @@ std::size_t count_no_returns(const CloudPart& part, const Kept& kept) {
 }
 
 /// Makes what is not finite NaN: not known. Gives how many of the points that are kept have that.
-std::size_t mark_unknown(std::vector<float>& intensities, const Kept& kept) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < intensities.size(); ++i) {
-    if (std::isfinite(intensities[i])) continue;
-    intensities[i] = std::numeric_limits<float>::quiet_NaN();
-    if (kept[i] != 0) ++count;
-  }
-  return count;
+std::size_t mark_unknown(std::vector<float>& intensities, const Kept& kept,
+                         const Executor& executor) {
+  return executor.sum_chunks(intensities.size(), kCoarseGrain, std::size_t{0},
+                             [&](std::size_t begin, std::size_t end) {
+                               std::size_t count = 0;
+                               for (std::size_t i = begin; i < end; ++i) {
+                                 if (std::isfinite(intensities[i])) continue;
+                                 intensities[i] = std::numeric_limits<float>::quiet_NaN();
+                                 if (kept[i] != 0) ++count;
+                               }
+                               return count;
+                             });
 }
 
 /// What the inputs are called in a message about all of them.
@@ -273,9 +278,14 @@ void keep_only(std::vector<T>& values, const Kept& kept) {
   if (is_much_smaller) values.shrink_to_fit();
 }
 
-void keep_only(PointCloud& cloud, const Kept& kept) {
-  keep_only(cloud.positions, kept);
-  for_each_attribute([&](const auto& attribute) { keep_only(attribute.of(cloud), kept); });
+/// Each attribute by a thread, in place.
+void keep_only(PointCloud& cloud, const Kept& kept, const Executor& executor) {
+  std::vector<std::function<void()>> tasks = {[&] { keep_only(cloud.positions, kept); }};
+  for_each_attribute([&](const auto& attribute) {
+    auto& values = attribute.of(cloud);
+    tasks.emplace_back([&values, &kept] { keep_only(values, kept); });
+  });
+  executor.for_chunks(tasks.size(), 1, [&](std::size_t task, std::size_t) { tasks[task](); });
 }
 
 /// Throws data for a sensor position that is no place: a float of it would be infinite.
@@ -318,15 +328,15 @@ PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin, const Poi
   cloud.origin = origin;
   cloud.positions = std::move(positions);
   part = {};
-  if (count_dropped(kept) > 0) keep_only(cloud, kept);
+  if (count_dropped(kept) > 0) keep_only(cloud, kept, executor);
   return cloud;
 }
 
 /// Leaves out the points with a flag, 1 or 0 each; gives how many. No flags: none.
-std::size_t drop_flagged(PointCloud& cloud, Kept flags) {
+std::size_t drop_flagged(PointCloud& cloud, Kept flags, const Executor& executor) {
   for (std::uint8_t& flag : flags) flag = flag == 0 ? 1 : 0;
   const std::size_t dropped = count_dropped(flags);
-  if (dropped > 0) keep_only(cloud, flags);
+  if (dropped > 0) keep_only(cloud, flags, executor);
   return dropped;
 }
 
@@ -338,15 +348,17 @@ std::size_t drop_own_body(PointCloud& cloud, std::optional<double> radius_m,
     throw Error(ErrorKind::usage,
                 "points near their sensor are to be left out, but no point says where it was");
   }
-  return drop_flagged(cloud, radius_m ? points_within(cloud, *radius_m, executor)
-                                      : find_own_body(cloud, {}, executor));
+  return drop_flagged(
+      cloud,
+      radius_m ? points_within(cloud, *radius_m, executor) : find_own_body(cloud, {}, executor),
+      executor);
 }
 
 /// Leaves out the points where the vehicle itself drove; gives how many.
 std::size_t drop_driven_path(PointCloud& cloud, double half_width_m, const Executor& executor) {
   DrivenPathOptions path;
   path.half_width_m = half_width_m;
-  return drop_flagged(cloud, find_in_driven_path(cloud, path, executor));
+  return drop_flagged(cloud, find_in_driven_path(cloud, path, executor), executor);
 }
 
 }  // namespace
@@ -378,7 +390,8 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
     }
     report.dropped_not_finite += count_dropped(gathered.kept.back());
     report.no_returns += count_no_returns(part, gathered.kept.back());
-    report.unknown_intensities += mark_unknown(part.cloud.intensities, gathered.kept.back());
+    report.unknown_intensities +=
+        mark_unknown(part.cloud.intensities, gathered.kept.back(), executor);
   }
   if (placed) {
     report.timed = placed->origins;

@@ -43,14 +43,23 @@ std::vector<T> evenly(std::span<const T> values, std::size_t most) {
 }
 
 /// The diagonal of the box of all sensor positions.
-double path_m(const PointCloud& cloud) {
-  Vec3f low{kInfinity, kInfinity, kInfinity}, high = -low;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!is_measured(cloud, i)) continue;
-    low = min(low, cloud.sensor_positions[i]);
-    high = max(high, cloud.sensor_positions[i]);
-  }
-  return low.x <= high.x ? static_cast<double>(length(high - low)) : 0;
+double path_m(const PointCloud& cloud, const Executor& executor) {
+  struct Sensors {
+    Vec3f low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
+    Sensors& operator+=(const Sensors& other) {
+      low = min(low, other.low);
+      high = max(high, other.high);
+      return *this;
+    }
+  };
+  const Sensors box = executor.sum_chunks(
+      cloud.size(), kCoarseGrain, Sensors{}, [&](std::size_t begin, std::size_t end) {
+        Sensors part;
+        for (std::size_t i = begin; i < end; ++i)
+          if (is_measured(cloud, i)) part += {cloud.sensor_positions[i], cloud.sensor_positions[i]};
+        return part;
+      });
+  return box.low.x <= box.high.x ? static_cast<double>(length(box.high - box.low)) : 0;
 }
 
 /// Cells of sensor positions, numbered in the order of their keys.
@@ -144,7 +153,8 @@ class Search {
         stations_(cloud, options.station_m, executor) {}
 
   bool can_tell() const {
-    return stations_.size() >= options_.least_stations && path_m(cloud_) >= options_.least_path_m;
+    return stations_.size() >= options_.least_stations &&
+           path_m(cloud_, executor_) >= options_.least_path_m;
   }
 
   std::vector<std::uint8_t> run() const {
