@@ -21,6 +21,7 @@
 #include "adasplats/cloud/vehicle/driven_path.h"
 #include "adasplats/cloud/vehicle/own_body.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
@@ -132,6 +133,21 @@ std::vector<CloudPart> read_parts(std::span<const Source> sources, const LoadOpt
   }
   return parts;
 }
+
+/// Tells the parts of loading apart.
+class LoadClock {
+ public:
+  explicit LoadClock(std::vector<LoadReport::PartTime>& parts) : parts_(parts) {}
+  /// What was done since the last end.
+  void end(const char* name) {
+    parts_.push_back({name, watch_.seconds()});
+    watch_ = {};
+  }
+
+ private:
+  std::vector<LoadReport::PartTime>& parts_;
+  Stopwatch watch_;
+};
 
 /// Which points of a part stay, 1 or 0 each.
 using Kept = std::vector<std::uint8_t>;
@@ -361,24 +377,9 @@ std::size_t drop_driven_path(PointCloud& cloud, double half_width_m, const Execu
   return drop_flagged(cloud, find_in_driven_path(cloud, path, executor), executor);
 }
 
-}  // namespace
-
-std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
-                                             const LoadOptions& options, const Executor& executor,
-                                             ProgressSink& progress) {
-  require_sound(options);
-  const std::vector<Source> sources = open_sources(inputs, options, executor, progress);
-  require_options_that_fit(options, sources);
-  const PointOrigins origins(options);
-  Gathered gathered{read_parts(sources, options, executor, progress), {}};
-  const std::optional<PlacedByTimes> placed =
-      place_by_times(gathered.parts, options, executor, progress);
-  const bool any_drive =
-      std::ranges::any_of(sources, [](const Source& source) { return source.drive.has_value(); });
-  require_used(options, placed.has_value(), placed.has_value() || any_drive);
-  Trajectory scan_poses = scan_poses_of(gathered.parts, placed);
-
-  LoadReport report;
+/// Finds what of the parts is finite, and counts it.
+void look_at_parts(std::span<const Source> sources, const LoadOptions& options, Gathered& gathered,
+                   LoadReport& report, const Executor& executor) {
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
     CloudPart& part = gathered.parts[p];
     gathered.kept.push_back(finite_points(part, executor));
@@ -393,6 +394,29 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
     report.unknown_intensities +=
         mark_unknown(part.cloud.intensities, gathered.kept.back(), executor);
   }
+}
+
+}  // namespace
+
+std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
+                                             const LoadOptions& options, const Executor& executor,
+                                             ProgressSink& progress) {
+  require_sound(options);
+  const std::vector<Source> sources = open_sources(inputs, options, executor, progress);
+  require_options_that_fit(options, sources);
+  const PointOrigins origins(options);
+  LoadReport report;
+  LoadClock clock(report.seconds);
+  Gathered gathered{read_parts(sources, options, executor, progress), {}};
+  const std::optional<PlacedByTimes> placed =
+      place_by_times(gathered.parts, options, executor, progress);
+  const bool any_drive =
+      std::ranges::any_of(sources, [](const Source& source) { return source.drive.has_value(); });
+  require_used(options, placed.has_value(), placed.has_value() || any_drive);
+  Trajectory scan_poses = scan_poses_of(gathered.parts, placed);
+
+  clock.end("read");
+  look_at_parts(sources, options, gathered, report, executor);
   if (placed) {
     report.timed = placed->origins;
     report.drives.push_back({sources.front().input.path, {}, placed->origins.scans});
@@ -414,11 +438,14 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
     if (!input.is_sequence) check_origins(clouds.back(), input.path, options, executor);
   }
   PointCloud cloud = joined(std::move(clouds), origin, std::move(scan_poses), progress);
+  clock.end("place");
   if (options.empty_beams && options.boxes.empty())
     cloud.empty_beams = find_empty_beams(cloud, {}, executor);
+  clock.end("find empty beams");
   report.own_body = drop_own_body(cloud, options.own_body_m, executor);
   report.driven_path = drop_driven_path(cloud, options.driven_path_m, executor);
   report_own_body(name_of(inputs), report, options, progress);
+  clock.end("leave the vehicle out");
   report.origins = count_origins(cloud);
   return {std::move(cloud), report};
 }

@@ -225,6 +225,11 @@ struct LoadReport {
   std::size_t own_body = 0;
   /// In the volume that it passed through.
   std::size_t driven_path = 0;
+  struct PartTime {
+    std::string name;
+    double seconds;
+  };
+  std::vector<PartTime> seconds;  ///< what the parts of loading took
 };
 
 /// Loads and accumulates point files and SemanticKITTI sequence folders (see read_points and

@@ -273,6 +273,7 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
     auto& seconds = json["seconds"][step.name];
     seconds = (seconds.is_number() ? seconds.get<double>() : 0.0) + step.seconds;
   }
+  for (const auto& part : result.loaded.seconds) json["seconds_of_load"][part.name] = part.seconds;
   return json;
 }
 
