@@ -776,6 +776,47 @@ class Scene:
         def primitives(self) -> Scene.DeviceArray:
             """uint32; NO_PRIMITIVE where nothing is hit."""
 
+    class ScanBatch:
+        """Scans whose returns stand one behind the other: those of scan i are [offsets[i], offsets[i + 1]).
+
+        Arrays are read-only views, or DeviceArrays; None where they are not there."""
+
+        def __len__(self) -> int: ...
+        @property
+        def first(self) -> int:
+            """Its first scan is that of poses[first]."""
+        @property
+        def offsets(self) -> NDArray[np.int64]:
+            """(scans + 1,) int64."""
+        @property
+        def positions(self) -> NDArray[np.float32] | Scene.DeviceArray | None:
+            """(N, 3) float32, m, in the sensor's frame."""
+        @property
+        def intensities(self) -> NDArray[np.float32] | Scene.DeviceArray | None:
+            """(N,) float32, in the unit of the scene's intensities."""
+        @property
+        def classes(self) -> NDArray[np.uint16] | Scene.DeviceArray | None:
+            """(N,) uint16, ids of the scene's label scheme."""
+        @property
+        def instances(self) -> NDArray[np.uint16] | Scene.DeviceArray | None:
+            """(N,) uint16, 0 for none."""
+        @property
+        def rings(self) -> NDArray[np.uint16] | Scene.DeviceArray | None:
+            """(N,) uint16, 0 the topmost."""
+        @property
+        def columns(self) -> NDArray[np.uint32] | Scene.DeviceArray | None:
+            """(N,) uint32, azimuth steps."""
+        @property
+        def times(self) -> NDArray[np.float32] | Scene.DeviceArray | None:
+            """(N,) float32, s since the revolution began."""
+        @property
+        def ranges(self) -> NDArray[np.float32] | Scene.DeviceArray | None:
+            """(N,) float32, m."""
+        @property
+        def return_indices(self) -> NDArray[np.uint8] | Scene.DeviceArray | None:
+            """(N,) uint8, 0 for the first that the sensor reports of a firing."""
+        def padded(self, name: str, length: int) -> NDArray[Any]: ...
+
     def __init__(
         self,
         model: Model | Mesh | Path,
@@ -867,6 +908,37 @@ class Scene:
         first_number: int = 0,
         progress: Progress | None = None,
     ) -> Iterator[Scan]: ...
+    def scan_batches(
+        self,
+        sensor: Sensor | Path,
+        poses: Poses,
+        *,
+        motion: Poses | None = None,
+        rolling_shutter: bool = False,
+        points: Literal["raw", "deskewed"] = "raw",
+        noise: bool = True,
+        unit_offsets: bool = False,
+        range_noise: float | None = None,
+        min_range: float | None = None,
+        max_range: float | None = None,
+        rotation_rate: float | None = None,
+        depth: int = 1,
+        depth_gap: float = 0.1,
+        sub_rays: int = 1,
+        separation: float = 0.75,
+        returns: int = 1,
+        return_mode: Literal["strongest", "first", "last"] = "strongest",
+        ray_drop: Path | None = None,
+        rain: float = 0.0,
+        fog: float | None = None,
+        snow: float = 0.0,
+        white_intensity: float = 1.0,
+        seed: int = 1,
+        first_number: int = 0,
+        progress: Progress | None = None,
+        fields: Sequence[str] | None = None,
+        on_device: bool = False,
+    ) -> Iterator[Scene.ScanBatch]: ...
     def poses_at(self, places: ArrayLike, *, height: float = 1.73) -> Trajectory: ...
     def poses_on_path(
         self,

@@ -8,7 +8,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/simulate/gpu_scene.h"
-#include "dlpack.h"
+#include "device_arrays.h"
 #include "scenes.h"
 #include "sensors.h"
 
@@ -24,10 +24,6 @@ constexpr const char* kDeviceResultsDoc =
 constexpr const char* kHitsDoc =
     "Hits in GPU memory, made by Scene.cast_on_device(): (scans, firings), or (scans, firings,\n"
     "depth) for a depth above 1.";
-
-constexpr const char* kArrayDoc =
-    "An array in GPU memory that other libraries read without a copy through DLPack:\n"
-    "torch.from_dlpack(array), cupy.from_dlpack(array). It lives as long as anyone looks at it.";
 
 /// Hits and what they live in; may be freed without the GIL.
 struct DeviceResults {
@@ -46,79 +42,6 @@ struct DeviceResults {
 };
 
 using Results = std::shared_ptr<DeviceResults>;
-
-/// One member of the hits.
-struct DeviceArray {
-  Results results;
-  std::size_t offset = 0;  ///< of the member in a Hit, bytes
-  dlpack::DataType type;
-
-  std::vector<std::int64_t> shape() const {
-    const DeviceHits& hits = results->hits;
-    std::vector<std::int64_t> all = {static_cast<std::int64_t>(hits.scans),
-                                     static_cast<std::int64_t>(hits.rays_per_scan)};
-    if (results->depth > 1) all.push_back(results->depth);
-    return all;
-  }
-};
-
-/// What a consumer holds.
-struct Exported {
-  dlpack::ManagedTensor managed;
-  DeviceArray array;
-  std::vector<std::int64_t> shape;
-  std::vector<std::int64_t> strides;
-};
-
-void free_exported(dlpack::ManagedTensor* managed) {
-  delete static_cast<Exported*>(managed->owner);
-}
-
-/// Frees what no consumer took.
-void free_capsule(PyObject* capsule) {
-  if (PyCapsule_IsValid(capsule, dlpack::kFresh) == 0) return;
-  auto* managed =
-      static_cast<dlpack::ManagedTensor*>(PyCapsule_GetPointer(capsule, dlpack::kFresh));
-  managed->deleter(managed);
-}
-
-constexpr std::int64_t kElementsPerHit = sizeof(Hit) / sizeof(float);
-
-dlpack::ManagedTensor* exported(const DeviceArray& array) {
-  auto made = std::make_unique<Exported>();
-  made->array = array;
-  made->shape = array.shape();
-  made->strides.assign(made->shape.size(), kElementsPerHit);
-  for (std::size_t axis = made->shape.size() - 1; axis > 0; --axis)
-    made->strides[axis - 1] = made->strides[axis] * made->shape[axis];
-  dlpack::Tensor& tensor = made->managed.tensor;
-  // DLPack has no const: consumers are asked not to write.
-  tensor.data = const_cast<Hit*>(array.results->hits.hits);
-  tensor.device = {dlpack::DeviceType::cuda, array.results->hits.device};
-  tensor.axes = static_cast<std::int32_t>(made->shape.size());
-  tensor.type = array.type;
-  tensor.shape = made->shape.data();
-  tensor.strides = made->strides.data();
-  tensor.byte_offset = array.offset;
-  made->managed.deleter = &free_exported;
-  made->managed.owner = made.get();
-  return &made.release()->managed;
-}
-
-/// `stream` is the consumer's: the hits are complete before this returns, for every stream.
-py::object to_dlpack(const DeviceArray& array, const py::object& /*stream*/) {
-  {
-    const py::gil_scoped_release released;
-    wait_for(array.results->hits);
-  }
-  dlpack::ManagedTensor* const managed = exported(array);
-  PyObject* const capsule = PyCapsule_New(managed, dlpack::kFresh, &free_capsule);
-  if (capsule == nullptr) {
-    managed->deleter(managed);
-    throw py::error_already_set();
-  }
-  return py::reinterpret_steal<py::object>(capsule);
-}
 
 struct DeviceArguments {
   DriveArguments drive;
@@ -155,31 +78,26 @@ Results cast_on_device(const std::shared_ptr<SceneObject>& object, py::handle se
 }
 
 DeviceArray member_of(const Results& results, std::size_t offset, dlpack::TypeCode code) {
-  return {results, offset, {code, 32, 1}};
+  constexpr std::int64_t kElementsPerHit = sizeof(Hit) / sizeof(float);
+  const DeviceHits& hits = results->hits;
+  DeviceArray array;
+  array.keep = results;
+  array.data = reinterpret_cast<const std::byte*>(hits.hits) + offset;
+  array.device = hits.device;
+  array.type = {code, 32, 1};
+  array.shape = {static_cast<std::int64_t>(hits.scans),
+                 static_cast<std::int64_t>(hits.rays_per_scan)};
+  if (results->depth > 1) array.shape.push_back(results->depth);
+  array.strides.assign(array.shape.size(), kElementsPerHit);
+  for (std::size_t axis = array.shape.size() - 1; axis > 0; --axis)
+    array.strides[axis - 1] = array.strides[axis] * array.shape[axis];
+  array.wait = [hits] { wait_for(hits); };
+  return array;
 }
 
 }  // namespace
 
 void add_device_results(SceneClass& type) {
-  py::class_<DeviceArray>(type, "DeviceArray", kArrayDoc)
-      .def("__dlpack__", &to_dlpack, py::kw_only(), py::arg("stream") = py::none(),
-           "A capsule with the array; its values are there when this returns.")
-      .def(
-          "__dlpack_device__",
-          [](const DeviceArray& array) {
-            return py::make_tuple(static_cast<int>(dlpack::DeviceType::cuda),
-                                  array.results->hits.device);
-          },
-          "(2, number of the GPU).")
-      .def_property_readonly(
-          "shape", [](const DeviceArray& array) { return py::tuple(py::cast(array.shape())); },
-          "As NumPy has it.")
-      .def_property_readonly(
-          "pointer",
-          [](const DeviceArray& array) {
-            return reinterpret_cast<std::uintptr_t>(array.results->hits.hits) + array.offset;
-          },
-          "Address of the first element in GPU memory.");
   py::class_<DeviceResults, Results>(type, "DeviceHits", kHitsDoc)
       .def_property_readonly(
           "ranges",

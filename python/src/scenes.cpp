@@ -4,6 +4,7 @@
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "clouds.h"
+#include "device_arrays.h"
 #include "models.h"
 
 namespace adasplats::python {
@@ -99,7 +100,9 @@ void bind_scenes(py::module_& module) {
   add_simulation(type);
   add_places(type);
   add_rendering(type);
+  add_device_arrays(type);
   add_device_results(type);
+  add_scan_batches(type);
 }
 
 }  // namespace adasplats::python

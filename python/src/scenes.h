@@ -35,6 +35,7 @@ void add_simulation(SceneClass& type);
 void add_places(SceneClass& type);
 void add_rendering(SceneClass& type);
 void add_device_results(SceneClass& type);
+void add_scan_batches(SceneClass& type);
 
 /// The scans of a sensor at poses: what simulate() has in its keywords.
 struct DriveArguments {

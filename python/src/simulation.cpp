@@ -9,6 +9,7 @@
 #include "scans.h"
 #include "scenes.h"
 #include "sensors.h"
+#include "simulate_arguments.h"
 #include "trajectories.h"
 
 namespace adasplats::python {
@@ -36,22 +37,6 @@ constexpr const char* kIterDoc =
 
 /// Scans at once where launches and copies overlap.
 constexpr std::size_t kGpuBatch = 16;
-
-struct SimulateArguments {
-  ScanChoice scan;
-  DriveArguments drive;
-  std::uint64_t seed = 1;
-  std::uint64_t first_number = 0;
-  py::object progress = py::none();
-
-  void take(Keywords& keywords) {
-    drive.take(keywords);
-    take_settings(keywords, scan);
-    keywords.take("seed", seed);
-    keywords.take("first_number", first_number);
-    keywords.take("progress", progress);
-  }
-};
 
 /// Sensor, keywords and poses of a call.
 struct Drive {

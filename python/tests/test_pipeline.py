@@ -14,7 +14,7 @@ import adasplats
 
 # What a report says of the run, not of the result.
 OF_THE_RUN = {"program", "version", "command", "provenance", "parameters", "threads", "device", "warnings",
-              "peak_memory_bytes", "seconds"}
+              "peak_memory_bytes", "seconds", "seconds_of_load"}
 
 
 def without_times(report):
@@ -181,6 +181,51 @@ def test_simulate(street, poses, tmp_path, options):
         for name in ("positions", "ranges", "intensities", "classes", "rings", "columns", "times",
                      "return_indices", "pose"):
             np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
+
+
+def test_batches_hold_the_scans(street, scene, poses):
+    scans = scene.simulate(street.sensor, poses)
+    names = ["positions", "intensities", "classes", "instances", "rings", "columns", "times",
+             "ranges", "return_indices"]
+    seen = 0
+    for batch in scene.scan_batches(street.sensor, poses):
+        assert batch.first == seen and batch.offsets[0] == 0
+        for i in range(len(batch)):
+            begin, end = batch.offsets[i:i + 2]
+            for name in names:
+                part, whole = getattr(batch, name), getattr(scans[batch.first + i], name)
+                assert (part is None) == (whole is None)
+                if part is not None:
+                    np.testing.assert_array_equal(part[begin:end], whole)
+        padded = batch.padded("positions", 50)
+        assert padded.shape == (len(batch), 50, 3)
+        np.testing.assert_array_equal(padded[0], batch.positions[:50])
+        with pytest.raises(ValueError):
+            batch.positions[0, 0] = 1
+        seen += len(batch)
+    assert seen == len(scans)
+    positions = batch.positions.copy()
+    view = batch.positions
+    del batch
+    np.testing.assert_array_equal(view, positions)  # the view holds the memory
+
+
+def test_batches_of_some_fields(street, scene, poses):
+    batch = next(scene.scan_batches(street.sensor, poses, fields=["positions", "rings"]))
+    assert batch.positions is not None and batch.rings is not None
+    assert batch.ranges is None and batch.classes is None
+    with pytest.raises(ValueError, match="unknown field 'colour', expected some of positions"):
+        scene.scan_batches(street.sensor, poses, fields=["colour"])
+    with pytest.raises(TypeError, match="fields"):
+        scene.scan_batches(street.sensor, poses, fields="rings")
+    with pytest.raises(ValueError, match="has no 'ranges'"):
+        batch.padded("ranges", 3)
+    many = scene.scan_batches(street.sensor, poses)
+    next(many)
+    del many  # its thread ends
+    if scene.device == "cpu":
+        with pytest.raises(RuntimeError, match="GPU memory"):
+            list(scene.scan_batches(street.sensor, poses, on_device=True))
 
 
 def test_scans_as_a_sequence(street, scene, poses, tmp_path):

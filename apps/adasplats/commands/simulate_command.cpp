@@ -22,7 +22,8 @@ constexpr const char* kSimulateExamples =
     "  adasplats simulate street.ply --at 12,3 --at 20,3,,90 -o scans\n"
     "  adasplats simulate street.ply --path '0,0;50,0;50,30' --speed 8 -o scans\n"
     "Rates: traced, in the tracer or in the kernels of all GPUs; assembled, until the scans were\n"
-    "complete, points with all their attributes in host memory; written, until the last file was on\n"
+    "complete, points with all their attributes in host memory; written, until the last file was "
+    "on\n"
     "disk. Each one holds those before it. A run that ended early goes on with the same command.\n";
 
 class SimulateCommand final : public Command {

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "adasplats/io/base/sha256.h"
 
@@ -28,6 +29,7 @@ struct ParallelScanWriter::Impl {
     std::size_t turn = 0;
     std::size_t index = 0;
     std::shared_ptr<const Scan> scan;
+    std::shared_ptr<Scan> own;  ///< the same, where nobody else holds it
   };
   struct Written {
     std::size_t index = 0;
@@ -40,8 +42,9 @@ struct ParallelScanWriter::Impl {
   std::mutex mutex;
   std::condition_variable work, room;  ///< for threads; for the caller
   std::deque<Waiting> waiting;
-  std::map<std::size_t, Written> written;  ///< by turn, whose turn has not come
-  std::size_t taken = 0, appended = 0;     ///< turns
+  std::vector<std::shared_ptr<Scan>> used;  ///< whose memory is free again
+  std::map<std::size_t, Written> written;   ///< by turn, whose turn has not come
+  std::size_t taken = 0, appended = 0;      ///< turns
   bool is_appending = false;
   bool closed = false;
   std::exception_ptr failure;
@@ -60,12 +63,27 @@ struct ParallelScanWriter::Impl {
       lock.unlock();
       try {
         Written done = write_files(next);
-        next.scan.reset();
+        give_back(std::move(next));
         append_in_turn(next.turn, std::move(done));
       } catch (...) {
         fail();
       }
     }
+  }
+
+  void give_back(Waiting done) {
+    if (!done.own) return;
+    const std::lock_guard lock(mutex);
+    used.push_back(std::move(done.own));
+  }
+
+  void put(std::size_t index, std::shared_ptr<const Scan> scan, std::shared_ptr<Scan> own) {
+    const std::size_t most = kScansUnderWayPerThread * threads.size();
+    std::unique_lock lock(mutex);
+    room.wait(lock, [&] { return failure || taken - appended < most; });
+    if (failure) std::rethrow_exception(failure);
+    waiting.push_back({taken++, index, std::move(scan), std::move(own)});
+    work.notify_one();
   }
 
   Written write_files(const Waiting& next) const {
@@ -136,13 +154,21 @@ ParallelScanWriter::~ParallelScanWriter() {
 }
 
 void ParallelScanWriter::write(std::size_t index, std::shared_ptr<const Scan> scan) {
-  Impl& impl = *impl_;
-  const std::size_t most = kScansUnderWayPerThread * impl.threads.size();
-  std::unique_lock lock(impl.mutex);
-  impl.room.wait(lock, [&] { return impl.failure || impl.taken - impl.appended < most; });
-  if (impl.failure) std::rethrow_exception(impl.failure);
-  impl.waiting.push_back({impl.taken++, index, std::move(scan)});
-  impl.work.notify_one();
+  impl_->put(index, std::move(scan), nullptr);
+}
+
+void ParallelScanWriter::write(std::size_t index, Scan&& scan) {
+  std::shared_ptr<Scan> own;
+  {
+    const std::lock_guard lock(impl_->mutex);
+    if (!impl_->used.empty()) {
+      own = std::move(impl_->used.back());
+      impl_->used.pop_back();
+    }
+  }
+  if (!own) own = std::make_shared<Scan>();
+  std::swap(*own, scan);
+  impl_->put(index, own, own);
 }
 
 void ParallelScanWriter::finish() {

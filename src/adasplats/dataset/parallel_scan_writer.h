@@ -43,9 +43,8 @@ class ParallelScanWriter {
   /// Takes a scan; waits while too many are under way. What a thread failed with is thrown here or
   /// in finish(), whichever is called next. One call at a time, by ascending numbers.
   void write(std::size_t index, std::shared_ptr<const Scan> scan);
-  void write(std::size_t index, Scan&& scan) {
-    write(index, std::make_shared<const Scan>(std::move(scan)));
-  }
+  /// Leaves a scan that is written in its place, where there is one: its memory can be used again.
+  void write(std::size_t index, Scan&& scan);
   /// Waits until all scans are written, then for ScanWriter::finish(). Call once, last.
   void finish();
 

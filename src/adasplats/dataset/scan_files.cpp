@@ -145,6 +145,13 @@ std::string npy_labels(const Scan& scan) {
 
 }  // namespace
 
+ScanFields fields_of(ScanFormat format) {
+  ScanFields fields;
+  if (format == ScanFormat::semantickitti)
+    fields.ranges = fields.rings = fields.columns = fields.times = fields.return_indices = false;
+  return fields;
+}
+
 ScanBytes scan_bytes(ScanFormat format) {
   // Position, ring, column, time and range; then intensity, label, instance and return index.
   constexpr double kLeast = 12 + 2 + 4 + 4 + 4, kMost = kLeast + 4 + 2 + 2 + 1;

@@ -35,6 +35,9 @@ struct ScanBytes {
 };
 ScanBytes scan_bytes(ScanFormat format);
 
+/// Attributes that files of the format hold; others need not be computed.
+ScanFields fields_of(ScanFormat format);
+
 // One scan as a file, in the sensor frame. All are atomic.
 
 /// PLY with the columns of scan_columns().

@@ -202,7 +202,9 @@ class Simulation {
       scene.add_objects(
           [&](World& world) { result.moving_splats = add_moving(missing, response, world); });
     }
-    ScanSimulator simulator(scene, settings_, session_.executor);
+    ScanSettings settings = settings_;
+    settings.fields = fields_of(ScanFormat::semantickitti);
+    ScanSimulator simulator(scene, std::move(settings), session_.executor);
     ParallelWriteOptions parallel;
     parallel.threads = session_.executor.threads();
     parallel.writes = FileWrites::in_place;
@@ -234,7 +236,7 @@ class Simulation {
   void write_run(ScanSimulator& simulator, std::size_t first, std::size_t count,
                  ParallelScanWriter& files, std::size_t& done) {
     simulator.run(std::span(scans_).subspan(first, count), source_.numbers[first],
-                  [&](std::size_t i, Scan scan) {
+                  [&](std::size_t i, Scan&& scan) {
                     files.write(first + i, std::move(scan));
                     session_.progress.advance(++done);
                   });

@@ -91,7 +91,7 @@ ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> sc
   parallel.written = [&journal](std::size_t, std::size_t points,
                                 std::span<const FileDigest> files) { journal.note(points, files); };
   ParallelScanWriter files(*writer, parallel);
-  const auto take_scan = [&](std::size_t i, Scan scan) {
+  const auto take_scan = [&](std::size_t i, Scan&& scan) {
     result.rays += scan.rays;
     result.hits += scan.size();
     files.write(first + i, std::move(scan));
@@ -109,7 +109,8 @@ ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> sc
 SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   const Stopwatch total;
   require_input(job.model);
-  const ScanSettings settings = job.scan.settings(session.seed);
+  ScanSettings settings = job.scan.settings(session.seed);
+  settings.fields = fields_of(job.format);
   check_drive(job.drive);
   std::vector<ScanMotion> scans;
   if (!job.drive.trajectory.empty()) scans = scans_along(job.drive, settings.sensor);

@@ -94,6 +94,20 @@ ReportTimes ScanSimulator::run_repeating(std::span<const ScanMotion> scans,
       ->report(rules_, scans, first_number, executor_, sink);
 }
 
+ReportTimes ScanSimulator::run_batches(std::span<const ScanMotion> scans,
+                                       std::uint64_t first_number, GpuScene::Results results,
+                                       GpuScene::BatchSink sink) {
+  const GpuScene* const gpu = scene_.world() == nullptr ? scene_.gpu() : nullptr;
+  if (gpu != nullptr && repeats(settings_.sensor))
+    return gpu->report(rules_, scans, first_number, results, sink);
+  if (results == GpuScene::Results::device)
+    throw Error(ErrorKind::unavailable,
+                "scans stay in GPU memory where the scene is on a GPU (`device` cuda), nothing is "
+                "in its world, and the sensor's pattern repeats");
+  return run(scans, first_number,
+             [&](std::size_t i, Scan&& scan) { sink(batch_of(i, std::move(scan))); });
+}
+
 Scan ScanSimulator::scan(const ScanMotion& motion, std::uint64_t number) {
   Scan taken;
   run(std::span(&motion, 1), number, [&](std::size_t, Scan&& scan) { taken = std::move(scan); });

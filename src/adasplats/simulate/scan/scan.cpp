@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "adasplats/core/error.h"
 #include "adasplats/simulate/scan/scan_reporter.h"
 
 namespace adasplats {
@@ -27,6 +28,27 @@ std::size_t Scan::size() const {
   for_each_scan_attribute(
       [&](const auto& attribute) { returns = std::max(returns, attribute.of(*this).size()); });
   return returns;
+}
+
+ScanFields scan_fields(std::span<const std::string> names) {
+  ScanFields fields;
+  std::string known = "positions";
+  fields.positions = false;
+  for_each_scan_attribute([&](const auto& attribute) {
+    fields.*attribute.wanted = false;
+    known += std::string(", ") + attribute.name;
+  });
+  for (const std::string& name : names) {
+    bool found = name == "positions";
+    if (found) fields.positions = true;
+    for_each_scan_attribute([&](const auto& attribute) {
+      if (name != attribute.name) return;
+      found = fields.*attribute.wanted = true;
+    });
+    if (!found)
+      throw Error(ErrorKind::usage, "unknown field '" + name + "', expected some of " + known);
+  }
+  return fields;
 }
 
 Scan kept_points(const Scan& scan, std::span<const std::uint8_t> keep) {

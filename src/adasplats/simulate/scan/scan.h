@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "adasplats/core/executor.h"
@@ -99,6 +100,10 @@ void for_each_scan_attribute(Visit&& visit) {
                       &ScanFields::return_indices, "return_indices", "return_index", true,
                       "0 for the first that the sensor reports of a firing"});
 }
+
+/// Fields by the names of attributes, and "positions". Errors: usage (an unknown name, with those
+/// that there are).
+ScanFields scan_fields(std::span<const std::string> names);
 
 /// The points that keep[i] says, of every attribute.
 Scan kept_points(const Scan& scan, std::span<const std::uint8_t> keep);

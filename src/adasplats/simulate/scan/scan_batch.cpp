@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/simulate/scan/scan_batch.h"
 
+#include <memory>
 #include <type_traits>
+#include <utility>
 
 namespace adasplats {
 
@@ -17,6 +19,21 @@ ReturnLayout::ReturnLayout(const ScanFields& fields, std::size_t returns, std::u
   place(arrays.positions, fields.positions);
   for_each_scan_attribute(
       [&](const auto& attribute) { place(attribute.of(arrays), fields.*attribute.wanted); });
+}
+
+ScanBatch batch_of(std::size_t first, Scan&& scan) {
+  const auto kept = std::make_shared<Scan>(std::move(scan));
+  ScanBatch batch;
+  batch.first = first;
+  batch.offsets = {0, static_cast<std::uint32_t>(kept->size())};
+  const auto point = [](auto& array, auto& values) {
+    if (!values.empty()) array = values.data();
+  };
+  point(batch.arrays.positions, kept->positions);
+  for_each_scan_attribute(
+      [&](const auto& attribute) { point(attribute.of(batch.arrays), attribute.of(*kept)); });
+  batch.memory = kept;
+  return batch;
 }
 
 void copy_scan(const ScanBatch& batch, std::size_t i, const ScanMotion& motion, std::size_t rays,

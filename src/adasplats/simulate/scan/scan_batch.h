@@ -47,6 +47,9 @@ struct ScanBatch {
   std::size_t returns() const { return offsets.back(); }
 };
 
+/// A batch of one scan, scan `first` of a run, whose arrays it takes.
+ScanBatch batch_of(std::size_t first, Scan&& scan);
+
 /// Scan i of a batch in host memory, in `scan`, whose memory is used again.
 void copy_scan(const ScanBatch& batch, std::size_t i, const ScanMotion& motion, std::size_t rays,
                Scan& scan);

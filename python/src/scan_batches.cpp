@@ -1,0 +1,330 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "adasplats/simulate/scan/scan_batch.h"
+#include "arrays.h"
+#include "device_arrays.h"
+#include "scenes.h"
+#include "sensors.h"
+#include "simulate_arguments.h"
+
+namespace adasplats::python {
+namespace {
+
+constexpr const char* kBatchesDoc =
+    "As simulate(), in batches without a copy, made in a thread of their own while one "
+    "iterates.\n\n"
+    "fields: names of the attributes of ScanBatch that are wanted; None: all. on_device: leave "
+    "them\n"
+    "in GPU memory. On a GPU a batch has as many scans as a launch; on the CPU one. Results are\n"
+    "simulate()'s. Raises RuntimeError where on_device is asked for and the scene is on the CPU.";
+
+constexpr const char* kBatchDoc =
+    "Scans whose returns stand one behind the other, made by Scene.scan_batches(): those of scan "
+    "i\n"
+    "are [offsets[i], offsets[i + 1]). Arrays are read-only views, or in GPU memory DeviceArrays "
+    "for\n"
+    "DLPack (torch.from_dlpack); what was not asked for, or the scene has none of, is None.";
+
+/// A batch with the scene whose GPU may hold it. May be freed without the GIL.
+struct BatchObject {
+  std::shared_ptr<SceneObject> scene;
+  ScanBatch batch;
+};
+using Batch = std::shared_ptr<BatchObject>;
+
+/// Ends a run that nobody takes batches from any more.
+struct Abandoned {};
+
+/// Makes batches in a thread, two ahead of who takes them.
+class BatchStream {
+ public:
+  BatchStream(std::shared_ptr<SceneObject> scene, ScanSettings settings,
+              std::vector<ScanMotion> scans, std::uint64_t first_number, GpuScene::Results results)
+      : scene_(std::move(scene)),
+        simulator_(*scene_->scene, std::move(settings), scene_->executor),
+        scans_(std::move(scans)),
+        first_number_(first_number),
+        results_(results),
+        thread_([this] { work(); }) {}
+  ~BatchStream() {
+    {
+      const std::lock_guard lock(mutex_);
+      abandoned_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+  }
+  BatchStream(const BatchStream&) = delete;
+  BatchStream& operator=(const BatchStream&) = delete;
+
+  /// Null: there are no more. Errors: what ended the run.
+  Batch next() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return !made_.empty() || ended_; });
+    if (made_.empty()) {
+      if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+      return nullptr;
+    }
+    Batch batch = std::move(made_.front());
+    made_.pop_front();
+    changed_.notify_all();
+    return batch;
+  }
+
+ private:
+  static constexpr std::size_t kAhead = 2;
+
+  void work() {
+    std::exception_ptr error;
+    try {
+      auto use = scene_->lock();
+      simulator_.run_batches(scans_, first_number_, results_, [&](ScanBatch&& batch) {
+        // Who takes the batches may use the scene meanwhile.
+        if (use.owns_lock()) use.unlock();
+        put(std::make_shared<BatchObject>(BatchObject{scene_, std::move(batch)}));
+        use = scene_->lock();
+      });
+    } catch (const Abandoned&) {
+    } catch (...) {
+      error = std::current_exception();
+    }
+    const std::lock_guard lock(mutex_);
+    error_ = error;
+    ended_ = true;
+    changed_.notify_all();
+  }
+
+  void put(Batch batch) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return made_.size() < kAhead || abandoned_; });
+    if (abandoned_) throw Abandoned();
+    made_.push_back(std::move(batch));
+    changed_.notify_all();
+  }
+
+  std::shared_ptr<SceneObject> scene_;
+  ScanSimulator simulator_;
+  std::vector<ScanMotion> scans_;
+  std::uint64_t first_number_;
+  GpuScene::Results results_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Batch> made_;
+  std::exception_ptr error_;
+  bool ended_ = false;
+  bool abandoned_ = false;
+  std::thread thread_;  ///< the last: it uses all others
+};
+
+/// What Python iterates over; forgets the stream at its end.
+struct BatchIterator {
+  std::unique_ptr<BatchStream> stream;
+  PythonProgress progress;
+  std::size_t taken = 0;
+
+  explicit BatchIterator(const py::object& report_to) : progress(report_to) {}
+  ~BatchIterator() {
+    const py::gil_scoped_release released;
+    stream.reset();
+  }
+  BatchIterator(const BatchIterator&) = delete;
+  BatchIterator& operator=(const BatchIterator&) = delete;
+
+  Batch next() {
+    Batch batch;
+    {
+      const py::gil_scoped_release released;
+      if (stream) batch = stream->next();
+      if (!batch) stream.reset();
+    }
+    if (!batch) throw py::stop_iteration();
+    taken += batch->batch.scans();
+    progress.advance(taken);
+    return batch;
+  }
+};
+
+struct BatchArguments {
+  SimulateArguments simulate;
+  py::object fields = py::none();
+  bool on_device = false;
+
+  void take(Keywords& keywords) {
+    simulate.take(keywords);
+    keywords.take("fields", fields);
+    keywords.take("on_device", on_device);
+  }
+};
+
+ScanFields fields_of(const py::object& names) {
+  if (names.is_none()) return {};
+  if (py::isinstance<py::str>(names) || !py::isinstance<py::sequence>(names))
+    throw py::type_error("fields: expected a sequence of names");
+  std::vector<std::string> texts;
+  for (const py::handle name : names) {
+    if (!py::isinstance<py::str>(name))
+      throw py::type_error("fields: expected a sequence of names");
+    texts.push_back(name.cast<std::string>());
+  }
+  return scan_fields(texts);
+}
+
+std::unique_ptr<BatchIterator> scan_batches(const std::shared_ptr<SceneObject>& object,
+                                            py::handle sensor, py::handle poses,
+                                            const py::kwargs& kwargs) {
+  Keywords keywords("scan_batches", kwargs);
+  BatchArguments arguments;
+  arguments.take(keywords);
+  keywords.finish();
+  ScanSettings settings =
+      arguments.simulate.scan.settings_of(sensor_of(sensor), arguments.simulate.seed);
+  settings.fields = fields_of(arguments.fields);
+  std::vector<ScanMotion> scans = arguments.simulate.drive.scans_at(poses, settings.sensor);
+  auto iterator = std::make_unique<BatchIterator>(arguments.simulate.progress);
+  iterator->progress.begin_step("simulate", scans.size());
+  const py::gil_scoped_release released;
+  iterator->stream = std::make_unique<BatchStream>(
+      object, std::move(settings), std::move(scans), arguments.simulate.first_number,
+      arguments.on_device ? GpuScene::Results::device : GpuScene::Results::host);
+  return iterator;
+}
+
+/// Numbers of one value, and how many: positions have three.
+template <class T>
+struct Component {
+  using type = T;
+  static constexpr std::int64_t count = 1;
+};
+template <>
+struct Component<Vec3f> {
+  using type = float;
+  static constexpr std::int64_t count = 3;
+};
+
+template <class T>
+dlpack::DataType data_type() {
+  using Value = typename Component<T>::type;
+  const auto code = std::is_floating_point_v<Value> ? dlpack::TypeCode::floating
+                                                    : dlpack::TypeCode::unsigned_integer;
+  return {code, 8 * sizeof(Value), 1};
+}
+
+template <class T>
+py::object array_of_batch(const Batch& batch, const T* values) {
+  if (values == nullptr) return py::none();
+  const auto returns = static_cast<std::int64_t>(batch->batch.returns());
+  if (batch->batch.device >= 0) {
+    DeviceArray array;
+    array.keep = batch;
+    array.device = batch->batch.device;
+    array.data = values;
+    array.type = data_type<T>();
+    array.shape = {returns};
+    array.strides = {Component<T>::count};
+    if (Component<T>::count > 1) {
+      array.shape.push_back(Component<T>::count);
+      array.strides.push_back(1);
+    }
+    return py::cast(std::move(array));
+  }
+  const py::object owner = py::cast(batch);
+  if constexpr (Component<T>::count > 1)
+    return vectors_view(values, batch->batch.returns(), sizeof(T), owner);
+  else
+    return array_view(std::span<const T>(values, batch->batch.returns()), owner);
+}
+
+/// (scans, length[, 3]) with the first `length` returns of each scan, zeros behind them.
+template <class T>
+py::array padded_array(const ScanBatch& batch, const T* values, std::size_t length) {
+  using Value = typename Component<T>::type;
+  std::vector<py::ssize_t> shape = {static_cast<py::ssize_t>(batch.scans()),
+                                    static_cast<py::ssize_t>(length)};
+  if (Component<T>::count > 1) shape.push_back(Component<T>::count);
+  py::array array(py::dtype::of<Value>(), shape);
+  auto* to = static_cast<T*>(array.mutable_data());
+  for (std::size_t i = 0; i < batch.scans(); ++i, to += length) {
+    const std::size_t count =
+        std::min<std::size_t>(length, batch.offsets[i + 1] - batch.offsets[i]);
+    std::copy_n(values + batch.offsets[i], count, to);
+    std::fill(to + count, to + length, T{});
+  }
+  return array;
+}
+
+py::array padded(const BatchObject& object, const std::string& name, std::size_t length) {
+  const ScanBatch& batch = object.batch;
+  if (batch.device >= 0) throw py::value_error("padded() is for batches in host memory");
+  py::object found = py::none();
+  const auto take = [&](const char* known, const auto* values) {
+    if (name == known && values != nullptr) found = padded_array(batch, values, length);
+  };
+  take("positions", batch.arrays.positions);
+  for_each_scan_attribute(
+      [&](const auto& attribute) { take(attribute.name, attribute.of(batch.arrays)); });
+  if (found.is_none()) throw py::value_error("the batch has no '" + name + "'");
+  return found;
+}
+
+void bind_batch(SceneClass& type) {
+  py::class_<BatchObject, Batch> batch(type, "ScanBatch", kBatchDoc);
+  batch.def("__len__", [](const BatchObject& self) { return self.batch.scans(); })
+      .def_property_readonly(
+          "first", [](const BatchObject& self) { return self.batch.first; },
+          "Its first scan is that of poses[first].")
+      .def_property_readonly(
+          "offsets",
+          [](const BatchObject& self) {
+            return owned_array(
+                std::vector<std::int64_t>(self.batch.offsets.begin(), self.batch.offsets.end()),
+                {static_cast<py::ssize_t>(self.batch.offsets.size())});
+          },
+          "(scans + 1,) int64.")
+      .def_property_readonly(
+          "positions",
+          [](const Batch& self) { return array_of_batch(self, self->batch.arrays.positions); },
+          "(N, 3) float32, m, in the sensor's frame; or None.")
+      .def(
+          "padded", &padded, py::arg("name"), py::arg("length"),
+          documented("padded", "self, name, length",
+                     "(scans, length) or (scans, length, 3): the first returns of each scan, zeros "
+                     "behind them;\na new array. Raises ValueError for batches in GPU memory.")
+              .c_str());
+  for_each_scan_attribute([&](const auto& attribute) {
+    const auto of = attribute.of;
+    batch.def_property_readonly(
+        attribute.name,
+        [of](const Batch& self) { return array_of_batch(self, of(self->batch.arrays)); },
+        (std::string("(N,), ") + attribute.about + "; or None.").c_str());
+  });
+}
+
+}  // namespace
+
+void add_scan_batches(SceneClass& type) {
+  bind_batch(type);
+  py::class_<BatchIterator>(type, "BatchIterator", "Gives the batches of Scene.scan_batches().")
+      .def("__iter__", [](const py::object& self) { return self; })
+      .def("__next__", &BatchIterator::next);
+  const std::string doc = documented(
+      "scan_batches", "self, sensor, poses",
+      [](Keywords& keywords) {
+        BatchArguments arguments;
+        arguments.take(keywords);
+      },
+      kBatchesDoc);
+  type.def("scan_batches", &scan_batches, py::arg("sensor"), py::arg("poses"), doc.c_str());
+}
+
+}  // namespace adasplats::python
