@@ -144,10 +144,11 @@ nlohmann::ordered_json measure(const ModelScene& scene, const ScanSettings& sett
 nlohmann::ordered_json measure_all(const Arguments& arguments) {
   const Executor executor(arguments.threads);
   ProgressSink progress;
-  DeviceChoice device;
-  device.kind = arguments.device == "cuda"    ? DeviceKind::cuda
+  DeviceOptions chosen;
+  chosen.kind = arguments.device == "cuda"    ? DeviceKind::cuda
                 : arguments.device == "optix" ? DeviceKind::optix
                                               : DeviceKind::cpu;
+  DeviceChoice device = choose_device(chosen);
   Session session{executor, progress, 1, device};
   const ModelScene scene(arguments.model, "", session);
   std::vector<ScanMotion> scans = still_scans(load_trajectory(arguments.trajectory));

@@ -309,12 +309,13 @@ void GpuReporter::end(Run& run, std::size_t k, BatchSink sink) {
   if (run.results == Results::device) {
     batch.arrays = there.arrays;
     batch.device = device.part->device;
-    batch.memory = std::shared_ptr<void>(lane.attributes->data(),
-                                         [memory = std::move(lane.attributes), stream = lane.stream,
-                                          number = batch.device](void*) mutable {
-                                           const DeviceGuard here(number);
-                                           memory.reset();
-                                         });
+    void* const first = lane.attributes->data();
+    batch.memory =
+        std::shared_ptr<void>(first, [memory = std::move(lane.attributes), stream = lane.stream,
+                                      number = batch.device](void*) mutable {
+          const DeviceGuard here(number);
+          memory.reset();
+        });
     lane.attributes = nullptr;
   } else {
     const std::size_t bytes = ReturnLayout(fields_, batch.returns(), nullptr).bytes;
