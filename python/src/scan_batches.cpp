@@ -204,12 +204,12 @@ std::unique_ptr<BatchIterator> scan_batches(const std::shared_ptr<SceneObject>& 
 template <class T>
 struct Component {
   using type = T;
-  static constexpr std::int64_t count = 1;
+  static constexpr std::int64_t kCount = 1;
 };
 template <>
 struct Component<Vec3f> {
   using type = float;
-  static constexpr std::int64_t count = 3;
+  static constexpr std::int64_t kCount = 3;
 };
 
 template <class T>
@@ -231,15 +231,15 @@ py::object array_of_batch(const Batch& batch, const T* values) {
     array.data = values;
     array.type = data_type<T>();
     array.shape = {returns};
-    array.strides = {Component<T>::count};
-    if (Component<T>::count > 1) {
-      array.shape.push_back(Component<T>::count);
+    array.strides = {Component<T>::kCount};
+    if (Component<T>::kCount > 1) {
+      array.shape.push_back(Component<T>::kCount);
       array.strides.push_back(1);
     }
     return py::cast(std::move(array));
   }
   const py::object owner = py::cast(batch);
-  if constexpr (Component<T>::count > 1)
+  if constexpr (Component<T>::kCount > 1)
     return vectors_view(values, batch->batch.returns(), sizeof(T), owner);
   else
     return array_view(std::span<const T>(values, batch->batch.returns()), owner);
@@ -251,7 +251,7 @@ py::array padded_array(const ScanBatch& batch, const T* values, std::size_t leng
   using Value = typename Component<T>::type;
   std::vector<py::ssize_t> shape = {static_cast<py::ssize_t>(batch.scans()),
                                     static_cast<py::ssize_t>(length)};
-  if (Component<T>::count > 1) shape.push_back(Component<T>::count);
+  if (Component<T>::kCount > 1) shape.push_back(Component<T>::kCount);
   py::array array(py::dtype::of<Value>(), shape);
   auto* to = static_cast<T*>(array.mutable_data());
   for (std::size_t i = 0; i < batch.scans(); ++i, to += length) {

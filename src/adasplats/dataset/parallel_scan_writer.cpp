@@ -63,8 +63,9 @@ struct ParallelScanWriter::Impl {
       lock.unlock();
       try {
         Written done = write_files(next);
+        const std::size_t turn = next.turn;
         give_back(std::move(next));
-        append_in_turn(next.turn, std::move(done));
+        append_in_turn(turn, std::move(done));
       } catch (...) {
         fail();
       }

@@ -120,6 +120,7 @@ ADASPLATS_HD inline ClutterRates clutter_rates(const AirRules& air, double range
 
 /// How many answers to expect nearer than a range.
 ADASPLATS_HD inline double expected_within(const AirRules& air, double range_m) {
+  if (air.expected_count == 0) return 0.0;
   const double last = static_cast<double>(air.expected_count - 1);
   double place = (range_m - air.begin_m) / kClutterStep_m;
   place = place > 0 ? place : 0.0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -63,7 +64,7 @@ struct ResponseGains {
 inline constexpr double kShareUnit = 0x1p-30;
 
 ADASPLATS_HD inline std::int64_t whole_units(double share) {
-  return static_cast<std::int64_t>(share * (1 / kShareUnit) + 0.5);
+  return static_cast<std::int64_t>(std::floor(share * (1 / kShareUnit) + 0.5));
 }
 
 /// Normal equations of a table that is linear between its nodes, in units of kShareUnit: three
