@@ -183,6 +183,7 @@ ScanFields fields_of(const py::object& names) {
 std::unique_ptr<BatchIterator> scan_batches(const std::shared_ptr<SceneObject>& object,
                                             py::handle sensor, py::handle poses,
                                             const py::kwargs& kwargs) {
+  object->require_own_process();
   Keywords keywords("scan_batches", kwargs);
   BatchArguments arguments;
   arguments.take(keywords);

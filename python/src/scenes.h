@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/types.h>
+#include <unistd.h>
+
 #include <memory>
 #include <mutex>
 
+#include "adasplats/core/error.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/scene/scan_simulator.h"
 #include "bindings.h"
@@ -20,9 +24,21 @@ struct SceneObject {
   std::unique_ptr<ModelScene> scene;
   std::mutex gpu;  ///< a GpuScene is for one thread at a time
 
+  const ::pid_t process = ::getpid();  ///< that made it
+
   explicit SceneObject(int threads) : executor(threads) {}
-  /// Holds off other threads where they must; to be taken without the GIL.
+  /// A fork has neither the threads nor the GPU of the process that it was. Errors: unavailable.
+  void require_own_process() const {
+    if (::getpid() == process) return;
+    throw Error(ErrorKind::unavailable,
+                "the scene was made before this process was forked, which has none of its threads "
+                "and no GPU: start workers with the method 'spawn' or 'forkserver', or make the "
+                "scene in the worker");
+  }
+  /// Holds off other threads where they must; to be taken without the GIL. Errors: those of
+  /// require_own_process().
   std::unique_lock<std::mutex> lock() {
+    require_own_process();
     return scene->on_gpu() ? std::unique_lock(gpu) : std::unique_lock<std::mutex>();
   }
 };

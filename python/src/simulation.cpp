@@ -167,6 +167,7 @@ void add_simulation(SceneClass& type) {
       "iter_scans",
       [](const std::shared_ptr<SceneObject>& object, py::handle sensor, py::handle poses,
          const py::kwargs& kwargs) {
+        object->require_own_process();
         return std::make_shared<ScanIterator>(object, Drive("iter_scans", sensor, poses, kwargs));
       },
       py::arg("sensor"), py::arg("poses"), doc_of("iter_scans", kIterDoc).c_str());

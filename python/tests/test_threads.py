@@ -193,3 +193,29 @@ def test_interrupt(street, tmp_path, name):
     finally:
         process.kill()
         process.communicate()
+
+
+def test_a_forked_worker_is_told(street, scene, poses):
+    """Its threads are not there: it must not wait for them for ever."""
+    origins, directions = np.zeros(3), unit_rays(10)
+    calls = [lambda: scene.cast(origins, directions), lambda: scene.simulate(street.sensor, poses),
+             lambda: scene.iter_scans(street.sensor, poses),
+             lambda: scene.scan_batches(street.sensor, poses), lambda: scene.render(width=8, height=8)]
+    child = os.fork()
+    if child == 0:
+        told = 0
+        for call in calls:
+            try:
+                call()
+            except RuntimeError as error:
+                told += "'spawn'" in str(error)
+        os._exit(told)
+    deadline = time.time() + 60
+    while (ended := os.waitpid(child, os.WNOHANG)) == (0, 0):
+        if time.time() > deadline:
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
+            pytest.fail("the fork hangs")
+        time.sleep(0.01)
+    assert os.waitstatus_to_exitcode(ended[1]) == len(calls)
+    assert len(scene.cast(origins, directions)) == 10
