@@ -53,6 +53,17 @@ def test_torch_dataset():
     assert "epoch 1: 32 scans of 16384 points" in out
 
 
+def test_torch_live_scans():
+    code, out, errors = run("torch_live_scans.py")
+    if importlib.util.find_spec("torch") is None:
+        assert code == 1 and errors.count("\n") == 1 and "python3-torch" in errors
+        pytest.skip("PyTorch is not installed")
+    assert code == 0, errors
+    assert out.startswith("60 batches: ")
+    first, last = [int(word[:-1]) for word in out.split() if word.endswith("%")]
+    assert last >= first + 10, out  # it learns
+
+
 def test_what_the_documentation_shows(tmp_path, monkeypatch):
     """The blocks of docs/python.md run, one after the other, in one folder."""
     text = (EXAMPLES.parent / "docs" / "python.md").read_text(encoding="utf-8")
