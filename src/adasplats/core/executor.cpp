@@ -107,51 +107,74 @@ void Executor::run(FunctionRef<void()> body) const {
   impl_->arena.execute([&] { body(); });
 }
 
+namespace {
+
+/// Memory whose pages are first touched by the threads that use them.
+template <class T>
+std::unique_ptr<T[]> untouched(std::size_t size) {
+  return std::make_unique_for_overwrite<T[]>(size);
+}
+
+}  // namespace
+
 void Executor::sort_keys(std::vector<std::uint64_t>& keys,
                          std::vector<std::uint32_t>& order) const {
   constexpr int kDigitBits = 11;
   constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
   const std::size_t n = keys.size();
   order.resize(n);
+  if (n == 0) return;
   const std::size_t grain = std::max<std::size_t>(1 << 16, n / 64 + 1);
-  const std::size_t blocks = n == 0 ? 0 : (n + grain - 1) / grain;
+  const std::size_t blocks = (n + grain - 1) / grain;
+  std::vector<std::uint64_t> differing(blocks);
   for_chunks(n, grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) order[i] = static_cast<std::uint32_t>(i);
+    std::uint64_t bits = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      order[i] = static_cast<std::uint32_t>(i);
+      bits |= keys[i] ^ keys[0];
+    }
+    differing[begin / grain] = bits;
   });
-  std::vector<std::uint64_t> keys_out(n);
-  std::vector<std::uint32_t> order_out(n);
+  std::uint64_t differs = 0;
+  for (const std::uint64_t bits : differing) differs |= bits;
+  const auto other_keys = untouched<std::uint64_t>(n);
+  const auto other_order = untouched<std::uint32_t>(n);
+  std::uint64_t *keys_in = keys.data(), *keys_out = other_keys.get();
+  std::uint32_t *order_in = order.data(), *order_out = other_order.get();
   std::vector<std::array<std::uint32_t, kDigits>> counts(blocks);
   for (int shift = 0; shift < 64; shift += kDigitBits) {
+    if ((differs >> shift & (kDigits - 1)) == 0) continue;  // it would move nothing
     const auto digit = [shift](std::uint64_t key) { return (key >> shift) & (kDigits - 1); };
     for_chunks(n, grain, [&](std::size_t begin, std::size_t end) {
       auto& count = counts[begin / grain];
       count.fill(0);
-      for (std::size_t i = begin; i < end; ++i) ++count[digit(keys[i])];
+      for (std::size_t i = begin; i < end; ++i) ++count[digit(keys_in[i])];
     });
-    // Where each block's run of each digit starts; a pass in which all digits agree moves nothing.
+    // Where each block's run of each digit starts.
     std::uint32_t start = 0;
-    bool all_equal = false;
     for (std::size_t d = 0; d < kDigits; ++d) {
-      const std::uint32_t before = start;
       for (auto& count : counts) {
         const std::uint32_t c = count[d];
         count[d] = start;
         start += c;
       }
-      all_equal = all_equal || start - before == n;
     }
-    if (all_equal) continue;
     for_chunks(n, grain, [&](std::size_t begin, std::size_t end) {
       auto& next = counts[begin / grain];
       for (std::size_t i = begin; i < end; ++i) {
-        const std::uint32_t to = next[digit(keys[i])]++;
-        keys_out[to] = keys[i];
-        order_out[to] = order[i];
+        const std::uint32_t to = next[digit(keys_in[i])]++;
+        keys_out[to] = keys_in[i];
+        order_out[to] = order_in[i];
       }
     });
-    keys.swap(keys_out);
-    order.swap(order_out);
+    std::swap(keys_in, keys_out);
+    std::swap(order_in, order_out);
   }
+  if (keys_in == keys.data()) return;
+  for_chunks(n, grain, [&](std::size_t begin, std::size_t end) {
+    std::copy(keys_in + begin, keys_in + end, keys.data() + begin);
+    std::copy(order_in + begin, order_in + end, order.data() + begin);
+  });
 }
 
 }  // namespace adasplats
