@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "adasplats/calibrate/calibration_steps.h"
 #include "adasplats/calibrate/plane_system.h"
-#include "adasplats/calibrate/robust_weight.h"
 #include "adasplats/core/maths/small_motion.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
 
@@ -44,40 +44,13 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-struct DistanceSum {
-  double distance_m = 0, weight = 0;
-
-  DistanceSum& operator+=(const DistanceSum& other) {
-    distance_m += other.distance_m;
-    weight += other.weight;
-    return *this;
-  }
-};
-
-/// Points that are looked at, as indices into the cloud.
-struct ChosenPoints {
-  std::vector<std::uint32_t> indices;
-  std::vector<std::uint32_t> scans;  ///< theirs
-  std::vector<Vec3d> corrected;
-  bool leaves_out = false;  ///< some take no part in the fit, to judge it
-
-  bool is_left_out(std::size_t k) const { return leaves_out && k % kLeftOut == 0; }
-  void add(std::uint32_t index, std::uint32_t scan) {
-    indices.push_back(index);
-    scans.push_back(scan);
-  }
-};
-
-/// The ray of a point, in local coordinates.
-struct PointRay {
-  Vec3d direction, upward;
-  double range_m = 0;
-};
-
 class Calibrator {
  public:
-  Calibrator(const PointCloud& cloud, const CalibrateOptions& options, const Executor& executor)
-      : cloud_(cloud), options_(options), executor_(executor) {
+  using PointSet = CalibrationSteps::PointSet;
+
+  Calibrator(const PointCloud& cloud, const CalibrateOptions& options, CalibrationSteps& steps,
+             const Executor& executor)
+      : cloud_(cloud), options_(options), steps_(steps), executor_(executor) {
     for (const TimedPose& pose : cloud.scan_poses) {
       const RigidTransform& world_from_sensor = pose.world_from_sensor;
       places_.push_back(world_from_sensor.translation - cloud.origin);
@@ -87,14 +60,15 @@ class Calibrator {
       if (laser != kNoLaser) lasers_ = std::max(lasers_, std::size_t{laser} + 1);
     mounted_from_given_.resize(places_.size());
     corrected_from_mounted_.resize(places_.size());
-    offsets_.range_m.resize(lasers_);
-    offsets_.elevation_rad.resize(lasers_);
+    corrections_.offsets.range_m.resize(lasers_);
+    corrections_.offsets.elevation_rad.resize(lasers_);
+    compose();
     choose_points();
+    steps_.load(cloud_, few_, all_, axes_, lasers_);
   }
 
   std::pair<Calibration, CalibrationReport> run() {
     CalibrationReport report;
-    correct(all_);
     judge(report.given_m, report.given);
     if (options_.mount_correction) report.mount = estimate_mount();
     const bool is_mounted = report.mount && report.mount->objection.empty();
@@ -107,7 +81,6 @@ class Calibrator {
       make_round(round, report);
     if (report.objection.empty()) {
       align_to_mounted();
-      correct(all_);
       judge(report.calibrated_m, report.calibrated);
       if (!(report.calibrated_m < options_.least_gain * before_m))
         report.objection = "points that took no part lie no better on the planes of the others";
@@ -120,28 +93,35 @@ class Calibrator {
 
  private:
   void make_round(int round, CalibrationReport& report) {
-    ChosenPoints& points = round + options_.fine_rounds < options_.rounds ? few_ : all_;
-    correct(points);
-    const ScanPlanes planes = find_planes(
+    const PointSet points =
+        round + options_.fine_rounds < options_.rounds ? PointSet::few : PointSet::all;
+    const std::vector<ScanPlane> planes = find_planes(
         points,
         between(options_.first_flatness_m, options_.last_flatness_m, round, options_.rounds));
-    report.planes = planes.planes.size();
-    report.points = planes.points.size();
+    report.planes = planes.size();
+    report.points = 0;
+    for (const ScanPlane& plane : planes) report.points += plane.end - plane.begin;
     report.weakest_share = weakest_share(planes, report.weakest);
     report.objection = objection_to(report);
-    const double width_m =
-        between(options_.first_width_m, options_.last_width_m, round, options_.rounds);
-    for (int step = 0; step < options_.steps && report.objection.empty(); ++step) {
-      make_step(points, planes, width_m);
-      correct(points);
-    }
+    if (!report.objection.empty()) return;
+    RowOptions rows{options_.most_points,
+                    options_.most_weight,
+                    between(options_.first_width_m, options_.last_width_m, round, options_.rounds),
+                    options_.poses,
+                    options_.ranges,
+                    options_.elevations};
+    steps_.choose_rows(rows);
+    for (int step = 0; step < options_.steps; ++step) make_step(rows);
   }
 
   void keep_mount_alone(CalibrationReport& report) {
     std::ranges::fill(corrected_from_mounted_, RigidTransform{});
-    offsets_ = {};
-    correct(all_);
+    corrections_.offsets = {};
+    corrections_.offsets.range_m.resize(lasers_);
+    corrections_.offsets.elevation_rad.resize(lasers_);
+    compose();
     judge(report.calibrated_m, report.calibrated);
+    corrections_.offsets = {};
     report.mount->alone_because = std::move(report.objection);
     report.objection.clear();
   }
@@ -151,43 +131,40 @@ class Calibrator {
   void choose_points() {
     const std::size_t wanted = options_.points_a_scan * std::max<std::size_t>(1, places_.size());
     const std::size_t stride = std::max<std::size_t>(1, cloud_.size() / wanted);
-    for (std::size_t i = 0; i < cloud_.size(); i += stride) {
-      if (!is_beam(cloud_.origin_kind(i))) continue;
-      all_.add(static_cast<std::uint32_t>(i), cloud_.scan_indices[i]);
-    }
-    all_.leaves_out = true;
-    for (std::size_t k = 0; k < all_.indices.size(); k += options_.coarse_stride)
-      if (!all_.is_left_out(k)) few_.add(all_.indices[k], all_.scans[k]);
-  }
-
-  std::uint16_t laser_of(std::uint32_t i) const {
-    return cloud_.lasers.empty() ? kNoLaser : cloud_.lasers[i];
-  }
-
-  PointRay ray_of(std::uint32_t i) const {
-    PointRay ray;
-    const Vec3d way =
-        vec_cast<double>(cloud_.positions[i]) - vec_cast<double>(cloud_.sensor_positions[i]);
-    ray.range_m = length(way);
-    if (!(ray.range_m > 0)) return ray;
-    ray.direction = way / ray.range_m;
-    ray.upward = upward_of(ray.direction, axes_[cloud_.scan_indices[i]]);
-    return ray;
-  }
-
-  void correct(ChosenPoints& points) const {
-    points.corrected.resize(points.indices.size());
-    executor_.for_chunks(points.indices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) points.corrected[k] = corrected(points.indices[k]);
+    const std::size_t candidates = (cloud_.size() + stride - 1) / stride;
+    const auto for_beams = [&](const auto& take) {
+      executor_.for_chunks(candidates, kCoarseGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k)
+          if (is_beam(cloud_.origin_kind(k * stride))) take(begin / kCoarseGrain, k * stride);
+      });
+    };
+    std::vector<std::size_t> next(candidates / kCoarseGrain + 1);
+    for_beams([&](std::size_t chunk, std::size_t) { ++next[chunk]; });
+    std::size_t count = 0;
+    for (std::size_t& of_chunk : next) count += std::exchange(of_chunk, count);
+    all_.indices.resize(count);
+    all_.scans.resize(count);
+    for_beams([&](std::size_t chunk, std::size_t i) {
+      all_.indices[next[chunk]] = static_cast<std::uint32_t>(i);
+      all_.scans[next[chunk]++] = cloud_.scan_indices[i];
     });
+    all_.left_out_every = kLeftOut;
+    for (std::size_t k = 0; k < count; k += options_.coarse_stride) {
+      if (all_.is_left_out(k)) continue;
+      few_.indices.push_back(all_.indices[k]);
+      few_.scans.push_back(all_.scans[k]);
+    }
   }
 
-  Vec3d corrected(std::uint32_t i) const {
-    const std::uint32_t scan = cloud_.scan_indices[i];
-    return corrected_from_mounted_[scan] *
-           (mounted_from_given_[scan] *
-            offsets_.corrected(vec_cast<double>(cloud_.sensor_positions[i]),
-                               vec_cast<double>(cloud_.positions[i]), axes_[scan], laser_of(i)));
+  /// What follows of the mount and what corrects it.
+  void compose() {
+    corrections_.corrected_from_given.resize(places_.size());
+    corrections_.pivots.resize(places_.size());
+    for (std::size_t scan = 0; scan < places_.size(); ++scan) {
+      const RigidTransform& correction = corrected_from_mounted_[scan];
+      corrections_.corrected_from_given[scan] = correction * mounted_from_given_[scan];
+      corrections_.pivots[scan] = correction * places_[scan];
+    }
   }
 
   /// Every `stride`-th of the chosen points that are not left out, in the frames of their scans.
@@ -236,61 +213,32 @@ class Calibrator {
   /// Of the planes that are flat with the given mount, and of those that are with the found one:
   /// the floor is flat with any, so it is the same points that are compared. Sets the mount.
   void judge_mount(MountReport& report) {
-    const std::vector<Vec3d> given = all_.corrected;
-    const ScanPlanes of_given = find_planes(all_, kFlatnessOfJudging);
+    DistanceSum given, mounted;
+    find_planes(PointSet::all, kFlatnessOfJudging);
+    add_left_out(given);
     set_mount(report.found.mount);
-    const ScanPlanes of_mounted = find_planes(all_, kFlatnessOfJudging);
-    const auto mean_m = [&](const std::vector<Vec3d>& points) {
-      DistanceSum sum = left_out_distances(points, of_given);
-      sum += left_out_distances(points, of_mounted);
+    steps_.correct(PointSet::all, corrections_);
+    add_left_out(mounted);
+    find_planes(PointSet::all, kFlatnessOfJudging);
+    add_left_out(mounted);
+    set_mount({});
+    steps_.correct(PointSet::all, corrections_);
+    add_left_out(given);
+    set_mount(report.found.mount);
+    const auto mean_m = [](const DistanceSum& sum) {
       return sum.weight > 0 ? sum.distance_m / sum.weight : 0;
     };
     report.given_m = mean_m(given);
-    report.mounted_m = mean_m(all_.corrected);
+    report.mounted_m = mean_m(mounted);
   }
 
   /// Of points that were left out from planes through the others of the same cells.
-  DistanceSum left_out_distances(const std::vector<Vec3d>& points, const ScanPlanes& planes) const {
-    return executor_.sum_chunks(
-        planes.planes.size(), 256, DistanceSum{}, [&](std::size_t begin, std::size_t end) {
-          DistanceSum sum;
-          for (std::size_t plane = begin; plane < end; ++plane)
-            sum += left_out_distance(points, planes.points_of(planes.planes[plane]));
-          return sum;
-        });
-  }
-
-  DistanceSum left_out_distance(const std::vector<Vec3d>& points,
-                                std::span<const std::uint32_t> members) const {
-    Vec3d mean;
-    double count = 0;
-    for (const std::uint32_t i : members) {
-      if (all_.is_left_out(i)) continue;
-      mean = mean + points[i];
-      ++count;
+  void add_left_out(DistanceSum& sum) {
+    for (const DistanceSum& of_plane :
+         steps_.left_out_distances(kMostDistance_m, options_.most_weight)) {
+      sum.distance_m += of_plane.distance_m;
+      sum.weight += of_plane.weight;
     }
-    if (count < 3) return {};
-    mean = mean / count;
-    SymmetricMat3d spread;
-    for (const std::uint32_t i : members) {
-      if (all_.is_left_out(i)) continue;
-      const Vec3d d = points[i] - mean;
-      spread.xx += d.x * d.x;
-      spread.xy += d.x * d.y;
-      spread.xz += d.x * d.z;
-      spread.yy += d.y * d.y;
-      spread.yz += d.y * d.z;
-      spread.zz += d.z * d.z;
-    }
-    const Vec3d normal = symmetric_eigen(spread).vectors[2];
-    DistanceSum sum;
-    for (const std::uint32_t i : members) {
-      if (!all_.is_left_out(i)) continue;
-      sum.distance_m += std::min(kMostDistance_m, std::fabs(dot(normal, points[i] - mean)));
-      ++sum.weight;
-    }
-    const double scale = sum.weight > 0 ? std::min(1.0, options_.most_weight / count) : 0;
-    return {scale * sum.distance_m, scale * sum.weight};
   }
 
   std::string objection_to(const MountEstimate& found) const {
@@ -314,56 +262,18 @@ class Calibrator {
       places_[scan] = mounted.translation;
       mounted_from_given_[scan] = mount.empty() ? RigidTransform{} : mounted * given.inverse();
     }
-    correct(all_);
+    compose();
   }
 
-  ScanPlanes find_planes(const ChosenPoints& points, double flatness_m) const {
+  /// Of the points where they are with what is estimated now.
+  std::vector<ScanPlane> find_planes(PointSet points, double flatness_m) {
     ScanPlaneOptions planes = options_.planes;
     planes.flatness_m = flatness_m;
-    return find_scan_planes(points.corrected, points.scans, planes, executor_);
+    steps_.correct(points, corrections_);
+    return steps_.find_planes(points, planes);
   }
 
-  PlaneResidual residual_of(const ChosenPoints& points, std::size_t k,
-                            const ScanPlane& plane) const {
-    PlaneResidual row;
-    const std::uint32_t i = points.indices[k];
-    row.scan = points.scans[k];
-    const RigidTransform& correction = corrected_from_mounted_[row.scan];
-    const Vec3d from_center = points.corrected[k] - plane.center;
-    row.residual_m = dot(plane.normal, from_center);
-    row.by_plane = {1, dot(plane.axes[0], from_center), dot(plane.axes[1], from_center)};
-    const Vec3d arm = points.corrected[k] - correction * places_[row.scan];
-    const Vec3d turning = cross(arm, plane.normal);
-    if (options_.poses)
-      row.by_pose = {turning.x,      turning.y,      turning.z,
-                     plane.normal.x, plane.normal.y, plane.normal.z};
-    const std::uint16_t laser = laser_of(i);
-    if (laser == kNoLaser) return row;
-    row.laser = laser;
-    const PointRay ray = ray_of(i);
-    const Mat3d rotation = correction.rotation * mounted_from_given_[row.scan].rotation;
-    if (options_.ranges) row.by_laser[0] = dot(plane.normal, rotation * ray.direction);
-    if (options_.elevations)
-      row.by_laser[1] = ray.range_m * dot(plane.normal, rotation * ray.upward);
-    return row;
-  }
-
-  void residuals_of(const ChosenPoints& points, const ScanPlanes& planes, const ScanPlane& plane,
-                    double width_m, std::vector<PlaneResidual>& residuals) const {
-    const auto members = planes.points_of(plane);
-    const std::size_t stride = (members.size() + options_.most_points - 1) / options_.most_points;
-    double total = 0;
-    for (std::size_t k = 0; k < members.size(); k += stride) {
-      if (points.is_left_out(members[k])) continue;
-      residuals.push_back(residual_of(points, members[k], plane));
-      residuals.back().weight = robust_weight(residuals.back().residual_m, width_m);
-      total += residuals.back().weight;
-    }
-    const double scale = total > options_.most_weight ? options_.most_weight / total : 1;
-    for (PlaneResidual& residual : residuals) residual.weight *= scale;
-  }
-
-  void add_priors(PlaneSystem& system) const {
+  void add_priors(PlaneSystem& system, bool has_lasers) const {
     const auto weight = [&](double sigma) {
       return std::pow(options_.residual_sigma_m / sigma, 2);
     };
@@ -379,40 +289,40 @@ class Calibrator {
                               -shifted[axis]);
       }
     }
-    for (std::size_t laser = 0; laser < lasers_; ++laser) {
+    for (std::size_t laser = 0; has_lasers && laser < lasers_; ++laser) {
       system.add_laser_prior(laser, 0, weight(options_.range_sigma_m), options_.range_share,
-                             -offsets_.range_m[laser]);
+                             -corrections_.offsets.range_m[laser]);
       system.add_laser_prior(laser, 1, weight(options_.elevation_sigma_rad),
-                             options_.elevation_share, -offsets_.elevation_rad[laser]);
+                             options_.elevation_share, -corrections_.offsets.elevation_rad[laser]);
     }
   }
 
-  void make_step(const ChosenPoints& points, const ScanPlanes& planes, double width_m) {
-    PlaneSystem system(places_.size(), lasers_, executor_);
-    system.add_planes(planes.planes.size(),
-                      [&](std::size_t plane, std::vector<PlaneResidual>& residuals) {
-                        residuals_of(points, planes, planes.planes[plane], width_m, residuals);
-                      });
-    add_priors(system);
-    apply(system.solve(options_.tolerance, options_.most_iterations));
+  void make_step(const RowOptions& rows) {
+    PlaneBlocks blocks = steps_.sum_rows(corrections_, rows);
+    const bool has_lasers = !blocks.lasers.empty();
+    PlaneSystem system(std::move(blocks));
+    add_priors(system, has_lasers);
+    apply(system.solve(options_.tolerance, options_.most_iterations,
+                       [&](const PlaneStep& x) { return steps_.coupled(x); }));
   }
 
-  void apply(const PlaneSystem::Step& step) {
+  void apply(const PlaneStep& step) {
     for (std::size_t scan = 0; options_.poses && scan < places_.size(); ++scan) {
       RigidTransform& correction = corrected_from_mounted_[scan];
       const Vec3d pivot = correction * places_[scan];
-      const auto& x = step.poses[scan];
+      const double* const x = step.poses.data() + 6 * scan;
       correction = moved_about(pivot, {x[0], x[1], x[2]}, {x[3], x[4], x[5]}) * correction;
     }
-    if (options_.ranges) add_centred(offsets_.range_m, step.lasers, 0);
-    if (options_.elevations) add_centred(offsets_.elevation_rad, step.lasers, 1);
+    if (options_.ranges) add_centred(corrections_.offsets.range_m, step.lasers, 0);
+    if (options_.elevations) add_centred(corrections_.offsets.elevation_rad, step.lasers, 1);
+    compose();
   }
 
   /// Share of the planes' weight that holds the poses along the direction that it holds least.
-  double weakest_share(const ScanPlanes& planes, Vec3d& direction) const {
+  double weakest_share(const std::vector<ScanPlane>& planes, Vec3d& direction) const {
     SymmetricMat3d normals;
     double total = 0;
-    for (const ScanPlane& plane : planes.planes) {
+    for (const ScanPlane& plane : planes) {
       const double weight = std::min(options_.most_weight, double(plane.end - plane.begin));
       const Vec3d n = plane.normal;
       total += weight;
@@ -442,11 +352,11 @@ class Calibrator {
   }
 
   /// What all lasers have in common is no calibration of one against the other.
-  static void add_centred(std::vector<double>& offsets,
-                          const std::vector<PlaneSystem::LaserStep>& steps, std::size_t which) {
+  static void add_centred(std::vector<double>& offsets, const std::vector<double>& steps,
+                          std::size_t which) {
     double mean = 0;
     for (std::size_t k = 0; k < offsets.size(); ++k) {
-      offsets[k] += steps[k][which];
+      offsets[k] += steps[2 * k + which];
       mean += offsets[k] / static_cast<double>(offsets.size());
     }
     for (double& offset : offsets) offset -= mean;
@@ -465,32 +375,15 @@ class Calibrator {
     }
     const RigidTransform back = moved_about(corrected, -turn, given - corrected);
     for (RigidTransform& correction : corrected_from_mounted_) correction = back * correction;
-  }
-
-  void judge(double& median_m, ResidualCounts& counts) const {
-    std::vector<double> residuals_m = left_out_residuals();
-    counts = counts_of(residuals_m);
-    median_m = median(std::move(residuals_m));
+    compose();
   }
 
   /// Distances of the points that were left out from the planes of the others.
-  std::vector<double> left_out_residuals() const {
-    const ScanPlanes found = find_planes(all_, kFlatnessOfJudging);
-    std::vector<double> residuals;
-    for (const ScanPlane& plane : found.planes) {
-      Vec3d mean;
-      double count = 0;
-      for (const std::uint32_t i : found.points_of(plane)) {
-        if (all_.is_left_out(i)) continue;
-        mean = mean + all_.corrected[i];
-        ++count;
-      }
-      if (count < 3) continue;
-      for (const std::uint32_t i : found.points_of(plane))
-        if (all_.is_left_out(i))
-          residuals.push_back(std::fabs(dot(plane.normal, all_.corrected[i] - mean / count)));
-    }
-    return residuals;
+  void judge(double& median_m, ResidualCounts& counts) {
+    find_planes(PointSet::all, kFlatnessOfJudging);
+    std::vector<double> residuals_m = steps_.left_out_residuals();
+    counts = counts_of(residuals_m);
+    median_m = median(std::move(residuals_m));
   }
 
   Calibration calibration() const {
@@ -503,13 +396,14 @@ class Calibrator {
       result.poses.push_back({given.time_s, given.world_from_sensor.translation,
                               rotation_vector(correction.rotation), correction * place - place});
     }
-    result.lasers = offsets_;
+    result.lasers = corrections_.offsets;
     result.smooth_s = best_smoothing(result);
     return result;
   }
 
   const PointCloud& cloud_;
   const CalibrateOptions& options_;
+  CalibrationSteps& steps_;
   const Executor& executor_;
   std::vector<Vec3d> places_;  ///< of the sensor, one a scan, as mounted, local coordinates
   std::vector<Vec3d> axes_;    ///< of its rotation, upwards
@@ -519,7 +413,7 @@ class Calibrator {
   MountCorrection mount_;
   std::vector<RigidTransform> mounted_from_given_;      ///< one a scan, local coordinates, and...
   std::vector<RigidTransform> corrected_from_mounted_;  ///< ...what is left to correct
-  LaserOffsets offsets_;
+  ScanCorrections corrections_;                         ///< of both, and of lasers
 };
 
 }  // namespace
@@ -527,8 +421,15 @@ class Calibrator {
 std::pair<Calibration, CalibrationReport> calibrate(const PointCloud& cloud,
                                                     const CalibrateOptions& options,
                                                     const Executor& executor) {
+  return calibrate(cloud, options, *make_cpu_calibration_steps(executor), executor);
+}
+
+std::pair<Calibration, CalibrationReport> calibrate(const PointCloud& cloud,
+                                                    const CalibrateOptions& options,
+                                                    CalibrationSteps& steps,
+                                                    const Executor& executor) {
   if (const char* missing = missing_for_calibration(cloud)) return {{}, {.objection = missing}};
-  return Calibrator(cloud, options, executor).run();
+  return Calibrator(cloud, options, steps, executor).run();
 }
 
 }  // namespace adasplats

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "adasplats/calibrate/calibration.h"
+#include "adasplats/calibrate/calibration_steps.h"
 #include "adasplats/calibrate/mount.h"
 #include "adasplats/calibrate/scan_planes.h"
 #include "adasplats/core/executor.h"
@@ -104,6 +105,13 @@ struct CalibrationReport {
 /// the others, or nothing can be estimated, the calibration is empty and the report says why.
 std::pair<Calibration, CalibrationReport> calibrate(const PointCloud& cloud,
                                                     const CalibrateOptions& options,
+                                                    const Executor& executor);
+
+/// The same with the steps of some device; the executor does what is left on the CPU: the search
+/// for the mount.
+std::pair<Calibration, CalibrationReport> calibrate(const PointCloud& cloud,
+                                                    const CalibrateOptions& options,
+                                                    CalibrationSteps& steps,
                                                     const Executor& executor);
 
 }  // namespace adasplats

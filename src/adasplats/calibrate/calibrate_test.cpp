@@ -9,103 +9,11 @@
 #include <limits>
 #include <numbers>
 
+#include "adasplats/calibrate/recorded_hall_test.h"
 #include "adasplats/core/maths/random.h"
 
 namespace adasplats {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::size_t kLasers = 16;
-constexpr std::size_t kColumns = 360;
-
-/// How far a ray goes in a hall of 24 x 14 x 5 m with two pillars.
-double range_in_hall(Vec3d origin, Vec3d direction) {
-  double range_m = std::numeric_limits<double>::infinity();
-  const Vec3d low = {-12, -7, 0}, high = {12, 7, 5};
-  for (int axis = 0; axis < 3; ++axis) {
-    if (direction[axis] == 0) continue;
-    const double wall = direction[axis] > 0 ? high[axis] : low[axis];
-    range_m = std::min(range_m, (wall - origin[axis]) / direction[axis]);
-  }
-  for (const Vec3d pillar : {Vec3d{4, 3, 0}, Vec3d{-5, -3.5, 0}}) {
-    double enter = 0, leave = range_m;
-    for (int axis = 0; axis < 2; ++axis) {
-      const double a = (pillar[axis] - 0.6 - origin[axis]) / direction[axis];
-      const double b = (pillar[axis] + 0.6 - origin[axis]) / direction[axis];
-      enter = std::max(enter, std::min(a, b));
-      leave = std::min(leave, std::max(a, b));
-    }
-    if (enter > 0 && enter < leave) range_m = enter;
-  }
-  return range_m;
-}
-
-/// Scans of a hall along a bent way, as a sensor with offsets tells them and with poses that drift.
-struct Recording {
-  PointCloud cloud;
-  std::vector<RigidTransform> true_poses;
-  LaserOffsets offsets;
-};
-
-struct Faults {
-  double turn_deg = 0, shift_m = 0, range_m = 0, elevation_deg = 0, noise_m = 0.005;
-};
-
-double elevation_of(std::size_t laser) {
-  return (15.0 - 40.0 * static_cast<double>(laser) / (kLasers - 1)) * kDegree;
-}
-
-Recording record(const Faults& faults, std::size_t scan_count = 10) {
-  Recording made;
-  double mean_range = 0, mean_elevation = 0;
-  for (std::size_t laser = 0; laser < kLasers; ++laser) {
-    Random random(7, 1, laser);
-    made.offsets.range_m.push_back(faults.range_m * random.uniform(-1.7, 1.7));
-    made.offsets.elevation_rad.push_back(faults.elevation_deg * kDegree *
-                                         random.uniform(-1.7, 1.7));
-    mean_range += made.offsets.range_m.back() / kLasers;
-    mean_elevation += made.offsets.elevation_rad.back() / kLasers;
-  }
-  for (std::size_t laser = 0; laser < kLasers; ++laser) {
-    made.offsets.range_m[laser] -= mean_range;
-    made.offsets.elevation_rad[laser] -= mean_elevation;
-  }
-  for (std::uint32_t scan = 0; scan < scan_count; ++scan) {
-    const double along = static_cast<double>(scan) / static_cast<double>(scan_count - 1);
-    const RigidTransform pose = {
-        rotation_from_yaw_pitch_roll(0.8 * along, 0.03 * std::sin(5 * along), 0.02 * along),
-        {-6 + 12 * along, 2 * std::sin(3 * along), 1.8}};
-    const double wave = std::sin(2 * std::numbers::pi * along);
-    const double turn = faults.turn_deg * kDegree;
-    const RigidTransform drift = {
-        rotation_from_yaw_pitch_roll(turn * wave, 0.7 * turn * std::cos(4 * along), -turn * wave),
-        faults.shift_m * Vec3d{wave, -0.8 * wave, 0.5 * std::cos(6 * along)}};
-    const Mat3d rotation = drift.rotation * pose.rotation;
-    const RigidTransform given = {rotation, pose.translation + drift.translation};
-    made.true_poses.push_back(pose);
-    made.cloud.scan_poses.push_back({0.1 * scan, given});
-    for (std::size_t laser = 0; laser < kLasers; ++laser) {
-      for (std::size_t column = 0; column < kColumns; ++column) {
-        const double azimuth =
-            2 * std::numbers::pi * static_cast<double>(column) / kColumns + 0.001;
-        const auto beam = [&](double elevation) {
-          return Vec3d{std::cos(elevation) * std::cos(azimuth),
-                       std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
-        };
-        Random random(3, scan, laser * kColumns + column);
-        const double range_m =
-            range_in_hall(pose.translation, pose.rotation * beam(elevation_of(laser))) +
-            faults.noise_m * random.normal() - made.offsets.range_m[laser];
-        const Vec3d told = beam(elevation_of(laser) - made.offsets.elevation_rad[laser]);
-        made.cloud.positions.push_back(vec_cast<float>(given * (range_m * told)));
-        made.cloud.sensor_positions.push_back(vec_cast<float>(given.translation));
-        made.cloud.scan_indices.push_back(scan);
-        made.cloud.lasers.push_back(static_cast<std::uint16_t>(laser));
-      }
-    }
-  }
-  return made;
-}
 
 double rms(const std::vector<double>& found, const std::vector<double>& expected) {
   double sum = 0;
@@ -118,29 +26,29 @@ double rms(const std::vector<double>& found, const std::vector<double>& expected
 /// nothing observes that part, which is proportional to cos * sin of the elevation.
 double rms_but_for_stretch(const std::vector<double>& found, const std::vector<double>& expected) {
   double product = 0, square = 0;
-  std::vector<double> difference(kLasers), stretch(kLasers);
+  std::vector<double> difference(kHallLasers), stretch(kHallLasers);
   double mean = 0;
-  for (std::size_t laser = 0; laser < kLasers; ++laser) {
-    const double elevation = elevation_of(laser);
+  for (std::size_t laser = 0; laser < kHallLasers; ++laser) {
+    const double elevation = hall_elevation_rad(laser);
     stretch[laser] = std::sin(elevation) * std::cos(elevation);
-    mean += stretch[laser] / kLasers;
+    mean += stretch[laser] / kHallLasers;
   }
-  for (std::size_t laser = 0; laser < kLasers; ++laser) {
+  for (std::size_t laser = 0; laser < kHallLasers; ++laser) {
     stretch[laser] -= mean;
     difference[laser] = found[laser] - expected[laser];
     product += stretch[laser] * difference[laser];
     square += stretch[laser] * stretch[laser];
   }
-  for (std::size_t laser = 0; laser < kLasers; ++laser)
+  for (std::size_t laser = 0; laser < kHallLasers; ++laser)
     difference[laser] -= product / square * stretch[laser];
-  return rms(difference, std::vector<double>(kLasers));
+  return rms(difference, std::vector<double>(kHallLasers));
 }
 
 /// Largest errors of the poses relative to that of the first scan.
 struct PoseErrors {
   double turn_deg = 0, shift_m = 0;
 };
-PoseErrors errors_of(const Calibration& found, const Recording& recording) {
+PoseErrors errors_of(const Calibration& found, const HallRecording& recording) {
   const auto pose = [&](std::size_t scan) {
     return found.poses[scan].corrected_from_given() *
            recording.cloud.scan_poses[scan].world_from_sensor;
@@ -158,7 +66,7 @@ PoseErrors errors_of(const Calibration& found, const Recording& recording) {
 
 // Oracle: the faults that were put in.
 TEST(Calibrate, FindsPosesAndLasersThatAreOff) {
-  const Recording recording = record({0.3, 0.1, 0.03, 0.05});
+  const HallRecording recording = record_hall({0.3, 0.1, 0.03, 0.05});
   const auto [found, report] = calibrate(recording.cloud, {}, Executor(2));
   EXPECT_EQ(report.objection, "");
   EXPECT_LT(report.calibrated_m, 0.25 * report.given_m);
@@ -172,8 +80,8 @@ TEST(Calibrate, FindsPosesAndLasersThatAreOff) {
 
 // Oracle: the same beams without the faults.
 TEST(Calibrate, CorrectedPointsAndSensorsAreWhereTheyWere) {
-  Recording recording = record({0.2, 0.05, 0.03, 0});
-  const PointCloud expected = record({0, 0, 0, 0}).cloud;
+  HallRecording recording = record_hall({0.2, 0.05, 0.03, 0});
+  const PointCloud expected = record_hall({0, 0, 0, 0}).cloud;
   const double before_m = length(vec_cast<double>(recording.cloud.positions[999]) -
                                  vec_cast<double>(expected.positions[999]));
   const Calibration found = calibrate(recording.cloud, {}, Executor(2)).first;
@@ -194,13 +102,13 @@ TEST(Calibrate, CorrectedPointsAndSensorsAreWhereTheyWere) {
 }
 
 TEST(Calibrate, WhatIsRightStaysAsItIs) {
-  const auto [found, report] = calibrate(record({}).cloud, {}, Executor(1));
+  const auto [found, report] = calibrate(record_hall({}).cloud, {}, Executor(1));
   EXPECT_TRUE(found.empty());
   EXPECT_NE(report.objection.find("lie no better"), std::string::npos) << report.objection;
 }
 
 TEST(Calibrate, PosesAloneNeedNoLasers) {
-  Recording recording = record({0.3, 0.1, 0, 0});
+  HallRecording recording = record_hall({0.3, 0.1, 0, 0});
   recording.cloud.lasers.clear();
   const Calibration found = calibrate(recording.cloud, {}, Executor(2)).first;
   EXPECT_TRUE(found.lasers.empty());
@@ -208,7 +116,7 @@ TEST(Calibrate, PosesAloneNeedNoLasers) {
 }
 
 TEST(Calibrate, TheSameOnAnyNumberOfThreads) {
-  const PointCloud cloud = record({0.2, 0.05, 0.02, 0.03}, 6).cloud;
+  const PointCloud cloud = record_hall({0.2, 0.05, 0.02, 0.03}, 6).cloud;
   const auto [one, report_of_one] = calibrate(cloud, {}, Executor(1));
   const auto [three, report_of_three] = calibrate(cloud, {}, Executor(3));
   ASSERT_FALSE(one.empty());
@@ -262,7 +170,7 @@ TEST(Calibrate, AStraightTunnelHoldsNoPoses) {
 }
 
 TEST(Calibrate, WhatACloudLacksIsNamed) {
-  PointCloud cloud = record({}, 3).cloud;
+  PointCloud cloud = record_hall({}, 3).cloud;
   PointCloud no_poses = cloud;
   no_poses.scan_poses.clear();
   EXPECT_STREQ(missing_for_calibration(no_poses), "no scans with a pose each");

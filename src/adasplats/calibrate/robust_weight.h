@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "adasplats/core/host_device.h"
+
 namespace adasplats {
 
 /// Of a residual in a fit by least squares, 0 to 1 (Geman and McClure): a quarter at `width_m`.
-inline double robust_weight(double residual_m, double width_m) {
+ADASPLATS_HD inline double robust_weight(double residual_m, double width_m) {
   const double squared = width_m * width_m;
   const double share = squared / (squared + residual_m * residual_m);
   return share * share;

@@ -20,8 +20,8 @@ struct ScanPlane {
 };
 
 struct ScanPlanes {
-  std::vector<ScanPlane> planes;
-  std::vector<std::uint32_t> points;  ///< indices, plane by plane
+  std::vector<ScanPlane> planes;      ///< by where they begin
+  std::vector<std::uint32_t> points;  ///< indices, those of a plane together
 
   std::span<const std::uint32_t> points_of(const ScanPlane& plane) const {
     return std::span(points).subspan(plane.begin, plane.end - plane.begin);
@@ -32,8 +32,7 @@ struct ScanPlaneOptions {
   double largest_cell_m = 1.6;  ///< halved where the points are not flat, three times at most
   double flatness_m = 0.25;     ///< most standard deviation across a plane
   double shape = 0.25;          ///< and most of the second largest along it, so that it is a plane
-  std::uint32_t least_points = 12;
-  std::uint32_t least_scans = 2;
+  std::uint32_t least_points = 12;  ///< of two scans or more
 };
 
 /// Finds planes in cells of a grid. `scans`: of the points. The result depends on the points alone.
