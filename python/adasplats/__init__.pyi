@@ -227,6 +227,8 @@ def calibrate(
     scan_count: int | None = None,
     scan_stride: int = 1,
     overwrite: bool = False,
+    device: Device = "auto",
+    gpus: Sequence[int] | None = None,
     threads: int = 0,
     progress: Progress | None = None,
 ) -> dict[str, Any]: ...

@@ -107,7 +107,6 @@ struct CalibrateCall {
     take_settings(keywords, job.calibrate);
     take_load_options(keywords, job.load);
     keywords.take("overwrite", job.overwrite);
-    work.has_device = false;
     work.take(keywords);
   }
 };

@@ -42,9 +42,12 @@ class CalibrateCommand final : public Command {
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     add_settings(app, job_.calibrate);
     add_load_options(app, job_.load);
+    add_device_options();
   }
 
   void run(Session& session) override {
+    // OptiX casts rays; calibration is CUDA's alone.
+    if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
     const CalibrateResult result = run_calibrate(job_, session);
     session.report.update(to_json(result));
     session.report["seconds"]["total"] = result.seconds;

@@ -19,6 +19,7 @@
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/pipeline/model/calibrate_on_device.h"
 #include "adasplats/pipeline/model/calibration_json.h"
 #include "adasplats/pipeline/output/output_check.h"
 #include "adasplats/pipeline/output/output_folder.h"
@@ -152,7 +153,7 @@ CalibrateResult estimated(const CalibrateJob& job, Session& session) {
   result.loaded = std::move(loaded);
   if (job.calibrate.ranges || job.calibrate.elevations) require_one_sensor(result.loaded.drives);
   session.progress.begin_step("calibrate", 1);
-  auto [calibration, report] = calibrate(cloud, job.calibrate, session.executor);
+  auto [calibration, report] = calibrate_on_device(cloud, job.calibrate, session);
   session.progress.end_step();
   result.sensor = sensor_of_all(result.loaded.drives);
   result.calibration = std::move(calibration);

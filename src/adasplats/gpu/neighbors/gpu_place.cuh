@@ -43,6 +43,8 @@ class GpuPlace {
  public:
   template <class T>
   using Array = DeviceBuffer<T>;
+  template <class T>
+  using Lent = DeviceBuffer<T>;
   using Cloud = DeviceCloud;
 
   /// The device must be the current one.
@@ -67,8 +69,16 @@ class GpuPlace {
     return values;
   }
   template <class T>
+  void resize(DeviceBuffer<T>& values, std::size_t size) const {
+    if (values.size() != size) values = DeviceBuffer<T>(size, stream());
+  }
+  template <class T>
   DeviceBuffer<T> copied(const std::vector<T>& values) const {
     return {std::span<const T>(values), stream()};
+  }
+  template <class T>
+  DeviceBuffer<T> lent(const std::vector<T>& values) const {
+    return copied(values);
   }
   template <class Step>
   void for_each(std::size_t count, const char* doing, const Step& step) const {
@@ -100,6 +110,9 @@ class GpuPlace {
   }
   DeviceBuffer<std::uint32_t> sort(DeviceBuffer<std::uint64_t>& keys) const {
     return sort_order(keys, stream());
+  }
+  void sort(DeviceBuffer<std::uint64_t>& keys, DeviceBuffer<std::uint32_t>& order) const {
+    order = sort_order(keys, stream());
   }
   DeviceBuffer<std::uint32_t> run_begins(const DeviceBuffer<std::uint64_t>& sorted_keys) const {
     return gpu::run_begins(sorted_keys.data(), sorted_keys.size(), stream());

@@ -11,6 +11,7 @@
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/gpu/gpu_model.h"
+#include "adasplats/pipeline/model/calibrate_on_device.h"
 #include "adasplats/pipeline/model/calibration_json.h"
 #include "adasplats/pipeline/model/label_use.h"
 #include "adasplats/pipeline/session/inputs.h"
@@ -116,7 +117,7 @@ class ModelMaker {
   void estimate_calibration(PointCloud& cloud, ModelResult& result) {
     const Stopwatch watch;
     session_.progress.begin_step("calibrate", 1);
-    auto [calibration, report] = calibrate(cloud, options_.calibration.options, session_.executor);
+    auto [calibration, report] = calibrate_on_device(cloud, options_.calibration.options, session_);
     session_.progress.end_step();
     result.calibration = std::move(calibration);
     result.calibrated = std::move(report);
