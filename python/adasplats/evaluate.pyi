@@ -97,6 +97,7 @@ def resimulate(
     drop_moving: bool = True,
     drop_movable: bool = False,
     all_poses: bool = False,
+    protocol: str | None = None,
     device: Device = "auto",
     gpus: Sequence[int] | None = None,
     threads: int = 0,

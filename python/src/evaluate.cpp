@@ -92,11 +92,23 @@ struct CloudArguments {
   }
 };
 
+/// Nothing of None. Throws TypeError, and ValueError for a word that is no protocol.
+std::optional<HeldOutProtocol> protocol_of(const py::object& word) {
+  if (word.is_none()) return {};
+  if (!py::isinstance<py::str>(word)) throw py::type_error("protocol: expected a string or None");
+  std::string known;
+  for (const auto& [each, protocol] : kHeldOutProtocols) {
+    if (each == word.cast<std::string>()) return protocol;
+    known += (known.empty() ? "" : ", ") + std::string(each);
+  }
+  throw py::value_error("protocol: '" + word.cast<std::string>() + "', expected one of " + known);
+}
+
 struct ResimulateArguments {
   HeldOutScans scans;
   std::string labels = "semantickitti";
   ResimulateOptions options;
-  bool all_poses = false;
+  HeldOutExtras extras;
   WorkOptions work;
 
   void take(Keywords& keywords) {
@@ -110,7 +122,10 @@ struct ResimulateArguments {
     keywords.take("max_range", options.max_range_m);
     keywords.take("drop_moving", options.drop_moving);
     keywords.take("drop_movable", options.drop_movable);
-    keywords.take("all_poses", all_poses);
+    keywords.take("all_poses", extras.all_poses);
+    py::object protocol = py::none();
+    keywords.take("protocol", protocol);
+    extras.protocol = protocol_of(protocol);
     work.take(keywords);
   }
 
@@ -126,9 +141,9 @@ struct ResimulateArguments {
       KittiSequence held_out = open_held_out(scans, session);
       if (!in_memory)
         return evaluate_resimulation(ModelScene(file, "", session), held_out, labels, options,
-                                     all_poses, session);
+                                     extras, session);
       const auto lock = object->lock();
-      return evaluate_resimulation(*object->scene, held_out, labels, options, all_poses, session);
+      return evaluate_resimulation(*object->scene, held_out, labels, options, extras, session);
     });
   }
 };
@@ -280,6 +295,7 @@ void bind_evaluate(py::module_& module) {
       evaluate, "resimulate", "model", "sequence",
       "Cast the measured beams of held-out scans again and compare ranges.\n\n"
       "model: a Scene or the path of a model. sequence: a SemanticKITTI folder. Ranges in metres.\n"
+      "protocol: 'lidar4d' adds the measures of that publication.\n"
       "Raises ValueError, OSError.");
   define<TruthArguments>(
       evaluate, "truth", "model", "truth",

@@ -338,6 +338,18 @@ def test_resimulate(street, scene):
     assert adasplats.evaluate.resimulate(scene, street.sequence) == result
 
 
+def test_resimulate_by_a_protocol(street, scene):
+    expected = report_of(street.folder, "evaluate", "resimulate", street.model, street.sequence,
+                         "--protocol", "lidar4d")
+    result = adasplats.evaluate.resimulate(scene, street.sequence, protocol="lidar4d")
+    assert result == without_times(expected)
+    assert result["lidar4d"]["scans"] > 0
+    with pytest.raises(ValueError, match="expected one of lidar4d"):
+        adasplats.evaluate.resimulate(scene, street.sequence, protocol="lidarrf")
+    with pytest.raises(TypeError, match="protocol"):
+        adasplats.evaluate.resimulate(scene, street.sequence, protocol=4)
+
+
 def test_truth(street):
     expected = report_of(street.folder, "evaluate", "truth", street.model, street.mesh,
                          "--trajectory", street.true_poses, "--sensor", street.sensor, "--every", 2)

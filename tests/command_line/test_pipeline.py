@@ -57,6 +57,12 @@ class Pipeline(ProgramTest):
         self.assertEqual(set(report["within"]), {"0.02", "0.05", "0.10", "0.50"})
         self.assertEqual(set(report["range_error_m"]), {"median", "mae", "rmse", "p90", "bias",
                                                       "spread"})
+        returns = report["returns"]
+        self.assertEqual(returns["returned_beams"], report["rays"])
+        self.assertAlmostEqual(returns["holes"], report["no_hit"])
+        self.assertEqual(returns["empty_beams"], report["empty_beams"]["beams"])
+        self.assertEqual(set(returns) - {"upward"}, set(returns["upward"]))
+        self.assertNotIn("lidar4d", report)
 
     def test_beams_without_return_are_found_and_take_splats_away(self):
         """Oracle: the street's mesh, which has nothing in the sky."""
@@ -81,6 +87,30 @@ class Pipeline(ProgramTest):
         report = self.report("evaluate", "resimulate", model, scans, "--min-range", "0.5")
         self.assertGreater(report["rays"], 1000)
         self.assertGreater(report["within"]["0.02"], 0.98)
+
+    def test_scans_by_the_protocol_of_lidar4d(self):
+        """Round trip: scans of a sensor whose beams are the pixels are what the model predicts."""
+        self.sensor.write_text(
+            'name = "pixels"\nbeams = 66\nelevation_top_deg = 2.0\n'
+            f"elevation_bottom_deg = {2 - 26.9 * 65 / 66}\ncolumns = 1030\n"
+            "first_azimuth_deg = 180\nclockwise = true\nmax_range_m = 80.0\n")
+        model = self.model()
+        scans = self.simulate(model, "scans")
+        report = self.report("evaluate", "resimulate", model, scans, "--protocol", "lidar4d")
+        found = report["lidar4d"]
+        self.assertEqual(found["comparable"], "same protocol, other scene")
+        self.assertIn("no LPIPS", found["differs"])
+        self.assertEqual(found["scans"], 3)
+        self.assertEqual((found["range_image"]["rows"], found["range_image"]["columns"]), (66, 1030))
+        self.assertLess(found["depth_m"]["rmse"], 1e-3)
+        self.assertGreater(found["depth_m"]["ssim"], 0.9999)
+        self.assertEqual(found["ray_drop"], {"rmse": 0, "accuracy": 1, "f_score": 1})
+        self.assertLess(found["points"]["chamfer_m2"], 1e-6)
+        self.assertEqual((found["points"]["f_score"], found["points"]["f_score_5cm"]), (1, 1))
+        text = self.run_good("evaluate", "resimulate", model, scans, "--protocol", "lidar4d").stdout
+        self.assertIn("same protocol, other scene", text)
+        self.run_bad(64, "evaluate", "resimulate", model, scans, "--protocol", "lidarrf",
+                     says=["--protocol"])
 
     def test_offset_moves_the_sensor(self):
         model = self.model()

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "adasplats/cloud/beams/empty_beams.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/beam_accuracy_internal.h"
 
@@ -18,6 +19,7 @@ namespace {
 constexpr std::array<double, 7> kRangeEdges_m = {10, 20, 30, 40, 50, 75, 100};
 constexpr std::array<double, 6> kIncidenceEdges_deg = {0, 30, 60, 75, 85, 90};
 constexpr double kDegreesPerRadian = 57.29577951308232;
+constexpr float kLeastUp = static_cast<float>(EmptyBeamOptions{}.least_up);
 
 /// What is kept of a beam until the end.
 struct Beam {
@@ -25,6 +27,7 @@ struct Beam {
   std::uint8_t range_bin = 0;
   std::uint8_t incidence_bin = 0;  ///< meaningless without a hit
   std::int8_t elevation_deg = 0;   ///< rounded down
+  bool upward = false;             ///< in the world
   std::uint16_t class_id = 0;      ///< 0 without labels
 };
 
@@ -152,6 +155,7 @@ CastScan cast_scan(const CastPlace& setting, const KittiSequence& sequence, std:
     beam.range_bin = setting.ranges.bin_of(length(vec_cast<double>(result.measured.positions[k])));
     beam.elevation_deg =
         static_cast<std::int8_t>(std::floor(cast[k].elevation_rad * kDegreesPerRadian));
+    beam.upward = rays[k].direction.z > kLeastUp;
     if (!scan.classes.empty()) beam.class_id = scan.classes[selected[k]];
     if (!hits[k].valid()) continue;
     const double predicted_m = static_cast<double>(hits[k].t);
@@ -269,6 +273,7 @@ ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d 
   }
   ResimulateResult result;
   result.all = accuracy_where(beams, [](const Beam&) { return true; });
+  result.upward = accuracy_where(beams, [](const Beam& beam) { return beam.upward; });
   result.clouds = clouds.mean();
   result.beams = sequence.beams.description();
   add_breakdowns(result, beams, setting, !sequence.labels.empty());

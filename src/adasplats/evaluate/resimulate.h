@@ -42,6 +42,9 @@ struct BeamAccuracy {
 
 struct ResimulateResult {
   BeamAccuracy all;
+  /// Of the beams that go as far up in the world as those that are known to have returned nothing
+  /// (EmptyBeamOptions::least_up).
+  BeamAccuracy upward;
   std::string beams;  ///< where they started (ScanBeams::description)
   /// Predicted against measured points of each scan, the mean over scans (as lidar-nerf and LiDAR4D
   /// average over frames); NaN where no beam hit. Point counts are sums.

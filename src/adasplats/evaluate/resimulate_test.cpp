@@ -187,6 +187,23 @@ TEST_F(Resimulate, HoleOfKnownShare) {
   EXPECT_NEAR(r.clouds.completeness_m, (1 + 2 + 3) / 10.0, 1e-5);
 }
 
+// Analytic: sines of 0.04 and 0.06 lie on either side of 0.05; a sensor that nods by 0.1 rad lifts
+// beams that are level in its frame.
+TEST_F(Resimulate, UpwardIsInTheWorld) {
+  const auto at_sine = [](float sine) {
+    return Vec3f{10 * std::sqrt(1 - sine * sine), 0, 10 * sine};
+  };
+  KittiSequence held_out = sequence({at_sine(0.04F), at_sine(0.06F), {-10, 0, 1}});
+  const ResimulateResult level = run(held_out);
+  EXPECT_EQ(level.upward.rays, 2U);
+  EXPECT_DOUBLE_EQ(level.upward.no_hit, 1.0 / 2);  // nothing behind the sensor
+  held_out.trajectory[0].world_from_sensor.rotation =
+      held_out.trajectory[0].world_from_sensor.rotation * rotation_from_yaw_pitch_roll(0, -0.1, 0);
+  const ResimulateResult nodding = run(held_out);
+  EXPECT_EQ(nodding.upward.rays, 2U);
+  EXPECT_DOUBLE_EQ(nodding.upward.no_hit, 0.0);  // what is behind went down
+}
+
 TEST_F(Resimulate, NothingHitGivesNoDistances) {
   const ResimulateResult r = run(sequence({{-10, 0, 0}}));
   EXPECT_DOUBLE_EQ(r.all.no_hit, 1.0);

@@ -54,7 +54,7 @@ DemoRow run_method(const std::string& name, SplatMethod method, const fs::path& 
   held_out.drop_movable = true;  // parked cars are not in the models
   KittiSequence scans = open_held_out({.sequence = simulation.drive.trajectory}, session);
   row.held_out = evaluate_resimulation(ModelScene(model.output, "", session), scans, model.labels,
-                                       held_out, false, session);
+                                       held_out, {}, session);
   return row;
 }
 

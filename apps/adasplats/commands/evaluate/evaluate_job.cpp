@@ -42,7 +42,7 @@ HeldOutResult run_resimulate(const ResimulateJob& job, Session& session) {
   }
   const ModelScene scene(job.model, "", session);
   HeldOutResult result =
-      evaluate_resimulation(scene, sequence, job.labels, job.options, job.all_poses, session);
+      evaluate_resimulation(scene, sequence, job.labels, job.options, job.extras, session);
   if (!job.picture.empty()) {
     const std::size_t middle = sequence.scans.size() / 2;
     write_beam_picture(job.picture,

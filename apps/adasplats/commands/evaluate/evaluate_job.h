@@ -27,7 +27,7 @@ struct ResimulateJob : HeldOutScans {
   std::filesystem::path model;
   std::string labels = "semantickitti";
   ResimulateOptions options;
-  bool all_poses = false;         ///< also as given and registered
+  HeldOutExtras extras;
   std::filesystem::path picture;  ///< PNG of the middle scan's beams by error; empty: none
   int picture_width = 1920;
   std::filesystem::path errors;  ///< PLY of the measured points with their range error; empty: none

@@ -16,7 +16,8 @@ namespace {
 constexpr const char* kEvaluateResimulateExamples =
     "  adasplats evaluate resimulate place.ply sequences/01\n"
     "  adasplats evaluate resimulate place.ply sequences/01 --max-range 80 --report "
-    "held-out.json\n";
+    "held-out.json\n"
+    "  adasplats evaluate resimulate place.ply sequences/01 --protocol lidar4d\n";
 
 void add_row(TextTable& table, const std::string& name, const BeamAccuracy& a) {
   table.add_row({name, grouped(a.rays), percent(a.no_hit), centimetres(a.median_m),
@@ -25,11 +26,49 @@ void add_row(TextTable& table, const std::string& name, const BeamAccuracy& a) {
                  percent(a.late_50cm)});
 }
 
-/// Of the beams that returned nothing; empty where none are known.
+/// Of the beams that returned nothing.
 std::string ghosts_of(const EmptyBeamHits& empty) {
-  if (empty.beams == 0) return {};
   return "Ghosts: " + percent(empty.ghosts) + " of " + grouped(empty.beams) +
          " beams without return hit the model within " + fixed(empty.reach_m, 1) + " m\n";
+}
+
+std::string returns_of(const std::string& name, const BeamReturns& returns) {
+  return name + ": holes " + percent(returns.holes) + " of " + grouped(returns.returned) +
+         " that returned hit nothing; 'this beam returns': precision " +
+         percent(returns.precision) + ", recall " + percent(returns.recall) + ", F1 " +
+         percent(returns.f1) + "\n";
+}
+
+/// Ghosts and their converse; empty where no empty beams are known.
+std::string returns_of(const HeldOutResult& result) {
+  if (result.empty.beams == 0) return {};
+  std::string text = ghosts_of(result.empty) + returns_of("All beams", result.returns);
+  if (result.upward_returns.returned > 0)
+    text += returns_of("Beams as far up as those", result.upward_returns);
+  return text;
+}
+
+void add_images(TextTable& table, const std::string& name, const ImageError& error) {
+  table.add_row({name, fixed(error.rmse, 4), fixed(error.medae, 4), fixed(error.ssim, 4),
+                 fixed(error.psnr_db, 2)});
+}
+
+/// By the protocol of LiDAR4D, and what it may be compared with.
+std::string protocol_of(const Lidar4dEvaluation& result) {
+  TextTable images({"LiDAR4D protocol", "RMSE", "MedAE", "SSIM", "PSNR"});
+  add_images(images, "depth, m", result.depth);
+  if (result.intensity) add_images(images, "intensity", *result.intensity);
+  std::string text =
+      "\n" + images.text() + "Ray drop: RMSE " + fixed(result.drop.rmse, 4) + ", accuracy " +
+      fixed(result.drop.accuracy, 4) + ", F-score " + fixed(result.drop.f_score, 4) +
+      "; points: Chamfer " + fixed(result.chamfer_m2, 4) + " m2, F-score " +
+      fixed(result.f_score_224mm, 4) + " (squared distances below 0.05 m2, as its code has it), " +
+      fixed(result.f_score_5cm, 4) + " within 5 cm\n" + grouped(result.scans) +
+      " scans as range images of " + grouped(result.layout.rows) + " x " +
+      grouped(result.layout.columns) + "; " + std::string(kLidar4dComparable) + ":\n";
+  for (const std::string_view difference : kLidar4dDiffers)
+    text += "- " + std::string(difference) + "\n";
+  return text;
 }
 
 std::string table_of(const HeldOutResult& result) {
@@ -46,7 +85,7 @@ std::string table_of(const HeldOutResult& result) {
   return table.text() + "\nPoses: " + std::string(word_of(result.poses, words_of(result.poses))) +
          "; beams from " + result.beams + "; Chamfer " + centimetres(clouds.chamfer_m) + ", " +
          fixed(clouds.chamfer_m2, 4) + " m2; shares are of all rays, errors of hits\n" +
-         ghosts_of(result.empty);
+         returns_of(result) + (result.lidar4d ? protocol_of(*result.lidar4d) : "");
 }
 
 class EvaluateResimulateCommand final : public Command {
@@ -75,8 +114,13 @@ class EvaluateResimulateCommand final : public Command {
     add_path(app, "--motion", job_.motion,
              "How the sensor moved, for scans that are not motion-compensated: poses in the "
              "sequence's time (CSV, TUM, KITTI poses)");
-    app.add_flag("--all-poses", job_.all_poses,
+    app.add_flag("--all-poses", job_.extras.all_poses,
                  "Also with the poses as given, and with each scan registered to the model");
+    add_choice<std::optional<HeldOutProtocol>>(app, "--protocol", job_.extras.protocol,
+                                               choices_of_optional(kHeldOutProtocols),
+                                               "Also the measures of a publication: range images "
+                                               "of 66 x 1030, depth, intensity, ray drop, "
+                                               "points");
     app.add_flag("--keep-moving", keep_moving_, "Count beams on moving objects");
     app.add_flag("--drop-movable", job_.options.drop_movable,
                  "Leave out beams on movable objects (parked cars)");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "adasplats/cloud/load/frame_drive.h"
@@ -81,18 +82,23 @@ HeldOutPoses calibrate_held_out(const ModelScene& scene, KittiSequence& sequence
 
 HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequence,
                                     const std::string& labels, const ResimulateOptions& options,
-                                    bool all_poses, Session& session) {
+                                    const HeldOutExtras& extras, Session& session) {
   const LabelScheme scheme = load_label_scheme(labels);
   const auto cast = [&](const KittiSequence& scans) {
     return resimulate(scene.tracer(), scene.view(), scene.origin(), scans, scheme, options,
                       session.executor, session.progress);
   };
   HeldOutResult result;
-  if (all_poses) result.with_given = cast(sequence);
+  if (extras.all_poses) result.with_given = cast(sequence);
+  const std::optional<std::size_t> of_model = scans_of_model(scene, sequence);
   result.poses = calibrate_held_out(scene, sequence, session.progress);
   static_cast<ResimulateResult&>(result) = cast(sequence);
   result.empty = cast_empty_beams(scene.tracer(), scene.origin(), sequence, session.executor);
-  if (all_poses) {
+  result.returns = beam_returns(result.all, result.empty);
+  result.upward_returns = beam_returns(result.upward, result.empty);
+  if (extras.protocol == HeldOutProtocol::lidar4d)
+    result.lidar4d = evaluate_lidar4d(scene, sequence, of_model, session);
+  if (extras.all_poses) {
     KittiSequence registered = sequence;
     register_scans(scene.tracer(), scene.view(), scene.origin(), registered, scheme, options,
                    session.executor, session.progress);
@@ -100,6 +106,25 @@ HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequ
   }
   return result;
 }
+
+namespace {
+
+/// Null of what is not known.
+nlohmann::ordered_json known(double value) {
+  return std::isnan(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+}
+
+nlohmann::ordered_json returns_json(const BeamReturns& returns) {
+  return {{"returned_beams", returns.returned},
+          {"holes", known(returns.holes)},
+          {"empty_beams", returns.empty},
+          {"ghosts", known(returns.ghosts)},
+          {"precision", known(returns.precision)},
+          {"recall", known(returns.recall)},
+          {"f1", known(returns.f1)}};
+}
+
+}  // namespace
 
 nlohmann::ordered_json to_json(const HeldOutResult& result) {
   nlohmann::ordered_json json = to_json(static_cast<const ResimulateResult&>(result));
@@ -109,7 +134,10 @@ nlohmann::ordered_json to_json(const HeldOutResult& result) {
     json["empty_beams"]["ghosts"] = result.empty.ghosts;
     json["empty_beams"]["reach_m"] = result.empty.reach_m;
   }
+  json["returns"] = returns_json(result.returns);
+  json["returns"]["upward"] = returns_json(result.upward_returns);
   if (result.with_given) json["as_given"] = to_json(*result.with_given);
+  if (result.lidar4d) json["lidar4d"] = to_json(*result.lidar4d);
   if (result.registered) json["registered"] = to_json(*result.registered);
   return json;
 }

@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "adasplats/core/words.h"
+#include "adasplats/evaluate/beam_returns.h"
 #include "adasplats/evaluate/empty_beams_cast.h"
 #include "adasplats/evaluate/resimulate.h"
+#include "adasplats/pipeline/evaluate/held_out_protocol.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/session/scan_range.h"
 #include "adasplats/pipeline/session/session.h"
@@ -60,16 +62,26 @@ struct HeldOutResult : ResimulateResult {
   /// model best (register_scans).
   std::optional<ResimulateResult> with_given, registered;
   EmptyBeamHits empty;  ///< of the beams that returned nothing
+  /// These with all beams that returned, and with those that go as far up as they do: beams on the
+  /// ground, of which most scans have most, are easily told.
+  BeamReturns returns, upward_returns;
+  std::optional<Lidar4dEvaluation> lidar4d;  ///< on demand
+};
+
+/// What is evaluated besides.
+struct HeldOutExtras {
+  bool all_poses = false;  ///< also with the poses as given, and registered to the model
+  std::optional<HeldOutProtocol> protocol;
 };
 
 /// Casts the beams of held-out scans into the model, and leaves the scans corrected as they were
-/// cast (calibrate_held_out). `labels` as load_label_scheme takes it; `all_poses`: all three ways.
+/// cast (calibrate_held_out). `labels` as load_label_scheme takes it.
 HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequence,
                                     const std::string& labels, const ResimulateOptions& options,
-                                    bool all_poses, Session& session);
+                                    const HeldOutExtras& extras, Session& session);
 
-/// The keys of --report: those of the default, `poses` and, where asked for, the same keys under
-/// `as_given` and `registered`.
+/// The keys of --report: those of the default, `poses`, `empty_beams`, `returns` and, where asked
+/// for, those of the default under `as_given` and `registered`, and the protocol's under its name.
 nlohmann::ordered_json to_json(const HeldOutResult& result);
 
 }  // namespace adasplats
