@@ -6,8 +6,8 @@
   bench/calibration.py build/release/bin/adasplats REAL_DATA OUT [--parts]
 
 REAL_DATA has kitti-0005, pandaset-002 and semantickitti-labelled as unpacked; what is missing is
-left out. Writes OUT/calibration.json (for bench/results) and prints a Markdown table. A row whose
-reports are there is not run again. Columns: a model of the recording as it is; one that was
+left out. Writes OUT/calibration.json (for bench/results) and prints a Markdown table. What the
+program reported since it was built is not run again. Columns: a model of the recording as it is; one that was
 calibrated, its held-out scans corrected by interpolation; these scans registered to that model. With --parts also what is left
 without each part of the calibration, and without what else a drive's models do by themselves.
 """
@@ -53,17 +53,21 @@ def drives(data):
 
 
 def report_of(words, file):
-    """What a command reports; not run where the report is there."""
-    if not file.exists():
+    """What a command reports; not run where the program has reported it since it was built."""
+    program = pathlib.Path(words[0])
+    if not file.exists() or file.stat().st_mtime < program.stat().st_mtime:
         subprocess.run([*map(str, words), "--report", str(file)], check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return json.loads(file.read_text())
 
 
 def figures_of(beams):
-    return {"rays": beams["rays"], "no_hit": beams["no_hit"], "early_50cm": beams["early_50cm"],
-            "late_50cm": beams["late_50cm"], "median_m": beams["range_error_m"]["median"],
-            "within_10cm": beams["within"]["0.10"]}
+    figures = {"rays": beams["rays"], "no_hit": beams["no_hit"],
+               "early_50cm": beams["early_50cm"], "late_50cm": beams["late_50cm"],
+               "median_m": beams["range_error_m"]["median"], "within_10cm": beams["within"]["0.10"]}
+    if beams.get("returns", {}).get("empty_beams"):
+        figures["returns"] = beams["returns"]
+    return figures
 
 
 class Drive:

@@ -174,13 +174,35 @@ CALIBRATION = [
     ("no hit", "calibrated/no_hit", "0.0 %"), ("early", "calibrated/early_50cm", "0.0 %"),
     ("late", "calibrated/late_50cm", "0.0 %"), ("splats", "calibrated/primitives", "0.00 M"),
     ("planes", "calibration/planes", "0,000"),
-    ("ranges (RMS)", "calibration/range_offset_rms_m", "0.0 cm")]
+    ("ranges (RMS)", "calibration/range_offset_rms_m", "0.0 cm"),
+    ("ghosts", "calibrated/returns/ghosts", "0.0 %"),
+    ("holes", "calibrated/returns/upward/holes", "0.0 %"),
+    ("returns foretold (F1)", "calibrated/returns/upward/f1", "0.0 %")]
 CALIBRATION_PARTS = [
     ("all parts", "calibrated/within_10cm", "0.0 %"), *(
         (title, f"parts/{key}/within_10cm", "0.0 %") for title, key in (
             ("without poses", "no_poses"), ("without ranges", "no_ranges"),
             ("without elevations", "no_elevations"), ("without mount", "no_mount"),
             ("driven path kept", "driven_path_kept"), ("without empty beams", "no_empty_beams")))]
+MOUNTS = [
+    ("turn left, degrees", "mount/turn_left_deg", "0.000"),
+    ("shift left", "mount/shift_left_m", "0.0 cm"),
+    ("height left", "mount/height_left_m", "0.0 cm"),
+    *(column for column in CALIBRATION[1:6])]
+STREETS = [
+    ("splats", "primitives", "0.00 M"), ("ghosts", "ghosts", "0.0 %"), ("holes", "holes", "0.0 %"),
+    *((f"{thing} found", f"found/{thing}", "0.0 %") for thing in THIN),
+    *((f"{thing} beams within 50 cm", f"beams_within_50cm/{thing}", "0.0 %") for thing in THIN),
+    ("within 10 cm", "beams/within_10cm", "0.0 %"), ("median", "beams/median_m", "0.00 cm")]
+LIDAR4D = [
+    ("Chamfer, m2", "points/chamfer_m2", "0.0000"), ("F-score", "points/f_score", "0.0000"),
+    ("F-score at 5 cm", "points/f_score_5cm", "0.0000"), *(
+        (f"{image} {measure}", f"{key}/{of}", form)
+        for image, key in (("depth", "depth_m"), ("intensity", "intensity"))
+        for measure, of, form in (("RMSE", "rmse", "0.0000"), ("MedAE", "medae", "0.0000"),
+                                  ("SSIM", "ssim", "0.0000"), ("PSNR", "psnr_db", "0.00"))),
+    ("ray drop RMSE", "ray_drop/rmse", "0.0000"), ("accuracy", "ray_drop/accuracy", "0.0000"),
+    ("F", "ray_drop/f_score", "0.0000")]
 SEGMENTATION = [
     ("groups", "groups/miou", "0.0 %"), *(
         (group, f"groups/iou/{group}", "0.0 %")
@@ -204,6 +226,8 @@ THIN_THINGS = [column for column in COMPARISON if column[0] in ("primitives", *T
 TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "calibration": ("drives", CALIBRATION),
           "parts": ("drives", CALIBRATION_PARTS),
+          "mounts": ("mounts", MOUNTS), "streets": ("streets", STREETS),
+          "lidar4d": ("lidar4d", LIDAR4D),
           "segmentation": ("networks", SEGMENTATION),
           "segmentation_ablation": ("lessons", SEGMENTATION_ABLATION),
           "segmentation_models": ("places", SEGMENTATION_MODELS),
