@@ -205,6 +205,7 @@ def calibrate(
     ranges: bool = True,
     elevations: bool = True,
     mount_correction: bool = True,
+    window_scans: int = 200,
     label_field: str | None = None,
     viewpoint: ArrayLike | None = None,
     trajectory: Path | None = None,

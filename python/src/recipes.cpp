@@ -105,6 +105,7 @@ struct CalibrateCall {
 
   void take(Keywords& keywords) {
     take_settings(keywords, job.calibrate);
+    take_settings(keywords, job.windows);
     take_load_options(keywords, job.load);
     keywords.take("overwrite", job.overwrite);
     work.take(keywords);

@@ -41,6 +41,7 @@ class CalibrateCommand final : public Command {
                                    "sensor.toml, report.html and report.json, as far as known")));
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     add_settings(app, job_.calibrate);
+    add_settings(app, job_.windows);
     add_load_options(app, job_.load);
     add_device_options();
   }
@@ -57,6 +58,7 @@ class CalibrateCommand final : public Command {
     table.add_row({"planes", grouped(result.report.planes)});
     table.add_row({"weakest direction", fixed(100 * result.report.weakest_share, 2) + " %"});
     if (result.report.mount) add_mount(*result.report.mount, table);
+    if (result.report.windows) table.add_row({"windows", grouped(result.report.windows->windows.size())});
     for (const std::string& file : result.files) table.add_row({"written", file});
     table.add_row({"seconds", fixed(result.seconds, 1)});
     print(table.text() + "\n" + calibration_text(result.report, result.calibration));

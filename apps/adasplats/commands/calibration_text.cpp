@@ -28,6 +28,29 @@ std::string rest_text(const CalibrationReport& report, const Calibration& calibr
   return text;
 }
 
+/// "\n12 windows of up to 200 scans, which differ ... where they overlap" and those without
+/// evidence, one a line.
+std::string windows_text(const WindowsReport& report) {
+  const PoseDisagreement& apart = report.overlaps;
+  std::string text = grouped(report.windows.size()) + " windows of up to " +
+                     grouped(report.window_scans) + " scans; where they overlap poses differ by " +
+                     centimetres(apart.median_shift_m) + " and " +
+                     fixed(apart.median_rotation_rad / kDegree, 3) + " deg (median), " +
+                     centimetres(apart.largest_shift_m) + " and " +
+                     fixed(apart.largest_rotation_rad / kDegree, 3) + " deg (largest)";
+  if (report.laser_windows > 0)
+    text += "; lasers of " + grouped(report.laser_windows) + " windows differ by " +
+            centimetres(report.range_disagreement_m) + " and " +
+            fixed(report.elevation_disagreement_rad / kDegree, 3) + " deg from their mean (RMS)";
+  text += "; " + std::string(kNotClosed) + "\n";
+  for (const WindowReport& window : report.windows)
+    if (!window.objection.empty())
+      text += "Scans " + grouped(window.begin) + " to " + grouped(window.end - 1) +
+              (window.drive > 0 ? " of drive " + grouped(window.drive) : std::string()) +
+              ", nothing of their own: " + window.objection + "\n";
+  return text;
+}
+
 }  // namespace
 
 std::string not_observed_text(const MountEstimate& found) {
@@ -38,7 +61,9 @@ std::string not_observed_text(const MountEstimate& found) {
 }
 
 std::string calibration_text(const CalibrationReport& report, const Calibration& calibration) {
-  if (!report.objection.empty()) return "Nothing calibrated: " + report.objection + "\n";
+  const std::string windows = report.windows ? windows_text(*report.windows) : std::string();
+  if (!report.objection.empty())
+    return "Nothing calibrated: " + report.objection + "\n" + windows;
   std::string text;
   const bool is_mounted = report.mount && report.mount->objection.empty();
   if (is_mounted) text = mount_text(report.mount->found) + ". ";
@@ -47,7 +72,8 @@ std::string calibration_text(const CalibrationReport& report, const Calibration&
               : rest_text(report, calibration);
   return text + "; points left out of it lie " + centimetres(report.calibrated_m) +
          " from planes (" + centimetres(report.given_m) +
-         " before); as a whole the place stays where the given poses have it\n";
+         " before); as a whole the place stays where the given poses have it\n" +
+         windows;
 }
 
 }  // namespace adasplats::app

@@ -13,6 +13,7 @@
 
 #include "adasplats/calibrate/calibration_steps.h"
 #include "adasplats/calibrate/plane_system.h"
+#include "adasplats/calibrate/trajectory_fit.h"
 #include "adasplats/core/maths/small_motion.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
 
@@ -364,16 +365,14 @@ class Calibrator {
 
   /// Turns and shifts the whole so that the poses lie on the given ones, as mounted.
   void align_to_mounted() {
-    if (places_.empty()) return;
-    const double n = static_cast<double>(places_.size());
-    Vec3d turn, given, corrected;
+    std::vector<PoseCorrection> poses;
     for (std::size_t scan = 0; scan < places_.size(); ++scan) {
       const RigidTransform& correction = corrected_from_mounted_[scan];
-      turn = turn + rotation_vector(correction.rotation) / n;
-      given = given + places_[scan] / n;
-      corrected = corrected + (correction * places_[scan]) / n;
+      poses.push_back({cloud_.scan_poses[scan].time_s, places_[scan],
+                       rotation_vector(correction.rotation),
+                       correction * places_[scan] - places_[scan]});
     }
-    const RigidTransform back = moved_about(corrected, -turn, given - corrected);
+    const RigidTransform back = onto_given(poses);
     for (RigidTransform& correction : corrected_from_mounted_) correction = back * correction;
     compose();
   }

@@ -12,6 +12,7 @@
 #include "adasplats/calibrate/calibration_steps.h"
 #include "adasplats/calibrate/mount.h"
 #include "adasplats/calibrate/scan_planes.h"
+#include "adasplats/calibrate/windows_report.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/setting.h"
 
@@ -97,6 +98,7 @@ struct CalibrationReport {
   Vec3d weakest;                     ///< ...the direction in which they hold the poses least
   std::string objection;             ///< why nothing is to be applied; empty: the evidence is clear
   std::optional<MountReport> mount;  ///< nothing: it was not asked for
+  std::optional<WindowsReport> windows;  ///< nothing: all was solved at once
 };
 
 /// Estimates what a recording gets wrong from planes that its scans saw together. The corrected

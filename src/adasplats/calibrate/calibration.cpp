@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "adasplats/core/maths/small_motion.h"
@@ -31,7 +32,8 @@ DriveSpan drive_of(const std::vector<PoseCorrection>& poses, std::size_t scan) {
 }
 
 /// A line through the corrections of a drive by time, weighted about `time_s`; without the scan
-/// `left_out`. Where all that has weight is one scan: that.
+/// `left_out`. Where all that has weight is one scan: that. Over as long as the drive or longer:
+/// the mean, since noise alone would tell how steep the line is.
 PoseCorrection smoothed_at(const std::vector<PoseCorrection>& poses, DriveSpan drive, double time_s,
                            double smooth_s, std::size_t left_out) {
   double w = 0, wt = 0, wtt = 0;
@@ -49,9 +51,10 @@ PoseCorrection smoothed_at(const std::vector<PoseCorrection>& poses, DriveSpan d
     shift_t = shift_t + (weight * t) * poses[k].shift_m;
   }
   const double determinant = w * wtt - wt * wt;
+  const bool is_mean = smooth_s >= poses[drive.end - 1].time_s - poses[drive.begin].time_s;
   PoseCorrection result;
   result.time_s = time_s;
-  if (determinant > 1e-6 * w * wtt) {
+  if (!is_mean && determinant > 1e-6 * w * wtt) {
     result.rotation_rad = (1 / determinant) * (wtt * rotation - wt * rotation_t);
     result.shift_m = (1 / determinant) * (wtt * shift - wt * shift_t);
   } else {
@@ -79,6 +82,49 @@ bool leads_past(const PoseCorrection& a, const PoseCorrection& b, double share, 
   const Vec3d way = b.position - a.position;
   const double aside_m = length(position - (a.position + share * way));
   return aside_m <= kLeastAside_m + kShareOfWay * length(way) * std::max(1.0, std::fabs(share));
+}
+
+/// Of scans that follow one another in a drive; 0: none do.
+double median_step_s(const std::vector<PoseCorrection>& poses) {
+  std::vector<double> steps_s;
+  for (std::size_t k = 1; k < poses.size(); ++k)
+    if (poses[k].time_s > poses[k - 1].time_s)
+      steps_s.push_back(poses[k].time_s - poses[k - 1].time_s);
+  if (steps_s.empty()) return 0;
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+  std::nth_element(steps_s.begin(), middle, steps_s.end());
+  return *middle;
+}
+
+/// By how much the correction of each scan that is no end of its drive is missed when it is told
+/// from the others, squared, m^2.
+std::vector<double> left_out_squares(const std::vector<PoseCorrection>& poses, double smooth_s) {
+  constexpr double kArm_m = 10;  // what a rotation moves counts at so many metres
+  std::vector<double> squares;
+  for (std::size_t k = 1; k + 1 < poses.size(); ++k) {
+    if (!(poses[k].time_s > poses[k - 1].time_s && poses[k + 1].time_s > poses[k].time_s)) continue;
+    const PoseCorrection told = between(poses, k - 1, k + 1, poses[k].time_s, smooth_s, k);
+    const double turn_m = kArm_m * length(told.rotation_rad - poses[k].rotation_rad);
+    const double shift_m = length(told.shift_m - poses[k].shift_m);
+    squares.push_back(turn_m * turn_m + shift_m * shift_m);
+  }
+  return squares;
+}
+
+double sum_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+/// Whether the mean of `squares` is above that of `best` by no more than the standard error of the
+/// difference, scan by scan: the rule of one standard error (Breiman et al., "Classification and
+/// regression trees", 1984, 3.4.3).
+bool is_as_good(const std::vector<double>& squares, const std::vector<double>& best) {
+  const auto n = static_cast<double>(squares.size());
+  const double mean = (sum_of(squares) - sum_of(best)) / n;
+  double spread = 0;
+  for (std::size_t k = 0; k < squares.size(); ++k)
+    spread += std::pow(squares[k] - best[k] - mean, 2);
+  return mean <= std::sqrt(spread / (n - 1) / n);
 }
 
 }  // namespace
@@ -120,40 +166,30 @@ std::optional<RigidTransform> Calibration::corrected(const TimedPose& given) con
 }
 
 double best_smoothing(const Calibration& calibration) {
-  constexpr double kArm_m = 10;  // what a rotation moves counts at so many metres
   // Of white noise the mean of two neighbours errs by 1.5 in variance, that of many by 1: a ratio
   // of 0.67. Few scans tell no ratio.
   constexpr double kClearer = 0.8;
   constexpr std::size_t kFewestScans = 10;
   const std::vector<PoseCorrection>& poses = calibration.poses;
-  std::vector<double> apart_s;
-  for (std::size_t k = 1; k < poses.size(); ++k)
-    if (poses[k].time_s > poses[k - 1].time_s)
-      apart_s.push_back(poses[k].time_s - poses[k - 1].time_s);
-  if (apart_s.empty()) return 0;
-  const auto middle = apart_s.begin() + static_cast<std::ptrdiff_t>(apart_s.size() / 2);
-  std::nth_element(apart_s.begin(), middle, apart_s.end());
-  double best_s = 0, least = std::numeric_limits<double>::infinity();
-  std::size_t told_scans = 0;
-  for (const double scans : {0.0, 1.0, 2.0, 4.0, 8.0, 16.0}) {
-    const double smooth_s = scans * *middle;
-    double sum = 0;
-    told_scans = 0;
-    for (std::size_t k = 1; k + 1 < poses.size(); ++k) {
-      if (!(poses[k].time_s > poses[k - 1].time_s && poses[k + 1].time_s > poses[k].time_s))
-        continue;
-      const PoseCorrection told = between(poses, k - 1, k + 1, poses[k].time_s, smooth_s, k);
-      const double turn_m = kArm_m * length(told.rotation_rad - poses[k].rotation_rad);
-      const double shift_m = length(told.shift_m - poses[k].shift_m);
-      sum += turn_m * turn_m + shift_m * shift_m;
-      ++told_scans;
-    }
-    if (sum < (best_s > 0 ? 1 : kClearer) * least) {
+  const double apart_s = median_step_s(poses);
+  const std::vector<double> of_neighbours = left_out_squares(poses, 0);
+  if (!(apart_s > 0) || of_neighbours.size() < kFewestScans) return 0;
+  std::vector<double> smooth_s;
+  std::vector<std::vector<double>> squares;
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t best = 0;
+  for (double scans = 1; scans < 2 * static_cast<double>(poses.size()); scans *= 2) {
+    smooth_s.push_back(scans * apart_s);
+    squares.push_back(left_out_squares(poses, smooth_s.back()));
+    if (const double sum = sum_of(squares.back()); sum < least) {
       least = sum;
-      best_s = smooth_s;
+      best = squares.size() - 1;
     }
   }
-  return told_scans < kFewestScans ? 0 : best_s;
+  if (!(least < kClearer * sum_of(of_neighbours))) return 0;
+  for (std::size_t longest = squares.size(); longest-- > best;)
+    if (is_as_good(squares[longest], squares[best])) return smooth_s[longest];
+  return smooth_s[best];
 }
 
 CalibrationSizes sizes_of(const Calibration& calibration) {

@@ -25,6 +25,7 @@
 #include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/pipeline/session/settings_json.h"
+#include "adasplats/recipes/drive_pieces.h"
 #include "adasplats/report/calibration_page.h"
 #include "adasplats/sensors/unit_sensor.h"
 
@@ -147,18 +148,39 @@ class CalibrationFiles {
   ProgressSink& progress_;
 };
 
-CalibrateResult estimated(const CalibrateJob& job, Session& session) {
-  CalibrateResult result;
+/// Loads all scans; what no window needs is not solved at once.
+void estimate_loaded(const CalibrateJob& job, Session& session, CalibrateResult& result) {
   auto [cloud, loaded] = load_cloud(job.inputs, job.load, session.executor, session.progress);
   result.loaded = std::move(loaded);
   if (job.calibrate.ranges || job.calibrate.elevations) require_one_sensor(result.loaded.drives);
-  session.progress.begin_step("calibrate", 1);
-  auto [calibration, report] = calibrate_on_device(cloud, job.calibrate, session);
-  session.progress.end_step();
-  result.sensor = sensor_of_all(result.loaded.drives);
+  auto [calibration, report] =
+      calibrate_drives(cloud, job.calibrate, job.windows, session.executor, session.progress);
   result.calibration = std::move(calibration);
   result.report = std::move(report);
   result.given = std::move(cloud.scan_poses);
+}
+
+/// Reads window after window.
+void estimate_piecewise(const CalibrateJob& job, DrivePieces& pieces, Session& session,
+                        CalibrateResult& result) {
+  if (job.calibrate.ranges || job.calibrate.elevations) require_one_sensor(pieces.report().drives);
+  WindowedCalibration found = calibrate_windows(pieces.sources(), job.calibrate, job.windows,
+                                                session.executor, session.progress);
+  pieces.end();
+  result.loaded = pieces.report();
+  result.calibration = std::move(found.calibration);
+  result.report = std::move(found.report);
+  result.given = std::move(found.given);
+}
+
+CalibrateResult estimated(const CalibrateJob& job, Session& session) {
+  CalibrateResult result;
+  auto pieces = DrivePieces::open(job.inputs, job.load, job.windows.window_scans, session);
+  if (pieces)
+    estimate_piecewise(job, *pieces, session, result);
+  else
+    estimate_loaded(job, session, result);
+  result.sensor = sensor_of_all(result.loaded.drives);
   result.corrected = result.given;
   if (!result.calibration.empty() && !adasplats::apply(result.calibration, result.corrected))
     throw std::logic_error("run_calibrate: a calibration of other scans");
@@ -203,9 +225,11 @@ CalibrateResult run_calibrate(const CalibrateJob& job, Session& session) {
         ErrorKind::usage,
         "nothing to estimate: `poses`, `ranges`, `elevations` and `mount_correction` are all "
         "off");
+  check_settings(job.windows);
   const Stopwatch watch;
   Json content;
   put_settings(job.calibrate, content);
+  put_settings(job.windows, content);
   OutputFolder folder(job.output, job.overwrite, "calibrate", content);
   CalibrateResult result = estimated(job, session);
   const std::string warning = warning_of(result.report);

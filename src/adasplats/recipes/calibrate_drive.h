@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adasplats/calibrate/calibrate.h"
+#include "adasplats/calibrate/windows.h"
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/pipeline/session/session.h"
 
@@ -18,6 +19,7 @@ struct CalibrateJob {
   std::vector<std::filesystem::path> inputs;
   LoadOptions load;
   CalibrateOptions calibrate;
+  WindowOptions windows;  ///< of drives longer than one
   std::filesystem::path output;
   bool overwrite = false;
 };

@@ -89,6 +89,37 @@ void add_mount(const Json& report, Section& section) {
     section.paragraphs.push_back("Nothing but the mount is corrected: " + alone + ".");
 }
 
+/// How windows agree, and which have nothing of their own.
+void add_windows(const Json& report, Section& section) {
+  const Json* windows = find(report, {"windows"});
+  if (windows == nullptr || !windows->is_object()) return;
+  const auto overlaps = [&](const char* key) { return number_at(*windows, {"overlaps", key}); };
+  if (const auto count = number_at(*windows, {"count"}))
+    add_tile(section, "Windows that the drive was cut into", count_text(*count));
+  add_tile(section, "Poses where windows overlap, median difference",
+           in_unit(overlaps("median_shift_m"), kCentimetres, "cm") + "\n" +
+               in_unit(overlaps("median_rotation_rad"), kDegreesPerRadian, "deg"));
+  add_tile(section, "Poses where windows overlap, largest difference",
+           in_unit(overlaps("largest_shift_m"), kCentimetres, "cm") + "\n" +
+               in_unit(overlaps("largest_rotation_rad"), kDegreesPerRadian, "deg"));
+  if (number_at(*windows, {"laser_windows"}).value_or(0) > 0)
+    add_tile(section, "Lasers of single windows beside the pooled ones (RMS)",
+             in_unit(number_at(*windows, {"range_disagreement_m"}), kMillimetres, "mm") + "\n" +
+                 in_unit(number_at(*windows, {"elevation_disagreement_rad"}), kDegreesPerRadian,
+                         "deg"));
+  if (const std::string text = text_at(*windows, {"not_done"}); !text.empty())
+    section.paragraphs.push_back("Solved in windows: " + text + ".");
+  const Json* each = find(*windows, {"each"});
+  if (each == nullptr || !each->is_array()) return;
+  for (const Json& window : *each) {
+    const std::vector<double> scans = list_at(window, {"scans"});
+    if (const std::string why = text_at(window, {"objection"}); !why.empty() && scans.size() == 2)
+      section.paragraphs.push_back("Scans " + count_text(scans[0]) + " to " +
+                                   count_text(scans[1] - 1) + " have nothing of their own: " +
+                                   why + ".");
+  }
+}
+
 Section figures_section(const Json& report) {
   Section section{.id = "figures", .title = "What was found"};
   if (const std::string objection = text_at(report, {"objection"}); !objection.empty())
@@ -111,6 +142,7 @@ Section figures_section(const Json& report) {
            in_unit(figure("largest_shift_m"), kCentimetres, "cm") + "\n" +
                in_unit(figure("largest_rotation_rad"), kDegreesPerRadian, "deg"));
   add_mount(report, section);
+  add_windows(report, section);
   add_tile(section, "Offsets of lasers (RMS)",
            in_unit(figure("range_offset_rms_m"), kMillimetres, "mm") + "\n" +
                in_unit(figure("elevation_offset_rms_rad"), kDegreesPerRadian, "deg"));

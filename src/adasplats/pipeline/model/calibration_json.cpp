@@ -46,6 +46,48 @@ MountJson mount_json(const MountReport& report) {
   return json;
 }
 
+MountJson disagreement_json(const PoseDisagreement& apart) {
+  return {{"scans", apart.scans},
+          {"median_shift_m", apart.median_shift_m},
+          {"largest_shift_m", apart.largest_shift_m},
+          {"median_rotation_rad", apart.median_rotation_rad},
+          {"largest_rotation_rad", apart.largest_rotation_rad}};
+}
+
+MountJson window_json(const WindowReport& window) {
+  MountJson json = {{"drive", window.drive},
+                    {"scans", {window.begin, window.end}},
+                    {"applied", window.objection.empty()}};
+  if (!window.objection.empty()) json["objection"] = window.objection;
+  json["planes"] = window.planes;
+  json["residual_given_m"] = window.given_m;
+  json["residual_common_m"] = window.common_m;
+  json["residual_calibrated_m"] = window.calibrated_m;
+  json["weakest_share"] = window.weakest_share;
+  json["tells_lasers"] = window.tells_lasers;
+  if (window.overlap.scans > 0) json["overlap"] = disagreement_json(window.overlap);
+  return json;
+}
+
+MountJson windows_json(const WindowsReport& report) {
+  MountJson json = {{"count", report.windows.size()},
+                    {"window_scans", report.window_scans},
+                    {"without_evidence", report.without_evidence()},
+                    {"overlaps", disagreement_json(report.overlaps)},
+                    {"laser_windows", report.laser_windows},
+                    {"range_disagreement_m", report.range_disagreement_m},
+                    {"elevation_disagreement_rad", report.elevation_disagreement_rad},
+                    {"mount_windows", report.mount_windows}};
+  if (report.mount_windows > 0) {
+    json["mount_disagreement_rad"] = report.mount_disagreement_rad;
+    json["mount_disagreement_m"] = report.mount_disagreement_m;
+  }
+  json["not_done"] = kNotClosed;
+  json["each"] = MountJson::array();
+  for (const WindowReport& window : report.windows) json["each"].push_back(window_json(window));
+  return json;
+}
+
 }  // namespace
 
 nlohmann::ordered_json calibration_json(const CalibrationReport& report,
@@ -64,6 +106,7 @@ nlohmann::ordered_json calibration_json(const CalibrationReport& report,
   json["range_offset_rms_m"] = sizes.range_rms_m;
   json["elevation_offset_rms_rad"] = sizes.elevation_rms_rad;
   if (report.mount) json["mount"] = mount_json(*report.mount);
+  if (report.windows) json["windows"] = windows_json(*report.windows);
   return json;
 }
 

@@ -116,9 +116,9 @@ class ModelMaker {
 
   void estimate_calibration(PointCloud& cloud, ModelResult& result) {
     const Stopwatch watch;
-    session_.progress.begin_step("calibrate", 1);
-    auto [calibration, report] = calibrate_on_device(cloud, options_.calibration.options, session_);
-    session_.progress.end_step();
+    auto [calibration, report] =
+        calibrate_drives(cloud, options_.calibration.options, options_.calibration.windows,
+                         session_.executor, session_.progress);
     result.calibration = std::move(calibration);
     result.calibrated = std::move(report);
     correct(cloud, result);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adasplats/calibrate/calibrate.h"
+#include "adasplats/calibrate/windows.h"
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/pipeline/model/unused_settings.h"
 #include "adasplats/pipeline/segment/point_classes.h"
@@ -23,6 +24,7 @@ namespace adasplats {
 struct CalibrationChoice {
   bool on = true;
   CalibrateOptions options;
+  WindowOptions windows;  ///< of drives longer than one
 };
 
 template <class Visit>
