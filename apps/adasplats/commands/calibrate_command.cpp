@@ -58,7 +58,8 @@ class CalibrateCommand final : public Command {
     table.add_row({"planes", grouped(result.report.planes)});
     table.add_row({"weakest direction", fixed(100 * result.report.weakest_share, 2) + " %"});
     if (result.report.mount) add_mount(*result.report.mount, table);
-    if (result.report.windows) table.add_row({"windows", grouped(result.report.windows->windows.size())});
+    if (result.report.windows)
+      table.add_row({"windows", grouped(result.report.windows->windows.size())});
     for (const std::string& file : result.files) table.add_row({"written", file});
     table.add_row({"seconds", fixed(result.seconds, 1)});
     print(table.text() + "\n" + calibration_text(result.report, result.calibration));

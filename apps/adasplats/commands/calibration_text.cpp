@@ -62,8 +62,7 @@ std::string not_observed_text(const MountEstimate& found) {
 
 std::string calibration_text(const CalibrationReport& report, const Calibration& calibration) {
   const std::string windows = report.windows ? windows_text(*report.windows) : std::string();
-  if (!report.objection.empty())
-    return "Nothing calibrated: " + report.objection + "\n" + windows;
+  if (!report.objection.empty()) return "Nothing calibrated: " + report.objection + "\n" + windows;
   std::string text;
   const bool is_mounted = report.mount && report.mount->objection.empty();
   if (is_mounted) text = mount_text(report.mount->found) + ". ";
@@ -72,8 +71,7 @@ std::string calibration_text(const CalibrationReport& report, const Calibration&
               : rest_text(report, calibration);
   return text + "; points left out of it lie " + centimetres(report.calibrated_m) +
          " from planes (" + centimetres(report.given_m) +
-         " before); as a whole the place stays where the given poses have it\n" +
-         windows;
+         " before); as a whole the place stays where the given poses have it\n" + windows;
 }
 
 }  // namespace adasplats::app

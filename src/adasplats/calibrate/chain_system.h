@@ -10,16 +10,15 @@
 
 namespace adasplats {
 
-/// A symmetric positive definite system of motions (six unknowns each) that are coupled with the one
-/// before and the one behind alone. Memory and time grow with their number.
+/// A symmetric positive definite system of motions (six unknowns each) that are coupled with the
+/// one before and the one behind alone. Memory and time grow with their number.
 class ChainSystem {
  public:
   static constexpr std::size_t kUnknowns = 6;  ///< a rotation and a shift
   using Block = std::array<std::array<double, kUnknowns>, kUnknowns>;
   using Column = std::array<double, kUnknowns>;
 
-  explicit ChainSystem(std::size_t count)
-      : rows_(count * kUnknowns), right_(count * kUnknowns) {}
+  explicit ChainSystem(std::size_t count) : rows_(count * kUnknowns), right_(count * kUnknowns) {}
 
   /// Adds to rows of `motion` and columns of `other`, which is it or the one before.
   void add(std::size_t motion, std::size_t other, const Block& block) {

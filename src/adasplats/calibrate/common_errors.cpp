@@ -41,7 +41,8 @@ double robust_mean(const std::vector<Weighted>& values) {
   double mean = weighted_median(values);
   std::vector<Weighted> apart;
   for (const Weighted& each : values) apart.push_back({std::fabs(each.value - mean), each.weight});
-  const double width = std::max(kLeastWidthOfPooling, kWidthOfPooling * weighted_median(std::move(apart)));
+  const double width =
+      std::max(kLeastWidthOfPooling, kWidthOfPooling * weighted_median(std::move(apart)));
   for (int iteration = 0; iteration < kPoolingIterations; ++iteration) {
     double sum = 0, total = 0;
     for (const Weighted& each : values) {
@@ -94,8 +95,12 @@ using MountColumn = ChainSystem::Column;
 
 /// A rotation counts as what it moves at `range_m`.
 MountColumn mount_column(Vec3d rotation, Vec3d shift_m, double range_m) {
-  return {range_m * rotation.x, range_m * rotation.y, range_m * rotation.z,
-          shift_m.x,            shift_m.y,            shift_m.z};
+  return {range_m * rotation.x,
+          range_m * rotation.y,
+          range_m * rotation.z,
+          shift_m.x,
+          shift_m.y,
+          shift_m.z};
 }
 
 /// What a window's estimate tells of each of six directions, without those that it does not
@@ -150,8 +155,8 @@ std::vector<MountDirection> observed_by_none(std::span<const MountReport* const>
   std::vector<MountDirection> result = reports.front()->found.not_observed;
   for (const MountReport* report : reports)
     std::erase_if(result, [&](const MountDirection& direction) {
-      return std::ranges::find(report->found.not_observed, direction.name,
-                               &MountDirection::name) == report->found.not_observed.end();
+      return std::ranges::find(report->found.not_observed, direction.name, &MountDirection::name) ==
+             report->found.not_observed.end();
     });
   return result;
 }
@@ -177,11 +182,10 @@ MountReport joined_report(std::span<const MountReport* const> reports, double ra
     found.shift_sd_m = smaller(found.shift_sd_m, own.shift_sd_m);
     result.given_m += report->given_m / count;
     result.mounted_m += report->mounted_m / count;
-    common.mount_disagreement_rad =
-        std::max(common.mount_disagreement_rad,
-                 length(own.mount.rotation_rad - found.mount.rotation_rad));
-    common.mount_disagreement_m = std::max(common.mount_disagreement_m,
-                                           length(own.mount.shift_m - found.mount.shift_m));
+    common.mount_disagreement_rad = std::max(
+        common.mount_disagreement_rad, length(own.mount.rotation_rad - found.mount.rotation_rad));
+    common.mount_disagreement_m =
+        std::max(common.mount_disagreement_m, length(own.mount.shift_m - found.mount.shift_m));
   }
   return result;
 }
@@ -200,10 +204,10 @@ void pool_mount(std::span<const WindowFinding> findings, const MountOptions& opt
   if (findings.empty() || !findings.front().mount) return;
   if (accepted.empty() || 2 * accepted.size() <= told.size()) {
     common.mount.emplace();
-    common.mount->objection =
-        accepted.empty() ? objection
-                         : "only " + std::to_string(accepted.size()) + " of " +
-                               std::to_string(told.size()) + " windows find it wrong";
+    common.mount->objection = accepted.empty()
+                                  ? objection
+                                  : "only " + std::to_string(accepted.size()) + " of " +
+                                        std::to_string(told.size()) + " windows find it wrong";
     return;
   }
   common.mount_windows = accepted.size();

@@ -15,9 +15,10 @@
 namespace adasplats {
 namespace {
 
-constexpr double kArmOfSettling_m = 10;    // a rotation counts as what it moves there, as in best_smoothing()
-constexpr int kSettlingIterations = 5;   // of weights and of the motions' small non-linearity
-constexpr double kWidthOfOverlaps = 3;     // in medians: disagreements of which a quarter counts
+constexpr double kArmOfSettling_m =
+    10;  // a rotation counts as what it moves there, as in best_smoothing()
+constexpr int kSettlingIterations = 5;  // of weights and of the motions' small non-linearity
+constexpr double kWidthOfOverlaps = 3;  // in medians: disagreements of which a quarter counts
 constexpr double kLeastApart_m = 1e-4;  // an overlap agrees no better: floats of points
 
 using MotionBlock = ChainSystem::Block;
@@ -72,8 +73,8 @@ Overlap overlap_of(const WindowPoses& before, const WindowPoses& window) {
 /// How far a window has come in where it overlaps with the one before: 0 to 1.
 double faded_in(const Overlap& overlap, std::size_t scan) {
   if (overlap.size() == 0 || scan >= overlap.end) return 1;
-  const double share = (static_cast<double>(scan - overlap.begin) + 0.5) /
-                       static_cast<double>(overlap.size());
+  const double share =
+      (static_cast<double>(scan - overlap.begin) + 0.5) / static_cast<double>(overlap.size());
   const double sine = std::sin(0.5 * std::numbers::pi * share);
   return sine * sine;
 }
@@ -112,7 +113,8 @@ class Settling {
     for (const PoseCorrection& pose : windows_[k].poses) {
       const MotionBlock block = by_motion(pose, middles_[k], rotation, shift);
       add_product(matrix, 1, block, block);
-      add_product(right, -1, block, motion_column(rotation * pose.rotation_rad, shift * pose.shift_m));
+      add_product(right, -1, block,
+                  motion_column(rotation * pose.rotation_rad, shift * pose.shift_m));
     }
     if (windows_[k].poses.empty())
       for (std::size_t r = 0; r < kMotionUnknowns; ++r) matrix[r][r] = 1;  // nothing to move
@@ -123,7 +125,8 @@ class Settling {
   double disagreement_m(std::size_t k, std::size_t scan) const {
     const PoseCorrection& a = pose_of(k - 1, scan);
     const PoseCorrection& b = pose_of(k, scan);
-    return std::sqrt(kArmOfSettling_m * kArmOfSettling_m * square_of(b.rotation_rad - a.rotation_rad) +
+    return std::sqrt(kArmOfSettling_m * kArmOfSettling_m *
+                         square_of(b.rotation_rad - a.rotation_rad) +
                      square_of(b.shift_m - a.shift_m));
   }
 
@@ -143,8 +146,8 @@ class Settling {
       const double weight = weights[scan - overlap.begin] / variance;
       const MotionBlock by_a = by_motion(a, middles_[k - 1], kArmOfSettling_m, 1);
       const MotionBlock by_b = by_motion(b, middles_[k], kArmOfSettling_m, 1);
-      const MotionColumn difference =
-          motion_column(kArmOfSettling_m * (b.rotation_rad - a.rotation_rad), b.shift_m - a.shift_m);
+      const MotionColumn difference = motion_column(
+          kArmOfSettling_m * (b.rotation_rad - a.rotation_rad), b.shift_m - a.shift_m);
       add_product(matrix, weight, by_b, by_b);
       add_product(before, weight, by_a, by_a);
       add_product(coupling, -weight, by_b, by_a);
@@ -256,8 +259,7 @@ std::vector<PoseDisagreement> settle_windows(std::span<WindowPoses> windows,
   return result;
 }
 
-std::vector<PoseCorrection> blended(std::span<const WindowPoses> windows,
-                                    const Trajectory& given) {
+std::vector<PoseCorrection> blended(std::span<const WindowPoses> windows, const Trajectory& given) {
   std::vector<PoseCorrection> poses;
   for (const TimedPose& pose : given)
     poses.push_back({pose.time_s, pose.world_from_sensor.translation, {}, {}});

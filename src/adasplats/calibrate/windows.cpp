@@ -85,7 +85,8 @@ PointCloud joined_pieces(const PointCloud& first, PointCloud second) {
 class WindowReader {
  public:
   WindowReader(const DriveSource& drive, std::size_t window_scans, std::size_t points_a_scan)
-      : drive_(drive), points_a_scan_(points_a_scan),
+      : drive_(drive),
+        points_a_scan_(points_a_scan),
         pieces_(cut_pieces(drive.scans, window_scans)) {}
 
   PointCloud read(std::size_t window) {
@@ -157,10 +158,13 @@ double median_m(const ResidualCounts& residuals) {
 class WindowedCalibrator {
  public:
   WindowedCalibrator(std::span<const DriveSource> drives, const CalibrateOptions& options,
-                     const WindowOptions& windows, const Executor& executor,
+                     const CalibrateWindowOptions& windows, const Executor& executor,
                      ProgressSink& progress)
-      : drives_(drives), options_(options), most_scans_(windows.window_scans),
-        executor_(executor), progress_(progress) {
+      : drives_(drives),
+        options_(options),
+        most_scans_(windows.window_scans),
+        executor_(executor),
+        progress_(progress) {
     report_.window_scans = most_scans_;
     for (std::size_t drive = 0; drive < drives.size(); ++drive)
       for (const ScanSpan& span : cut_windows(drives[drive].scans, most_scans_)) {
@@ -178,8 +182,7 @@ class WindowedCalibrator {
     result.calibration = common_calibration(common_, {});
     std::size_t number = 0;
     progress_.begin_step("calibrate windows", report_.windows.size());
-    for (std::size_t drive = 0; drive < drives_.size(); ++drive)
-      add_drive(drive, number, result);
+    for (std::size_t drive = 0; drive < drives_.size(); ++drive) add_drive(drive, number, result);
     progress_.end_step();
     finish(result);
     return result;
@@ -251,8 +254,8 @@ class WindowedCalibrator {
       windows.push_back({spans[k].begin, own_poses(cloud, report_.windows[number])});
       progress_.advance(number + 1);
     }
-    const auto apart = settle_windows(
-        windows, {options_.rotation_sigma_rad, options_.translation_sigma_m});
+    const auto apart =
+        settle_windows(windows, {options_.rotation_sigma_rad, options_.translation_sigma_m});
     for (std::size_t k = 0; k < apart.size(); ++k) report_.windows[first + k].overlap = apart[k];
     add_overlaps(windows);
     std::vector<PoseCorrection> poses = blended(windows, given);
@@ -372,8 +375,7 @@ class ScanView {
     const std::size_t stride =
         std::max<std::size_t>(1, points / (points_a_scan * std::max<std::size_t>(1, end - begin)));
     std::vector<std::uint32_t> chosen;
-    for (std::size_t k = begins_[begin]; k < begins_[end]; k += stride)
-      chosen.push_back(order_[k]);
+    for (std::size_t k = begins_[begin]; k < begins_[end]; k += stride) chosen.push_back(order_[k]);
     PointCloud part;
     part.origin = cloud_.origin;
     for (const std::uint32_t i : chosen) {
@@ -415,14 +417,14 @@ std::vector<ScanSpan> cut_windows(std::size_t scans, std::size_t window_scans) {
 
 WindowedCalibration calibrate_windows(std::span<const DriveSource> drives,
                                       const CalibrateOptions& options,
-                                      const WindowOptions& windows, const Executor& executor,
-                                      ProgressSink& progress) {
+                                      const CalibrateWindowOptions& windows,
+                                      const Executor& executor, ProgressSink& progress) {
   return WindowedCalibrator(drives, options, windows, executor, progress).run();
 }
 
 std::pair<Calibration, CalibrationReport> calibrate_drives(const PointCloud& cloud,
                                                            const CalibrateOptions& options,
-                                                           const WindowOptions& windows,
+                                                           const CalibrateWindowOptions& windows,
                                                            const Executor& executor,
                                                            ProgressSink& progress) {
   const std::vector<ScanSpan> spans = drives_of(cloud.scan_poses);

@@ -17,14 +17,14 @@
 namespace adasplats {
 
 /// How long drives are cut.
-struct WindowOptions {
+struct CalibrateWindowOptions {
   /// The most scans that are solved at once. 200 are 20 s: what one scan sees is out of sight long
   /// before, and the 40,000 points of each that calibrate() looks at take about 1 GB.
   std::size_t window_scans = 200;
 };
 
 template <class Visit>
-void visit_settings(WindowOptions& windows, Visit&& visit) {
+void visit_settings(CalibrateWindowOptions& windows, Visit&& visit) {
   visit(Setting{.name = "window_scans",
                 .help = "Scans that are solved at once: longer drives are cut into windows that "
                         "overlap by half",
@@ -60,21 +60,21 @@ struct WindowedCalibration {
 
 /// calibrate() window by window. What all windows have in common, lasers and mount, is pooled from
 /// at most eight windows all over the drives and then the same for all; the poses of each window
-/// are estimated alone, laid on one another where they overlap (settle_windows) and blended; windows
-/// without evidence get nothing of their own. The whole lies on the given poses. Drives are not tied
-/// to one another, nor places that a drive comes back to in another window. Memory: points of half
-/// a window as they are read, points_a_scan of a window, and what calibrate() needs for it; nothing
-/// but poses grows with the drives.
+/// are estimated alone, laid on one another where they overlap (settle_windows) and blended;
+/// windows without evidence get nothing of their own. The whole lies on the given poses. Drives are
+/// not tied to one another, nor places that a drive comes back to in another window. Memory: points
+/// of half a window as they are read, points_a_scan of a window, and what calibrate() needs for it;
+/// nothing but poses grows with the drives.
 WindowedCalibration calibrate_windows(std::span<const DriveSource> drives,
                                       const CalibrateOptions& options,
-                                      const WindowOptions& windows, const Executor& executor,
-                                      ProgressSink& progress);
+                                      const CalibrateWindowOptions& windows,
+                                      const Executor& executor, ProgressSink& progress);
 
 /// calibrate() of a cloud in memory: at once where no drive in it is longer than a window, else by
 /// windows that are views of it.
 std::pair<Calibration, CalibrationReport> calibrate_drives(const PointCloud& cloud,
                                                            const CalibrateOptions& options,
-                                                           const WindowOptions& windows,
+                                                           const CalibrateWindowOptions& windows,
                                                            const Executor& executor,
                                                            ProgressSink& progress);
 

@@ -23,7 +23,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kStep_m = 1.5;
 constexpr std::uint32_t kPoints = 2000;  // of a scan
-constexpr std::size_t kLasers = 7;  // not 8: every eighth point is left out of the fit
+constexpr std::size_t kLasers = 7;       // not 8: every eighth point is left out of the fit
 
 /// A straight street with buttresses on its walls; between two scans of the drive a tunnel.
 struct Street {
@@ -66,8 +66,8 @@ RigidTransform given_pose(const Street& street, std::size_t scan) {
   return {rotation_from_yaw_pitch_roll(turn * std::sin(phase), 0.7 * turn * std::cos(phase),
                                        0.5 * turn * std::sin(2 * phase)) *
               pose.rotation,
-          pose.translation + street.shift_m * Vec3d{std::sin(phase), std::cos(phase),
-                                                    0.5 * std::sin(phase)}};
+          pose.translation +
+              street.shift_m * Vec3d{std::sin(phase), std::cos(phase), 0.5 * std::sin(phase)}};
 }
 
 /// Scans [begin, end) of the drive, as calibrate_windows asks for them.
@@ -83,8 +83,7 @@ PointCloud record_street(const Street& street, ScanSpan span) {
       const Vec3d world = in_tunnel ? tunnel_point(random, x) : street_point(random, x);
       const Vec3d way = pose.inverse() * world;
       const std::size_t laser = i % kLasers;
-      const double range_m =
-          length(way) + 0.005 * random.normal() - range_offset_m(street, laser);
+      const double range_m = length(way) + 0.005 * random.normal() - range_offset_m(street, laser);
       cloud.positions.push_back(vec_cast<float>(given * (range_m / length(way) * way)));
       cloud.sensor_positions.push_back(vec_cast<float>(given.translation));
       cloud.scan_indices.push_back(static_cast<std::uint32_t>(scan - span.begin));
@@ -139,7 +138,8 @@ TEST(Windows, CoverADriveAndOverlapByHalf) {
         ASSERT_LE(spans[k].size(), window) << scans;
         if (k == 0) continue;
         const std::size_t overlap = spans[k - 1].end - spans[k].begin;
-        ASSERT_LE(std::max(2 * overlap, spans[k].size()), std::min(2 * overlap, spans[k].size()) + 1)
+        ASSERT_LE(std::max(2 * overlap, spans[k].size()),
+                  std::min(2 * overlap, spans[k].size()) + 1)
             << scans << " by " << window;
         if (k > 1) {
           ASSERT_EQ(spans[k].begin, spans[k - 2].end);
@@ -236,9 +236,9 @@ TEST(Windows, MovedAsWholesTheyAreLaidOnOneAnotherAgain) {
   for (std::size_t k = 0; k < windows.size(); ++k) {
     Random random(2, 0, k);
     const auto number = [&](double size) { return random.uniform(-size, size); };
-    const RigidTransform motion = moved_about(
-        windows[k].poses.front().position, {number(0.003), number(0.003), number(0.003)},
-        {number(0.05), number(0.05), number(0.05)});
+    const RigidTransform motion = moved_about(windows[k].poses.front().position,
+                                              {number(0.003), number(0.003), number(0.003)},
+                                              {number(0.05), number(0.05), number(0.05)});
     for (PoseCorrection& pose : windows[k].poses) pose = moved(pose, motion);
   }
   const std::vector<PoseDisagreement> apart = settle_windows(windows, {});
@@ -307,10 +307,8 @@ TEST(TrajectoryFit, UndoesAMotionOfTheWholeInSpiteOfASpoiltPose) {
     const auto normal = [&](double size) {
       return size * Vec3d{random.normal(), random.normal(), random.normal()};
     };
-    poses.push_back({0.1 * static_cast<double>(k),
-                     {static_cast<double>(k), 0, 0},
-                     normal(1e-4),
-                     normal(1e-3)});
+    poses.push_back(
+        {0.1 * static_cast<double>(k), {static_cast<double>(k), 0, 0}, normal(1e-4), normal(1e-3)});
   }
   poses[20].shift_m = {0, 0, 1};
   const RigidTransform motion = moved_about({30, 0, 0}, {0.002, -0.003, 0.004}, {0.1, 0.2, -0.1});

@@ -19,7 +19,7 @@ struct CalibrateJob {
   std::vector<std::filesystem::path> inputs;
   LoadOptions load;
   CalibrateOptions calibrate;
-  WindowOptions windows;  ///< of drives longer than one
+  CalibrateWindowOptions windows;  ///< of drives longer than one
   std::filesystem::path output;
   bool overwrite = false;
 };

@@ -59,13 +59,13 @@ struct Faults {
 /// known.
 class HallDrive {
  public:
-  explicit HallDrive(const Faults& faults) {
+  explicit HallDrive(const Faults& faults, int scan_count = kScans) {
     for (std::size_t laser = 0; laser < 64; ++laser)
       range_offsets_m.push_back(faults.range_m * (laser % 2 == 0 ? 1 : -1));
     const LidarModel sensor = load_lidar_model(kSensor);
     const std::vector<Firing> firings = firings_of(sensor);
-    for (int scan = 0; scan < kScans; ++scan) {
-      const double along = scan / double{kScans - 1};
+    for (int scan = 0; scan < scan_count; ++scan) {
+      const double along = scan / double(scan_count - 1);
       const RigidTransform pose = {rotation_from_yaw_pitch_roll(0.5 * along, 0, 0),
                                    {-3 + 5 * along, std::sin(3 * along), 1.8}};
       const double wave = std::sin(2 * std::numbers::pi * along);
@@ -102,7 +102,9 @@ class HallDrive {
       const Vec3f point = vec_cast<float>(origin + range_m * direction);
       values.insert(values.end(), {point.x, point.y, point.z, 0.5F});
     }
-    folder_.write("00/velodyne/00000" + std::to_string(scan) + ".bin", values);
+    folder_.write(
+        "00/velodyne/0000" + std::string(scan < 10 ? "0" : "") + std::to_string(scan) + ".bin",
+        values);
   }
 
   TemporaryFolder folder_;
@@ -225,6 +227,39 @@ TEST_F(CalibrateDrive, SeveralDrivesOfOnePlaceHaveAFolderEach) {
   EXPECT_LT(worst_position_m(second, other.true_poses), 0.01);
   EXPECT_TRUE(fs::exists(out / "drive_1" / "poses.txt"));
   EXPECT_TRUE(fs::exists(out / "sensor.toml"));
+}
+
+// Oracle: the faults that were put in, and one solve of the same scans.
+TEST_F(CalibrateDrive, LongDrivesAreReadAndSolvedInWindows) {
+  const HallDrive drive({0.15, 0.05, 0.03}, 20);
+  const CalibrateResult whole = run_calibrate(job(drive, "whole"), session_);
+  CalibrateJob in_windows = job(drive, "windows");
+  in_windows.windows.window_scans = 10;
+  const CalibrateResult result = run_calibrate(in_windows, session_);
+  EXPECT_FALSE(whole.report.windows);
+  ASSERT_TRUE(result.report.windows);
+  EXPECT_EQ(result.report.windows->windows.size(), 3U);
+  EXPECT_EQ(result.sensor, kSensor);
+  EXPECT_EQ(result.files, whole.files);
+  EXPECT_EQ(result.loaded.points_read, whole.loaded.points_read);
+  EXPECT_EQ(result.loaded.drives.size(), 1U);
+  EXPECT_EQ(result.loaded.drives[0].scans, 20U);
+  ASSERT_EQ(result.corrected.size(), 20U);
+  EXPECT_GT(worst_position_m(drive.given_poses, drive.true_poses), 0.05);
+  EXPECT_LT(worst_position_m(result.corrected, drive.true_poses), 0.015);
+  EXPECT_LT(worst_difference(result.corrected, whole.corrected), 0.02);
+  const auto report =
+      nlohmann::ordered_json::parse(read_file(drive.below("windows") / "report.json"));
+  EXPECT_EQ(report, to_json(result));
+  EXPECT_EQ(report["windows"]["each"].size(), 3U);
+  EXPECT_EQ(report["windows"]["count"], 3);
+  EXPECT_GT(report["windows"]["overlaps"]["scans"], 0);
+  EXPECT_NE(read_file(drive.below("windows") / "report.html").find("where windows overlap"),
+            std::string::npos);
+  in_windows.output = drive.below("none");
+  in_windows.windows.window_scans = 2;
+  expect_error(ErrorKind::usage, {"window_scans", "8"},
+               [&] { run_calibrate(in_windows, session_); });
 }
 
 TEST_F(CalibrateDrive, WhatCannotBeIsSaidBeforeLongWork) {

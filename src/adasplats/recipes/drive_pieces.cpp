@@ -53,8 +53,7 @@ std::size_t chosen_of(std::size_t scans, const LoadOptions& load) {
 }  // namespace
 
 DrivePieces::DrivePieces(const LoadOptions& load, Session& session)
-    : load_(load), session_(&session),
-      warnings_(std::make_shared<Warnings>(session.progress)) {}
+    : load_(load), session_(&session), warnings_(std::make_shared<Warnings>(session.progress)) {}
 
 std::optional<DrivePieces> DrivePieces::open(std::span<const std::filesystem::path> inputs,
                                              const LoadOptions& load, std::size_t window_scans,
@@ -86,8 +85,8 @@ std::optional<DrivePieces> DrivePieces::open(std::span<const std::filesystem::pa
 std::vector<DriveSource> DrivePieces::sources() {
   std::vector<DriveSource> sources;
   for (std::size_t drive = 0; drive < report_.drives.size(); ++drive)
-    sources.push_back({report_.drives[drive].scans,
-                       [this, drive](ScanSpan span) { return read(drive, span); }});
+    sources.push_back(
+        {report_.drives[drive].scans, [this, drive](ScanSpan span) { return read(drive, span); }});
   return sources;
 }
 

@@ -103,10 +103,10 @@ void add_windows(const Json& report, Section& section) {
            in_unit(overlaps("largest_shift_m"), kCentimetres, "cm") + "\n" +
                in_unit(overlaps("largest_rotation_rad"), kDegreesPerRadian, "deg"));
   if (number_at(*windows, {"laser_windows"}).value_or(0) > 0)
-    add_tile(section, "Lasers of single windows beside the pooled ones (RMS)",
-             in_unit(number_at(*windows, {"range_disagreement_m"}), kMillimetres, "mm") + "\n" +
-                 in_unit(number_at(*windows, {"elevation_disagreement_rad"}), kDegreesPerRadian,
-                         "deg"));
+    add_tile(
+        section, "Lasers of single windows beside the pooled ones (RMS)",
+        in_unit(number_at(*windows, {"range_disagreement_m"}), kMillimetres, "mm") + "\n" +
+            in_unit(number_at(*windows, {"elevation_disagreement_rad"}), kDegreesPerRadian, "deg"));
   if (const std::string text = text_at(*windows, {"not_done"}); !text.empty())
     section.paragraphs.push_back("Solved in windows: " + text + ".");
   const Json* each = find(*windows, {"each"});
@@ -115,8 +115,8 @@ void add_windows(const Json& report, Section& section) {
     const std::vector<double> scans = list_at(window, {"scans"});
     if (const std::string why = text_at(window, {"objection"}); !why.empty() && scans.size() == 2)
       section.paragraphs.push_back("Scans " + count_text(scans[0]) + " to " +
-                                   count_text(scans[1] - 1) + " have nothing of their own: " +
-                                   why + ".");
+                                   count_text(scans[1] - 1) + " have nothing of their own: " + why +
+                                   ".");
   }
 }
 

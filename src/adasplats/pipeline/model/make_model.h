@@ -24,7 +24,7 @@ namespace adasplats {
 struct CalibrationChoice {
   bool on = true;
   CalibrateOptions options;
-  WindowOptions windows;  ///< of drives longer than one
+  CalibrateWindowOptions windows;  ///< of drives longer than one
 };
 
 template <class Visit>
