@@ -158,11 +158,12 @@ double median_m(const ResidualCounts& residuals) {
 class WindowedCalibrator {
  public:
   WindowedCalibrator(std::span<const DriveSource> drives, const CalibrateOptions& options,
-                     const CalibrateWindowOptions& windows, const Executor& executor,
-                     ProgressSink& progress)
+                     const CalibrateWindowOptions& windows, const CalibrateCloud& calibrate_cloud,
+                     const Executor& executor, ProgressSink& progress)
       : drives_(drives),
         options_(options),
         most_scans_(windows.window_scans),
+        calibrate_cloud_(calibrate_cloud),
         executor_(executor),
         progress_(progress) {
     report_.window_scans = most_scans_;
@@ -220,7 +221,7 @@ class WindowedCalibrator {
     const auto at = std::ranges::find(spans, window.begin, &ScanSpan::begin);
     WindowReader reader(drives_[window.drive], most_scans_, options_.points_a_scan);
     const PointCloud cloud = reader.read(static_cast<std::size_t>(at - spans.begin()));
-    auto [calibration, report] = calibrate(cloud, options_, executor_);
+    auto [calibration, report] = calibrate_cloud_(cloud, options_);
     WindowFinding finding;
     finding.mount = std::move(report.mount);
     if (!calibration.empty() && !(finding.mount && !finding.mount->alone_because.empty())) {
@@ -274,7 +275,7 @@ class WindowedCalibrator {
     const Calibration common = common_calibration(common_, given);
     if (!common.lasers.empty() || !common.mount.empty()) {
       own.poses = false;  // judged alone
-      const CalibrationReport as_given = calibrate(cloud, own, executor_).second;
+      const CalibrationReport as_given = calibrate_cloud_(cloud, own).second;
       window.given_m = as_given.given_m;
       add_counts(given_counts_, as_given.given);
       own.poses = options_.poses;
@@ -283,7 +284,7 @@ class WindowedCalibrator {
         return {};
       }
     }
-    auto [calibration, report] = calibrate(cloud, own, executor_);
+    auto [calibration, report] = calibrate_cloud_(cloud, own);
     if (common.lasers.empty() && common.mount.empty()) {
       window.given_m = report.given_m;
       add_counts(given_counts_, report.given);
@@ -348,6 +349,7 @@ class WindowedCalibrator {
   std::span<const DriveSource> drives_;
   const CalibrateOptions& options_;
   std::size_t most_scans_;
+  const CalibrateCloud& calibrate_cloud_;
   const Executor& executor_;
   ProgressSink& progress_;
   CommonErrors common_;
@@ -418,21 +420,20 @@ std::vector<ScanSpan> cut_windows(std::size_t scans, std::size_t window_scans) {
 WindowedCalibration calibrate_windows(std::span<const DriveSource> drives,
                                       const CalibrateOptions& options,
                                       const CalibrateWindowOptions& windows,
+                                      const CalibrateCloud& calibrate_cloud,
                                       const Executor& executor, ProgressSink& progress) {
-  return WindowedCalibrator(drives, options, windows, executor, progress).run();
+  return WindowedCalibrator(drives, options, windows, calibrate_cloud, executor, progress).run();
 }
 
-std::pair<Calibration, CalibrationReport> calibrate_drives(const PointCloud& cloud,
-                                                           const CalibrateOptions& options,
-                                                           const CalibrateWindowOptions& windows,
-                                                           const Executor& executor,
-                                                           ProgressSink& progress) {
+std::pair<Calibration, CalibrationReport> calibrate_drives(
+    const PointCloud& cloud, const CalibrateOptions& options, const CalibrateWindowOptions& windows,
+    const CalibrateCloud& calibrate_cloud, const Executor& executor, ProgressSink& progress) {
   const std::vector<ScanSpan> spans = drives_of(cloud.scan_poses);
   const bool is_long = std::ranges::any_of(
       spans, [&](const ScanSpan& span) { return span.size() > windows.window_scans; });
   if (!is_long || missing_for_calibration(cloud) != nullptr) {
     progress.begin_step("calibrate", 1);
-    auto found = calibrate(cloud, options, executor);
+    auto found = calibrate_cloud(cloud, options);
     progress.end_step();
     return found;
   }
@@ -443,7 +444,8 @@ std::pair<Calibration, CalibrationReport> calibrate_drives(const PointCloud& clo
                         return view.of(drive.begin + part.begin, drive.begin + part.end,
                                        options.points_a_scan);
                       }});
-  WindowedCalibration found = calibrate_windows(drives, options, windows, executor, progress);
+  WindowedCalibration found =
+      calibrate_windows(drives, options, windows, calibrate_cloud, executor, progress);
   return {std::move(found.calibration), std::move(found.report)};
 }
 

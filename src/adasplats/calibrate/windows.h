@@ -58,24 +58,27 @@ struct WindowedCalibration {
   Trajectory given;          ///< poses of all scans, drive by drive
 };
 
-/// calibrate() window by window. What all windows have in common, lasers and mount, is pooled from
-/// at most eight windows all over the drives and then the same for all; the poses of each window
-/// are estimated alone, laid on one another where they overlap (settle_windows) and blended;
-/// windows without evidence get nothing of their own. The whole lies on the given poses. Drives are
-/// not tied to one another, nor places that a drive comes back to in another window. Memory: points
-/// of half a window as they are read, points_a_scan of a window, and what calibrate() needs for it;
-/// nothing but poses grows with the drives.
+/// Calibrates one cloud: calibrate() on some device.
+using CalibrateCloud = std::function<std::pair<Calibration, CalibrationReport>(
+    const PointCloud& cloud, const CalibrateOptions& options)>;
+
+/// calibrate() window by window, by `calibrate_cloud`. What all windows have in common, lasers and
+/// mount, is pooled from at most eight windows all over the drives and then the same for all; the
+/// poses of each window are estimated alone, laid on one another where they overlap
+/// (settle_windows) and blended; windows without evidence get nothing of their own. The whole lies
+/// on the given poses. Drives are not tied to one another, nor places that a drive comes back to in
+/// another window. Memory: points of half a window as they are read, points_a_scan of a window, and
+/// what calibrate() needs for it; nothing but poses grows with the drives.
 WindowedCalibration calibrate_windows(std::span<const DriveSource> drives,
                                       const CalibrateOptions& options,
                                       const CalibrateWindowOptions& windows,
+                                      const CalibrateCloud& calibrate_cloud,
                                       const Executor& executor, ProgressSink& progress);
 
 /// calibrate() of a cloud in memory: at once where no drive in it is longer than a window, else by
 /// windows that are views of it.
-std::pair<Calibration, CalibrationReport> calibrate_drives(const PointCloud& cloud,
-                                                           const CalibrateOptions& options,
-                                                           const CalibrateWindowOptions& windows,
-                                                           const Executor& executor,
-                                                           ProgressSink& progress);
+std::pair<Calibration, CalibrationReport> calibrate_drives(
+    const PointCloud& cloud, const CalibrateOptions& options, const CalibrateWindowOptions& windows,
+    const CalibrateCloud& calibrate_cloud, const Executor& executor, ProgressSink& progress);
 
 }  // namespace adasplats

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "adasplats/calibrate/chain_system.h"
@@ -19,6 +20,11 @@
 
 namespace adasplats {
 namespace {
+
+std::pair<Calibration, CalibrationReport> on_cpu(const PointCloud& cloud,
+                                                 const CalibrateOptions& options) {
+  return calibrate(cloud, options, Executor(2));
+}
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kStep_m = 1.5;
@@ -109,7 +115,8 @@ struct ReadStreet {
 WindowedCalibration calibrated(ReadStreet& street, std::size_t window_scans,
                                const CalibrateOptions& options = {}) {
   RecordedProgress progress;
-  return calibrate_windows(street.sources(), options, {window_scans}, Executor(2), progress);
+  return calibrate_windows(street.sources(), options, {window_scans}, on_cpu, Executor(2),
+                           progress);
 }
 
 /// Largest error of the way from one scan to the one `apart` scans on.
@@ -465,13 +472,13 @@ TEST(CalibrateWindows, OfACloudInMemoryAreViewsOfIt) {
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = (i % 60) * kPoints + i / 60;
   RecordedProgress progress;
   const auto [found, report] =
-      calibrate_drives(gather(cloud, order), {}, {30}, Executor(2), progress);
+      calibrate_drives(gather(cloud, order), {}, {30}, on_cpu, Executor(2), progress);
   ASSERT_TRUE(report.windows);
   EXPECT_EQ(report.windows->windows.size(), 3U);
   EXPECT_EQ(disagreement_of(found.poses, read.calibration.poses).largest_shift_m, 0);
   EXPECT_EQ(found.lasers.range_m, read.calibration.lasers.range_m);
   // No longer than a window: at once.
-  EXPECT_FALSE(calibrate_drives(cloud, {}, {60}, Executor(2), progress).second.windows);
+  EXPECT_FALSE(calibrate_drives(cloud, {}, {60}, on_cpu, Executor(2), progress).second.windows);
 }
 
 }  // namespace

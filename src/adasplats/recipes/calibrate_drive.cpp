@@ -153,8 +153,8 @@ void estimate_loaded(const CalibrateJob& job, Session& session, CalibrateResult&
   auto [cloud, loaded] = load_cloud(job.inputs, job.load, session.executor, session.progress);
   result.loaded = std::move(loaded);
   if (job.calibrate.ranges || job.calibrate.elevations) require_one_sensor(result.loaded.drives);
-  auto [calibration, report] =
-      calibrate_drives(cloud, job.calibrate, job.windows, session.executor, session.progress);
+  auto [calibration, report] = calibrate_drives(
+      cloud, job.calibrate, job.windows, calibrate_on(session), session.executor, session.progress);
   result.calibration = std::move(calibration);
   result.report = std::move(report);
   result.given = std::move(cloud.scan_poses);
@@ -164,8 +164,9 @@ void estimate_loaded(const CalibrateJob& job, Session& session, CalibrateResult&
 void estimate_piecewise(const CalibrateJob& job, DrivePieces& pieces, Session& session,
                         CalibrateResult& result) {
   if (job.calibrate.ranges || job.calibrate.elevations) require_one_sensor(pieces.report().drives);
-  WindowedCalibration found = calibrate_windows(pieces.sources(), job.calibrate, job.windows,
-                                                session.executor, session.progress);
+  WindowedCalibration found =
+      calibrate_windows(pieces.sources(), job.calibrate, job.windows, calibrate_on(session),
+                        session.executor, session.progress);
   pieces.end();
   result.loaded = pieces.report();
   result.calibration = std::move(found.calibration);

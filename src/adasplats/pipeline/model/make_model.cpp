@@ -118,7 +118,7 @@ class ModelMaker {
     const Stopwatch watch;
     auto [calibration, report] =
         calibrate_drives(cloud, options_.calibration.options, options_.calibration.windows,
-                         session_.executor, session_.progress);
+                         calibrate_on(session_), session_.executor, session_.progress);
     result.calibration = std::move(calibration);
     result.calibrated = std::move(report);
     correct(cloud, result);
