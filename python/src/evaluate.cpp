@@ -117,6 +117,7 @@ struct ResimulateArguments {
     keywords.take("motion", scans.motion);
     keywords.take("trajectory", scans.trajectory);
     keywords.take("boxes", scans.boxes);
+    take_settings(keywords, scans, &Setting::key);
     keywords.take("labels", labels);
     keywords.take("min_range", options.min_range_m);
     keywords.take("max_range", options.max_range_m);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <unordered_set>
 
+#include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
@@ -195,27 +196,42 @@ void describe_times(const KittiSequence& sequence, FileFacts& facts) {
                            {"longest_step", steps_s.back()}};
 }
 
+/// What was understood of a drive, as far as there is anything to tell.
+void describe_drive(const DriveFacts& drive, FileFacts& facts) {
+  const auto add = [&facts](const char* name, const char* key, const std::string& text) {
+    if (text.empty()) return;
+    facts.rows.emplace_back(name, text);
+    facts.json[key] = text;
+  };
+  add("points in the", "points_in", drive.points_in);
+  add("poses of the scans", "poses", drive.poses);
+  add("clocks", "clock", drive.clock);
+  add("not checked", "unchecked", drive.unchecked);
+}
+
 /// What the points are taken for: who measured them, and from where.
-void describe_beams(const ScanBeams& beams, FileFacts& facts) {
+void describe_beams(const ScanBeams& beams, const std::string& motion, FileFacts& facts) {
   const std::string sensor = beams.sensor.empty() ? "not recognised" : beams.sensor;
   facts.rows.emplace_back("sensor", sensor);
   facts.rows.emplace_back("beams from", beams.description());
-  facts.rows.emplace_back("motion of a scan", !beams.sweeps_m.empty() ? "taken out of the points"
-                                              : !beams.raw_motions.empty()
-                                                  ? "in the points, as measured"
-                                                  : "not known: scans as if standing still");
+  const std::string known = !motion.empty()              ? motion
+                            : !beams.sweeps_m.empty()    ? "taken out of the points"
+                            : !beams.raw_motions.empty() ? "in the points, as measured"
+                                                         : "not known: scans as if standing still";
+  facts.rows.emplace_back("motion of a scan", known);
+  facts.json["motion"] = known;
   facts.json["sensor"] = beams.sensor;
   facts.json["beams"] = beams.description();
 }
 
-FileFacts sequence_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
-                         const LoadOptions& options, Session& session) {
-  const KittiSequence sequence = open_kitti_sequence(input);
-  require_poses_that_fit(sequence);
+FileFacts sequence_facts(const KittiSequence& sequence, const char* kind,
+                         const std::optional<LabelScheme>& scheme, const LoadOptions& options,
+                         Session& session) {
+  const fs::path& input = sequence.folder;
   const std::vector<std::size_t> chosen = chosen_scans(
       {options.first_scan, options.scan_count, options.scan_stride}, sequence.scans.size(), input);
   FileFacts facts;
-  facts.kind = "sequence";
+  facts.kind = kind;
   double driven_m = 0;
   for (std::size_t i = chosen.front() + 1; i <= chosen.back(); ++i) {
     driven_m += length(sequence.trajectory[i].world_from_sensor.translation -
@@ -230,7 +246,8 @@ FileFacts sequence_facts(const fs::path& input, const std::optional<LabelScheme>
   if (!all) facts.json["scans_in_all"] = sequence.scans.size();
   facts.json["driven_m"] = driven_m;
   describe_times(sequence, facts);
-  describe_beams(recognize_beams(sequence), facts);
+  describe_drive(sequence.facts, facts);
+  describe_beams(sequence.beams, sequence.facts.motion, facts);
   Survey survey;
   session.progress.begin_step("read " + input.filename().string(), chosen.size());
   std::size_t done = 0;
@@ -255,9 +272,21 @@ FileFacts sequence_facts(const fs::path& input, const std::optional<LabelScheme>
 
 FileFacts run_info(const fs::path& input, const std::string& labels, const LoadOptions& options,
                    Session& session) {
+  if (!options.trajectory.empty()) {
+    const auto drive =
+        open_frame_drive(drive_of(input, options), session.executor, session.progress);
+    if (drive)
+      return sequence_facts(*drive, "folder of scans", label_scheme_for(labels, {}), options,
+                            session);
+  }
   const fs::path resolved = resolve_cloud_input(input);
   const auto scheme = label_scheme_for(labels, std::span(&resolved, 1));
-  if (is_kitti_sequence(resolved)) return sequence_facts(resolved, scheme, options, session);
+  if (is_kitti_sequence(resolved)) {
+    KittiSequence sequence = open_kitti_sequence(resolved);
+    sequence.facts.unchecked = require_poses_that_fit(sequence);
+    sequence.beams = recognize_beams(sequence);
+    return sequence_facts(sequence, "sequence", scheme, options, session);
+  }
   if (fs::is_regular_file(resolved)) {
     if (is_mesh_file(resolved)) return mesh_facts(resolved, scheme);
     if (is_splat_model(resolved)) return model_facts(resolved, scheme);

@@ -13,7 +13,7 @@ namespace adasplats {
 namespace {
 
 void add_scan(const KittiSequence& sequence, std::size_t index, PointCloud& cloud) {
-  const KittiScan scan = read_kitti_points(sequence, index);
+  const KittiScan scan = read_all_returns(sequence, index);
   RigidTransform local = sequence.trajectory[index].world_from_sensor;
   local.translation = local.translation - cloud.origin;
   for (std::size_t i = 0; i < scan.positions.size(); ++i) {
@@ -45,7 +45,6 @@ EmptyBeamHits cast_empty_beams(const Tracer& tracer, Vec3d scene_origin,
                                const KittiSequence& sequence, const Executor& executor) {
   EmptyBeamHits result;
   result.ghosts = share_of(0, 0);
-  if (sequence.lacks_moving) return result;
   const PointCloud cloud = cloud_of_scans(sequence, scene_origin, executor);
   const std::vector<EmptyBeam> empty = find_empty_beams(cloud, {}, executor);
   const float reach_m = empty_reach_m(cloud);

@@ -18,12 +18,13 @@ struct EmptyBeamHits {
   double reach_m = 0;     ///< all but one in twenty of the scans' points are nearer
 };
 
-/// All points of a sequence with their beams' origins, lasers and scans, relative to `origin`.
+/// All points of a sequence (read_all_returns()) with their beams' origins, lasers and scans,
+/// relative to `origin`.
 PointCloud cloud_of_scans(const KittiSequence& sequence, Vec3d origin, const Executor& executor);
 
 /// Casts the beams of held-out scans that returned nothing (find_empty_beams()). None are known of
-/// scans without rings, nor where boxes of moving objects took points away: their beams did return.
-/// Errors: those of read_kitti_points.
+/// scans without rings. Points in boxes of moving objects count: their beams did return. Errors:
+/// those of read_kitti_points.
 EmptyBeamHits cast_empty_beams(const Tracer& tracer, Vec3d scene_origin,
                                const KittiSequence& sequence, const Executor& executor);
 

@@ -84,17 +84,6 @@ TEST(EmptyBeamsCast, GhostsAreBeamsWithoutReturnThatHitTheModel) {
   EXPECT_NEAR(hits.ghosts, ghosts / empty, 0.1 * ghosts / empty);
 }
 
-TEST(EmptyBeamsCast, NoneAreKnownWherePointsWereTakenAway) {
-  SpinningDrive drive = spinning_drive();
-  drive.sequence.lacks_moving = true;
-  const std::vector<Disk> disks = disks_in_the_sky();
-  const Executor executor(2);
-  const EmptyBeamHits hits =
-      cast_empty_beams(*make_cpu_tracer({disks, nullptr}, executor), {}, drive.sequence, executor);
-  EXPECT_EQ(hits.beams, 0U);
-  EXPECT_TRUE(std::isnan(hits.ghosts));
-}
-
 TEST(EmptyBeamsCast, ScansBecomeACloud) {
   const SpinningDrive drive = spinning_drive();
   const PointCloud cloud = cloud_of_scans(drive.sequence, {1, 2, 3}, Executor(2));

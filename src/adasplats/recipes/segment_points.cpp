@@ -68,7 +68,7 @@ class PointSegmenter {
     std::vector<fs::path> sequences;
     std::vector<fs::path> files;
     for (const fs::path& input : job_.inputs)
-      for (const CloudInput& part : cloud_inputs(input))
+      for (const CloudInput& part : any_cloud_inputs(input))
         (part.is_sequence ? sequences : files).push_back(part.path);
     if (!files.empty() && !sequences.empty())
       throw Error(ErrorKind::usage, "sequences and files of points have outputs of two kinds");
@@ -144,7 +144,8 @@ class PointSegmenter {
           folder.path() / "sequences" / (std::string(number.size() < 2 ? 1 : 0, '0') + number);
       for (const char* const name : kept_folders()) fs::create_directories(tree / name);
       const KittiSequence sequence = open_kitti_sequence(sequences[k]);
-      require_poses_that_fit(sequence);
+      if (const std::string unchecked = require_poses_that_fit(sequence); !unchecked.empty())
+        session_.progress.warn(sequences[k].string() + ": " + unchecked);
       const ScanRange range{job_.load.first_scan, job_.load.scan_count, job_.load.scan_stride};
       segment_scans(sequence, chosen_scans(range, sequence.scans.size(), sequences[k]),
                     [&](const fs::path& scan) {

@@ -6,6 +6,7 @@
 #include "adasplats/pipeline/provenance/metrics_json.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
+#include "cli/options/setting_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 #include "commands/evaluate/evaluate_job.h"
@@ -96,10 +97,11 @@ class EvaluateResimulateCommand final : public Command {
     OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model, "Splat model or mesh"));
     require(add_path(app, "SEQUENCE", job_.sequence,
-                     "SemanticKITTI sequence folder, or with --trajectory a folder of scans whose "
-                     "points have times"));
+                     "SemanticKITTI sequence folder, or with --trajectory a folder of scans, one a "
+                     "file"));
     add_path(app, "--trajectory", job_.trajectory,
-             "Where the vehicle was, in the clock of the points' times");
+             "Poses of the sensor (or of the vehicle) for a folder of scans");
+    add_settings(app, static_cast<HeldOutScans&>(job_));
     add_path(app, "--boxes", job_.boxes,
              "Boxes of objects by time; what those that move hold is left out");
     app.add_option("--labels", job_.labels, "What labels mean: a name or a TOML file")

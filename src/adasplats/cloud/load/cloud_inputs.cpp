@@ -97,12 +97,15 @@ bool same_extension(const std::vector<fs::path>& files) {
       files, [&](const fs::path& file) { return extension(file) == extension(files.front()); });
 }
 
-std::vector<CloudInput> files_of(const Folder& folder) {
-  if (folder.has_poses)
+/// Whether scans in the frame of their sensor are files like others.
+enum class SensorScans : std::uint8_t { refused, taken };
+
+std::vector<CloudInput> files_of(const Folder& folder, SensorScans scans) {
+  if (folder.has_poses && scans == SensorScans::refused)
     throw Error(ErrorKind::data,
                 folder.path.string() +
-                    ": holds scans in the sensor frame (poses.csv is beside them); simulate with "
-                    "`format` semantickitti to use them as points");
+                    ": holds scans in the sensor frame (poses.csv is beside them); give that as "
+                    "`trajectory` to use them as points");
   const std::size_t others = folder.count(FileKind::mesh) + folder.count(FileKind::splat_model) +
                              folder.count(FileKind::trajectory);
   if (folder.count(FileKind::points) == 0) {
@@ -111,12 +114,16 @@ std::vector<CloudInput> files_of(const Folder& folder) {
                                          (others == 0 ? "" : ", but " + list_of(folder)));
   }
   const std::vector<fs::path>& files = folder.files.at(FileKind::points);
-  if (others != 0 || !same_extension(files)) throw unclear(folder);
-  if (files.size() > 1 && lower_case(files.front().extension().string()) == ".bin")
+  const std::size_t poses =
+      scans == SensorScans::taken ? folder.count(FileKind::trajectory) : std::size_t{0};
+  if (others != poses || !same_extension(files)) throw unclear(folder);
+  if (scans == SensorScans::refused && files.size() > 1 &&
+      lower_case(files.front().extension().string()) == ".bin")
     throw Error(ErrorKind::data,
                 folder.path.string() + ": holds " + std::to_string(files.size()) +
-                    " .bin files, scans in the frame of a sensor that moves; name the sequence "
-                    "folder, which has poses.txt and them in a folder 'velodyne'");
+                    " .bin files, scans in the frame of a sensor that moves; give their poses "
+                    "as `trajectory`, or name the sequence folder, which has poses.txt and them in "
+                    "a folder 'velodyne'");
   std::vector<CloudInput> inputs;
   inputs.reserve(files.size());
   for (const fs::path& file : files) inputs.push_back({file, false});
@@ -137,16 +144,28 @@ std::vector<fs::path> sequences_of_tree(const fs::path& folder) {
   return sequences;
 }
 
-std::vector<CloudInput> cloud_inputs(const fs::path& path) {
+namespace {
+
+std::vector<CloudInput> inputs_of(const fs::path& path, SensorScans scans) {
   std::error_code ignored;  // what cannot be looked into fails when it is opened as a file
   if (!fs::is_directory(path, ignored)) return {{path, false}};
   if (is_kitti_sequence(path)) return {{path, true}};
   const Folder folder = look_into(path);
-  if (folder.sequences.empty()) return files_of(folder);
+  if (folder.sequences.empty()) return files_of(folder, scans);
   if (folder.count(FileKind::points) != 0) throw unclear(folder);
   std::vector<CloudInput> inputs;
   for (const fs::path& sequence : folder.sequences) inputs.push_back({sequence, true});
   return inputs;
+}
+
+}  // namespace
+
+std::vector<CloudInput> cloud_inputs(const fs::path& path) {
+  return inputs_of(path, SensorScans::refused);
+}
+
+std::vector<CloudInput> any_cloud_inputs(const fs::path& path) {
+  return inputs_of(path, SensorScans::taken);
 }
 
 void require_one_world(std::span<const CloudInput> sequences) {

@@ -28,6 +28,10 @@ struct CloudInput {
 /// extensions, meshes, models or trajectories among them.
 std::vector<CloudInput> cloud_inputs(const std::filesystem::path& path);
 
+/// The same, but scans in the sensor's frame and trajectories beside files of points are no errors:
+/// for who reads them with a trajectory, or reads no points.
+std::vector<CloudInput> any_cloud_inputs(const std::filesystem::path& path);
+
 /// The sequences of a tree by name, as cloud_inputs finds them, whatever else is there; the folder
 /// itself where it is one. Errors: no_input (a folder that cannot be listed).
 std::vector<std::filesystem::path> sequences_of_tree(const std::filesystem::path& folder);

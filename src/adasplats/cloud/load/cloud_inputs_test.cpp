@@ -169,7 +169,7 @@ TEST(CloudInputs, ScansOfASensorThatMovesHaveNoPlace) {
   const TemporaryFolder folder;
   folder.write("a/000000.ply", kCloud);
   folder.write("a/poses.csv", kPoses);
-  expect_error(ErrorKind::data, {"poses.csv", "semantickitti"},
+  expect_error(ErrorKind::data, {"poses.csv", "trajectory"},
                [&] { cloud_inputs(folder.path() / "a"); });
   folder.write("velodyne/000000.bin", std::vector<float>{1, 2, 3, 0});
   EXPECT_EQ(names_of(folder.path() / "velodyne"), std::vector<std::string>{"000000.bin"});

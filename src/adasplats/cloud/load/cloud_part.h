@@ -46,6 +46,7 @@ struct CloudPart {
   std::vector<double> times_s;                ///< of files that have them, in whatever clock...
   SaidClock said_clock = SaidClock::nothing;  ///< ...and what the file says of that
   std::vector<Vec3f> scan_origins;            ///< of sequences whose scans say them, sensor frames
+  std::vector<std::uint8_t> in_boxes;         ///< KittiScan::in_boxes; empty: none is
   std::vector<PartRun> runs;
   bool is_sequence = false;
   ScanBeams beams;  ///< of a sequence

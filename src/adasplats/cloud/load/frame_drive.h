@@ -7,32 +7,50 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/cloud/load/drive_settings.h"
+#include "adasplats/cloud/poses/mount.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 
 namespace adasplats {
 
-/// A drive whose scans are files of points in world coordinates, each with its time, and the
-/// trajectory of the vehicle (or sensor) in the same clock, as PandaSet and many mapping systems
-/// have them.
+struct LoadOptions;
+
+/// A drive whose scans are files of points, and the trajectory of the vehicle or of the sensor.
 struct FrameDrive {
-  std::filesystem::path folder;      ///< of the files, one a scan by name
-  std::filesystem::path trajectory;  ///< as read_trajectory takes it
-  std::filesystem::path boxes;       ///< of moving objects (MovingBoxes); empty: none
-  bool with_classes = true;          ///< as the files have them
-  double time_offset_s = 0;          ///< what the points' times lack to those of the trajectory
+  std::filesystem::path folder;         ///< of the files, one a scan (scan_files())
+  std::filesystem::path trajectory;     ///< as read_trajectory takes it
+  std::filesystem::path boxes;          ///< of moving objects (MovingBoxes); empty: none
+  bool with_classes = true;             ///< as the files have them
+  std::optional<double> time_offset_s;  ///< what the points' times lack to those of the trajectory
+  std::optional<MountSettings> mount;   ///< of the sensor; none: the poses are its own, or found
+  PointsIn points_in = PointsIn::found;
+  SweepPoints sweep_points = SweepPoints::found;
+  std::filesystem::path scan_times;  ///< read_scan_times(); empty: none
+  bool beams_from_poses = false;     ///< of points in the sensor's frame: recognise nothing
 };
+
+/// As the options of load_cloud() have it.
+FrameDrive drive_of(const std::filesystem::path& folder, const LoadOptions& options);
 
 /// Whether a folder holds files of points of one extension, the first of which has times of at most
 /// a second: scans, not tiles of a recording.
 bool has_timed_frames(const std::filesystem::path& folder);
 
-/// Finds which sensor of the library measured the points and how it is mounted (recognize_sensor);
-/// every beam then begins where the sensor was at the point's own time. A scan's pose is that of
-/// the middle of its times. Nothing, with a warning, where no sensor is recognised. Errors: data
-/// where the trajectory does not cover the times by more than the distance of its poses: nothing is
-/// extrapolated.
+/// Opens a drive whose points are in the frame of the sensor, or in the world with times; which of
+/// both is found (find_frame()) where it is not stated.
+/// - In the sensor's frame, each file has a pose (poses_of_files()); points with times of their own
+///   (a clock's, or offsets from the scan's, in s, ms, us or ns) are brought to its time where they
+///   are as measured (look_at_sweeps()). The poses must fit the scans (require_poses_that_fit()).
+/// - In the world, it is found which sensor of the library measured the points and how it is
+///   mounted (recognize_sensor); every beam then begins where the sensor was at the point's own
+///   time. A scan's pose is that of the middle of its times.
+/// What was understood is KittiSequence::facts, and a warning. Nothing where the folder is none of
+/// scans with poses, and for points in world coordinates without times, with a stated mount or,
+/// with a warning, of a sensor that is not recognised. Errors: data where the trajectory does not
+/// cover the times by more than the distance of its poses (nothing is extrapolated), where the
+/// poses contradict the points, and where nothing tells the frame.
 std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Executor& executor,
                                               ProgressSink& progress);
 

@@ -128,7 +128,7 @@ TEST(FrameDrive, AnotherClockIsAnError) {
       "late.csv",
       std::string("time,x,y,z,qw,qx,qy,qz\n1e9,0,0,0,1,0,0,0\n1000000001,1,0,0,1,0,0,0\n"));
   expect_error(ErrorKind::data, {"0.ply", "the clocks differ", "late.csv"}, [&] {
-    open_frame_drive({drive.frames(), late, {}, true}, Executor(1), quiet);
+    open_frame_drive({.folder = drive.frames(), .trajectory = late}, Executor(1), quiet);
   });
 }
 
@@ -191,6 +191,11 @@ TEST(FrameDrive, WithoutARecognisedSensorNothingIsMeasuredAndThatIsSaid) {
   } listener;
   LoadOptions options;
   options.trajectory = folder.path() / "poses.csv";
+  // Nothing in them tells, and that is no reason to guess.
+  ProgressSink silent;
+  expect_error(ErrorKind::data, {"is not clear", "points_in"},
+               [&] { load_cloud(std::span(&frames, 1), options, Executor(2), silent); });
+  options.points_in = PointsIn::world;
   const PointCloud cloud = load_cloud(std::span(&frames, 1), options, Executor(2), listener).first;
   EXPECT_EQ(cloud.size(), 1400U);
   EXPECT_EQ(cloud.origin_kind(0), OriginKind::guessed);
@@ -213,7 +218,8 @@ TEST(FrameDrive, BoxesOfAnotherClockAreAnError) {
       "boxes.csv", std::string("time,id,stationary,x,y,z,size_x,size_y,size_z,yaw\n"
                                "1e9,1,0,0,0,0,1,1,1,0\n"));
   expect_error(ErrorKind::data, {"boxes.csv", "the clocks differ"}, [&] {
-    open_frame_drive({drive.frames(), drive.poses(), boxes, true}, Executor(1), quiet);
+    open_frame_drive({.folder = drive.frames(), .trajectory = drive.poses(), .boxes = boxes},
+                     Executor(1), quiet);
   });
 }
 

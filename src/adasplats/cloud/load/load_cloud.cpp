@@ -48,7 +48,7 @@ std::vector<Input> list_inputs(std::span<const std::filesystem::path> paths) {
   return inputs;
 }
 
-/// The inputs, folders of scans with times as one drive each.
+/// The inputs, folders of scans with a trajectory as one drive each.
 std::vector<Source> open_sources(std::span<const std::filesystem::path> paths,
                                  const LoadOptions& options, const Executor& executor,
                                  ProgressSink& progress) {
@@ -56,11 +56,8 @@ std::vector<Source> open_sources(std::span<const std::filesystem::path> paths,
   std::vector<Source> sources;
   for (const std::filesystem::path& path : paths) {
     std::optional<KittiSequence> drive;
-    // Where the mount is stated nothing is to be recognised.
-    if (!options.trajectory.empty() && !options.mount && has_timed_frames(path))
-      drive = open_frame_drive(
-          {path, options.trajectory, options.boxes, true, options.time_offset_s.value_or(0)},
-          executor, progress);
+    if (!options.trajectory.empty())
+      drive = open_frame_drive(drive_of(path, options), executor, progress);
     if (drive)
       sources.push_back({{path, true}, std::move(drive)});
     else
@@ -106,6 +103,13 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Source
     throw usage("beams are to start at poses, but no input is a sequence folder");
   if (!options.boxes.empty() && !any_drive)
     throw usage("boxes are given, but no input is a folder of scans with times and a trajectory");
+  const bool states_frames = options.points_in == PointsIn::sensor ||
+                             options.sweep_points != SweepPoints::found ||
+                             !options.scan_times.empty();
+  if (states_frames && !any_drive)
+    throw usage(
+        "`points_in`, `sweep_points` and `scan_times` are for a folder of scans, one a file, with "
+        "a `trajectory`; no input is one in the frame of its sensor");
   const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
   if (states_origins && !any_file)
     throw usage("a sensor position is given, but every input has its own");
@@ -118,13 +122,14 @@ std::vector<CloudPart> read_parts(std::span<const Source> sources, const LoadOpt
   std::uint32_t scans = 0;
   for (const Source& source : sources) {
     const std::filesystem::path& path = source.input.path;
-    if (source.drive)
-      parts.push_back(read_sequence_part(*source.drive, options, scans, executor, progress));
-    else if (source.input.is_sequence)
-      parts.push_back(
-          read_sequence_part(open_sequence(path, options), options, scans, executor, progress));
-    else
+    if (source.input.is_sequence) {
+      const KittiSequence sequence = source.drive ? *source.drive : open_sequence(path, options);
+      if (!sequence.facts.unchecked.empty())
+        progress.warn(path.string() + ": " + sequence.facts.unchecked);
+      parts.push_back(read_sequence_part(sequence, options, scans, executor, progress));
+    } else {
       parts.push_back(read_file_part(path, options, progress));
+    }
     if (source.input.is_sequence) scans += static_cast<std::uint32_t>(parts.back().runs.size());
     points += parts.back().size();
     if (points > std::numeric_limits<std::uint32_t>::max())
@@ -377,6 +382,20 @@ std::size_t drop_driven_path(PointCloud& cloud, double half_width_m, const Execu
   return drop_flagged(cloud, find_in_driven_path(cloud, path, executor), executor);
 }
 
+/// Of the points that are kept, in the order of the cloud, those in boxes of moving objects, 1 or 0
+/// each; empty where none is.
+Kept in_boxes(const Gathered& gathered) {
+  const auto has_boxes = [](const CloudPart& part) { return !part.in_boxes.empty(); };
+  Kept flags;
+  if (std::ranges::none_of(gathered.parts, has_boxes)) return flags;
+  for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
+    const CloudPart& part = gathered.parts[p];
+    for (std::size_t i = 0; i < part.size(); ++i)
+      if (gathered.kept[p][i] != 0) flags.push_back(has_boxes(part) ? part.in_boxes[i] : 0);
+  }
+  return flags;
+}
+
 /// Finds what of the parts is finite, and counts it.
 void look_at_parts(std::span<const Source> sources, const LoadOptions& options, Gathered& gathered,
                    LoadReport& report, const Executor& executor) {
@@ -387,7 +406,8 @@ void look_at_parts(std::span<const Source> sources, const LoadOptions& options, 
     report.points_read += part.size();
     if (part.is_sequence) {
       report.beams.push_back(part.beams.description());
-      report.drives.push_back({sources[p].input.path, part.beams.sensor, part.runs.size()});
+      report.drives.push_back({sources[p].input.path, part.beams.sensor, part.runs.size(),
+                               sources[p].drive ? sources[p].drive->facts : DriveFacts{}});
     }
     report.dropped_not_finite += count_dropped(gathered.kept.back());
     report.no_returns += count_no_returns(part, gathered.kept.back());
@@ -412,7 +432,7 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
       place_by_times(gathered.parts, options, executor, progress);
   const bool any_drive =
       std::ranges::any_of(sources, [](const Source& source) { return source.drive.has_value(); });
-  require_used(options, placed.has_value(), placed.has_value() || any_drive);
+  require_used(options, placed.has_value() || any_drive, placed.has_value() || any_drive);
   Trajectory scan_poses = scan_poses_of(gathered.parts, placed);
 
   clock.end("read");
@@ -429,6 +449,7 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   require_metres(name_of(inputs), extents.low, extents.high);
   const Vec3d origin = choose_origin(extents.low, extents.high);
 
+  Kept moving = in_boxes(gathered);
   std::vector<PointCloud> clouds;
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
     require_sensor_places(gathered.parts[p], gathered.kept[p]);
@@ -439,9 +460,10 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   }
   PointCloud cloud = joined(std::move(clouds), origin, std::move(scan_poses), progress);
   clock.end("place");
-  if (options.empty_beams && options.boxes.empty())
-    cloud.empty_beams = find_empty_beams(cloud, {}, executor);
+  // Before any point is taken away: where one was, its beam did return.
+  if (options.empty_beams) cloud.empty_beams = find_empty_beams(cloud, {}, executor);
   clock.end("find empty beams");
+  if (!moving.empty()) report.in_boxes = drop_flagged(cloud, std::move(moving), executor);
   report.own_body = drop_own_body(cloud, options.own_body_m, executor);
   report.driven_path = drop_driven_path(cloud, options.driven_path_m, executor);
   report_own_body(name_of(inputs), report, options, progress);

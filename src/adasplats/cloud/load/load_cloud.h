@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/cloud/load/drive_settings.h"
 #include "adasplats/cloud/origins/clocks.h"
 #include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/core/setting.h"
@@ -44,6 +46,10 @@ struct LoadOptions {
   std::optional<double> time_offset_s;
   /// Boxes of moving objects (MovingBoxes), whose points are left out of scans with times.
   std::filesystem::path boxes;
+  /// How a folder of scans with a trajectory is meant, and the times of its scans (FrameDrive).
+  PointsIn points_in = PointsIn::found;
+  SweepPoints sweep_points = SweepPoints::found;
+  std::filesystem::path scan_times;
   /// Of a sequence: `count` scans (or as many as there are) from `first` on, every `stride`-th.
   std::size_t first_scan = 0;
   std::size_t scan_count = static_cast<std::size_t>(-1);
@@ -70,7 +76,7 @@ struct LoadOptions {
   /// path, m (find_in_driven_path()), are left out; 0 keeps them.
   double driven_path_m = 0.6;
   /// Also looks for the beams that returned nothing (find_empty_beams(), before points are left
-  /// out) and puts them into the cloud. Not where boxes take points away: their beams did return.
+  /// out) and puts them into the cloud.
   bool empty_beams = false;
 };
 
@@ -172,6 +178,7 @@ void visit_settings(LoadOptions& load, Visit&& visit) {
                 .value = "FILE",
                 .group = kGroup},
         load.boxes);
+  visit_drive_settings(load, kGroup, visit);
   visit(Setting{.name = "beams_from_poses",
                 .help = "Beams of sequences start at their poses, even where the sensor is "
                         "recognised",
@@ -185,6 +192,7 @@ struct LoadedDrive {
   std::filesystem::path folder;
   std::string sensor;     ///< of the library (ScanBeams::sensor)
   std::size_t scans = 0;  ///< that were chosen
+  DriveFacts facts;       ///< of a folder of scans with a trajectory
 };
 
 /// What was understood of points with times and the trajectory of their sensor.
@@ -221,6 +229,8 @@ struct LoadReport {
   /// Farther than max_distance_m from the componentwise median, or beyond 1e12 m, where doubles no
   /// longer hold 0.1 mm.
   std::size_t dropped_far = 0;
+  /// In boxes of moving objects, of scans with times.
+  std::size_t in_boxes = 0;
   /// On the vehicle that carried the sensor.
   std::size_t own_body = 0;
   /// In the volume that it passed through.

@@ -19,6 +19,7 @@ class MovingBoxes {
   /// that stand still. Errors: data with the line.
   explicit MovingBoxes(const std::filesystem::path& path);
 
+  bool empty() const { return tracks_.empty(); }
   /// Whether any box, moving or not, has a time between these.
   bool cover(double begin_s, double end_s) const {
     return begin_s_ <= end_s_ && begin_s <= end_s_ && end_s >= begin_s_;

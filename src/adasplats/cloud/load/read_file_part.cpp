@@ -45,7 +45,8 @@ const std::initializer_list<std::string_view> kIntensityNames = {"intensity",
                                                                  "scalar_luma"};
 const std::initializer_list<std::string_view> kInstanceNames = {"instance", "scalar_instance"};
 const std::initializer_list<std::string_view> kTimeNames = {
-    "time", "timestamp", "gps_time", "scalar_time", "scalar_timestamp", "scalar_gps_time"};
+    "time",       "timestamp", "gps_time", "scalar_time", "scalar_timestamp", "scalar_gps_time",
+    "offset_time"};
 const std::initializer_list<std::string_view> kScanNames = {"scan_index", "scalar_scan_index"};
 
 /// A table and the file it is from, for messages.
@@ -239,9 +240,12 @@ CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& o
   part.runs.push_back({0, table.rows, path, {}});
   part.world_positions = read_positions(file);
   part.world_sensors = read_sensor_positions(file, options);
-  if (const Column* column = file.first_of(kTimeNames)) {
+  const Column* time = file.first_of(kTimeNames);
+  // As drivers of Ouster's sensors call it; beside an s it is a coordinate of a texture.
+  if (time == nullptr && file.find("s") == nullptr) time = file.find("t");
+  if (time != nullptr) {
     part.times_s.resize(table.rows);
-    for_each_value(*column, [&part](std::size_t i, auto value) {
+    for_each_value(*time, [&part](std::size_t i, auto value) {
       part.times_s[i] = static_cast<double>(value);
     });
     part.said_clock = said_clock_of(file);

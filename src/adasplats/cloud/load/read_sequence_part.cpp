@@ -63,7 +63,7 @@ void store_scan(const PartRun& run, const KittiScan& scan, PointCloud& cloud) {
 
 KittiSequence open_sequence(const std::filesystem::path& folder, const LoadOptions& options) {
   KittiSequence sequence = open_kitti_sequence(folder);
-  require_poses_that_fit(sequence);
+  sequence.facts.unchecked = require_poses_that_fit(sequence);
   if (!options.beams_from_poses) sequence.beams = recognize_beams(sequence);
   return sequence;
 }
@@ -104,7 +104,7 @@ void read_with_reader(const KittiSequence& sequence, const std::vector<std::size
                       CloudPart& part, const Executor& executor, ProgressSink& progress) {
   std::vector<KittiScan> scans(chosen.size());
   for_each_scan(chosen.size(), executor, progress,
-                [&](std::size_t k) { scans[k] = read_kitti_points(sequence, chosen[k]); });
+                [&](std::size_t k) { scans[k] = read_all_returns(sequence, chosen[k]); });
   std::size_t begin = 0;
   PointCloud& cloud = part.cloud;
   for (std::size_t k = 0; k < chosen.size(); ++k) {
@@ -114,13 +114,23 @@ void read_with_reader(const KittiSequence& sequence, const std::vector<std::size
     append_to(cloud.positions, scans[k].positions);
     append_to(cloud.intensities, scans[k].intensities);
     append_to(cloud.classes, scans[k].classes);
+    append_to(cloud.instances, scans[k].instances);
     append_to(cloud.lasers, scans[k].lasers);
     append_to(part.scan_origins, scans[k].origins);
+    append_to(part.in_boxes, scans[k].in_boxes);
     scans[k] = {};
     begin = end;
   }
   if (cloud.intensities.size() != begin) cloud.intensities.clear();
   if (cloud.classes.size() != begin) cloud.classes.clear();
+  if (cloud.instances.size() != begin) cloud.instances.clear();
+  if (part.beams.from_hdl64) {
+    for (const PartRun& run : part.runs)
+      for (std::size_t i = run.begin; i < run.end; ++i)
+        cloud.lasers.push_back(part.beams.laser_of(run.scan, vec_cast<double>(cloud.positions[i])));
+  }
+  const auto unknown = [](std::uint16_t laser) { return laser == kNoLaser; };
+  if (std::ranges::all_of(cloud.lasers, unknown)) cloud.lasers.clear();
 }
 
 void read_files(const KittiSequence& sequence, const std::vector<std::size_t>& chosen,

@@ -69,6 +69,27 @@ void take_labels(const std::filesystem::path& path, KittiScan& scan) {
   }
 }
 
+template <class T>
+void keep_outside(const std::vector<std::uint8_t>& in_boxes, std::vector<T>& values) {
+  if (values.size() != in_boxes.size()) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (in_boxes[i] == 0) values[kept++] = values[i];
+  values.resize(kept);
+}
+
+/// Takes what is in boxes out of a scan.
+void leave_boxes_out(KittiScan& scan) {
+  if (scan.in_boxes.empty()) return;
+  keep_outside(scan.in_boxes, scan.positions);
+  keep_outside(scan.in_boxes, scan.intensities);
+  keep_outside(scan.in_boxes, scan.classes);
+  keep_outside(scan.in_boxes, scan.instances);
+  keep_outside(scan.in_boxes, scan.origins);
+  keep_outside(scan.in_boxes, scan.lasers);
+  scan.in_boxes = {};
+}
+
 }  // namespace
 
 bool is_kitti_sequence(const std::filesystem::path& folder) {
@@ -102,6 +123,12 @@ MeasuredBeam beam_of(const KittiSequence& sequence, std::size_t index, const Kit
 }
 
 KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index) {
+  KittiScan scan = read_all_returns(sequence, index);
+  leave_boxes_out(scan);
+  return scan;
+}
+
+KittiScan read_all_returns(const KittiSequence& sequence, std::size_t index) {
   const std::filesystem::path& path = sequence.scans.at(index);
   if (sequence.reader) return sequence.reader->read(path);
   KittiScan scan;

@@ -16,6 +16,15 @@ namespace adasplats {
 
 struct KittiScan;
 
+/// What was understood of a drive, in words; empty: nothing to tell.
+struct DriveFacts {
+  std::string points_in;  ///< the frame of the points in the files, and by what
+  std::string poses;      ///< how scans got theirs
+  std::string motion;     ///< of the sensor within a sweep
+  std::string clock;      ///< whether the clocks of points and poses are one, and what tells it
+  std::string unchecked;  ///< of the poses (require_poses_that_fit())
+};
+
 /// Reads scans that are not in KITTI's layout.
 class ScanReader {
  public:
@@ -33,7 +42,7 @@ struct KittiSequence {
   Trajectory trajectory;                      ///< world_from_velodyne, one a scan
   ScanBeams beams;  ///< unless recognize_beams says more: from the frame's origin
   std::shared_ptr<const ScanReader> reader;  ///< null: the files are KITTI's
-  bool lacks_moving = false;                 ///< the reader leaves out points on moving objects
+  DriveFacts facts;
 };
 
 /// True for a folder with a `velodyne` folder in it, and for a drive of KITTI's raw data
@@ -53,6 +62,8 @@ struct KittiScan {
   /// Where each beam began, sensor frame, m, and its laser; empty: the sequence's beams say.
   std::vector<Vec3f> origins;
   std::vector<std::uint16_t> lasers;
+  /// 1 for points on objects that move, as somebody annotated them; empty: none is.
+  std::vector<std::uint8_t> in_boxes;
 };
 
 /// The beam that measured point `i` of scan number `index`, in the scan's frame, corrected by the
@@ -70,6 +81,10 @@ KittiScan read_kitti_scan(const KittiSequence& sequence, std::size_t index);
 
 /// The same without labels.
 KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index);
+
+/// The same with the points of KittiScan::in_boxes, which the others leave out: their beams did
+/// return.
+KittiScan read_all_returns(const KittiSequence& sequence, std::size_t index);
 
 /// The same; nothing where the scan cannot be read. For what looks into scans that nobody chose:
 /// whoever reads one that was chosen says what is wrong with it.

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/cloud/sequence/files_by_name.h"
 #include "adasplats/core/error.h"
 
 namespace adasplats {
@@ -266,6 +267,66 @@ std::string factor_text(double factor) {
                   std::string(kWayNames.front()) + ", " + share(other) + " " + way);
 }
 
+/// Throws data where times and ways between the scans are those of no vehicle, unless they are in
+/// other units than seconds and metres. A scan counts once for each number that its name is ahead.
+void require_times_of_scans(const KittiSequence& sequence) {
+  constexpr double kLongStep_s = 20, kShortStep_s = 0.002;  // milliseconds of 50 Hz are 20
+  constexpr double kSlow_mps = 0.5, kFast_mps = 150, kLeastDriven_m = 3;
+  const Trajectory& poses = sequence.trajectory;
+  if (poses.size() < 2) return;
+  std::vector<double> steps_s;
+  double driven_m = 0;
+  for (std::size_t k = 1; k < poses.size(); ++k) {
+    const auto before = number_in_name(sequence.scans[k - 1]);
+    const auto number = number_in_name(sequence.scans[k]);
+    const bool counts = before && number && *number > *before && *number - *before < 1'000'000;
+    steps_s.push_back((poses[k].time_s - poses[k - 1].time_s) /
+                      (counts ? static_cast<double>(*number - *before) : 1.0));
+    driven_m +=
+        length(poses[k].world_from_sensor.translation - poses[k - 1].world_from_sensor.translation);
+  }
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+  std::nth_element(steps_s.begin(), middle, steps_s.end());
+  const double speed_mps = driven_m / (poses.back().time_s - poses.front().time_s);
+  const bool is_long = *middle > kLongStep_s && speed_mps < kSlow_mps && driven_m > kLeastDriven_m;
+  const bool is_short = *middle < kShortStep_s && speed_mps > kFast_mps;
+  if (!is_long && !is_short) return;
+  std::array<char, 300> text{};
+  std::snprintf(text.data(), text.size(),
+                ": the times of the scans are not seconds: by them scans are %.4g s apart, and the "
+                "vehicle drives %.1f m at %.3g m/s",
+                *middle, driven_m, speed_mps);
+  throw Error(ErrorKind::data, sequence.folder.string() + text.data());
+}
+
+/// In one line: why the unit of the poses was not checked.
+std::string what_is_not_told(const KittiSequence& sequence, const PoseEvidence& evidence) {
+  double reach_m = 0;
+  for (const TimedPose& pose : sequence.trajectory)
+    reach_m = std::max(reach_m, length(pose.world_from_sensor.translation -
+                                       sequence.trajectory.front().world_from_sensor.translation));
+  if (sequence.trajectory.size() < 2 || reach_m == 0) return {};
+  std::array<char, 300> text{};
+  if (reach_m < kLeastApart_m)
+    std::snprintf(text.data(), text.size(),
+                  "the poses lead %.2f m away at most: that they are metres, and of the sensor, "
+                  "could not be checked (scans %.0f m apart and more tell)",
+                  reach_m, kLeastApart_m);
+  else if (evidence.points == 0)
+    std::snprintf(text.data(), text.size(),
+                  "that the poses are metres, and of the sensor, could not be checked: no scans 3 "
+                  "to 15 m apart see upright things");
+  else
+    std::snprintf(
+        text.data(), text.size(),
+        "that the poses are metres, and of the sensor, could not be checked: of %zu "
+        "points on upright things %.0f %% meet another scan by the poses, %.0f %% by "
+        "their rotations alone",
+        evidence.points, 100 * evidence.share(0),
+        100 * static_cast<double>(evidence.met_turned) / static_cast<double>(evidence.points));
+  return text.data();
+}
+
 }  // namespace
 
 double PoseEvidence::share(std::size_t way) const {
@@ -314,19 +375,22 @@ std::vector<ScaleEvidence> weigh_scales(const KittiSequence& sequence) {
   return scales;
 }
 
-void require_poses_that_fit(const KittiSequence& sequence) {
+std::string require_poses_that_fit(const KittiSequence& sequence) {
+  require_times_of_scans(sequence);
   const PoseEvidence evidence = weigh_poses(sequence);
   if (evidence.contradicts()) {
     const std::size_t other = evidence.best_other();
     throw_contradiction(sequence, evidence.points, evidence.pairs, evidence.met[0],
                         evidence.met.at(other), std::string(kWayNames.at(other)));
   }
-  if (evidence.confirms()) return;
-  for (const ScaleEvidence& scale : weigh_scales(sequence))
+  if (evidence.confirms()) return {};
+  for (const ScaleEvidence& scale : weigh_scales(sequence)) {
     if (scale.contradicts())
       throw_contradiction(
           sequence, scale.points, scale.pairs, scale.met_given, scale.met,
           "with their translations times " + factor_text(scale.factor) + " (are they in metres?)");
+  }
+  return what_is_not_told(sequence, evidence);
 }
 
 }  // namespace adasplats

@@ -716,4 +716,11 @@ std::optional<Recognition> recognize_sensor(std::span<const Vec3d> points,
   return std::nullopt;
 }
 
+double residual_near(std::span<const Vec3d> points, const SensorCones& sensor,
+                     const RigidTransform& vehicle_from_sensor) {
+  const std::vector<Vec3d> good = usable_points(points);
+  if (good.size() < kFewestPoints || sensor.cones.size() < kFewestCones) return 0;
+  return fit_near(good, ConeTable(sensor), vehicle_from_sensor).score.residual_rad;
+}
+
 }  // namespace adasplats

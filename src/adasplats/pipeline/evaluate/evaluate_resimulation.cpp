@@ -22,7 +22,7 @@ KittiSequence with_scans(KittiSequence all, const ScanRange& range) {
   chosen.beams.from_hdl64 = all.beams.from_hdl64;
   chosen.beams.recognised = all.beams.recognised;
   chosen.reader = all.reader;
-  chosen.lacks_moving = all.lacks_moving;
+  chosen.facts = all.facts;
   for (const std::size_t i : chosen_scans(range, all.scans.size(), all.folder)) {
     chosen.scans.push_back(all.scans[i]);
     if (!all.labels.empty()) chosen.labels.push_back(all.labels[i]);
@@ -34,31 +34,50 @@ KittiSequence with_scans(KittiSequence all, const ScanRange& range) {
   return chosen;
 }
 
-}  // namespace
-
-/// A drive of scans with times. Their classes are of no known scheme, so none take part.
+/// A folder of scans with a trajectory. Their classes are of no known scheme, so none take part.
 KittiSequence open_frames(const HeldOutScans& scans, Session& session) {
   if (!scans.motion.empty())
-    throw Error(ErrorKind::usage, "`motion` is for raw scans; these have times and a trajectory");
+    throw Error(ErrorKind::usage,
+                "`motion` is for raw scans of a sequence; these have a trajectory");
   if (is_kitti_sequence(scans.sequence))
     throw Error(ErrorKind::usage, scans.sequence.string() +
                                       ": has poses of its own; `trajectory` is for a folder of "
-                                      "scans whose points have times");
-  auto drive = open_frame_drive({scans.sequence, scans.trajectory, scans.boxes, false},
-                                session.executor, session.progress);
+                                      "scans, one a file");
+  FrameDrive given{.folder = scans.sequence, .trajectory = scans.trajectory, .boxes = scans.boxes};
+  given.with_classes = false;
+  given.time_offset_s = scans.time_offset_s;
+  if (scans.mount || !(scans.mount_rotation_deg == Vec3d{}))
+    given.mount = MountSettings{scans.mount.value_or(Vec3d{}), scans.mount_rotation_deg};
+  given.points_in = scans.points_in;
+  given.sweep_points = scans.sweep_points;
+  given.scan_times = scans.scan_times;
+  given.beams_from_poses = scans.beams_from_poses;
+  auto drive = open_frame_drive(given, session.executor, session.progress);
   if (!drive)
     throw Error(ErrorKind::data, scans.sequence.string() +
-                                     ": where its beams began is not known, since no sensor is "
-                                     "recognised, so they cannot be cast again");
+                                     ": where its beams began is not known: it is no folder of "
+                                     "scans with a pose each, nor of points with times of a sensor "
+                                     "that is recognised, so they cannot be cast again");
   return std::move(*drive);
 }
+
+}  // namespace
 
 KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
   if (scans.trajectory.empty() && !scans.boxes.empty())
     throw Error(ErrorKind::usage, "`boxes` are for scans with times and a `trajectory`");
+  const bool states_frames = scans.mount || scans.time_offset_s || !scans.scan_times.empty() ||
+                             !(scans.mount_rotation_deg == Vec3d{}) ||
+                             scans.points_in != PointsIn::found ||
+                             scans.sweep_points != SweepPoints::found;
+  if (scans.trajectory.empty() && states_frames)
+    throw Error(ErrorKind::usage,
+                "`mount`, `mount_rotation`, `time_offset`, `points_in`, `sweep_points` and "
+                "`scan_times` are for a folder of scans with a `trajectory`");
   if (!scans.trajectory.empty()) return with_scans(open_frames(scans, session), scans.scans);
   KittiSequence all = open_kitti_sequence(resolve_cloud_input(scans.sequence));
-  require_poses_that_fit(all);
+  if (const std::string unchecked = require_poses_that_fit(all); !unchecked.empty())
+    session.progress.warn(all.folder.string() + ": " + unchecked);
   if (!scans.beams_from_poses) all.beams = recognize_beams(all);
   if (!scans.motion.empty()) {
     if (!all.beams.sweeps_m.empty())

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/file_scan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "adasplats/cloud/load/cloud_part.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::array kTimeUnits_s = {1.0, 1e-3, 1e-6, 1e-9};
+// Sensors turn 5 to 100 times a second; frames without a turn are cut to a second at most.
+constexpr double kShortestSweep_s = 0.005, kLongestSweep_s = 1;
+
+}  // namespace
+
+TimeSpan FileScan::time_span() const {
+  TimeSpan span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (std::size_t i = 0; i < times.size(); ++i)
+    if (is_place(positions[i]) && std::isfinite(times[i]))
+      span = {std::min(span.first, times[i]), std::max(span.last, times[i])};
+  return span.first <= span.last ? span : TimeSpan{};
+}
+
+FileScan read_file_scan(const std::filesystem::path& file) {
+  ProgressSink silent;
+  CloudPart part = read_file_part(file, {}, silent);
+  FileScan scan;
+  scan.positions = std::move(part.world_positions);
+  scan.times = std::move(part.times_s);
+  scan.intensities = std::move(part.cloud.intensities);
+  scan.classes = std::move(part.cloud.classes);
+  scan.instances = std::move(part.cloud.instances);
+  return scan;
+}
+
+PointTimes meaning_of_times(TimeSpan first, TimeSpan last, const TimeSpan* track_s,
+                            double time_offset_s) {
+  const double length = std::max(first.last - first.first, last.last - last.first);
+  PointTimes times;
+  const bool is_same = first.first == last.first && first.last == last.last;
+  if (length == 0 && is_same) return times;
+  const auto is_sweep = [&](double unit_s) {
+    return unit_s * length >= kShortestSweep_s && unit_s * length <= kLongestSweep_s;
+  };
+  const bool begin_alike = std::fabs(first.first - last.first) < 0.5 * length;
+  times.kind = begin_alike ? PointTimes::Kind::offsets : PointTimes::Kind::absolute;
+  times.shift_s = time_offset_s;
+  times.fits = false;
+  for (const double unit_s : kTimeUnits_s) {
+    if (!(is_sweep(unit_s) || (length == 0 && !begin_alike))) continue;
+    const double least_s = unit_s * std::min(first.first, last.first) + time_offset_s;
+    const double most_s = unit_s * std::max(first.last, last.last) + time_offset_s;
+    const bool covered = track_s == nullptr || (least_s >= track_s->first - kLongestSweep_s &&
+                                                most_s <= track_s->last + kLongestSweep_s);
+    if (!begin_alike && !covered) continue;
+    times.unit_s = unit_s;
+    times.fits = true;
+    return times;
+  }
+  return times;
+}
+
+}  // namespace adasplats

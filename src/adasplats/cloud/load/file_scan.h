@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "adasplats/cloud/origins/clocks.h"
+#include "adasplats/core/maths/vec3.h"
+
+namespace adasplats {
+
+/// A file of points that is one scan, as it was read: in whatever frame, and times in whatever unit
+/// and clock.
+struct FileScan {
+  std::vector<Vec3d> positions;
+  std::vector<double> times;  ///< empty: none
+  std::vector<float> intensities;
+  std::vector<std::uint16_t> classes, instances;
+
+  std::size_t size() const { return positions.size(); }
+  /// Of the points that have a place; {0, 0} of none, and without times. Errors: none; a time that
+  /// is not finite is skipped.
+  TimeSpan time_span() const;
+};
+
+/// Errors: those of read_file_part.
+FileScan read_file_scan(const std::filesystem::path& file);
+
+/// What times in the files of a drive's scans mean.
+struct PointTimes {
+  enum class Kind : std::uint8_t {
+    none,      ///< none, or the same in all files
+    absolute,  ///< in a clock
+    offsets    ///< from the time of the scan
+  };
+  Kind kind = Kind::none;
+  double unit_s = 1;
+  double shift_s = 0;  ///< to the trajectory's clock, of absolute ones
+  bool fits = true;    ///< to scans: a sweep takes 5 ms to a second in the unit
+
+  double time_s(double time, double scan_s) const {
+    return kind == Kind::offsets ? scan_s + unit_s * time : unit_s * time + shift_s;
+  }
+};
+
+/// Tells by the times of two files (the first and the last scan): offsets begin alike in both. The
+/// unit is that in which a sweep is plausible and, of absolute ones, `track_s` (where it is known)
+/// covers them.
+PointTimes meaning_of_times(TimeSpan first, TimeSpan last, const TimeSpan* track_s,
+                            double time_offset_s);
+
+}  // namespace adasplats
