@@ -125,7 +125,8 @@ TEST_F(CalibrateOnGpu, EveryStepIsTheSame) {
   const PointCloud cloud = record_hall({0.3, 0.1, 0.03, 0.05}).cloud;
   const Drive drive(cloud);
   EXPECT_GT(compare_steps(drive, PointSet::all, row_options(), executor_), 100U);
-  EXPECT_GT(compare_steps(drive, PointSet::few, row_options(), executor_), 100U);
+  // Of a fifth of the points fewer planes are found.
+  EXPECT_GT(compare_steps(drive, PointSet::few, row_options(), executor_), 20U);
 }
 
 TEST_F(CalibrateOnGpu, StepsWithoutLasersPosesOrOneOffsetAreTheSame) {
