@@ -253,20 +253,19 @@ Calibration noisy_drive(double wave_m, std::uint64_t seed) {
   return calibration;
 }
 
-// Oracle: the drift without the noise, which is none; the mean of 80 scans is 6 mm off, a line at
-// its ends twice that.
-TEST(Calibration, WhatIsNoiseAloneIsToldByAllScansOfTheDrive) {
-  int by_all = 0;
+// Oracle: the drift without the noise, which is none. Single corrections are 8.7 cm long.
+TEST(Calibration, WhatIsNoiseAloneIsToldByManyScans) {
+  double square = 0;
+  int by_many = 0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Calibration calibration = noisy_drive(0, seed);
-    if (calibration.smooth_s < 0.2 * 79) continue;
-    ++by_all;
-    const Vec3d first = calibration.at(0.05, {0.2, 0, 0})->shift_m;
-    const Vec3d last = calibration.at(15.75, {78.8, 0, 0})->shift_m;
-    EXPECT_LT(length(first), 0.025) << seed;
-    EXPECT_LT(length(last - first), 0.01) << seed;
+    if (calibration.smooth_s < 0.2 * 7.9) continue;  // by chance neighbours tell it nearly as well
+    ++by_many;
+    const Vec3d middle = calibration.at(7.9, {39.5, 0, 0})->shift_m;
+    square += dot(middle, middle);
   }
-  EXPECT_GE(by_all, 8);
+  EXPECT_GE(by_many, 8);
+  EXPECT_LT(std::sqrt(square / by_many), 0.025);
 }
 
 TEST(Calibration, ADriftThatNoiseHidesInPartIsKept) {

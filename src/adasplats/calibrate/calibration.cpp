@@ -32,8 +32,7 @@ DriveSpan drive_of(const std::vector<PoseCorrection>& poses, std::size_t scan) {
 }
 
 /// A line through the corrections of a drive by time, weighted about `time_s`; without the scan
-/// `left_out`. Where all that has weight is one scan: that. Over as long as the drive or longer:
-/// the mean, since noise alone would tell how steep the line is.
+/// `left_out`. Where all that has weight is one scan: that.
 PoseCorrection smoothed_at(const std::vector<PoseCorrection>& poses, DriveSpan drive, double time_s,
                            double smooth_s, std::size_t left_out) {
   double w = 0, wt = 0, wtt = 0;
@@ -51,10 +50,9 @@ PoseCorrection smoothed_at(const std::vector<PoseCorrection>& poses, DriveSpan d
     shift_t = shift_t + (weight * t) * poses[k].shift_m;
   }
   const double determinant = w * wtt - wt * wt;
-  const bool is_mean = smooth_s >= poses[drive.end - 1].time_s - poses[drive.begin].time_s;
   PoseCorrection result;
   result.time_s = time_s;
-  if (!is_mean && determinant > 1e-6 * w * wtt) {
+  if (determinant > 1e-6 * w * wtt) {
     result.rotation_rad = (1 / determinant) * (wtt * rotation - wt * rotation_t);
     result.shift_m = (1 / determinant) * (wtt * shift - wt * shift_t);
   } else {
@@ -115,18 +113,6 @@ double sum_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// Whether the mean of `squares` is above that of `best` by no more than the standard error of the
-/// difference, scan by scan: the rule of one standard error (Breiman et al., "Classification and
-/// regression trees", 1984, 3.4.3).
-bool is_as_good(const std::vector<double>& squares, const std::vector<double>& best) {
-  const auto n = static_cast<double>(squares.size());
-  const double mean = (sum_of(squares) - sum_of(best)) / n;
-  double spread = 0;
-  for (std::size_t k = 0; k < squares.size(); ++k)
-    spread += std::pow(squares[k] - best[k] - mean, 2);
-  return mean <= std::sqrt(spread / (n - 1) / n);
-}
-
 }  // namespace
 
 RigidTransform MountCorrection::given_from_mounted() const {
@@ -174,22 +160,14 @@ double best_smoothing(const Calibration& calibration) {
   const double apart_s = median_step_s(poses);
   const std::vector<double> of_neighbours = left_out_squares(poses, 0);
   if (!(apart_s > 0) || of_neighbours.size() < kFewestScans) return 0;
-  std::vector<double> smooth_s;
-  std::vector<std::vector<double>> squares;
-  double least = std::numeric_limits<double>::infinity();
-  std::size_t best = 0;
+  double best_s = 0, least = std::numeric_limits<double>::infinity();
   for (double scans = 1; scans < 2 * static_cast<double>(poses.size()); scans *= 2) {
-    smooth_s.push_back(scans * apart_s);
-    squares.push_back(left_out_squares(poses, smooth_s.back()));
-    if (const double sum = sum_of(squares.back()); sum < least) {
-      least = sum;
-      best = squares.size() - 1;
-    }
+    const double sum = sum_of(left_out_squares(poses, scans * apart_s));
+    if (!(sum < least)) continue;
+    least = sum;
+    best_s = scans * apart_s;
   }
-  if (!(least < kClearer * sum_of(of_neighbours))) return 0;
-  for (std::size_t longest = squares.size(); longest-- > best;)
-    if (is_as_good(squares[longest], squares[best])) return smooth_s[longest];
-  return smooth_s[best];
+  return least < kClearer * sum_of(of_neighbours) ? best_s : 0;
 }
 
 CalibrationSizes sizes_of(const Calibration& calibration) {

@@ -58,8 +58,8 @@ struct Calibration {
   std::optional<RigidTransform> corrected(const TimedPose& given) const;
 };
 
-/// The `smooth_s` with which the correction of each scan is told best from those of the others; the
-/// longest of those that tell it as well, to a standard error. As long as the drive: the mean.
+/// The `smooth_s` with which the correction of each scan is told best from those of the others, up
+/// to twice as long as the drive.
 double best_smoothing(const Calibration& calibration);
 
 /// How much a calibration corrects.

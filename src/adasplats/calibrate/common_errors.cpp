@@ -40,6 +40,7 @@ double weighted_median(std::vector<Weighted> values) {
 double robust_mean(const std::vector<Weighted>& values) {
   double mean = weighted_median(values);
   std::vector<Weighted> apart;
+  apart.reserve(values.size());
   for (const Weighted& each : values) apart.push_back({std::fabs(each.value - mean), each.weight});
   const double width =
       std::max(kLeastWidthOfPooling, kWidthOfPooling * weighted_median(std::move(apart)));

@@ -439,6 +439,7 @@ std::pair<Calibration, CalibrationReport> calibrate_drives(
   }
   const ScanView view(cloud);
   std::vector<DriveSource> drives;
+  drives.reserve(spans.size());
   for (const ScanSpan& drive : spans)
     drives.push_back({drive.size(), [&view, &options, drive](ScanSpan part) {
                         return view.of(drive.begin + part.begin, drive.begin + part.end,
