@@ -143,9 +143,8 @@ class PointSegmenter {
       const fs::path tree =
           folder.path() / "sequences" / (std::string(number.size() < 2 ? 1 : 0, '0') + number);
       for (const char* const name : kept_folders()) fs::create_directories(tree / name);
-      const KittiSequence sequence = open_kitti_sequence(sequences[k]);
-      if (const std::string unchecked = require_poses_that_fit(sequence); !unchecked.empty())
-        session_.progress.warn(sequences[k].string() + ": " + unchecked);
+      KittiSequence sequence = open_kitti_sequence(sequences[k]);
+      sequence.facts.unchecked = require_poses_that_fit(sequence);
       const ScanRange range{job_.load.first_scan, job_.load.scan_count, job_.load.scan_stride};
       segment_scans(sequence, chosen_scans(range, sequence.scans.size(), sequences[k]),
                     [&](const fs::path& scan) {

@@ -101,6 +101,11 @@ bool same_extension(const std::vector<fs::path>& files) {
 enum class SensorScans : std::uint8_t { refused, taken };
 
 std::vector<CloudInput> files_of(const Folder& folder, SensorScans scans) {
+  if (folder.has_poses && folder.count(FileKind::points) == 0)
+    throw Error(ErrorKind::data,
+                folder.path.string() +
+                    ": holds scans in the sensor frame (poses.csv is beside them) in no format of "
+                    "points; simulate with `format` semantickitti to use them as points");
   if (folder.has_poses && scans == SensorScans::refused)
     throw Error(ErrorKind::data,
                 folder.path.string() +

@@ -124,8 +124,6 @@ std::vector<CloudPart> read_parts(std::span<const Source> sources, const LoadOpt
     const std::filesystem::path& path = source.input.path;
     if (source.input.is_sequence) {
       const KittiSequence sequence = source.drive ? *source.drive : open_sequence(path, options);
-      if (!sequence.facts.unchecked.empty())
-        progress.warn(path.string() + ": " + sequence.facts.unchecked);
       parts.push_back(read_sequence_part(sequence, options, scans, executor, progress));
     } else {
       parts.push_back(read_file_part(path, options, progress));
