@@ -100,13 +100,20 @@ bool same_extension(const std::vector<fs::path>& files) {
 /// Whether scans in the frame of their sensor are files like others.
 enum class SensorScans : std::uint8_t { refused, taken };
 
+/// Whether all there is are files of points in one format and trajectories.
+bool holds_scans_alone(const Folder& folder) {
+  const auto points = folder.files.find(FileKind::points);
+  return points != folder.files.end() && same_extension(points->second) &&
+         folder.count(FileKind::mesh) == 0 && folder.count(FileKind::splat_model) == 0;
+}
+
 std::vector<CloudInput> files_of(const Folder& folder, SensorScans scans) {
   if (folder.has_poses && folder.count(FileKind::points) == 0)
     throw Error(ErrorKind::data,
                 folder.path.string() +
                     ": holds scans in the sensor frame (poses.csv is beside them) in no format of "
                     "points; simulate with `format` semantickitti to use them as points");
-  if (folder.has_poses && scans == SensorScans::refused)
+  if (folder.has_poses && (scans == SensorScans::refused || !holds_scans_alone(folder)))
     throw Error(ErrorKind::data,
                 folder.path.string() +
                     ": holds scans in the sensor frame (poses.csv is beside them); give that as "
