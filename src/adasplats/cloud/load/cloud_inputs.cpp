@@ -117,7 +117,7 @@ std::vector<CloudInput> files_of(const Folder& folder, SensorScans scans) {
     throw Error(ErrorKind::data,
                 folder.path.string() +
                     ": holds scans in the sensor frame (poses.csv is beside them); give that as "
-                    "`trajectory` to use them as points");
+                    "`trajectory` or simulate with `format` semantickitti to use them as points");
   const std::size_t others = folder.count(FileKind::mesh) + folder.count(FileKind::splat_model) +
                              folder.count(FileKind::trajectory);
   if (folder.count(FileKind::points) == 0) {
