@@ -432,7 +432,10 @@ class Cost(ServerTest):
             costs.append(self.server.cost())
         print("memory, threads, files:", *(f"{kb:,} kB {threads} {files};"
                                            for kb, threads, files in costs))
-        self.assertLessEqual(costs[-1][0], costs[0][0] + GROWTH_KB)
+        # Systems that take back pages which nobody used lately make single values low.
+        half = ROUNDS // 2
+        self.assertLessEqual(max(kb for kb, _, _ in costs[half:]),
+                             max(kb for kb, _, _ in costs[:half]) + GROWTH_KB)
         self.assertLessEqual(costs[-1][1], costs[0][1])
         self.assertLessEqual(costs[-1][2], costs[0][2])
 
