@@ -140,11 +140,11 @@ bool are_all_identity(const Trajectory& poses) {
 
 FrameVerdict find_frame(const SensorFrames& frames, const Executor& executor) {
   const Looks looks = look_at(frames);
-  const FrameVerdict middles = by_middles(looks);
+  FrameVerdict middles = by_middles(looks);
   if (looks.given_m > kFarthestOriginM) return middles;
-  const FrameVerdict pairs = by_pairs(frames);
+  FrameVerdict pairs = by_pairs(frames);
   if (pairs.points_in != PointsIn::found) return pairs;
-  const FrameVerdict cones = by_cones(looks, executor);
+  FrameVerdict cones = by_cones(looks, executor);
   if (cones.points_in != PointsIn::found) return cones;
   if (middles.points_in != PointsIn::found) return middles;
   if (are_all_identity(frames.poses.of_scans))
