@@ -23,6 +23,7 @@ SUBCOMMANDS = [
     ["evaluate", "echoes"],
     ["evaluate", "labels"],
     ["evaluate", "segmentation"],
+    ["evaluate", "realism"],
     ["simkitti32"],
     ["model"],
     ["calibrate"],

@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/pipeline/evaluate/evaluate_realism.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/core/constants.h"
+#include "adasplats/core/error.h"
+#include "adasplats/evaluate/realism/scan_residuals.h"
+#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/sensors/lidar_model.h"
+
+namespace adasplats {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kStepScans = 8;       // that tell the azimuth step: they agree to 1 %
+constexpr std::size_t kResidualPairs = 12;  // of each side: medians of thousands of points
+constexpr std::size_t kScansAtOnce = 16;    // between two calls of the progress sink
+
+/// One side of the comparison.
+struct Side {
+  std::string name;  ///< as the command line has it
+  KittiSequence sequence;
+  std::vector<std::size_t> chosen;
+};
+
+KittiSequence open_scans(const std::filesystem::path& given, const RealismJob& job,
+                         Session& session) {
+  require_input(given);
+  if (!std::filesystem::is_directory(given))
+    throw Error(ErrorKind::usage, given.string() + ": is a file; scans are a sequence or a folder");
+  const std::filesystem::path folder = resolve_cloud_input(given);
+  if (is_kitti_sequence(folder)) {
+    KittiSequence sequence = open_kitti_sequence(folder);
+    sequence.beams = recognize_beams(sequence);
+    return sequence;
+  }
+  const std::filesystem::path own = given / "poses.csv";
+  FrameDrive drive{.folder = given,
+                   .trajectory = std::filesystem::exists(own) ? own : job.trajectory};
+  drive.with_classes = false;
+  if (drive.trajectory.empty())
+    throw Error(ErrorKind::usage, given.string() +
+                                      ": scans without poses; they need a poses.csv beside them "
+                                      "or a `trajectory`");
+  auto opened = open_frame_drive(drive, session.executor, session.progress);
+  if (!opened)
+    throw Error(ErrorKind::data,
+                given.string() +
+                    ": is no folder of scans with a pose each, so nothing tells which "
+                    "beam measured a point");
+  return std::move(*opened);
+}
+
+Side open_side(std::string name, const std::filesystem::path& given, const RealismJob& job,
+               Session& session) {
+  Side side{std::move(name), open_scans(given, job, session), {}};
+  side.chosen = chosen_scans(job.scans, side.sequence.scans.size(), side.sequence.folder);
+  if (side.chosen.size() < kLeastRealismScans)
+    throw Error(ErrorKind::data,
+                side.name + ", " + given.string() + ": " + std::to_string(side.chosen.size()) +
+                    " scans, expected at least " + std::to_string(kLeastRealismScans));
+  return side;
+}
+
+void require_one_sensor(const Side& simulated, const Side& real) {
+  for (const Side* side : {&simulated, &real}) {
+    if (!side->sequence.beams.sensor.empty()) continue;
+    throw Error(ErrorKind::data,
+                side->name + ", " + side->sequence.folder.string() +
+                    ": the points lie on the beams of no sensor of the library, so its rings "
+                    "cannot be told; simulate with the sensor of the real scans");
+  }
+  if (simulated.sequence.beams.sensor == real.sequence.beams.sensor) return;
+  throw Error(ErrorKind::data, "SIMULATED is of sensor '" + simulated.sequence.beams.sensor +
+                                   "', REAL of '" + real.sequence.beams.sensor +
+                                   "': scans of two sensors are no matter of realism");
+}
+
+double step_of(const Side& side, std::size_t rings) {
+  std::vector<double> steps_rad;
+  const std::size_t scans = std::min(kStepScans, side.chosen.size());
+  for (std::size_t k = 0; k < scans; ++k) {
+    const std::size_t index = side.chosen[k * side.chosen.size() / scans];
+    const RingScan scan =
+        arrange_in_rings(side.sequence, index, read_all_returns(side.sequence, index), rings);
+    const double step_rad = azimuth_step_rad(scan);
+    if (step_rad > 0) steps_rad.push_back(step_rad);
+  }
+  const double step_rad = median_of_known(std::move(steps_rad));
+  // A turn of less than 64 steps has no patch; finer ones than 0.01 degrees no LiDAR has.
+  if (step_rad > 0.01 * kDegree && step_rad < 360 * kDegree / static_cast<double>(kPatchColumns))
+    return step_rad;
+  throw Error(ErrorKind::data, side.name + ", " + side.sequence.folder.string() +
+                                   ": nothing tells how far a ring's firings are apart");
+}
+
+RealismScan seen(const Side& side, std::size_t index, std::size_t rings, double step_rad) {
+  const KittiScan scan = read_all_returns(side.sequence, index);
+  RingScan arranged = arrange_in_rings(side.sequence, index, scan, rings);
+  count_missing(arranged, step_rad);
+  ScanFile file{.unfolded_rings = unfolded_rings(scan.positions)};
+  for (const Vec3f& point : scan.positions)
+    file.near_points += static_cast<double>(length(point)) < kNear_m ? 1 : 0;
+  return {features_of_patches(arranged, step_rad), statistics_of_scan(arranged, step_rad, file)};
+}
+
+std::vector<RealismScan> seen_scans(const Side& side, std::size_t rings, double step_rad,
+                                    Session& session) {
+  std::vector<RealismScan> scans(side.chosen.size());
+  session.progress.begin_step(side.name + " scans", scans.size());
+  for (std::size_t first = 0; first < scans.size(); first += kScansAtOnce) {
+    const std::size_t count = std::min(kScansAtOnce, scans.size() - first);
+    session.executor.for_chunks(count, 1, [&](std::size_t k, std::size_t) {
+      scans[first + k] = seen(side, side.chosen[first + k], rings, step_rad);
+    });
+    session.progress.advance(first + count);
+  }
+  session.progress.end_step();
+  return scans;
+}
+
+double mean_of_known(const std::vector<double>& values) {
+  double sum = 0, count = 0;
+  for (const double value : values) {
+    if (value != value) continue;
+    sum += value;
+    ++count;
+  }
+  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+}
+
+StatisticPair residuals_of(const Side& simulated, const Side& real, Session& session) {
+  session.progress.begin_step("scan to scan", 2);
+  const auto of = [&](const Side& side) {
+    return scan_residuals_m(side.sequence, side.chosen, kResidualPairs, session.executor);
+  };
+  const std::vector<double> of_simulated = of(simulated);
+  session.progress.advance(1);
+  const std::vector<double> of_real = of(real);
+  session.progress.end_step();
+  std::vector<double> values;
+  std::vector<std::uint8_t> positive;
+  for (const auto* residuals : {&of_real, &of_simulated}) {
+    for (const double value : *residuals) {
+      if (value != value) continue;
+      values.push_back(value);
+      positive.push_back(residuals == &of_simulated ? 1 : 0);
+    }
+  }
+  return {mean_of_known(of_real), mean_of_known(of_simulated), auc(values, positive)};
+}
+
+Json known_number(double value) { return std::isnan(value) ? Json() : Json(value); }
+
+/// Keys auc, auc_low and auc_high, each by what the test saw.
+Json intervals_json(const std::vector<std::optional<AucInterval>>& tests) {
+  Json json = {{"auc", Json::object()}, {"auc_low", Json::object()}, {"auc_high", Json::object()}};
+  for (std::size_t t = 0; t < tests.size(); ++t) {
+    const std::string key(kRealismFeatures[t].first);
+    json["auc"][key] = tests[t] ? known_number(tests[t]->mean) : Json();
+    json["auc_low"][key] = tests[t] ? known_number(tests[t]->low) : Json();
+    json["auc_high"][key] = tests[t] ? known_number(tests[t]->high) : Json();
+  }
+  return json;
+}
+
+Json test_json(const RealismTest& test) {
+  Json json = intervals_json(test.trees);
+  json["logistic"] = intervals_json(test.logistic);
+  json["patches"] = test.patches;
+  return json;
+}
+
+Json pair_json(const StatisticPair& pair) {
+  return {{"real", known_number(pair.real)},
+          {"simulated", known_number(pair.simulated)},
+          {"auc", known_number(pair.auc)}};
+}
+
+}  // namespace
+
+RealismReport evaluate_realism(const RealismJob& job, Session& session) {
+  const Side simulated = open_side("SIMULATED", job.simulated, job, session);
+  const Side real = open_side("REAL", job.real, job, session);
+  require_one_sensor(simulated, real);
+  RealismReport report;
+  report.sensor = real.sequence.beams.sensor;
+  report.simulated_scans = simulated.chosen.size();
+  report.real_scans = real.chosen.size();
+  const std::size_t rings = load_lidar_model(report.sensor).rings();
+  report.azimuth_step_rad = step_of(real, rings);
+  const auto scans_of = [&](const Side& side) {
+    return seen_scans(side, rings, report.azimuth_step_rad, session);
+  };
+  const std::vector<RealismScan> of_simulated = scans_of(simulated);
+  const std::vector<RealismScan> of_real = scans_of(real);
+  session.progress.begin_step("tell them apart", 0);
+  static_cast<RealismResult&>(report) =
+      compare_realism(of_simulated, of_real, session.seed, session.executor);
+  session.progress.end_step();
+  report.plane_residual_m = residuals_of(simulated, real, session);
+  return report;
+}
+
+Json to_json(const RealismReport& report) {
+  Json json = test_json(report.simulated_real);
+  json["real_real"] = test_json(report.real_real);
+  json["judge"] = "boosted trees";
+  json["statistics"] = Json::object();
+  for (std::size_t s = 0; s < report.statistics.size(); ++s)
+    json["statistics"][scan_statistics()[s].name] = pair_json(report.statistics[s]);
+  json["statistics"]["plane_residual_m"] = pair_json(report.plane_residual_m);
+  json["sensor"] = report.sensor;
+  json["azimuth_step_deg"] = report.azimuth_step_rad / kDegree;
+  json["scans"] = {{"simulated", report.simulated_scans}, {"real", report.real_scans}};
+  return json;
+}
+
+}  // namespace adasplats

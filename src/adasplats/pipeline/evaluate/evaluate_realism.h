@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "adasplats/evaluate/realism/realism.h"
+#include "adasplats/pipeline/session/scan_range.h"
+#include "adasplats/pipeline/session/session.h"
+
+namespace adasplats {
+
+/// Two sets of scans of one sensor.
+struct RealismJob {
+  std::filesystem::path simulated, real;
+  ScanRange scans;  ///< of each of them
+  /// Poses of a folder of files, one a scan, without a poses.csv in it (FrameDrive); else empty.
+  std::filesystem::path trajectory;
+};
+
+struct RealismReport : RealismResult {
+  std::string sensor;           ///< whose beams both sides' points lie on
+  double azimuth_step_rad = 0;  ///< between firings of a ring, of REAL
+  std::size_t simulated_scans = 0, real_scans = 0;
+  StatisticPair plane_residual_m;  ///< of scans against the next ones (scan_residuals_m)
+};
+
+/// Reads both sides in the same way and compares them (compare_realism). Rings are those of the
+/// sensor that is recognised by the points alone. Errors: usage (a file; a folder of scans without
+/// poses), data (too few scans; a side whose sensor is not recognised; two sensors; scans that say
+/// nothing of the azimuths), those of the readers.
+RealismReport evaluate_realism(const RealismJob& job, Session& session);
+
+/// The keys of --report.
+nlohmann::ordered_json to_json(const RealismReport& report);
+
+}  // namespace adasplats
