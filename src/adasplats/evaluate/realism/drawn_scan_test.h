@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/maths/random.h"
@@ -55,10 +56,13 @@ inline KittiScan drawn_points(
   return scan;
 }
 
+/// All beams of a drawn scan leave the origin.
+inline const std::vector<double> kDrawnHeights_m(kDrawnRings, 0);
+
 /// The same arranged, with missing beams counted.
 inline RingScan drawn_scan(
     const std::function<std::optional<DrawnReturn>(std::size_t ring, std::size_t column)>& beam) {
-  RingScan scan = arrange_in_rings({}, 0, drawn_points(beam), kDrawnRings);
+  RingScan scan = arrange_in_rings({}, 0, drawn_points(beam), kDrawnHeights_m);
   count_missing(scan, kDrawnStep_rad);
   return scan;
 }

@@ -63,11 +63,17 @@ double mean_size(const std::vector<double>& values) {
   return ratio(sum, count);
 }
 
-/// The deviation of one range or intensity, of the median absolute second difference of three with
-/// white noise: of normal values the median is 0.6745 deviations, and sqrt(1 + 4 + 1) wider.
+/// The deviation of one range or intensity, by absolute second differences of white noise: their
+/// middle half has a mean of 4 (phi(0.3186) - phi(1.1503)) = 0.6933 deviations, of normal values
+/// from the 25th to the 75th percentile, and they are sqrt(1 + 4 + 1) wider.
 double deviation_of_one(std::span<const float> second) {
-  return quantile_of(second, 0.5) / 0.6745 / std::sqrt(6.0);
+  return mean_between(second, 0.25, 0.75) / 0.6933 / std::sqrt(6.0);
 }
+
+/// Intensities come in steps, of which files hold the nearest float or the one beside it: that is
+/// no matter of the sensor. 0.37: so that no hundredth, and no half or sixth of one, is on the
+/// border of two steps.
+double to_thousandths(double value) { return 0.001 * std::floor(1000 * value + 0.37); }
 
 double piece_between(const PlanePiece& piece) { return log_of_small(piece.between_m); }
 double piece_within(const PlanePiece& piece) { return log_of_small(piece.within_m); }
@@ -79,24 +85,27 @@ std::vector<double> logs_of(const std::vector<double>& values) {
 }
 
 constexpr PatchFeature kPatchFeatures[] = {
-    {"range_median", kOfContext, "", "logarithm of the median range",
-     [](const Counts& c) { return log_of_small(quantile_of(c.ranges_m, 0.5)); }},
+    {"range_about", kOfContext, "", "logarithm of the median range in steps of 0.2",
+     [](const Counts& c) {
+       return 0.2 * std::round(5 * log_of_small(quantile_of(c.ranges_m, 0.5)));
+     }},
 
     {"range_least", kOfGeometry, "", "logarithm of the least range",
      [](const Counts& c) { return log_of_small(quantile_of(c.ranges_m, 0)); }},
     {"range_most", kOfGeometry, "", "logarithm of the largest range",
      [](const Counts& c) { return log_of_small(quantile_of(c.ranges_m, 1)); }},
-    {"second_25", kOfGeometry, "", "logarithm of the lower quartile of second differences of range",
-     [](const Counts& c) { return log_of_small(quantile_of(c.second_m, 0.25)); }},
-    {"second_50", kOfGeometry, "", "of their median",
-     [](const Counts& c) { return log_of_small(quantile_of(c.second_m, 0.5)); }},
-    {"second_75", kOfGeometry, "", "of their upper quartile",
-     [](const Counts& c) { return log_of_small(quantile_of(c.second_m, 0.75)); }},
-    {"second_95", kOfGeometry, "", "of their 95th percentile",
-     [](const Counts& c) { return log_of_small(quantile_of(c.second_m, 0.95)); }},
+    {"second_low", kOfGeometry, "",
+     "logarithm of the mean lower half of second differences of range",
+     [](const Counts& c) { return log_of_small(mean_between(c.second_m, 0, 0.5)); }},
+    {"second_middle", kOfGeometry, "", "of the mean of their middle half",
+     [](const Counts& c) { return log_of_small(mean_between(c.second_m, 0.25, 0.75)); }},
+    {"second_high", kOfGeometry, "", "of the mean from their median to their 90th percentile",
+     [](const Counts& c) { return log_of_small(mean_between(c.second_m, 0.5, 0.9)); }},
+    {"second_most", kOfGeometry, "", "of the mean of their highest tenth",
+     [](const Counts& c) { return log_of_small(mean_between(c.second_m, 0.9, 1)); }},
     {"second_lag", kOfGeometry, "", "correlation of neighbouring ones (white noise: -2/3)",
      [](const Counts& c) { return ratio(c.product_m2, c.square_m2); }},
-    {"second_rings", kOfGeometry, "", "deviation over rings of the logarithm of their median",
+    {"second_rings", kOfGeometry, "", "deviation over rings of the logarithm of second_middle",
      [](const Counts& c) { return deviation_of(logs_of(c.ring_second_m)); }},
     {"rings_off_plane", kOfGeometry, "", "logarithm of the spread of rings about planes",
      [](const Counts& c) { return median_of_pieces(c, piece_between); }},
@@ -136,13 +145,13 @@ constexpr PatchFeature kPatchFeatures[] = {
      }},
 
     {"intensity_10", kOfIntensity, "", "10th percentile",
-     [](const Counts& c) { return quantile_of(c.intensities, 0.1); }},
+     [](const Counts& c) { return to_thousandths(quantile_of(c.intensities, 0.1)); }},
     {"intensity_50", kOfIntensity, "", "median",
-     [](const Counts& c) { return quantile_of(c.intensities, 0.5); }},
+     [](const Counts& c) { return to_thousandths(quantile_of(c.intensities, 0.5)); }},
     {"intensity_90", kOfIntensity, "", "90th percentile",
-     [](const Counts& c) { return quantile_of(c.intensities, 0.9); }},
+     [](const Counts& c) { return to_thousandths(quantile_of(c.intensities, 0.9)); }},
     {"intensity_most", kOfIntensity, "", "the highest",
-     [](const Counts& c) { return quantile_of(c.intensities, 1); }},
+     [](const Counts& c) { return to_thousandths(quantile_of(c.intensities, 1)); }},
     {"zeros", kOfIntensity, "", "intensities of zero, of all",
      [](const Counts& c) { return ratio(c.zeros, c.known); }},
     {"zero_next", kOfIntensity, "", "neighbours of zeros that are zero",
@@ -150,13 +159,15 @@ constexpr PatchFeature kPatchFeatures[] = {
     {"equal", kOfIntensity, "", "neighbours with the same intensity, of all",
      [](const Counts& c) { return ratio(c.equal, c.known_pairs); }},
     {"intensity_second_50", kOfIntensity, "", "median second difference of intensity",
-     [](const Counts& c) { return quantile_of(c.second_intensity, 0.5); }},
+     [](const Counts& c) { return to_thousandths(quantile_of(c.second_intensity, 0.5)); }},
     {"intensity_second_90", kOfIntensity, "", "its 90th percentile",
-     [](const Counts& c) { return quantile_of(c.second_intensity, 0.9); }},
+     [](const Counts& c) { return to_thousandths(quantile_of(c.second_intensity, 0.9)); }},
     {"intensity_second_lag", kOfIntensity, "", "correlation of neighbouring ones",
      [](const Counts& c) { return ratio(c.product_intensity, c.square_intensity); }},
     {"intensity_rings", kOfIntensity, "", "mean step of a ring's median from those beside it",
-     [](const Counts& c) { return mean_size(steps_between_rings(c.ring_intensity)); }},
+     [](const Counts& c) {
+       return to_thousandths(mean_size(steps_between_rings(c.ring_intensity)));
+     }},
 };
 
 constexpr ScanStatistic kScanStatistics[] = {

@@ -16,7 +16,7 @@
 namespace adasplats {
 
 /// What a feature is of. Context tells where a patch is and takes part in all tests: what noise is
-/// usual depends on the range.
+/// usual depends on the range. It is coarse, so that it tells no noise by itself.
 enum class FeatureGroup : std::uint8_t { context, geometry, dropout, intensity };
 inline constexpr std::pair<std::string_view, FeatureGroup> kFeatureGroups[] = {
     {"context", FeatureGroup::context},

@@ -60,9 +60,41 @@ TEST(Features, TheNoiseOfRangesIsFound) {
     EXPECT_NEAR(statistic(scan, "range_noise_m"), sigma_m, 0.02 * sigma_m);
     // Second differences of white noise: -4 to 6.
     EXPECT_NEAR(feature(scan, "second_lag"), -2.0 / 3, 0.01);
-    // exp(median of |x|) of sqrt(6) sigma, 0.6745 deviations.
-    EXPECT_NEAR(std::exp(feature(scan, "second_50")), 0.6745 * std::sqrt(6) * sigma_m,
+    // The mean of all that is from the 50th to the 90th percentile of |x|, x normal: the integral
+    // of 2 x phi(x) is -2 phi(x), from 0.6745 to 1.6449.
+    const auto phi = [](double x) {
+      return std::exp(-0.5 * x * x) / std::sqrt(2 * std::acos(-1.0));
+    };
+    const double high = 2 * (phi(0.6745) - phi(1.6449)) / 0.4;
+    EXPECT_NEAR(std::exp(feature(scan, "second_high")), high * std::sqrt(6) * sigma_m,
                 0.03 * sigma_m);
+  }
+}
+
+TEST(Features, StepsOfRangesAndFloatsOfIntensitiesAreNoMatter) {
+  // Ranges in steps of 2 mm, as a sensor has them, and the same moved by half a millimetre;
+  // intensities in hundredths, and the next floats.
+  const auto scan_with = [](double moved_m, float towards) {
+    return drawn_scan([=](std::size_t ring, std::size_t column) {
+      Random random = test::of_beam(5, ring, column);
+      const double range_m = 0.002 * std::round((10 + 0.02 * random.normal()) / 0.002);
+      const float intensity = 0.01F * std::round(static_cast<float>(100 * random.uniform()));
+      return DrawnReturn{range_m + moved_m * std::sin(static_cast<double>(column)),
+                         std::nextafter(intensity, towards)};
+    });
+  };
+  const std::vector<float> one = features_of_patches(scan_with(0, 0), kDrawnStep_rad);
+  const std::vector<float> other = features_of_patches(scan_with(2e-4, 1), kDrawnStep_rad);
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    const PatchFeature& each = patch_features()[k % patch_features().size()];
+    if (std::string(each.name).starts_with("intensity_") &&
+        std::string(each.name) != "intensity_second_lag") {
+      EXPECT_EQ(one[k], other[k]) << each.name;
+    }
+    if (std::string(each.name).starts_with("second_")) {
+      EXPECT_NEAR(one[k], other[k], 2e-3) << each.name;
+    }
   }
 }
 
@@ -204,7 +236,7 @@ TEST(Features, JitterOfAzimuthsIsFound) {
 TEST(Features, WithoutIntensitiesAreNotKnown) {
   KittiScan points = test::drawn_points([](std::size_t, std::size_t) { return DrawnReturn{10}; });
   points.intensities.clear();
-  RingScan scan = arrange_in_rings({}, 0, points, kDrawnRings);
+  RingScan scan = arrange_in_rings({}, 0, points, test::kDrawnHeights_m);
   count_missing(scan, kDrawnStep_rad);
   EXPECT_TRUE(std::isnan(feature(scan, "intensity_50")));
   EXPECT_TRUE(std::isnan(statistic(scan, "intensity_zeros")));

@@ -3,9 +3,8 @@
 #include "adasplats/evaluate/realism/realism.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cmath>
-#include <limits>
 #include <string>
 
 #include "adasplats/core/error.h"
@@ -38,30 +37,38 @@ std::size_t patches_of(const RealismScan& scan) {
 /// Folds are blocks of consecutive scans.
 std::size_t fold_of(std::size_t scan, std::size_t scans) { return scan * kRealismFolds / scans; }
 
-/// Columns of the features that a test sees.
-std::vector<std::size_t> columns_of(RealismFeatures features) {
+/// Groups of which both classes have a feature in some patch.
+using KnownGroups = std::array<bool, std::size(kFeatureGroups)>;
+
+KnownGroups known_groups(std::span<const TestScan> scans) {
+  std::array<KnownGroups, 2> known{};  // of the negative and the positive class
+  const std::size_t columns = patch_features().size();
+  for (const TestScan& one : scans)
+    for (std::size_t k = 0; k < one.scan->patches.size(); ++k)
+      if (one.scan->patches[k] == one.scan->patches[k])
+        known[one.positive][static_cast<std::size_t>(patch_features()[k % columns].group)] = true;
+  for (std::size_t group = 0; group < known[0].size(); ++group)
+    known[0][group] = known[0][group] && known[1][group];
+  return known[0];
+}
+
+/// Columns of the features that a test sees. None of a group that is not known; none at all where
+/// that leaves context alone.
+std::vector<std::size_t> columns_of(RealismFeatures features, const KnownGroups& known) {
   constexpr FeatureGroup kGroups[] = {FeatureGroup::context, FeatureGroup::geometry,
                                       FeatureGroup::dropout, FeatureGroup::intensity};
   std::vector<std::size_t> columns;
+  bool is_seen = false;
   for (std::size_t f = 0; f < patch_features().size(); ++f) {
     const FeatureGroup group = patch_features()[f].group;
-    if (features == RealismFeatures::all || group == FeatureGroup::context ||
-        group == kGroups[static_cast<std::size_t>(features)])
-      columns.push_back(f);
+    const bool is_context = group == FeatureGroup::context;
+    const bool is_own = !is_context && (features == RealismFeatures::all ||
+                                        group == kGroups[static_cast<std::size_t>(features)]);
+    if (!known[static_cast<std::size_t>(group)] || !(is_own || is_context)) continue;
+    columns.push_back(f);
+    is_seen = is_seen || is_own;
   }
-  return columns;
-}
-
-/// Whether any patch has a feature of the test's own.
-bool is_known(std::span<const TestScan> scans, RealismFeatures features) {
-  const std::vector<std::size_t> columns = columns_of(features);
-  for (const TestScan& one : scans)
-    for (std::size_t p = 0; p < patches_of(*one.scan); ++p)
-      for (const std::size_t column : columns) {
-        const float value = one.scan->patches[p * patch_features().size() + column];
-        if (value == value && patch_features()[column].group != FeatureGroup::context) return true;
-      }
-  return false;
+  return is_seen ? columns : std::vector<std::size_t>();
 }
 
 std::vector<float> row_of(const RealismScan& scan, std::size_t patch,
@@ -119,12 +126,13 @@ struct FoldScores {
 
   FoldScores(std::span<const TestScan> scans, std::uint64_t seed, const Executor& executor)
       : trees(kTests * kRealismFolds), logistic(kTests * kRealismFolds) {
+    const KnownGroups known = known_groups(scans);
     executor.for_chunks(kTests * kRealismFolds, 1, [&](std::size_t k, std::size_t) {
       const std::vector<std::size_t> columns =
-          columns_of(kRealismFeatures[k / kRealismFolds].second);
+          columns_of(kRealismFeatures[k / kRealismFolds].second, known);
       const std::size_t fold = k % kRealismFolds;
       const SampleTable table = learned_from(scans, fold, columns, seed);
-      if (!has_both(table)) return;
+      if (columns.empty() || !has_both(table)) return;
       trees[k] = scored(scans, fold, columns, BoostedTrees(table, {}));
       logistic[k] = scored(scans, fold, columns, LogisticScore(table));
     });
@@ -147,8 +155,9 @@ RealismTest test_of(std::span<const TestScan> scans, std::span<const FoldScores>
     }
     return auc_interval(splits, sets, seed);
   };
+  const KnownGroups known = known_groups(scans);
   executor.for_chunks(kTests, 1, [&](std::size_t t, std::size_t) {
-    if (!is_known(scans, kRealismFeatures[t].second)) return;
+    if (columns_of(kRealismFeatures[t].second, known).empty()) return;
     test.trees[t] = pooled(&FoldScores::trees, t);
     test.logistic[t] = pooled(&FoldScores::logistic, t);
   });
@@ -184,25 +193,49 @@ RealismTest test_of_halves(std::span<const RealismScan> real, std::uint64_t seed
   return test_of(scans, scores, {&all, 1}, seed, executor);
 }
 
-StatisticPair pair_of(std::span<const RealismScan> simulated, std::span<const RealismScan> real,
-                      std::size_t statistic) {
-  std::vector<double> values;
-  std::vector<std::uint8_t> positive;
-  const auto mean_of = [&](std::span<const RealismScan> scans, std::uint8_t is_simulated) {
-    double sum = 0, count = 0;
-    for (const RealismScan& scan : scans) {
-      const double value = scan.statistics[statistic];
-      if (value != value) continue;
-      values.push_back(value);
-      positive.push_back(is_simulated);
-      sum += value;
-      ++count;
+/// Values of both sides; NaN does not count.
+class TwoSides {
+ public:
+  void add(double value, bool is_simulated) {
+    if (value != value) return;
+    values_.push_back(value);
+    simulated_.push_back(is_simulated ? 1 : 0);
+  }
+
+  StatisticPair pair() const {
+    double sums[2] = {}, counts[2] = {};
+    for (std::size_t k = 0; k < values_.size(); ++k) {
+      sums[simulated_[k]] += values_[k];
+      ++counts[simulated_[k]];
     }
-    return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+    // Of none: 0 / 0, which is NaN.
+    return {sums[0] / counts[0], sums[1] / counts[1], auc(values_, simulated_)};
+  }
+
+ private:
+  std::vector<double> values_;
+  std::vector<std::uint8_t> simulated_;
+};
+
+StatisticPair statistic_pair(std::span<const RealismScan> simulated,
+                             std::span<const RealismScan> real, std::size_t statistic) {
+  TwoSides sides;
+  for (const RealismScan& scan : real) sides.add(scan.statistics[statistic], false);
+  for (const RealismScan& scan : simulated) sides.add(scan.statistics[statistic], true);
+  return sides.pair();
+}
+
+StatisticPair feature_pair(std::span<const RealismScan> simulated,
+                           std::span<const RealismScan> real, std::size_t feature) {
+  TwoSides sides;
+  const auto add = [&](std::span<const RealismScan> scans, bool is_simulated) {
+    for (const RealismScan& scan : scans)
+      for (std::size_t k = feature; k < scan.patches.size(); k += patch_features().size())
+        sides.add(static_cast<double>(scan.patches[k]), is_simulated);
   };
-  const double of_real = mean_of(real, 0);
-  const double of_simulated = mean_of(simulated, 1);
-  return {of_real, of_simulated, auc(values, positive)};
+  add(real, false);
+  add(simulated, true);
+  return sides.pair();
 }
 
 void require_scans(std::span<const RealismScan> scans, const std::string& side) {
@@ -236,7 +269,11 @@ RealismResult compare_realism(std::span<const RealismScan> simulated,
   result.simulated_real = test_of(scans, {&scores, 1}, sets, seed, executor);
   result.real_real = test_of_halves(real, seed, executor);
   for (std::size_t s = 0; s < scan_statistics().size(); ++s)
-    result.statistics.push_back(pair_of(simulated, real, s));
+    result.statistics.push_back(statistic_pair(simulated, real, s));
+  result.features.resize(patch_features().size());
+  executor.for_chunks(result.features.size(), 1, [&](std::size_t f, std::size_t) {
+    result.features[f] = feature_pair(simulated, real, f);
+  });
   return result;
 }
 

@@ -38,19 +38,19 @@ inline constexpr std::pair<std::string_view, RealismFeatures> kRealismFeatures[]
     {"intensity", RealismFeatures::intensity}};
 inline Words<RealismFeatures> words_of(RealismFeatures) { return kRealismFeatures; }
 
-/// How well patches of two sets of scans are told apart, in the order of kRealismFeatures; nothing
-/// where scans do not have what a test sees.
+/// How well patches of two sets of scans are told apart, in the order of kRealismFeatures. What one
+/// of the sets does not have at all (intensities) is left out; a test of that alone is nothing.
 struct RealismTest {
   std::vector<std::optional<AucInterval>> trees;     ///< the judge
   std::vector<std::optional<AucInterval>> logistic;  ///< beside it, kept out of development
   std::size_t patches = 0;                           ///< of both sets
 };
 
-/// A statistic of both sides.
+/// A number of the scans, or the patches, of both sides.
 struct StatisticPair {
-  double real = 0, simulated = 0;  ///< means over scans; NaN: not known
-  /// How often a simulated scan has the larger value, equal ones counting half: 0 and 1 tell
-  /// every scan by this alone, 0.5 none.
+  double real = 0, simulated = 0;  ///< means; NaN: not known
+  /// How often a simulated one has the larger value, equal ones counting half: 0 and 1 tell all by
+  /// this alone, 0.5 none.
   double auc = 0;
 };
 
@@ -58,6 +58,7 @@ struct RealismResult {
   RealismTest simulated_real;
   RealismTest real_real;                  ///< halves of the real scans
   std::vector<StatisticPair> statistics;  ///< scan_statistics()
+  std::vector<StatisticPair> features;    ///< patch_features(), means over patches
 };
 
 /// Can patches of simulated scans be told from those of real ones? A classifier learns it from

@@ -27,7 +27,7 @@ std::vector<RealismScan> drawn_scans(std::uint64_t seed, std::size_t count, doub
                                    static_cast<float>(random.uniform())};
         });
     if (!with_intensities) points.intensities.clear();
-    RingScan scan = arrange_in_rings({}, 0, points, test::kDrawnRings);
+    RingScan scan = arrange_in_rings({}, 0, points, test::kDrawnHeights_m);
     count_missing(scan, test::kDrawnStep_rad);
     scans.push_back({features_of_patches(scan, test::kDrawnStep_rad),
                      statistics_of_scan(scan, test::kDrawnStep_rad, {})});
@@ -68,6 +68,14 @@ TEST(Realism, OtherNoiseIsToldByGeometryAlone) {
     EXPECT_NEAR(result.statistics[s].simulated, 0.02, 0.001);
     EXPECT_EQ(result.statistics[s].auc, 1);
   }
+  for (std::size_t f = 0; f < patch_features().size(); ++f) {
+    const std::string name = patch_features()[f].name;
+    if (name == "second_middle") {
+      EXPECT_GT(result.features[f].auc, 0.99);
+    } else if (name == "missing") {
+      EXPECT_NEAR(result.features[f].real, 0.1, 0.01);
+    }
+  }
 }
 
 TEST(Realism, TheNumberOfThreadsIsNoMatter) {
@@ -89,6 +97,11 @@ TEST(Realism, WithoutIntensitiesThatTestIsLeftOut) {
       compare_realism(drawn_scans(2, 8, 0.01, false), drawn_scans(1, 8, 0.01, false), 1, executor);
   EXPECT_FALSE(result.simulated_real.trees[3]);
   EXPECT_TRUE(result.simulated_real.trees[0]);
+  // Of one side alone they would tell everything.
+  const RealismResult one_side =
+      compare_realism(drawn_scans(2, 8, 0.01, false), drawn_scans(1, 8, 0.01), 1, executor);
+  EXPECT_FALSE(one_side.simulated_real.trees[3]);
+  EXPECT_NEAR(one_side.simulated_real.trees[0]->mean, 0.5, 0.1);
 }
 
 TEST(Realism, TooFewScansAreAnError) {

@@ -31,15 +31,18 @@ std::vector<float> gaps_rad(const RingScan& scan) {
 }  // namespace
 
 RingScan arrange_in_rings(const KittiSequence& sequence, std::size_t index, const KittiScan& scan,
-                          std::size_t rings) {
+                          std::span<const double> heights_m) {
+  const std::size_t rings = heights_m.size();
   std::vector<ArrangedReturn> returns;
   returns.reserve(scan.positions.size());
   for (std::size_t i = 0; i < scan.positions.size(); ++i) {
     if (!is_finite(vec_cast<double>(scan.positions[i]))) continue;
     const MeasuredBeam beam = beam_of(sequence, index, scan, i);
-    const Vec3d way = beam.end - beam.origin;
+    if (beam.laser >= rings) continue;
+    const double raised_m = scan.origins.empty() ? 0 : heights_m[beam.laser];
+    const Vec3d way = beam.end - beam.origin - Vec3d{0, 0, raised_m};
     const double range_m = length(way);
-    if (!(range_m > 0) || beam.laser >= rings) continue;
+    if (!(range_m > 0)) continue;
     const double azimuth_rad = std::numbers::pi - std::atan2(way.y, way.x);  // 0 to a turn
     returns.push_back({beam.laser, static_cast<float>(azimuth_rad), static_cast<float>(range_m),
                        static_cast<std::uint32_t>(i), vec_cast<float>(way / range_m)});

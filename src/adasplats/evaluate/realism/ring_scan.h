@@ -30,9 +30,11 @@ struct RingScan {
 
 /// Arranges a scan of a sequence whose sensor is recognised (ScanBeams::sensor): rings are its
 /// lasers, and the motion of the sensor is taken out of directions where the points are
-/// compensated for it. Points that are not finite, at the origin or of no laser are left out.
+/// compensated for it. `heights_m`: where each laser leaves above the sensor's origin, one a ring;
+/// scans that say where beams began (KittiScan::origins) mean the sensor, sequences the laser.
+/// Points that are not finite, at the origin or of no laser are left out.
 RingScan arrange_in_rings(const KittiSequence& sequence, std::size_t index, const KittiScan& scan,
-                          std::size_t rings);
+                          std::span<const double> heights_m);
 
 /// How far a ring's firings are apart: the mean of the gaps between neighbouring returns, of those
 /// from 0.4 to 1.4 of the median gap. 0.4, because an encoder reports steps that alternate between

@@ -28,7 +28,7 @@ TEST(RingScan, HasEveryReturnInItsPlace) {
   points.positions[0].x = std::numeric_limits<float>::quiet_NaN();
   points.positions[1] = {};
   points.lasers[2] = kNoLaser;
-  const RingScan scan = arrange_in_rings({}, 0, points, test::kDrawnRings);
+  const RingScan scan = arrange_in_rings({}, 0, points, test::kDrawnHeights_m);
   ASSERT_EQ(scan.rings(), test::kDrawnRings);
   ASSERT_EQ(scan.size(), test::kDrawnRings * test::kDrawnColumns - 3);
   for (std::size_t ring = 0; ring + 1 < scan.rings(); ++ring) {
@@ -43,8 +43,21 @@ TEST(RingScan, HasEveryReturnInItsPlace) {
   }
 }
 
+TEST(RingScan, RangesBeginAtTheLaser) {
+  // The sensor's origin stands at (1, 2, 3), its second laser 0.2 m above; 3, 4, 12 is 13 long.
+  KittiScan points;
+  points.positions = {{4, 6, 15.2F}};
+  points.origins = {{1, 2, 3}};
+  points.lasers = {1};
+  const std::vector<double> heights_m = {0.1, 0.2};
+  const RingScan scan = arrange_in_rings({}, 0, points, heights_m);
+  ASSERT_EQ(scan.size(), 1U);
+  EXPECT_NEAR(scan.ranges_m[0], 13, 1e-6);
+}
+
 TEST(RingScan, OfNothingIsEmpty) {
-  RingScan scan = arrange_in_rings({}, 0, {}, 4);
+  const std::vector<double> heights_m(4, 0);
+  RingScan scan = arrange_in_rings({}, 0, {}, heights_m);
   EXPECT_EQ(scan.rings(), 4U);
   EXPECT_EQ(scan.size(), 0U);
   EXPECT_EQ(azimuth_step_rad(scan), 0);

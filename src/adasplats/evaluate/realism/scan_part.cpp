@@ -116,7 +116,8 @@ class SecondDifferences {
   void end_ring() {
     counts_.second_m.insert(counts_.second_m.end(), own_m_.begin(), own_m_.end());
     std::ranges::sort(own_m_);
-    if (own_m_.size() >= kLeastOfRing) counts_.ring_second_m.push_back(quantile_of(own_m_, 0.5));
+    if (own_m_.size() >= kLeastOfRing)
+      counts_.ring_second_m.push_back(mean_between(own_m_, 0.25, 0.75));
   }
 
  private:
@@ -298,6 +299,15 @@ double quantile_of(std::span<const float> ascending, double share) {
   if (ascending.empty()) return kUnknownValue;
   const double at = share * static_cast<double>(ascending.size() - 1);
   return static_cast<double>(ascending[static_cast<std::size_t>(std::lround(at))]);
+}
+
+double mean_between(std::span<const float> ascending, double from, double to) {
+  const auto size = static_cast<double>(ascending.size());
+  const auto begin = static_cast<std::size_t>(from * size);
+  const auto end = std::min(ascending.size(), static_cast<std::size_t>(std::ceil(to * size)));
+  double sum = 0;
+  for (std::size_t k = begin; k < end; ++k) sum += static_cast<double>(ascending[k]);
+  return begin < end ? sum / static_cast<double>(end - begin) : kUnknownValue;
 }
 
 double median_of_known(std::vector<double> values) {

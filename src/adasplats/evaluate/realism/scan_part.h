@@ -51,9 +51,9 @@ struct PartCounts {
   std::vector<float> second_m, second_intensity;  ///< likewise
   double square_m2 = 0, product_m2 = 0;           ///< of signed ones, and of neighbouring ones
   double square_intensity = 0, product_intensity = 0;
-  std::vector<double> ring_second_m;            ///< median of each ring with enough of them
-  std::vector<double> ring_intensity;           ///< median of each ring; NaN: too few returns
-  std::vector<double> ring_missing;             ///< share of its beams
+  std::vector<double> ring_second_m;   ///< mean middle half, of each ring with enough of them
+  std::vector<double> ring_intensity;  ///< median of each ring; NaN: too few returns
+  std::vector<double> ring_missing;    ///< share of its beams
   double gap_steps = 0, gap_square_steps2 = 0;  ///< azimuths from one neighbour to the next
   std::size_t neighbors = 0;                    ///< pairs of neighbouring beams that both returned
   std::size_t edges = 0;                        ///< of these, ranges more than 0.5 m apart
@@ -82,6 +82,9 @@ PartCounts count_part(const RingScan& scan, const MissingBeams& missing, const P
 
 /// The value below which a share of ascending values lies; NaN of none.
 double quantile_of(std::span<const float> ascending, double share);
+/// Mean of ascending values from one share of them to another; NaN of none. Ranges come in steps of
+/// millimetres, of which a quantile would be one; means are not.
+double mean_between(std::span<const float> ascending, double from, double to);
 /// Median of values in any order, NaN left out; NaN of none.
 double median_of_known(std::vector<double> values);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -85,13 +86,22 @@ void require_one_sensor(const Side& simulated, const Side& real) {
                                    "': scans of two sensors are no matter of realism");
 }
 
-double step_of(const Side& side, std::size_t rings) {
+/// Where each laser leaves above the sensor's origin.
+std::vector<double> heights_m_of(const LidarModel& sensor) {
+  std::vector<double> heights_m(sensor.rings(), 0);
+  for (std::size_t ring = 0; ring < std::min(heights_m.size(), sensor.beam_origins_m.size());
+       ++ring)
+    heights_m[ring] = sensor.beam_origins_m[ring].z;
+  return heights_m;
+}
+
+double step_of(const Side& side, std::span<const double> heights_m) {
   std::vector<double> steps_rad;
   const std::size_t scans = std::min(kStepScans, side.chosen.size());
   for (std::size_t k = 0; k < scans; ++k) {
     const std::size_t index = side.chosen[k * side.chosen.size() / scans];
     const RingScan scan =
-        arrange_in_rings(side.sequence, index, read_all_returns(side.sequence, index), rings);
+        arrange_in_rings(side.sequence, index, read_all_returns(side.sequence, index), heights_m);
     const double step_rad = azimuth_step_rad(scan);
     if (step_rad > 0) steps_rad.push_back(step_rad);
   }
@@ -103,9 +113,10 @@ double step_of(const Side& side, std::size_t rings) {
                                    ": nothing tells how far a ring's firings are apart");
 }
 
-RealismScan seen(const Side& side, std::size_t index, std::size_t rings, double step_rad) {
+RealismScan seen(const Side& side, std::size_t index, std::span<const double> heights_m,
+                 double step_rad) {
   const KittiScan scan = read_all_returns(side.sequence, index);
-  RingScan arranged = arrange_in_rings(side.sequence, index, scan, rings);
+  RingScan arranged = arrange_in_rings(side.sequence, index, scan, heights_m);
   count_missing(arranged, step_rad);
   ScanFile file{.unfolded_rings = unfolded_rings(scan.positions)};
   for (const Vec3f& point : scan.positions)
@@ -113,14 +124,14 @@ RealismScan seen(const Side& side, std::size_t index, std::size_t rings, double 
   return {features_of_patches(arranged, step_rad), statistics_of_scan(arranged, step_rad, file)};
 }
 
-std::vector<RealismScan> seen_scans(const Side& side, std::size_t rings, double step_rad,
-                                    Session& session) {
+std::vector<RealismScan> seen_scans(const Side& side, std::span<const double> heights_m,
+                                    double step_rad, Session& session) {
   std::vector<RealismScan> scans(side.chosen.size());
   session.progress.begin_step(side.name + " scans", scans.size());
   for (std::size_t first = 0; first < scans.size(); first += kScansAtOnce) {
     const std::size_t count = std::min(kScansAtOnce, scans.size() - first);
     session.executor.for_chunks(count, 1, [&](std::size_t k, std::size_t) {
-      scans[first + k] = seen(side, side.chosen[first + k], rings, step_rad);
+      scans[first + k] = seen(side, side.chosen[first + k], heights_m, step_rad);
     });
     session.progress.advance(first + count);
   }
@@ -196,10 +207,10 @@ RealismReport evaluate_realism(const RealismJob& job, Session& session) {
   report.sensor = real.sequence.beams.sensor;
   report.simulated_scans = simulated.chosen.size();
   report.real_scans = real.chosen.size();
-  const std::size_t rings = load_lidar_model(report.sensor).rings();
-  report.azimuth_step_rad = step_of(real, rings);
+  const std::vector<double> heights_m = heights_m_of(load_lidar_model(report.sensor));
+  report.azimuth_step_rad = step_of(real, heights_m);
   const auto scans_of = [&](const Side& side) {
-    return seen_scans(side, rings, report.azimuth_step_rad, session);
+    return seen_scans(side, heights_m, report.azimuth_step_rad, session);
   };
   const std::vector<RealismScan> of_simulated = scans_of(simulated);
   const std::vector<RealismScan> of_real = scans_of(real);
@@ -207,6 +218,11 @@ RealismReport evaluate_realism(const RealismJob& job, Session& session) {
   static_cast<RealismResult&>(report) =
       compare_realism(of_simulated, of_real, session.seed, session.executor);
   session.progress.end_step();
+  for (std::size_t t = 0; t < std::size(kRealismFeatures); ++t)
+    if (!report.simulated_real.trees[t])
+      session.progress.warn("one of the sides has no values of '" +
+                            std::string(kRealismFeatures[t].first) +
+                            "', so that takes no part in the tests");
   report.plane_residual_m = residuals_of(simulated, real, session);
   return report;
 }
@@ -219,6 +235,9 @@ Json to_json(const RealismReport& report) {
   for (std::size_t s = 0; s < report.statistics.size(); ++s)
     json["statistics"][scan_statistics()[s].name] = pair_json(report.statistics[s]);
   json["statistics"]["plane_residual_m"] = pair_json(report.plane_residual_m);
+  json["features"] = Json::object();
+  for (std::size_t f = 0; f < report.features.size(); ++f)
+    json["features"][patch_features()[f].name] = pair_json(report.features[f]);
   json["sensor"] = report.sensor;
   json["azimuth_step_deg"] = report.azimuth_step_rad / kDegree;
   json["scans"] = {{"simulated", report.simulated_scans}, {"real", report.real_scans}};
