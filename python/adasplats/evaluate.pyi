@@ -83,6 +83,19 @@ def presence(
     progress: Progress | None = None,
 ) -> dict[str, Any]: ...
 
+def realism(
+    simulated: Path,
+    real: Path,
+    *,
+    first_scan: int = 0,
+    scan_count: int | None = None,
+    scan_stride: int = 1,
+    trajectory: Path | None = None,
+    threads: int = 0,
+    seed: int = 1,
+    progress: Progress | None = None,
+) -> dict[str, Any]: ...
+
 def resimulate(
     model: Scene | Path,
     sequence: Path,

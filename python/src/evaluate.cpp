@@ -8,6 +8,7 @@
 #include "adasplats/pipeline/evaluate/evaluate_echoes.h"
 #include "adasplats/pipeline/evaluate/evaluate_labels.h"
 #include "adasplats/pipeline/evaluate/evaluate_presence.h"
+#include "adasplats/pipeline/evaluate/evaluate_realism.h"
 #include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
 #include "adasplats/pipeline/evaluate/evaluate_segmentation.h"
 #include "adasplats/pipeline/evaluate/evaluate_truth.h"
@@ -236,6 +237,23 @@ struct LabelArguments {
   }
 };
 
+struct RealismArguments {
+  RealismJob job;
+  WorkOptions work{.has_device = false, .has_seed = true};
+
+  void take(Keywords& keywords) {
+    take_scan_range(keywords, job.scans);
+    keywords.take("trajectory", job.trajectory);
+    work.take(keywords);
+  }
+
+  py::object run(py::handle simulated, py::handle real) {
+    job.simulated = path_of(simulated, "simulated");
+    job.real = path_of(real, "real");
+    return reported(work, [&](Session& session) { return evaluate_realism(job, session); });
+  }
+};
+
 /// Classes of an array of labels: their low 16 bits, as in files of labels.
 std::vector<std::uint16_t> classes_of(py::handle labels, const char* name) {
   const py::array array = labels.is_none() ? py::array() : py::array::ensure(labels);
@@ -319,6 +337,14 @@ void bind_evaluate(py::module_& module) {
                          "simulated, original: SemanticKITTI folders. window: original scans "
                          "before and after the one\n"
                          "of the same time. Raises ValueError, OSError.");
+  define<RealismArguments>(
+      evaluate, "realism", "simulated", "real",
+      "Whether simulated scans can be told from real ones of the same poses: AUC of classifiers of "
+      "patches\n"
+      "of 8 x 64 beams, and statistics side by side.\n\n"
+      "simulated, real: paths of sequences or folders of scans of one sensor, at least 8 scans "
+      "each.\n"
+      "trajectory: poses of a folder without a poses.csv. Raises ValueError, OSError.");
   define<SegmentationArguments>(
       evaluate, "segmentation", "predicted", "true",
       "How well predicted classes agree with the true ones, by intersection over union.\n\n"

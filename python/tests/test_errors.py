@@ -23,6 +23,7 @@ def test_what_is_missing(tmp_path, scene):
                  lambda: adasplats.Scene(missing), lambda: adasplats.Trajectory.read(missing),
                  lambda: adasplats.evaluate.c2c(missing, missing),
                  lambda: adasplats.evaluate.resimulate(scene, missing),
+                 lambda: adasplats.evaluate.realism(missing, missing),
                  lambda: adasplats.evaluate.truth(missing, missing, trajectory=missing),
                  lambda: scene.simulate("hdl-32-paper", np.eye(4), ray_drop=missing)):
         with pytest.raises(FileNotFoundError, match="nothing.ply") as caught:
