@@ -308,6 +308,19 @@ def test_render(street, scene, tmp_path, options, arguments):
         np.testing.assert_array_equal(ahead, png_pixels(tmp_path / "cli.png"))
 
 
+def test_realism(street, tmp_path):
+    folders = [tmp_path / "one", tmp_path / "other"]
+    for seed, folder in enumerate(folders):
+        run_program("simulate", street.model, "--path", "0,0;8,0", "--spacing", 1, "--sensor",
+                    "velodyne-hdl-64e-kitti", "--seed", seed, "-o", folder)
+    expected = report_of(tmp_path, "evaluate", "realism", *folders, "--scans", "1:8", "--seed", 5)
+    result = adasplats.evaluate.realism(*folders, first_scan=1, scan_count=8, seed=5)
+    assert result == without_times(expected)
+    assert result["sensor"] == "velodyne-hdl-64e-kitti"
+    with pytest.raises(ValueError, match="7 scans, expected at least 8"):
+        adasplats.evaluate.realism(*folders, scan_count=7)
+
+
 def test_c2c(street):
     expected = report_of(street.folder, "evaluate", "c2c", street.cloud, street.sequence,
                          "--by-class", "--labels", "semantickitti")
