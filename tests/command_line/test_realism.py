@@ -83,6 +83,8 @@ class Realism(ProgramTest):
         other = self.scans("other", sensor="hesai-pandar64")
         self.run_bad(65, *command, other, real, says=["SIMULATED", "no sensor of the library"])
         self.run_bad(65, *command, real, other, says=["REAL", "no sensor of the library"])
+        self.run_bad(64, *command, real, real, "--trajectory", self.poses,
+                     says=["--trajectory has no effect"])
         pcd = self.scans("pcd", "--format", "pcd")
         (pcd / "poses.csv").unlink()
         self.run_bad(64, *command, pcd, real, says=["poses.csv", "--trajectory"])

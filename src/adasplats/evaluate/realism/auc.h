@@ -33,7 +33,8 @@ using ScoredSplit = std::vector<ScoredSamples>;
 /// splits. The interval is that of a single split, by the percentile bootstrap over scans: as many
 /// as there are of each set are drawn with replacement, with all their samples, of each split in
 /// turn. `sets`: sizes of the sets of scans that are drawn from one by one, numbers of the first
-/// set first. NaN without pairs.
+/// set first. Classifiers stay as they are: what they would have learned from other scans is not in
+/// the interval, which is too narrow by a third. NaN without pairs.
 AucInterval auc_interval(std::span<const ScoredSplit> splits, std::span<const std::size_t> sets,
                          std::uint64_t seed);
 

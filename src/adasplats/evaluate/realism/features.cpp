@@ -78,10 +78,9 @@ double to_thousandths(double value) { return 0.001 * std::floor(1000 * value + 0
 double piece_between(const PlanePiece& piece) { return log_of_small(piece.between_m); }
 double piece_within(const PlanePiece& piece) { return log_of_small(piece.within_m); }
 
-std::vector<double> logs_of(const std::vector<double>& values) {
-  std::vector<double> logs;
-  for (const double value : values) logs.push_back(log_of_small(value));
-  return logs;
+std::vector<double> logs_of(std::vector<double> values) {
+  for (double& value : values) value = log_of_small(value);
+  return values;
 }
 
 constexpr PatchFeature kPatchFeatures[] = {

@@ -198,9 +198,10 @@ void add_plane(const RingScan& scan, std::size_t first_ring, std::span<const Rin
   for (const RingSpan& span : spans) {
     for (std::size_t i = span.begin; i < span.end; ++i, ++count) {
       const Vec3d p = point_of(i);
-      for (int a = 0; a < 3; ++a) {
-        right[static_cast<std::size_t>(a)] += p[a];
-        for (int b = 0; b < 3; ++b) matrix[static_cast<std::size_t>(3 * a + b)] += p[a] * p[b];
+      const std::array<double, 3> at = {p.x, p.y, p.z};
+      for (std::size_t a = 0; a < 3; ++a) {
+        right[a] += at[a];
+        for (std::size_t b = 0; b < 3; ++b) matrix[3 * a + b] += at[a] * at[b];
       }
     }
   }

@@ -33,6 +33,12 @@ struct Side {
   std::vector<std::size_t> chosen;
 };
 
+/// Whether a side has no poses of its own, so that the job's trajectory is for it.
+bool needs_trajectory(const std::filesystem::path& given) {
+  return !is_kitti_sequence(resolve_cloud_input(given)) &&
+         !std::filesystem::exists(given / "poses.csv");
+}
+
 KittiSequence open_scans(const std::filesystem::path& given, const RealismJob& job,
                          Session& session) {
   require_input(given);
@@ -202,6 +208,8 @@ Json pair_json(const StatisticPair& pair) {
 RealismReport evaluate_realism(const RealismJob& job, Session& session) {
   const Side simulated = open_side("SIMULATED", job.simulated, job, session);
   const Side real = open_side("REAL", job.real, job, session);
+  if (!job.trajectory.empty() && !needs_trajectory(job.simulated) && !needs_trajectory(job.real))
+    throw Error(ErrorKind::usage, "`trajectory` has no effect: both sides have poses of their own");
   require_one_sensor(simulated, real);
   RealismReport report;
   report.sensor = real.sequence.beams.sensor;
