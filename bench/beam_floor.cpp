@@ -127,7 +127,7 @@ void run(const std::filesystem::path& training, const std::filesystem::path& hel
   NoProgress progress;
   const PointCloud cloud = load_cloud(std::span(&training, 1), {}, executor, progress).first;
   KittiSequence sequence = open_kitti_sequence(held_out);
-  sequence.beams = recognize_beams(sequence);
+  sequence.beams = recognize_beams(sequence, executor);
   Errors nearest, median;
   for (std::size_t scan = 0; scan < sequence.scans.size(); ++scan)
     add_scan(sequence, scan, cloud, reach_m, executor, nearest, median);

@@ -283,8 +283,8 @@ FileFacts run_info(const fs::path& input, const std::string& labels, const LoadO
   const auto scheme = label_scheme_for(labels, std::span(&resolved, 1));
   if (is_kitti_sequence(resolved)) {
     KittiSequence sequence = open_kitti_sequence(resolved);
-    sequence.facts.unchecked = require_poses_that_fit(sequence);
-    sequence.beams = recognize_beams(sequence);
+    sequence.facts.unchecked = require_poses_that_fit(sequence, session.executor);
+    sequence.beams = recognize_beams(sequence, session.executor);
     return sequence_facts(sequence, "sequence", scheme, options, session);
   }
   if (fs::is_regular_file(resolved)) {

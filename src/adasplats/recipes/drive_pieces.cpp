@@ -74,7 +74,7 @@ std::optional<DrivePieces> DrivePieces::open(std::span<const std::filesystem::pa
   if (sequences.size() > 1) require_one_world(sequences);
   DrivePieces pieces(load, session);
   for (std::size_t k = 0; k < sequences.size(); ++k) {
-    const KittiSequence sequence = open_sequence(sequences[k].path, load);
+    const KittiSequence sequence = open_sequence(sequences[k].path, load, session.executor);
     pieces.report_.beams.push_back(sequence.beams.description());
     pieces.report_.drives.push_back({sequences[k].path, sequence.beams.sensor, counts[k]});
     pieces.is_counted_.emplace_back(counts[k]);

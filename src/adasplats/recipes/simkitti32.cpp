@@ -47,11 +47,11 @@ std::string sequence_name(const fs::path& folder) {
   return is_number ? name : "00";
 }
 
-Source open_source(const SimKitti32Job& job) {
+Source open_source(const SimKitti32Job& job, const Executor& executor) {
   require_input(job.sequence);
   const fs::path folder = resolve_cloud_input(job.sequence);
   Source source{open_kitti_sequence(folder), {}, sequence_name(folder)};
-  require_poses_that_fit(source.sequence);
+  require_poses_that_fit(source.sequence, executor);
   if (source.sequence.labels.empty())
     throw Error(ErrorKind::data, folder.string() +
                                      ": has no labels/, which say what moves and what simulated "
@@ -337,7 +337,7 @@ std::vector<UnusedSetting> unused_settings(const SimKitti32Job& job) {
 SimKitti32Result run_simkitti32(const SimKitti32Job& job, Session& session) {
   const Stopwatch total;
   const ScanSettings settings = settings_of(job, session.seed);
-  const Source source = open_source(job);
+  const Source source = open_source(job, session.executor);
   ResumableFolder folder(job.output, job.overwrite, "simkitti32",
                          content_of(job, source, settings.sensor, session));
   SimKitti32Result result;

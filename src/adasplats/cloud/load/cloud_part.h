@@ -74,7 +74,8 @@ CloudPart read_sequence_part(const KittiSequence& sequence, const LoadOptions& o
                              ProgressSink& progress);
 /// A sequence folder with recognised beams (where options want it). Errors: those of
 /// open_kitti_sequence and require_poses_that_fit.
-KittiSequence open_sequence(const std::filesystem::path& folder, const LoadOptions& options);
+KittiSequence open_sequence(const std::filesystem::path& folder, const LoadOptions& options,
+                            const Executor& executor);
 
 /// Reads a file of points.
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,

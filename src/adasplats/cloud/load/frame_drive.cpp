@@ -401,7 +401,7 @@ KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& fr
   sequence.facts.points_in = "sensor's frame (" + because + ")";
   sequence.facts.poses = frames.poses.by + (drive.mount ? ", with the stated mount"
                                                         : ", taken as those of the points' frame");
-  sequence.facts.unchecked = require_poses_that_fit(sequence);
+  sequence.facts.unchecked = require_poses_that_fit(sequence, executor);
   MovingBoxes boxes;
   if (!drive.boxes.empty()) boxes = MovingBoxes(drive.boxes);
   const bool has_point_times = frames.times.kind != PointTimes::Kind::none;
@@ -415,7 +415,7 @@ KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& fr
   finding.scan_poses = frames.poses.of_scans;
   progress.begin_step("recognise the sensor", 0);
   if (!drive.beams_from_poses && !has_point_times && drive.sweep_points == SweepPoints::found)
-    sequence.beams = recognize_beams(sequence);
+    sequence.beams = recognize_beams(sequence, executor);
   if (drive.beams_from_poses) {
     sequence.facts.motion = "not looked for: beams from the poses";
   } else if (sequence.beams.from_hdl64) {

@@ -76,13 +76,13 @@ Looks look_at(const SensorFrames& frames) {
 }
 
 /// By pairs of scans; found: these do not tell.
-FrameVerdict by_pairs(const SensorFrames& frames) {
+FrameVerdict by_pairs(const SensorFrames& frames, const Executor& executor) {
   KittiSequence sequence;
   sequence.folder = frames.files.front().parent_path();
   sequence.scans = frames.files;
   sequence.trajectory = frames.poses.of_scans;
   sequence.reader = raw_reader();
-  const PoseEvidence evidence = weigh_poses(sequence);
+  const PoseEvidence evidence = weigh_poses(sequence, executor);
   constexpr std::size_t kUnmoved = 1;  // of PoseEvidence::met
   const std::string figures = with_figures(
       "of %.0f points on upright things %.0f %% meet another scan by the poses, %.0f %% without",
@@ -142,7 +142,7 @@ FrameVerdict find_frame(const SensorFrames& frames, const Executor& executor) {
   const Looks looks = look_at(frames);
   FrameVerdict middles = by_middles(looks);
   if (looks.given_m > kFarthestOriginM) return middles;
-  FrameVerdict pairs = by_pairs(frames);
+  FrameVerdict pairs = by_pairs(frames, executor);
   if (pairs.points_in != PointsIn::found) return pairs;
   FrameVerdict cones = by_cones(looks, executor);
   if (cones.points_in != PointsIn::found) return cones;

@@ -123,7 +123,8 @@ std::vector<CloudPart> read_parts(std::span<const Source> sources, const LoadOpt
   for (const Source& source : sources) {
     const std::filesystem::path& path = source.input.path;
     if (source.input.is_sequence) {
-      const KittiSequence sequence = source.drive ? *source.drive : open_sequence(path, options);
+      const KittiSequence sequence =
+          source.drive ? *source.drive : open_sequence(path, options, executor);
       parts.push_back(read_sequence_part(sequence, options, scans, executor, progress));
     } else {
       parts.push_back(read_file_part(path, options, progress));

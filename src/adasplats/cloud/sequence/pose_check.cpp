@@ -161,20 +161,26 @@ std::array<RigidTransform, PoseEvidence::kWays> motions(const RigidTransform& ea
           earlier * later.inverse()};
 }
 
+/// An earlier scan of a sequence and a later one.
+using ScanNumbers = std::pair<std::size_t, std::size_t>;
+
 /// Two scans: the upright points of the later one, and where the earlier one has points.
 class ScanPair {
  public:
   /// Nothing where a scan cannot be read or the later one has too few upright points.
-  static std::optional<ScanPair> read(const KittiSequence& sequence, std::size_t earlier,
-                                      std::size_t later) {
-    const auto later_scan = try_kitti_points(sequence, later);
-    if (!later_scan) return std::nullopt;
-    const NearPoints source = near_points(*later_scan, kSourceReach_m);
-    std::vector<Vec3d> moved = upright_points(source);
-    if (moved.size() < kLeastPoints) return std::nullopt;
-    const auto earlier_scan = try_kitti_points(sequence, earlier);
-    if (!earlier_scan) return std::nullopt;
-    return ScanPair(source.middle, std::move(moved), near_points(*earlier_scan, kTargetReach_m));
+  static std::optional<ScanPair> read(const KittiSequence& sequence, ScanNumbers scans,
+                                      const Executor& executor) {
+    const std::array numbers = {scans.second, scans.first};
+    constexpr std::array kReach_m = {kSourceReach_m, kTargetReach_m};
+    std::array<std::optional<NearPoints>, 2> near;
+    std::vector<Vec3d> moved;
+    executor.for_chunks(near.size(), 1, [&](std::size_t k, std::size_t) {
+      const auto scan = try_kitti_points(sequence, numbers[k]);
+      if (scan) near[k] = near_points(*scan, kReach_m[k]);
+      if (k == 0 && near[k]) moved = upright_points(*near[k]);
+    });
+    if (!near[0] || !near[1] || moved.size() < kLeastPoints) return std::nullopt;
+    return ScanPair(near[0]->middle, std::move(moved), *near[1]);
   }
 
   std::size_t points() const { return moved_.size(); }
@@ -196,40 +202,45 @@ class ScanPair {
   Occupied occupied_;
 };
 
-void add_pair(const KittiSequence& sequence, std::size_t earlier, std::size_t later,
-              PoseEvidence& evidence) {
-  const auto pair = ScanPair::read(sequence, earlier, later);
-  if (!pair) return;
-  const auto ways = motions(sequence.trajectory[earlier].world_from_sensor,
-                            sequence.trajectory[later].world_from_sensor);
+/// What one pair says of the poses.
+PoseEvidence pose_evidence(const KittiSequence& sequence, ScanNumbers scans,
+                           const Executor& executor) {
+  PoseEvidence evidence;
+  const auto pair = ScanPair::read(sequence, scans, executor);
+  if (!pair) return evidence;
+  const auto ways = motions(sequence.trajectory[scans.first].world_from_sensor,
+                            sequence.trajectory[scans.second].world_from_sensor);
   // Traffic at one's own speed does not move either; points of a sensor that moves are always
   // around their frame's origin, those in world coordinates come along.
   const bool frame_stands = pair->middles_apart_m() >= 0.5 * length(ways[0].translation);
-  ++evidence.pairs;
-  evidence.points += pair->points();
+  evidence.pairs = 1;
+  evidence.points = pair->points();
   for (std::size_t way = 0; way < ways.size(); ++way)
-    if (way != kWithoutMotion || frame_stands) evidence.met[way] += pair->met(ways[way]);
-  evidence.met_turned += pair->met({ways[0].rotation, {}});
+    if (way != kWithoutMotion || frame_stands) evidence.met[way] = pair->met(ways[way]);
+  evidence.met_turned = pair->met({ways[0].rotation, {}});
+  return evidence;
 }
 
-void add_pair(const KittiSequence& sequence, std::size_t earlier, std::size_t later,
-              ScaleEvidence& evidence) {
-  const auto pair = ScanPair::read(sequence, earlier, later);
-  if (!pair) return;
-  const RigidTransform given = sequence.trajectory[earlier].world_from_sensor.inverse() *
-                               sequence.trajectory[later].world_from_sensor;
-  ++evidence.pairs;
-  evidence.points += pair->points();
-  evidence.met += pair->met({given.rotation, evidence.factor * given.translation});
-  evidence.met_given += pair->met(given);
-  evidence.met_turned += pair->met({given.rotation, {}});
+/// What one pair says of a factor.
+ScaleEvidence scale_evidence(const KittiSequence& sequence, ScanNumbers scans, double factor,
+                             const Executor& executor) {
+  ScaleEvidence evidence;
+  const auto pair = ScanPair::read(sequence, scans, executor);
+  if (!pair) return evidence;
+  const RigidTransform given = sequence.trajectory[scans.first].world_from_sensor.inverse() *
+                               sequence.trajectory[scans.second].world_from_sensor;
+  evidence.pairs = 1;
+  evidence.points = pair->points();
+  evidence.met = pair->met({given.rotation, factor * given.translation});
+  evidence.met_given = pair->met(given);
+  evidence.met_turned = pair->met({given.rotation, {}});
+  return evidence;
 }
 
 /// Up to kPairs pairs of scans that are kLeastApart_m to kMostApart_m apart, were the translations
 /// of the poses `factor` times what they are.
-std::vector<std::pair<std::size_t, std::size_t>> pairs_of(const Trajectory& trajectory,
-                                                          double factor) {
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+std::vector<ScanNumbers> pairs_of(const Trajectory& trajectory, double factor) {
+  std::vector<ScanNumbers> pairs;
   const auto place = [&](std::size_t i) { return trajectory[i].world_from_sensor.translation; };
   for (std::size_t k = 0; k < kPairs; ++k) {
     const std::size_t earlier = k * trajectory.size() / kPairs;
@@ -356,35 +367,54 @@ bool ScaleEvidence::contradicts() const {
          static_cast<double>(met) >= kLeastGain * other;
 }
 
-PoseEvidence weigh_poses(const KittiSequence& sequence) {
-  PoseEvidence evidence;
-  for (const auto& [earlier, later] : pairs_of(sequence.trajectory, 1))
-    add_pair(sequence, earlier, later, evidence);
-  return evidence;
+PoseEvidence weigh_poses(const KittiSequence& sequence, const Executor& executor) {
+  const std::vector<ScanNumbers> pairs = pairs_of(sequence.trajectory, 1);
+  std::vector<PoseEvidence> of_pairs(pairs.size());
+  executor.for_chunks(pairs.size(), 1, [&](std::size_t k, std::size_t) {
+    of_pairs[k] = pose_evidence(sequence, pairs[k], executor);
+  });
+  PoseEvidence all;
+  for (const PoseEvidence& part : of_pairs) {
+    all.pairs += part.pairs;
+    all.points += part.points;
+    for (std::size_t way = 0; way < all.met.size(); ++way) all.met[way] += part.met[way];
+    all.met_turned += part.met_turned;
+  }
+  return all;
 }
 
-std::vector<ScaleEvidence> weigh_scales(const KittiSequence& sequence) {
+std::vector<ScaleEvidence> weigh_scales(const KittiSequence& sequence, const Executor& executor) {
   std::vector<ScaleEvidence> scales;
   for (const double factor : kFactors) {
-    ScaleEvidence evidence;
-    evidence.factor = factor;
-    for (const auto& [earlier, later] : pairs_of(sequence.trajectory, factor))
-      add_pair(sequence, earlier, later, evidence);
-    if (evidence.pairs != 0) scales.push_back(evidence);
+    const std::vector<ScanNumbers> pairs = pairs_of(sequence.trajectory, factor);
+    std::vector<ScaleEvidence> of_pairs(pairs.size());
+    executor.for_chunks(pairs.size(), 1, [&](std::size_t k, std::size_t) {
+      of_pairs[k] = scale_evidence(sequence, pairs[k], factor, executor);
+    });
+    ScaleEvidence all;
+    all.factor = factor;
+    for (const ScaleEvidence& part : of_pairs) {
+      all.pairs += part.pairs;
+      all.points += part.points;
+      all.met += part.met;
+      all.met_given += part.met_given;
+      all.met_turned += part.met_turned;
+    }
+    if (all.pairs != 0) scales.push_back(all);
   }
   return scales;
 }
 
-std::string require_poses_that_fit(const KittiSequence& sequence) {
+std::string require_poses_that_fit(const KittiSequence& sequence, const Executor& executor) {
   require_times_of_scans(sequence);
-  const PoseEvidence evidence = weigh_poses(sequence);
+  const PoseEvidence evidence = weigh_poses(sequence, executor);
   if (evidence.contradicts()) {
     const std::size_t other = evidence.best_other();
     throw_contradiction(sequence, evidence.points, evidence.pairs, evidence.met[0],
                         evidence.met.at(other), std::string(kWayNames.at(other)));
   }
   if (evidence.confirms()) return {};
-  for (const ScaleEvidence& scale : weigh_scales(sequence)) {
+  for (const ScaleEvidence& scale : weigh_scales(sequence, executor)) {
     if (scale.contradicts())
       throw_contradiction(
           sequence, scale.points, scale.pairs, scale.met_given, scale.met,

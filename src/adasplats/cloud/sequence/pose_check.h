@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/core/executor.h"
 
 namespace adasplats {
 
@@ -50,17 +51,17 @@ struct PoseEvidence {
 /// from everywhere, so only points in columns of 1 m that something of at least 1 m fills count. A
 /// vehicle that stands, scans farther apart and places without upright things give no pairs,
 /// nor do scans that cannot be read.
-PoseEvidence weigh_poses(const KittiSequence& sequence);
+PoseEvidence weigh_poses(const KittiSequence& sequence, const Executor& executor);
 
 /// Judges translations in other units than metres (millimetres, centimetres, decimetres, feet, and
 /// what metres taken for these become): for each factor up to four pairs that are 3 to 15 m apart
 /// by it. Without a pair there is no entry.
-std::vector<ScaleEvidence> weigh_scales(const KittiSequence& sequence);
+std::vector<ScaleEvidence> weigh_scales(const KittiSequence& sequence, const Executor& executor);
 
 /// Throws data with the figures where weigh_poses(sequence) contradicts, or, unless it confirms, a
 /// factor of weigh_scales(sequence) does; also where the times of the poses are no seconds:
 /// neighbouring scans more than 20 s apart and a vehicle slower than 0.5 m/s, or less than 2 ms and
 /// faster than 150 m/s. Gives in one line what of this could not be told; empty: all was.
-std::string require_poses_that_fit(const KittiSequence& sequence);
+std::string require_poses_that_fit(const KittiSequence& sequence, const Executor& executor);
 
 }  // namespace adasplats

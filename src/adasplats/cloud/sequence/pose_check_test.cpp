@@ -73,11 +73,11 @@ const Way kHonest = [](const RigidTransform& pose) { return pose; };
 TEST(PoseCheck, TrueMotionIsBelieved) {
   const TemporaryFolder folder;
   const KittiSequence sequence = drive(folder, street(), 12, kHonest);
-  const PoseEvidence evidence = weigh_poses(sequence);
+  const PoseEvidence evidence = weigh_poses(sequence, Executor(2));
   EXPECT_EQ(evidence.pairs, 3U);  // none 3 m ahead of scan 9
   EXPECT_GT(evidence.share(0), 0.95);
   EXPECT_FALSE(evidence.contradicts());
-  require_poses_that_fit(sequence);
+  require_poses_that_fit(sequence, Executor(2));
 }
 
 TEST(PoseCheck, FaultsAreNamedWithFigures) {
@@ -85,7 +85,7 @@ TEST(PoseCheck, FaultsAreNamedWithFigures) {
   const auto refuse = [&](const Way& written, const std::string& what, bool in_world = false) {
     const KittiSequence wrong = drive(folder, street(), 12, written, 1, in_world);
     expect_error(ErrorKind::data, {folder.path().string(), "contradict", " % meet", what},
-                 [&] { require_poses_that_fit(wrong); });
+                 [&] { require_poses_that_fit(wrong, Executor(2)); });
   };
   refuse([](const RigidTransform& p) { return kCamera * p * kCamera.inverse(); }, "the camera's");
   refuse([](const RigidTransform& p) { return kCamera.inverse() * p * kCamera; }, "the LiDAR's");
@@ -105,7 +105,7 @@ TEST(PoseCheck, OtherUnitsThanMetresAreNamed) {
     const KittiSequence wrong = drive(folder, street(), 12, scaled_by(factor));
     expect_error(ErrorKind::data,
                  {folder.path().string(), "contradict", "translations times " + times + " ("},
-                 [&] { require_poses_that_fit(wrong); });
+                 [&] { require_poses_that_fit(wrong, Executor(2)); });
   };
   refuse(1000, "0.001");
   refuse(100, "0.01");
@@ -119,36 +119,39 @@ TEST(PoseCheck, OtherUnitsThanMetresAreNamed) {
 
 TEST(PoseCheck, ScalesSayNothingAgainstTruePoses) {
   const TemporaryFolder folder;
-  EXPECT_TRUE(weigh_poses(drive(folder, street(), 12, kHonest)).confirms());
+  EXPECT_TRUE(weigh_poses(drive(folder, street(), 12, kHonest), Executor(2)).confirms());
   const auto believed = [](const KittiSequence& sequence) {
-    for (const ScaleEvidence& scale : weigh_scales(sequence))
+    for (const ScaleEvidence& scale : weigh_scales(sequence, Executor(2)))
       EXPECT_FALSE(scale.contradicts()) << scale.factor;
-    require_poses_that_fit(sequence);
+    require_poses_that_fit(sequence, Executor(2));
   };
   for (const double apart_m : {0.0, 0.1, 0.3, 1.0, 3.0, 8.0})  // 0: it stands
     believed(drive(folder, street(), 12, kHonest, apart_m));
   believed(drive(folder, street(), 12, scaled_by(1.05)));  // drift
   believed(drive(folder, tunnel(), 12, kHonest));
-  EXPECT_TRUE(weigh_scales(KittiSequence{}).empty());
+  EXPECT_TRUE(weigh_scales(KittiSequence{}, Executor(2)).empty());
 }
 
 TEST(PoseCheck, TunnelsDoNotTellScales) {
   const TemporaryFolder folder;
   const KittiSequence sequence = drive(folder, tunnel(), 12, scaled_by(10));
-  EXPECT_FALSE(weigh_poses(sequence).confirms());
-  for (const ScaleEvidence& scale : weigh_scales(sequence)) EXPECT_FALSE(scale.contradicts());
+  EXPECT_FALSE(weigh_poses(sequence, Executor(2)).confirms());
+  for (const ScaleEvidence& scale : weigh_scales(sequence, Executor(2)))
+    EXPECT_FALSE(scale.contradicts());
 }
 
 TEST(PoseCheck, WhatTellsNothingIsBelieved) {
   const TemporaryFolder folder;
-  EXPECT_FALSE(weigh_poses(drive(folder, tunnel(), 12, kHonest)).contradicts());
-  EXPECT_EQ(weigh_poses(drive(folder, street(), 12, kHonest, 0)).pairs, 0U);  // it stands
-  EXPECT_EQ(weigh_poses(drive(folder, street(), 4, kHonest, 50)).pairs, 0U);  // far apart
-  EXPECT_FALSE(weigh_poses(drive(folder, street(), 2, kHonest, 5)).contradicts());
-  EXPECT_EQ(weigh_poses(drive(folder, street(), 2, kHonest, 5)).pairs, 1U);
-  EXPECT_EQ(weigh_poses(drive(folder, {}, 12, kHonest)).pairs, 0U);  // empty scans
-  EXPECT_EQ(weigh_poses(drive(folder, {{1, 2, 3}}, 1, kHonest)).pairs, 0U);
-  EXPECT_EQ(weigh_poses(KittiSequence{}).pairs, 0U);
+  EXPECT_FALSE(weigh_poses(drive(folder, tunnel(), 12, kHonest), Executor(2)).contradicts());
+  EXPECT_EQ(weigh_poses(drive(folder, street(), 12, kHonest, 0), Executor(2)).pairs,
+            0U);  // it stands
+  EXPECT_EQ(weigh_poses(drive(folder, street(), 4, kHonest, 50), Executor(2)).pairs,
+            0U);  // far apart
+  EXPECT_FALSE(weigh_poses(drive(folder, street(), 2, kHonest, 5), Executor(2)).contradicts());
+  EXPECT_EQ(weigh_poses(drive(folder, street(), 2, kHonest, 5), Executor(2)).pairs, 1U);
+  EXPECT_EQ(weigh_poses(drive(folder, {}, 12, kHonest), Executor(2)).pairs, 0U);  // empty scans
+  EXPECT_EQ(weigh_poses(drive(folder, {{1, 2, 3}}, 1, kHonest), Executor(2)).pairs, 0U);
+  EXPECT_EQ(weigh_poses(KittiSequence{}, Executor(2)).pairs, 0U);
 }
 
 // A scan that nobody chose must not stop what reads others; labels say nothing of poses.
@@ -157,11 +160,11 @@ TEST(PoseCheck, ScansThatCannotBeReadAreSkipped) {
   KittiSequence sequence = drive(folder, street(), 12, kHonest);
   for (std::size_t k = 0; k < sequence.scans.size(); ++k)
     sequence.labels.push_back(folder.path() / "labels/none.label");
-  EXPECT_EQ(weigh_poses(sequence).pairs, 3U);
+  EXPECT_EQ(weigh_poses(sequence, Executor(2)).pairs, 3U);
   folder.write("velodyne/0.bin", std::string(17, 'x'));  // earlier of the first pair
-  EXPECT_EQ(weigh_poses(sequence).pairs, 2U);
+  EXPECT_EQ(weigh_poses(sequence, Executor(2)).pairs, 2U);
   std::filesystem::remove(sequence.scans[9]);  // later of the last one
-  EXPECT_EQ(weigh_poses(sequence).pairs, 1U);
+  EXPECT_EQ(weigh_poses(sequence, Executor(2)).pairs, 1U);
 }
 
 // Cars around drive as fast: they stand still for the sensor, and are most of what it sees.
@@ -170,14 +173,14 @@ TEST(PoseCheck, TrafficAtOnesOwnSpeedIsNoContradiction) {
   KittiSequence sequence = drive(folder, street(), 12, kHonest);
   for (std::size_t k = 0; k < sequence.trajectory.size(); ++k)
     sequence.scans[k] = sequence.scans.front();
-  const PoseEvidence evidence = weigh_poses(sequence);
+  const PoseEvidence evidence = weigh_poses(sequence, Executor(2));
   EXPECT_GT(evidence.pairs, 0U);
   EXPECT_FALSE(evidence.contradicts());
   EXPECT_FALSE(evidence.confirms());
   for (const double apart_m : {0.3, 3.0, 30.0})
     for (std::size_t k = 0; k < sequence.trajectory.size(); ++k) {
       sequence.trajectory[k].world_from_sensor.translation.x = apart_m * static_cast<double>(k);
-      for (const ScaleEvidence& scale : weigh_scales(sequence))
+      for (const ScaleEvidence& scale : weigh_scales(sequence, Executor(2)))
         EXPECT_FALSE(scale.contradicts()) << scale.factor;
     }
 }

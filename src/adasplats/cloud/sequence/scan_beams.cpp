@@ -73,16 +73,35 @@ std::array<Cone, kElevations_deg.size()> cones_of_fan() {
   return cones;
 }
 
+/// How far a point at `rho_m` from the axis is above a cone, upright, m.
+double above_cone(const Cone& cone, double z_m, double rho_m) {
+  return z_m - cone.height_m - cone.slope * rho_m;
+}
+
 /// The cone nearest to a point, and how far it is, m.
 std::pair<std::uint16_t, double> nearest_cone(Vec3d point) {
   static const auto kCones = cones_of_fan();
   const double rho_m = std::hypot(point.x, point.y);
   std::pair<std::uint16_t, double> nearest{kNoLaser, std::numeric_limits<double>::infinity()};
-  for (std::size_t k = 0; k < kCones.size(); ++k) {
-    const Cone& cone = kCones[k];
-    const double distance_m = std::fabs(point.z - cone.height_m - cone.slope * rho_m) * cone.cosine;
-    if (distance_m < nearest.second) nearest = {static_cast<std::uint16_t>(k), distance_m};
-  }
+  const auto look = [&](std::size_t k) {
+    const double above_m = above_cone(kCones[k], point.z, rho_m);
+    const double distance_m = std::fabs(above_m) * kCones[k].cosine;
+    const bool first_of_equals = distance_m == nearest.second && k < nearest.first;
+    if (distance_m < nearest.second || (first_of_equals && nearest.first != kNoLaser))
+      nearest = {static_cast<std::uint16_t>(k), distance_m};
+    return distance_m;
+  };
+  // Heights and slopes fall from cone to cone, so a point is ever higher above them: `below` is the
+  // first one that it is not below. What it is above or below more than one that was looked at is
+  // nearer by the cosines (0.906 to 1) alone at most.
+  const auto below = static_cast<std::size_t>(
+      std::ranges::partition_point(
+          kCones, [&](const Cone& cone) { return above_cone(cone, point.z, rho_m) < 0; }) -
+      kCones.begin());
+  constexpr double kLeastCosine = 0.9;
+  std::size_t begin = below, end = below;
+  while (begin > 0 && kLeastCosine * look(begin - 1) <= nearest.second) --begin;
+  while (end < kCones.size() && kLeastCosine * look(end) <= nearest.second) ++end;
   return nearest;
 }
 
@@ -120,26 +139,44 @@ void require_times_in_seconds(const KittiSequence& sequence,
 
 }  // namespace
 
-MeasuredBeam ScanBeams::beam_of(std::size_t scan, Vec3d point) const {
-  MeasuredBeam beam{{}, point, kNoLaser};
-  if (from_hdl64) {
+namespace {
+
+/// Where the beam to a point began, were the frame that of the sensor at its own time.
+Vec3d origin_in_sweep(const ScanBeams& beams, std::size_t scan, Vec3d point, double phase) {
+  Vec3d origin;
+  if (beams.from_hdl64) {
     // From the middle between the blocks the two parts of the fan are told apart well enough.
     constexpr double kBetween_m = 0.165;
     const double elevation_deg =
         std::atan2(point.z - kBetween_m, std::hypot(point.x, point.y)) / kRadians;
-    beam.origin.z = block_height_m(elevation_deg);
-    beam.laser = laser_of(scan, point);
+    origin.z = block_height_m(elevation_deg);
   }
+  return scan < beams.sweeps_m.size() ? origin + phase * beams.sweeps_m[scan] : origin;
+}
+
+RigidTransform frame_from_sensor(const SweepMotion& motion, double phase) {
+  const Trajectory sweep = {{-0.5, motion.frame_from_begin}, {0, {}}, {0.5, motion.frame_from_end}};
+  return interpolate(sweep, phase);
+}
+
+}  // namespace
+
+Vec3d ScanBeams::origin_of(std::size_t scan, Vec3d point) const {
+  const bool is_raw = scan < raw_motions.size();
+  if (!is_raw && scan >= sweeps_m.size()) return origin_in_sweep(*this, scan, point, 0);
   const double phase = sweep_phase(point);
-  if (scan < sweeps_m.size()) beam.origin = beam.origin + phase * sweeps_m[scan];
+  const Vec3d origin = origin_in_sweep(*this, scan, point, phase);
+  return is_raw ? frame_from_sensor(raw_motions[scan], phase) * origin : origin;
+}
+
+MeasuredBeam ScanBeams::beam_of(std::size_t scan, Vec3d point) const {
+  const double phase = sweep_phase(point);
+  MeasuredBeam beam{origin_in_sweep(*this, scan, point, phase), point, laser_of(scan, point)};
   beam.end = offsets.corrected(beam.origin, beam.end, {0, 0, 1}, beam.laser);
   if (scan < raw_motions.size()) {
-    const SweepMotion& motion = raw_motions[scan];
-    const Trajectory sweep = {
-        {-0.5, motion.frame_from_begin}, {0, {}}, {0.5, motion.frame_from_end}};
-    const RigidTransform frame_from_sensor = interpolate(sweep, phase);
-    beam.origin = frame_from_sensor * beam.origin;
-    beam.end = frame_from_sensor * beam.end;
+    const RigidTransform moved = frame_from_sensor(raw_motions[scan], phase);
+    beam.origin = moved * beam.origin;
+    beam.end = moved * beam.end;
   }
   return beam;
 }
@@ -169,29 +206,45 @@ void set_raw_motions(ScanBeams& beams, const Trajectory& poses, const Trajectory
   }
 }
 
-ScanBeams recognize_beams(const KittiSequence& sequence) {
-  constexpr std::size_t kScans = 5;
+namespace {
+
+using FanDistances = std::array<std::vector<double>, kSweepFactors.size()>;
+
+/// Of some points of a scan from the fan, by every factor of its sweep.
+FanDistances fan_distances(const KittiSequence& sequence, std::size_t index, Vec3d sweep_m) {
   constexpr std::size_t kEvery = 11;                      // points
   constexpr double kLeastRange_m = 8, kMostRange_m = 40;  // cones are apart there, beams accurate
+  FanDistances distances_m;
+  const auto scan = try_kitti_points(sequence, index);
+  for (std::size_t i = 0; scan && i < scan->positions.size(); i += kEvery) {
+    const Vec3d point = vec_cast<double>(scan->positions[i]);
+    const double range_m = length(point);
+    if (!(range_m >= kLeastRange_m && range_m <= kMostRange_m)) continue;
+    const Vec3d moved_m = sweep_phase(point) * sweep_m;
+    for (std::size_t f = 0; f < kSweepFactors.size(); ++f)
+      distances_m[f].push_back(distance_from_fan(point - kSweepFactors[f] * moved_m));
+  }
+  return distances_m;
+}
+
+}  // namespace
+
+ScanBeams recognize_beams(const KittiSequence& sequence, const Executor& executor) {
+  constexpr std::size_t kScans = 5;
   constexpr std::size_t kLeastPoints = 500;
   constexpr double kMostDistance_m = 0.01;
 
   ScanBeams moving{true, sweeps_of(sequence.trajectory), {}, {}, {}, kSensor};
-  std::array<std::vector<double>, kSweepFactors.size()> distances_m;
-  const std::size_t scans = std::min(kScans, sequence.scans.size());
-  for (std::size_t k = 0; k < scans; ++k) {
+  std::vector<FanDistances> of_scans(std::min(kScans, sequence.scans.size()));
+  executor.for_chunks(of_scans.size(), 1, [&](std::size_t k, std::size_t) {
     // Not the first and the last one: their speeds are less sure.
-    const std::size_t index = (2 * k + 1) * sequence.scans.size() / (2 * scans);
-    const auto scan = try_kitti_points(sequence, index);
-    for (std::size_t i = 0; scan && i < scan->positions.size(); i += kEvery) {
-      const Vec3d point = vec_cast<double>(scan->positions[i]);
-      const double range_m = length(point);
-      if (!(range_m >= kLeastRange_m && range_m <= kMostRange_m)) continue;
-      const Vec3d moved_m = sweep_phase(point) * moving.sweeps_m[index];
-      for (std::size_t f = 0; f < kSweepFactors.size(); ++f)
-        distances_m[f].push_back(distance_from_fan(point - kSweepFactors[f] * moved_m));
-    }
-  }
+    const std::size_t index = (2 * k + 1) * sequence.scans.size() / (2 * of_scans.size());
+    of_scans[k] = fan_distances(sequence, index, moving.sweeps_m[index]);
+  });
+  FanDistances distances_m;
+  for (const FanDistances& part : of_scans)
+    for (std::size_t f = 0; f < part.size(); ++f)
+      distances_m[f].insert(distances_m[f].end(), part[f].begin(), part[f].end());
   if (distances_m[0].size() < kLeastPoints) return {};
   std::array<double, kSweepFactors.size()> median_m{};
   for (std::size_t f = 0; f < median_m.size(); ++f)

@@ -9,6 +9,7 @@
 
 #include "adasplats/cloud/points/laser_offsets.h"
 #include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/core/executor.h"
 #include "adasplats/core/maths/vec3.h"
 
 namespace adasplats {
@@ -48,7 +49,7 @@ struct ScanBeams {
   std::string sensor;
 
   /// In the scan's frame, of the beam that measured `point` (as it stands in the file).
-  Vec3d origin_of(std::size_t scan, Vec3d point) const { return beam_of(scan, point).origin; }
+  Vec3d origin_of(std::size_t scan, Vec3d point) const;
   MeasuredBeam beam_of(std::size_t scan, Vec3d point) const;
   /// Which laser measured it; kNoLaser where the sensor is not recognised.
   std::uint16_t laser_of(std::size_t scan, Vec3d point) const;
@@ -67,6 +68,6 @@ void set_raw_motions(ScanBeams& beams, const Trajectory& poses, const Trajectory
 /// motion compensation is undone where there was one. Other sensors: default, all beams from the
 /// frame's origin. Errors: data where the motion can be undone by the times of the poses only were
 /// these milli-, micro- or nanoseconds.
-ScanBeams recognize_beams(const KittiSequence& sequence);
+ScanBeams recognize_beams(const KittiSequence& sequence, const Executor& executor);
 
 }  // namespace adasplats

@@ -114,7 +114,7 @@ KittiSequence write_sequence(const TemporaryFolder& folder, const Drive& drive) 
 
 ScanBeams recognized(const Drive& drive) {
   const TemporaryFolder folder;
-  return recognize_beams(write_sequence(folder, drive));
+  return recognize_beams(write_sequence(folder, drive), Executor(2));
 }
 
 void expect_frame_origin(const ScanBeams& beams) {
@@ -197,7 +197,7 @@ TEST(RecognizeBeams, PointsAnywhereAreOfNoSensor) {
     write_scan(folder, scan, points);
   }
   write_poses(folder, drive);
-  expect_frame_origin(recognize_beams(open_kitti_sequence(folder.path())));
+  expect_frame_origin(recognize_beams(open_kitti_sequence(folder.path()), Executor(2)));
 }
 
 TEST(RecognizeBeams, FewPointsOrNoneInTheRangesAreNotEnough) {
@@ -229,31 +229,31 @@ TEST(RecognizeBeams, EmptyScansAndPointsThatAreNotFinite) {
   write_scan(folder, 0, {});
   write_scan(folder, 1, std::vector<Vec3d>(9000, nowhere));
   write_poses(folder, drive);
-  expect_frame_origin(recognize_beams(open_kitti_sequence(folder.path())));
+  expect_frame_origin(recognize_beams(open_kitti_sequence(folder.path()), Executor(2)));
   write_scan(folder, 0, points);
   write_scan(folder, 1, points);
-  EXPECT_TRUE(recognize_beams(open_kitti_sequence(folder.path())).from_hdl64);
+  EXPECT_TRUE(recognize_beams(open_kitti_sequence(folder.path()), Executor(2)).from_hdl64);
 }
 
 // Seconds that are none would make the vehicle stand during a revolution.
 TEST(RecognizeBeams, TimesInAnotherUnitThanSecondsAreRefused) {
   const TemporaryFolder folder;
   const KittiSequence sequence = write_sequence(folder, Drive{});
-  EXPECT_FALSE(recognize_beams(sequence).sweeps_m.empty());
+  EXPECT_FALSE(recognize_beams(sequence, Executor(2)).sweeps_m.empty());
   for (const auto& [factor, text] :
        {std::pair{1e3, "1000"}, {1e6, "1000000"}, {1e9, "1000000000"}}) {
     KittiSequence wrong = sequence;
     for (TimedPose& pose : wrong.trajectory) pose.time_s *= factor;
     expect_error(ErrorKind::data,
                  {folder.path().string(), "times.txt", std::string("divided by ") + text},
-                 [&] { recognize_beams(wrong); });
+                 [&] { recognize_beams(wrong, Executor(2)); });
   }
   Drive drive;
   drive.compensated = false;  // the times say nothing of such points
   const TemporaryFolder other;
   KittiSequence raw = write_sequence(other, drive);
   for (TimedPose& pose : raw.trajectory) pose.time_s *= 1e3;
-  EXPECT_TRUE(recognize_beams(raw).from_hdl64);
+  EXPECT_TRUE(recognize_beams(raw, Executor(2)).from_hdl64);
 }
 
 TEST(RecognizeBeams, NoTimeBetweenPosesIsNoWay) {
@@ -262,7 +262,7 @@ TEST(RecognizeBeams, NoTimeBetweenPosesIsNoWay) {
   const TemporaryFolder folder;
   KittiSequence sequence = write_sequence(folder, drive);
   for (TimedPose& pose : sequence.trajectory) pose.time_s = 7;
-  const ScanBeams still = recognize_beams(sequence);
+  const ScanBeams still = recognize_beams(sequence, Executor(2));
   drive.scans = 1;
   const ScanBeams single = recognized(drive);
   for (const ScanBeams& beams : {still, single}) {
@@ -281,7 +281,7 @@ TEST(RecognizeBeams, PosesAtEqualTimesSayNothingOfTheOthers) {
   drive.scans = 9;
   KittiSequence sequence = write_sequence(folder, drive);
   for (const std::size_t scan : {5, 7}) sequence.trajectory[scan].time_s = drive.time_s(6);
-  const ScanBeams beams = recognize_beams(sequence);
+  const ScanBeams beams = recognize_beams(sequence, Executor(2));
   ASSERT_EQ(beams.sweeps_m.size(), 9U);
   for (std::size_t scan = 0; scan < 9; ++scan) {
     if (scan == 4 || scan == 8) continue;  // theirs are next to times that are wrong

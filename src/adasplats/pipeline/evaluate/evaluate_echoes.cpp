@@ -18,12 +18,12 @@ namespace {
 /// Measured scans of a sequence, and whether they say which beams found nothing.
 class EchoSequence {
  public:
-  explicit EchoSequence(const EchoInputs& inputs)
+  EchoSequence(const EchoInputs& inputs, const Executor& executor)
       : sequence_(open_kitti_sequence(resolve_cloud_input(inputs.sequence))),
         scans_(chosen_scans(inputs.scans, sequence_.scans.size(), sequence_.folder)),
         motion_(inputs.motion.empty() ? sequence_.trajectory : load_trajectory(inputs.motion)) {
-    require_poses_that_fit(sequence_);
-    sequence_.beams = recognize_beams(sequence_);
+    require_poses_that_fit(sequence_, executor);
+    sequence_.beams = recognize_beams(sequence_, executor);
     if (knows_empty_beams()) {
       set_raw_motions(sequence_.beams, sequence_.trajectory, motion_);
     } else if (!inputs.motion.empty()) {
@@ -89,7 +89,7 @@ EchoResult evaluate_echoes(const EchoInputs& inputs, const std::filesystem::path
   require_input(inputs.model);
   std::optional<RayDropModel> drop_model;
   if (!drop.empty()) drop_model = load_ray_drop(drop);
-  EchoSequence measured(inputs);
+  EchoSequence measured(inputs, session.executor);
   if (drop_model) measured.require_raw("`drop`");
   if (inputs.sensor_is_asked) measured.require_raw("`sensor`");
   ModelScene scene(inputs.model, "", session);
@@ -108,7 +108,7 @@ EchoResult evaluate_echoes(const EchoInputs& inputs, const std::filesystem::path
 
 FitDropResult fit_drop(const EchoInputs& inputs, Session& session) {
   require_input(inputs.model);
-  EchoSequence measured(inputs);
+  EchoSequence measured(inputs, session.executor);
   measured.require_raw("fit-drop");
   ModelScene scene(inputs.model, "", session);
   measured.correct(scene, inputs.motion.empty(), session.progress);

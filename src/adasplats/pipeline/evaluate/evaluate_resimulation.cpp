@@ -76,8 +76,8 @@ KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
                 "`scan_times` are for a folder of scans with a `trajectory`");
   if (!scans.trajectory.empty()) return with_scans(open_frames(scans, session), scans.scans);
   KittiSequence all = open_kitti_sequence(resolve_cloud_input(scans.sequence));
-  all.facts.unchecked = require_poses_that_fit(all);
-  if (!scans.beams_from_poses) all.beams = recognize_beams(all);
+  all.facts.unchecked = require_poses_that_fit(all, session.executor);
+  if (!scans.beams_from_poses) all.beams = recognize_beams(all, session.executor);
   if (!scans.motion.empty()) {
     if (!all.beams.sweeps_m.empty())
       throw Error(ErrorKind::usage, "`motion` is for scans as they were measured; those of " +
