@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace adasplats {
 namespace {
@@ -33,7 +35,8 @@ struct AzimuthPoint {
 };
 
 double wrapped_rad(double azimuth_rad) {
-  const double turned = std::fmod(azimuth_rad, kTurn_rad);
+  const bool is_wrapped = std::fabs(azimuth_rad) < kTurn_rad;
+  const double turned = is_wrapped ? azimuth_rad : std::fmod(azimuth_rad, kTurn_rad);
   return turned < 0 ? turned + kTurn_rad : turned;
 }
 
@@ -80,28 +83,73 @@ double phase_of(const std::vector<AzimuthPoint>& ring, std::size_t columns) {
   return std::arg(sum) / kTurn_rad;
 }
 
+/// Of the rings in one scan; NaN: not known.
+std::vector<double> elevations_of(const ScanRings& scan, const RecordingRings& recording,
+                                  const EmptyBeamOptions& options) {
+  std::vector<double> elevations_rad = recording.elevations_rad;
+  for (std::size_t ring = 0; ring < elevations_rad.size(); ++ring)
+    if (scan.sums[ring].points >= std::max<std::size_t>(1, options.least_ring_points))
+      elevations_rad[ring] = scan.sums[ring].mean_rad();
+  return elevations_rad;
+}
+
+/// Whether any beam of a ring can be as steep in the world as an empty one has to be; false for a
+/// ring that is not known. So most rings of most sensors, and all of KITTI's on level roads, need
+/// no look at single beams.
+bool may_be_empty(double elevation_rad, const Mat3d& world_from_sensor,
+                  const EmptyBeamOptions& options) {
+  constexpr double kRounding = 1e-9;
+  const Vec3d up = world_from_sensor.rows[2];
+  const double most_up =
+      std::cos(elevation_rad) * std::hypot(up.x, up.y) + std::sin(elevation_rad) * up.z;
+  return most_up > options.least_up - kRounding;
+}
+
+bool may_have_empty(std::span<const double> elevations_rad, const ScanRings& scan,
+                    const EmptyBeamOptions& options) {
+  return std::ranges::any_of(elevations_rad, [&](double elevation_rad) {
+    return may_be_empty(elevation_rad, scan.world_from_sensor, options);
+  });
+}
+
+/// Ascending. Azimuths of a ring are spread evenly, so that as many equal steps of a turn as points
+/// have about one each.
+void sort_by_azimuth(std::vector<AzimuthPoint>& points) {
+  const auto step_of = [&](const AzimuthPoint& p) {
+    const auto step =
+        static_cast<std::size_t>(p.azimuth_rad / kTurn_rad * static_cast<double>(points.size()));
+    return std::min(step, points.size() - 1);
+  };
+  std::vector<std::uint32_t> ends(points.size() + 1);
+  for (const AzimuthPoint& p : points) ++ends[step_of(p) + 1];
+  for (std::size_t step = 1; step < ends.size(); ++step) ends[step] += ends[step - 1];
+  std::vector<AzimuthPoint> sorted(points.size());
+  for (const AzimuthPoint& p : points) sorted[ends[step_of(p)]++] = p;
+  points = std::move(sorted);
+  const auto is_before = [](const AzimuthPoint& a, const AzimuthPoint& b) {
+    return a.azimuth_rad != b.azimuth_rad ? a.azimuth_rad < b.azimuth_rad : a.point < b.point;
+  };
+  // The end of a step is now where the next one began.
+  for (std::size_t step = 0, begin = 0; begin < points.size(); begin = ends[step++])
+    std::sort(points.begin() + static_cast<std::ptrdiff_t>(begin),
+              points.begin() + static_cast<std::ptrdiff_t>(ends[step]), is_before);
+}
+
 SweptRings sweep_of(const PointCloud& cloud, const ScanRings& scan,
-                    std::span<const double> elevations_rad, const EmptyBeamOptions& options) {
+                    std::vector<double> elevations_rad, const EmptyBeamOptions& options) {
   SweptRings sweep;
   sweep.points.resize(elevations_rad.size());
-  std::vector<double> sums_rad(elevations_rad.size());
+  for (std::size_t ring = 0; ring < sweep.points.size(); ++ring)
+    sweep.points[ring].reserve(scan.sums[ring].points);
   const Mat3d sensor_from_world = scan.world_from_sensor.transposed();
   for (std::size_t k = 0; k < scan.points.size(); ++k) {
     const std::size_t ring = scan.rings[k];
     if (ring >= elevations_rad.size()) continue;
     const Vec3d d = sensor_from_world * beam_direction(cloud, scan.points[k]);
     sweep.points[ring].push_back({wrapped_rad(std::atan2(d.y, d.x)), scan.points[k]});
-    sums_rad[ring] += std::asin(std::clamp(d.z, -1.0, 1.0));
   }
-  for (std::size_t ring = 0; ring < sweep.points.size(); ++ring) {
-    auto& points = sweep.points[ring];
-    std::ranges::sort(points, [](const AzimuthPoint& a, const AzimuthPoint& b) {
-      return a.azimuth_rad != b.azimuth_rad ? a.azimuth_rad < b.azimuth_rad : a.point < b.point;
-    });
-    const bool enough = points.size() >= std::max<std::size_t>(1, options.least_ring_points);
-    sweep.elevations_rad.push_back(enough ? sums_rad[ring] / static_cast<double>(points.size())
-                                          : elevations_rad[ring]);
-  }
+  for (auto& points : sweep.points) sort_by_azimuth(points);
+  sweep.elevations_rad = std::move(elevations_rad);
   sweep.columns = columns_of(sweep.points, options);
   if (sweep.columns == 0) return sweep;
   for (const auto& ring : sweep.points) sweep.phases.push_back(phase_of(ring, sweep.columns));
@@ -117,6 +165,8 @@ class BeamImage {
         columns_(sweep.columns),
         returned_(rings() * columns_),
         any_(columns_) {
+    for (const double elevation_rad : sweep.elevations_rad)
+      slopes_.push_back({std::cos(elevation_rad), std::sin(elevation_rad)});
     for (std::size_t ring = 0; ring < rings(); ++ring)
       for (const AzimuthPoint& p : sweep.points[ring]) add_return(ring, p.azimuth_rad);
   }
@@ -136,10 +186,12 @@ class BeamImage {
   }
   Vec3d direction(std::size_t cell) const {
     const double azimuth = azimuth_rad(cell);
-    const double elevation_rad = sweep_.elevations_rad[ring_of(cell)];
-    const double flat = std::cos(elevation_rad);
-    return world_from_sensor_ *
-           Vec3d{flat * std::cos(azimuth), flat * std::sin(azimuth), std::sin(elevation_rad)};
+    const auto [flat, up] = slopes_[ring_of(cell)];
+    return world_from_sensor_ * Vec3d{flat * std::cos(azimuth), flat * std::sin(azimuth), up};
+  }
+  /// may_be_empty()
+  bool may_be_empty(std::size_t ring, const EmptyBeamOptions& options) const {
+    return adasplats::may_be_empty(sweep_.elevations_rad[ring], world_from_sensor_, options);
   }
 
  private:
@@ -159,9 +211,14 @@ class BeamImage {
     any_[at] = 1;
   }
 
+  struct Slope {
+    double flat, up;  ///< cosine and sine of the elevation
+  };
+
   const SweptRings& sweep_;
   Mat3d world_from_sensor_;
   std::size_t columns_;
+  std::vector<Slope> slopes_;  ///< by ring
   std::vector<std::uint8_t> returned_, any_;
 };
 
@@ -180,12 +237,15 @@ bool was_measured(const BeamImage& image, std::size_t column, const FieldOfView&
 /// The cells of beams that went upwards and returned nothing, 1 or 0.
 std::vector<std::uint8_t> empty_cells(const BeamImage& image, const FieldOfView& view,
                                       const EmptyBeamOptions& options) {
+  std::vector<std::size_t> rings;
+  for (std::size_t ring = 0; ring < image.rings(); ++ring)
+    if (image.may_be_empty(ring, options)) rings.push_back(ring);
   std::vector<std::uint8_t> empty(image.size());
   for (std::size_t column = 0; column < image.columns(); ++column) {
     if (!was_measured(image, column, view)) continue;
-    for (std::size_t ring = 0; ring < image.rings(); ++ring) {
+    for (const std::size_t ring : rings) {
       const std::size_t cell = ring * image.columns() + column;
-      if (image.returned(cell) || !image.is_known(ring)) continue;
+      if (image.returned(cell)) continue;
       empty[cell] = image.direction(cell).z > options.least_up ? 1 : 0;
     }
   }
@@ -295,6 +355,7 @@ std::vector<EmptyBeam> beams_of_scan(const PointCloud& cloud, const ScanRings& s
   const BeamImage image(sweep, scan.world_from_sensor);
   const std::vector<std::size_t> cells =
       regions_with_blocks(empty_cells(image, view, options), image.rings(), image.columns());
+  if (cells.empty()) return beams;
   const SweepOrigins origins(cloud, sweep, options);
   for (const std::size_t cell : cells) {
     const auto origin = origins.find(image.ring_of(cell), image.azimuth_rad(cell));
@@ -304,18 +365,25 @@ std::vector<EmptyBeam> beams_of_scan(const PointCloud& cloud, const ScanRings& s
   return beams;
 }
 
-/// Azimuths at which any scan has points.
+/// Azimuths at which any scan has points. Most sensors see all around, as a few points of the first
+/// scans say.
 FieldOfView view_of(const PointCloud& cloud, std::span<const ScanRings> scans,
                     const Executor& executor) {
   std::vector<FieldOfView> views(scans.size());
+  std::atomic<bool> is_full = false;
   executor.for_chunks(scans.size(), 1, [&](std::size_t s, std::size_t) {
     const Mat3d sensor_from_world = scans[s].world_from_sensor.transposed();
+    std::size_t seen = 0;
     for (const std::uint32_t i : scans[s].points) {
+      if (is_full.load(std::memory_order_relaxed)) return;
       const Vec3d d = sensor_from_world * beam_direction(cloud, i);
-      views[s][view_bin(wrapped_rad(std::atan2(d.y, d.x)))] = true;
+      bool& bin = views[s][view_bin(wrapped_rad(std::atan2(d.y, d.x)))];
+      if (!bin && ++seen == kViewBins) is_full = true;
+      bin = true;
     }
   });
   FieldOfView all{};
+  if (is_full) all.fill(true);
   for (const FieldOfView& view : views)
     for (std::size_t bin = 0; bin < kViewBins; ++bin) all[bin] = all[bin] || view[bin];
   return all;
@@ -327,11 +395,19 @@ std::vector<EmptyBeam> find_empty_beams(const PointCloud& cloud, const EmptyBeam
                                         const Executor& executor) {
   const RecordingRings recording = find_scan_rings(cloud, options.rings, executor);
   const std::span<const ScanRings> scans = recording.scans;
+  std::vector<std::vector<double>> elevations_rad(scans.size());
+  std::vector<std::size_t> looked_at;
+  for (std::size_t s = 0; s < scans.size(); ++s) {
+    elevations_rad[s] = elevations_of(scans[s], recording, options);
+    if (may_have_empty(elevations_rad[s], scans[s], options)) looked_at.push_back(s);
+  }
+  if (looked_at.empty()) return {};
   const FieldOfView view = view_of(cloud, scans, executor);
-  std::vector<std::vector<EmptyBeam>> of_scans(scans.size());
-  executor.for_chunks(scans.size(), 1, [&](std::size_t s, std::size_t) {
-    const SweptRings sweep = sweep_of(cloud, scans[s], recording.elevations_rad, options);
-    of_scans[s] = beams_of_scan(cloud, scans[s], sweep, view, options);
+  std::vector<std::vector<EmptyBeam>> of_scans(looked_at.size());
+  executor.for_chunks(looked_at.size(), 1, [&](std::size_t k, std::size_t) {
+    const std::size_t s = looked_at[k];
+    const SweptRings sweep = sweep_of(cloud, scans[s], std::move(elevations_rad[s]), options);
+    of_scans[k] = beams_of_scan(cloud, scans[s], sweep, view, options);
   });
   std::vector<EmptyBeam> beams;
   for (const auto& part : of_scans) beams.insert(beams.end(), part.begin(), part.end());

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "adasplats/cloud/points/scan_runs.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
@@ -243,22 +244,19 @@ Mat3d frame_of_axis(Vec3d axis) {
 /// The scans with enough points, without rings.
 std::vector<ScanRings> points_by_scan(const PointCloud& cloud, const ScanRingOptions& options,
                                       const Executor& executor) {
-  std::vector<ScanRings> scans;
-  if (cloud.scan_indices.empty() || !cloud.has_beams()) return scans;
-  std::vector<std::uint64_t> keys(cloud.scan_indices.begin(), cloud.scan_indices.end());
-  std::vector<std::uint32_t> order;
-  executor.sort_keys(keys, order);
-  for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
-    ScanRings scan;
-    scan.scan = static_cast<std::uint32_t>(keys[begin]);
-    for (; end < keys.size() && keys[end] == keys[begin]; ++end) {
-      const std::uint32_t i = order[end];
-      if (!is_beam(cloud.origin_kind(i))) continue;
-      if (cloud.positions[i] == cloud.sensor_positions[i]) continue;
-      scan.points.push_back(i);
-    }
-    if (scan.points.size() >= options.least_points) scans.push_back(std::move(scan));
-  }
+  if (cloud.scan_indices.empty() || !cloud.has_beams()) return {};
+  const ScanRuns runs(cloud.scan_indices, executor);
+  std::vector<ScanRings> scans(runs.size());
+  executor.for_chunks(runs.size(), 1, [&](std::size_t k, std::size_t) {
+    scans[k].scan = runs.scan(k);
+    scans[k].points.reserve(runs.points(k));
+    runs.for_each(k, [&](std::size_t i) {
+      if (is_beam(cloud.origin_kind(i)) && !(cloud.positions[i] == cloud.sensor_positions[i]))
+        scans[k].points.push_back(static_cast<std::uint32_t>(i));
+    });
+  });
+  std::erase_if(scans,
+                [&](const ScanRings& scan) { return scan.points.size() < options.least_points; });
   return scans;
 }
 
@@ -272,35 +270,35 @@ const Mat3d* pose_rotation(const PointCloud& cloud, std::uint32_t scan) {
   return &cloud.scan_poses[scan].world_from_sensor.rotation;
 }
 
-/// Means of the elevations of rings over scans that have them; NaN without points.
-std::vector<double> mean_elevations(const PointCloud& cloud, std::span<const ScanRings> scans,
+/// Adds up the elevations of a scan's points by their rings, of which there are `rings`.
+std::vector<RingSum> sums_of(const PointCloud& cloud, const ScanRings& scan, std::size_t rings) {
+  std::vector<RingSum> sums(rings);
+  const Vec3d axis = scan.world_from_sensor.transposed().rows[2];
+  for (std::size_t k = 0; k < scan.points.size(); ++k) {
+    const std::size_t ring = scan.rings[k];
+    if (ring >= rings) continue;
+    sums[ring].elevations_rad += elevation_about(axis, beam_direction(cloud, scan.points[k]));
+    ++sums[ring].points;
+  }
+  return sums;
+}
+
+/// Sums the scans up; gives the means of the elevations of rings over all of them, NaN without
+/// points.
+std::vector<double> mean_elevations(const PointCloud& cloud, std::span<ScanRings> scans,
                                     std::size_t rings, const Executor& executor) {
-  struct Sums {
-    std::vector<double> elevations_rad, counts;
-    Sums& operator+=(const Sums& other) {
-      for (std::size_t k = 0; k < counts.size(); ++k) {
-        elevations_rad[k] += other.elevations_rad[k];
-        counts[k] += other.counts[k];
-      }
-      return *this;
-    }
-  };
-  const Sums zero{std::vector<double>(rings), std::vector<double>(rings)};
-  const Sums total = executor.sum_chunks(scans.size(), 1, zero, [&](std::size_t s, std::size_t) {
-    Sums sums = zero;
-    const Vec3d axis = scans[s].world_from_sensor.transposed().rows[2];
-    for (std::size_t k = 0; k < scans[s].points.size(); ++k) {
-      const std::size_t ring = scans[s].rings[k];
-      if (ring >= rings) continue;
-      sums.elevations_rad[ring] += elevation_about(axis, beam_direction(cloud, scans[s].points[k]));
-      sums.counts[ring] += 1;
-    }
-    return sums;
+  executor.for_chunks(scans.size(), 1, [&](std::size_t s, std::size_t) {
+    scans[s].sums = sums_of(cloud, scans[s], rings);
   });
   std::vector<double> means;
-  for (std::size_t ring = 0; ring < rings; ++ring)
-    means.push_back(total.counts[ring] > 0 ? total.elevations_rad[ring] / total.counts[ring]
-                                           : kNaN);
+  for (std::size_t ring = 0; ring < rings; ++ring) {
+    RingSum total;
+    for (const ScanRings& scan : scans) {
+      total.elevations_rad += scan.sums[ring].elevations_rad;
+      total.points += scan.sums[ring].points;
+    }
+    means.push_back(total.points > 0 ? total.mean_rad() : kNaN);
+  }
   return means;
 }
 
@@ -308,6 +306,7 @@ std::vector<double> mean_elevations(const PointCloud& cloud, std::span<const Sca
 /// cells is taken for empty.
 void place_unknown(const PointCloud& cloud, std::span<const double> elevations_rad,
                    ScanRings& scan) {
+  if (std::ranges::find(scan.rings, kNoLaser) == scan.rings.end()) return;
   const Vec3d axis = scan.world_from_sensor.transposed().rows[2];
   for (std::size_t k = 0; k < scan.points.size(); ++k) {
     if (scan.rings[k] != kNoLaser) continue;
@@ -320,6 +319,7 @@ void place_unknown(const PointCloud& cloud, std::span<const double> elevations_r
       scan.rings[k] = static_cast<std::uint16_t>(ring);
     }
   }
+  scan.sums = sums_of(cloud, scan, elevations_rad.size());
 }
 
 RecordingRings rings_of_lasers(const PointCloud& cloud, std::vector<ScanRings> scans,
@@ -328,6 +328,7 @@ RecordingRings rings_of_lasers(const PointCloud& cloud, std::vector<ScanRings> s
   executor.for_chunks(scans.size(), 1, [&](std::size_t s, std::size_t) {
     ScanRings& scan = scans[s];
     std::size_t unknown = 0;
+    scan.rings.reserve(scan.points.size());
     for (const std::uint32_t i : scan.points) {
       scan.rings.push_back(cloud.lasers[i]);
       unknown += cloud.lasers[i] == kNoLaser ? 1 : 0;
@@ -342,13 +343,16 @@ RecordingRings rings_of_lasers(const PointCloud& cloud, std::vector<ScanRings> s
   std::erase_if(scans, [](const ScanRings& scan) { return scan.points.empty(); });
   if (scans.empty()) return {};
   const std::size_t rings = std::size_t{*std::ranges::max_element(most)} + 1;
-  RecordingRings recording{mean_elevations(cloud, scans, rings, executor), std::move(scans)};
+  RecordingRings recording;
+  recording.elevations_rad = mean_elevations(cloud, scans, rings, executor);
+  recording.scans = std::move(scans);
   executor.for_chunks(recording.scans.size(), 1, [&](std::size_t s, std::size_t) {
     place_unknown(cloud, recording.elevations_rad, recording.scans[s]);
   });
   const auto has_points = [](double elevation_rad) { return elevation_rad == elevation_rad; };
   const auto known = std::ranges::count_if(recording.elevations_rad, has_points);
-  return static_cast<std::size_t>(known) >= options.least_rings ? recording : RecordingRings();
+  if (static_cast<std::size_t>(known) < options.least_rings) return {};
+  return recording;
 }
 
 std::vector<Vec3d> directions_of(const PointCloud& cloud, const ScanRings& scan) {
@@ -393,6 +397,7 @@ RecordingRings rings_of_directions(const PointCloud& cloud, std::vector<ScanRing
     ScanRings& scan = scans[s];
     const Vec3d axis = scan.world_from_sensor.transposed().rows[2];
     std::size_t near = 0;
+    scan.rings.reserve(scan.points.size());
     for (const std::uint32_t i : scan.points) {
       const RingPlace place = place_of(elevation_about(axis, beam_direction(cloud, i)), rings_rad);
       scan.rings.push_back(static_cast<std::uint16_t>(place.ring));

@@ -23,12 +23,21 @@ struct ScanRingOptions {
   double most_unknown = 0.2;  ///< of a scan's points, without a laser though others have one
 };
 
+/// What the points of a scan say of the elevation of one ring.
+struct RingSum {
+  double elevations_rad = 0;  ///< added up, above the plane across the scan's axis
+  std::size_t points = 0;
+
+  double mean_rad() const { return elevations_rad / static_cast<double>(points); }
+};
+
 /// The points of one scan by the ring that measured them.
 struct ScanRings {
   std::uint32_t scan = 0;
   Mat3d world_from_sensor;            ///< z is the axis that the sensor turned about
   std::vector<std::uint32_t> points;  ///< of the cloud, with known beams, ascending
   std::vector<std::uint16_t> rings;   ///< of each of them
+  std::vector<RingSum> sums;          ///< by ring, as many as the recording has
 };
 
 struct RecordingRings {
