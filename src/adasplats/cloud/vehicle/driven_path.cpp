@@ -10,27 +10,52 @@
 #include <numeric>
 #include <optional>
 #include <unordered_map>
+#include <utility>
+
+#include "adasplats/cloud/points/scan_runs.h"
 
 namespace adasplats {
 namespace {
 
 constexpr double kNoGround = std::numeric_limits<double>::quiet_NaN();
 
+/// Which points of a cloud are looked at.
+struct Looked {
+  const PointCloud& cloud;
+  std::span<const std::uint8_t> left_out;  ///< 1 or 0 each; empty: none is
+
+  bool has(std::size_t i) const { return left_out.empty() || left_out[i] == 0; }
+};
+
 /// Where the sensor was in the mean of each scan, by the numbers of the scans; of scans without a
 /// measured origin nothing.
-std::vector<Vec3d> places_of_scans(const PointCloud& cloud) {
-  std::vector<std::pair<Vec3d, std::size_t>> sums;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (cloud.origin_kind(i) != OriginKind::measured) continue;
-    const std::size_t scan = cloud.scan_indices[i];
-    if (scan >= sums.size()) sums.resize(scan + 1);
-    sums[scan].first = sums[scan].first + vec_cast<double>(cloud.sensor_positions[i]);
-    ++sums[scan].second;
-  }
+std::vector<Vec3d> places_of_scans(const Looked& points, const Executor& executor) {
+  const PointCloud& cloud = points.cloud;
+  const ScanRuns scans(cloud.scan_indices, executor);
+  std::vector<std::pair<Vec3d, std::size_t>> sums(scans.size());
+  executor.for_chunks(scans.size(), 1, [&](std::size_t k, std::size_t) {
+    Vec3d sum;
+    std::size_t count = 0;
+    scans.for_each(k, [&](std::size_t i) {
+      if (!points.has(i) || cloud.origin_kind(i) != OriginKind::measured) return;
+      sum = sum + vec_cast<double>(cloud.sensor_positions[i]);
+      ++count;
+    });
+    sums[k] = {sum, count};
+  });
   std::vector<Vec3d> places;
   for (const auto& [sum, count] : sums)
     if (count > 0) places.push_back(sum / static_cast<double>(count));
   return places;
+}
+
+/// Whether an offset is at most `radius_m` long in the plane, as std::hypot says it: that takes as
+/// long as all else here, and only next to the radius do squares not tell.
+bool is_within(Vec3d offset, double radius_m) {
+  constexpr double kSure = 1e-12;
+  const double square = offset.x * offset.x + offset.y * offset.y, most = radius_m * radius_m;
+  if (square > most * (1 + kSure)) return false;
+  return square < most * (1 - kSure) || std::hypot(offset.x, offset.y) <= radius_m;
 }
 
 /// The path from place to place, a step apart, and how long it is.
@@ -46,25 +71,22 @@ class Path {
         add(scans[k - 1] + (step / (steps + 1.0)) * (scans[k] - scans[k - 1]));
       add(scans[k]);
     }
+    for (const auto& [key, places] : cells_) near_[slot_of(key)] = 1;
   }
 
   double length_m() const { return length_m_; }
   const std::vector<Vec3d>& places() const { return places_; }
 
-  /// Calls body(place, distance in the plane) for the places within a cell or so of a point.
+  /// Calls body(place, offset from it) for the places within a cell or so of a point.
   template <class Body>
   void for_each_near(Vec3f point, Body&& body) const {
     const auto [x, y] = cell_of(vec_cast<double>(point));
-    for (std::int64_t dx = -1; dx <= 1; ++dx) {
-      for (std::int64_t dy = -1; dy <= 1; ++dy) {
-        const auto found = cells_.find(key(x + dx, y + dy));
-        if (found == cells_.end()) continue;
-        for (const std::size_t place : found->second) {
-          const Vec3d offset = vec_cast<double>(point) - places_[place];
-          body(place, std::hypot(offset.x, offset.y));
-        }
-      }
-    }
+    const std::uint64_t cell = key(x, y);
+    if (near_[slot_of(cell)] == 0) return;
+    const auto found = cells_.find(cell);
+    if (found == cells_.end()) return;
+    for (const std::size_t place : found->second)
+      body(place, vec_cast<double>(point) - places_[place]);
   }
 
  private:
@@ -80,27 +102,39 @@ class Path {
     // A vehicle at rest adds nothing.
     if (!places_.empty() && length(place - places_.back()) < 0.2 * kCell_m) return;
     const auto [x, y] = cell_of(place);
-    cells_[key(x, y)].push_back(places_.size());
+    for (std::int64_t dx = -1; dx <= 1; ++dx)
+      for (std::int64_t dy = -1; dy <= 1; ++dy)
+        cells_[key(x + dx, y + dy)].push_back(places_.size());
     places_.push_back(place);
   }
+  /// Most points are near no place, which these few bytes tell.
+  static std::size_t slot_of(std::uint64_t key) {
+    constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;  // Fibonacci hashing (Knuth 6.4)
+    return static_cast<std::size_t>(key * kGolden >> (64U - kSlotBits));
+  }
+  static constexpr unsigned kSlotBits = 16;
 
   std::vector<Vec3d> places_;
+  /// The places in a cell and in those around it.
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> cells_;
+  std::vector<std::uint8_t> near_ = std::vector<std::uint8_t>(std::size_t{1} << kSlotBits);
   double length_m_ = 0;
 };
 
 /// How high the sensor was above the ground at each place: below nine of ten points there.
-std::vector<double> heights_above_ground(const PointCloud& cloud, const Path& path,
+std::vector<double> heights_above_ground(const Looked& points, const Path& path,
                                          const DrivenPathOptions& options,
                                          const Executor& executor) {
   constexpr double kBin_m = 0.05, kGroundShare = 0.1;
   const auto bins = static_cast<std::size_t>(std::ceil(options.most_height_m / kBin_m)) + 1;
   std::vector<std::uint32_t> counts(path.places().size() * bins);  // by depth below the sensor
-  executor.for_chunks(cloud.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  const std::vector<Vec3f>& positions = points.cloud.positions;
+  executor.for_chunks(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      path.for_each_near(cloud.positions[i], [&](std::size_t place, double distance_m) {
-        const double below_m = path.places()[place].z - static_cast<double>(cloud.positions[i].z);
-        if (distance_m > options.ground_radius_m || below_m < 0) return;
+      if (!points.has(i)) continue;
+      path.for_each_near(positions[i], [&](std::size_t place, Vec3d offset) {
+        const double below_m = path.places()[place].z - static_cast<double>(positions[i].z);
+        if (below_m < 0 || !is_within(offset, options.ground_radius_m)) return;
         const auto bin = static_cast<std::size_t>(below_m / kBin_m);
         if (bin >= bins) return;
         std::atomic_ref<std::uint32_t>(counts[place * bins + bin])
@@ -138,12 +172,14 @@ std::optional<double> usual_height(std::vector<double> heights, const DrivenPath
 
 std::vector<std::uint8_t> find_in_driven_path(const PointCloud& cloud,
                                               const DrivenPathOptions& options,
-                                              const Executor& executor) {
+                                              const Executor& executor,
+                                              std::span<const std::uint8_t> left_out) {
   if (!(options.half_width_m > 0) || cloud.sensor_positions.empty() || cloud.scan_indices.empty())
     return {};
-  const Path path(places_of_scans(cloud), options);
+  const Looked points{cloud, left_out};
+  const Path path(places_of_scans(points, executor), options);
   if (path.length_m() < options.least_path_m) return {};
-  std::vector<double> heights = heights_above_ground(cloud, path, options, executor);
+  std::vector<double> heights = heights_above_ground(points, path, options, executor);
   const std::optional<double> usual = usual_height(heights, options);
   if (!usual) return {};
   for (double& height : heights)
@@ -152,10 +188,12 @@ std::vector<std::uint8_t> find_in_driven_path(const PointCloud& cloud,
   std::vector<std::uint8_t> inside(cloud.size());
   executor.for_chunks(cloud.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      path.for_each_near(cloud.positions[i], [&](std::size_t place, double distance_m) {
+      if (!points.has(i)) continue;
+      path.for_each_near(cloud.positions[i], [&](std::size_t place, Vec3d offset) {
         const double below_m = path.places()[place].z - static_cast<double>(cloud.positions[i].z);
-        if (distance_m <= options.half_width_m && below_m >= -options.above_sensor_m &&
-            below_m <= heights[place] - options.above_ground_m)
+        if (below_m >= -options.above_sensor_m &&
+            below_m <= heights[place] - options.above_ground_m &&
+            is_within(offset, options.half_width_m))
           inside[i] = 1;
       });
     }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "adasplats/cloud/points/point_cloud.h"
@@ -29,10 +30,12 @@ struct DrivenPathOptions {
 
 /// The points in the volume that the carrier of the sensor passed through, 1 or 0 each; empty: none
 /// or no such volume (origins not measured, a sensor that hardly moved, one in the air, no ground
-/// below it). What was measured there had gone when the carrier passed, or came later: mostly
-/// vehicles ahead. Up is +z. Time: two passes over the points.
+/// below it), counting only those without a flag in `left_out` (1 or 0 each; empty: all count).
+/// What was measured there had gone when the carrier passed, or came later: mostly vehicles ahead.
+/// Up is +z. Time: two passes over the points.
 std::vector<std::uint8_t> find_in_driven_path(const PointCloud& cloud,
                                               const DrivenPathOptions& options,
-                                              const Executor& executor);
+                                              const Executor& executor,
+                                              std::span<const std::uint8_t> left_out = {});
 
 }  // namespace adasplats

@@ -6,15 +6,22 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 namespace adasplats {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-bool is_measured(const PointCloud& cloud, std::size_t i) {
-  return cloud.origin_kind(i) == OriginKind::measured;
-}
+/// A cloud and which of its points count.
+struct Measured {
+  const PointCloud& cloud;
+  std::span<const std::uint8_t> left_out;  ///< 1 or 0 each; empty: none is
+
+  bool has(std::size_t i) const {
+    return cloud.origin_kind(i) == OriginKind::measured && (left_out.empty() || left_out[i] == 0);
+  }
+};
 
 /// What `of_chunk(begin, end)` gives of all chunks of the points, one after the other.
 template <class F>
@@ -43,7 +50,8 @@ std::vector<T> evenly(std::span<const T> values, std::size_t most) {
 }
 
 /// The diagonal of the box of all sensor positions.
-double path_m(const PointCloud& cloud, const Executor& executor) {
+double path_m(const Measured& points, const Executor& executor) {
+  const std::vector<Vec3f>& sensors = points.cloud.sensor_positions;
   struct Sensors {
     Vec3f low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
     Sensors& operator+=(const Sensors& other) {
@@ -52,40 +60,76 @@ double path_m(const PointCloud& cloud, const Executor& executor) {
       return *this;
     }
   };
-  const Sensors box = executor.sum_chunks(
-      cloud.size(), kCoarseGrain, Sensors{}, [&](std::size_t begin, std::size_t end) {
-        Sensors part;
-        for (std::size_t i = begin; i < end; ++i)
-          if (is_measured(cloud, i)) part += {cloud.sensor_positions[i], cloud.sensor_positions[i]};
-        return part;
-      });
+  const Sensors box = executor.sum_chunks(sensors.size(), kCoarseGrain, Sensors{},
+                                          [&](std::size_t begin, std::size_t end) {
+                                            Sensors part;
+                                            for (std::size_t i = begin; i < end; ++i)
+                                              if (points.has(i)) part += {sensors[i], sensors[i]};
+                                            return part;
+                                          });
   return box.low.x <= box.high.x ? static_cast<double>(length(box.high - box.low)) : 0;
 }
 
-/// Cells of sensor positions, numbered in the order of their keys.
+/// Cells of sensor positions, numbered in the order of their keys. Points come as they were
+/// measured, so that many in a row are of one station: these runs are what is kept.
 class Stations {
  public:
-  Stations(const PointCloud& cloud, double side_m, const Executor& executor)
-      : cloud_(cloud), side_m_(side_m) {
-    keys_ = concatenated(cloud.size(), executor, [&](std::size_t begin, std::size_t end) {
-      std::vector<std::uint64_t> keys;
-      for (std::size_t i = begin; i < end; ++i) {
-        if (!is_measured(cloud, i)) continue;
-        const std::uint64_t key = key_of(cloud.sensor_positions[i]);
-        if (keys.empty() || keys.back() != key) keys.push_back(key);
-      }
-      sort_unique(keys);
-      return keys;
+  /// Consecutive points of one station, up to where the next run begins.
+  struct Run {
+    std::uint32_t begin;
+    std::uint32_t station;  ///< kNone: points that do not count
+  };
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  Stations(const Measured& points, double side_m, const Executor& executor)
+      : points_(points), side_m_(side_m), runs_((points.cloud.size() + kGrain - 1) / kGrain) {
+    std::vector<std::vector<std::uint64_t>> keys(runs_.size());
+    executor.for_chunks(points.cloud.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      keys[begin / kGrain] = find_runs(begin, end, runs_[begin / kGrain]);
     });
+    for (const auto& part : keys) keys_.insert(keys_.end(), part.begin(), part.end());
     sort_unique(keys_);
+    executor.for_chunks(runs_.size(), 1, [&](std::size_t chunk, std::size_t) {
+      for (Run& run : runs_[chunk])
+        if (run.station != kNone) run.station = of(run.begin);
+    });
   }
   std::size_t size() const { return keys_.size(); }
   std::uint32_t of(std::size_t point) const {
-    const std::uint64_t key = key_of(cloud_.sensor_positions[point]);
+    const std::uint64_t key = key_of(points_.cloud.sensor_positions[point]);
     return static_cast<std::uint32_t>(std::ranges::lower_bound(keys_, key) - keys_.begin());
+  }
+  /// Calls visit(station, begin, end) for all runs of points that count, ascending.
+  template <class Visit>
+  void for_each_run(Visit&& visit) const {
+    for (std::size_t chunk = 0; chunk < runs_.size(); ++chunk) {
+      const std::vector<Run>& runs = runs_[chunk];
+      const std::size_t chunk_end = std::min((chunk + 1) * kGrain, points_.cloud.size());
+      for (std::size_t k = 0; k < runs.size(); ++k) {
+        const std::size_t end = k + 1 < runs.size() ? runs[k + 1].begin : chunk_end;
+        if (runs[k].station != kNone) visit(runs[k].station, std::size_t{runs[k].begin}, end);
+      }
+    }
   }
 
  private:
+  /// Finds the runs of some points, with kNone or without their number; gives their keys.
+  std::vector<std::uint64_t> find_runs(std::size_t begin, std::size_t end,
+                                       std::vector<Run>& runs) const {
+    constexpr std::uint64_t kNoKey = std::numeric_limits<std::uint64_t>::max();
+    std::vector<std::uint64_t> keys;
+    std::uint64_t last = kNoKey - 1;  // which is none, either
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint64_t key = points_.has(i) ? key_of(points_.cloud.sensor_positions[i]) : kNoKey;
+      if (key == last) continue;
+      last = key;
+      runs.push_back({static_cast<std::uint32_t>(i), key == kNoKey ? kNone : 0});
+      if (key != kNoKey) keys.push_back(key);
+    }
+    sort_unique(keys);
+    return keys;
+  }
+
   /// Cells of 0.2 m have keys of their own up to 200 km from the cloud's origin.
   std::uint64_t key_of(Vec3f sensor) const {
     constexpr double kMiddle = 1 << 20;
@@ -97,9 +141,10 @@ class Stations {
     return key;
   }
 
-  const PointCloud& cloud_;
+  Measured points_;
   double side_m_;
   std::vector<std::uint64_t> keys_;
+  std::vector<std::vector<Run>> runs_;  ///< by chunks of kGrain points
 };
 
 /// The shortest range that a station measured in each direction, in the cells of a cube's faces
@@ -146,15 +191,16 @@ class View {
 
 class Search {
  public:
-  Search(const PointCloud& cloud, const OwnBodyOptions& options, const Executor& executor)
-      : cloud_(cloud),
+  Search(const Measured& points, const OwnBodyOptions& options, const Executor& executor)
+      : cloud_(points.cloud),
+        points_(points),
         options_(options),
         executor_(executor),
-        stations_(cloud, options.station_m, executor) {}
+        stations_(points, options.station_m, executor) {}
 
   bool can_tell() const {
     return stations_.size() >= options_.least_stations &&
-           path_m(cloud_, executor_) >= options_.least_path_m;
+           path_m(points_, executor_) >= options_.least_path_m;
   }
 
   std::vector<std::uint8_t> run() const {
@@ -194,8 +240,7 @@ class Search {
     return concatenated(cloud_.size(), executor_, [&](std::size_t begin, std::size_t end) {
       std::vector<std::uint32_t> near;
       for (std::size_t i = begin; i < end; ++i) {
-        if (is_measured(cloud_, i) &&
-            static_cast<double>(length(from_sensor(i))) < options_.reach_m)
+        if (points_.has(i) && static_cast<double>(length(from_sensor(i))) < options_.reach_m)
           near.push_back(static_cast<std::uint32_t>(i));
       }
       return near;
@@ -220,26 +265,21 @@ class Search {
 
   /// What the stations that look have measured.
   std::vector<View> views_of_stations() const {
-    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     const std::size_t stride = (stations_.size() + options_.looking - 1) / options_.looking;
-    const auto points =
-        concatenated(cloud_.size(), executor_, [&](std::size_t begin, std::size_t end) {
-          std::vector<std::uint64_t> of_stations;  // station, point
-          for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t station = is_measured(cloud_, i) ? stations_.of(i) : kNone;
-            if (station != kNone && station % stride == 0)
-              of_stations.push_back(std::uint64_t{station / stride} << 32U | i);
-          }
-          return of_stations;
-        });
-    std::vector<std::vector<std::uint32_t>> by_station((stations_.size() + stride - 1) / stride);
-    for (const std::uint64_t pair : points)
-      by_station[pair >> 32U].push_back(static_cast<std::uint32_t>(pair));
-    std::vector<View> views(by_station.size());
+    std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> runs(
+        (stations_.size() + stride - 1) / stride);  // of points, by station
+    stations_.for_each_run([&](std::uint32_t station, std::size_t begin, std::size_t end) {
+      if (station % stride == 0)
+        runs[station / stride].emplace_back(static_cast<std::uint32_t>(begin),
+                                            static_cast<std::uint32_t>(end));
+    });
+    std::vector<View> views(runs.size());
     executor_.for_chunks(views.size(), 1, [&](std::size_t station, std::size_t) {
-      for (const std::uint32_t i : by_station[station]) {
-        views[station].add(from_sensor(i));
-        views[station].add_sensor(cloud_.sensor_positions[i]);
+      for (const auto& [begin, end] : runs[station]) {
+        for (std::size_t i = begin; i < end; ++i) {
+          views[station].add(from_sensor(i));
+          views[station].add_sensor(cloud_.sensor_positions[i]);
+        }
       }
     });
     return views;
@@ -266,6 +306,7 @@ class Search {
   }
 
   const PointCloud& cloud_;
+  Measured points_;
   const OwnBodyOptions& options_;
   const Executor& executor_;
   Stations stations_;
@@ -274,9 +315,10 @@ class Search {
 }  // namespace
 
 std::vector<std::uint8_t> find_own_body(const PointCloud& cloud, const OwnBodyOptions& options,
-                                        const Executor& executor) {
+                                        const Executor& executor,
+                                        std::span<const std::uint8_t> left_out) {
   if (!cloud.has_beams()) return {};
-  const Search search(cloud, options, executor);
+  const Search search({cloud, left_out}, options, executor);
   return search.can_tell() ? search.run() : std::vector<std::uint8_t>();
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "adasplats/cloud/points/point_cloud.h"
@@ -31,11 +32,13 @@ struct OwnBodyOptions {
 /// The points on the vehicle, mast or person that carried the sensor, 1 or 0 each; empty: none
 /// found. They keep their place beside the sensor while it moves, and beams from elsewhere go
 /// through where they are. Rings instead of cells in the sensor's frame, since a point says where
-/// its sensor was, but not how it was turned. Only measured origins count. Nothing is found where
-/// no other beams know: a sensor at rest, rooms of a building, profiles of a mobile scanner.
-/// Time: a few passes over the points.
+/// its sensor was, but not how it was turned. Only measured origins count, and points without a
+/// flag in `left_out` (1 or 0 each; empty: all). Nothing is found where no other beams know: a
+/// sensor at rest, rooms of a building, profiles of a mobile scanner. Time: a few passes over the
+/// points.
 std::vector<std::uint8_t> find_own_body(const PointCloud& cloud, const OwnBodyOptions& options,
-                                        const Executor& executor);
+                                        const Executor& executor,
+                                        std::span<const std::uint8_t> left_out = {});
 
 /// The points nearer to their sensor than `radius_m`, where that is stated or measured.
 std::vector<std::uint8_t> points_within(const PointCloud& cloud, double radius_m,
