@@ -39,7 +39,8 @@ struct PartRun {
 /// What one input of load_cloud gives while the common origin is not known yet.
 struct CloudPart {
   /// Attributes as they will be. `positions` are in the sensor frames of the runs for sequences
-  /// (the scans' own floats: nothing is lost) and empty for files.
+  /// (the scans' own floats: nothing is lost) and empty for files. `sensor_positions` say nothing
+  /// yet: they are empty, or memory for later.
   PointCloud cloud;
   std::vector<Vec3d> world_positions;         ///< of files
   std::vector<Vec3d> world_sensors;           ///< of files that have them

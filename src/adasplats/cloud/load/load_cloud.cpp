@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -21,6 +22,7 @@
 #include "adasplats/cloud/vehicle/driven_path.h"
 #include "adasplats/cloud/vehicle/own_body.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/large_vector.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/number_text.h"
 
@@ -156,15 +158,31 @@ class LoadClock {
 /// Which points of a part stay, 1 or 0 each.
 using Kept = std::vector<std::uint8_t>;
 
-Kept finite_points(const CloudPart& part, const Executor& executor) {
-  Kept kept(part.size());
-  executor.for_chunks(part.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
-    part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
-      const bool finite = is_finite(world);
-      kept[i] = finite ? 1 : 0;
-    });
-  });
-  return kept;
+struct Extents {
+  Vec3d low{kNone, kNone, kNone};
+  Vec3d high{-kNone, -kNone, -kNone};
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  Extents& operator+=(const Extents& other) {
+    low = min(low, other.low);
+    high = max(high, other.high);
+    return *this;
+  }
+};
+
+/// Marks the points that are finite; gives their extents.
+Extents find_finite(const CloudPart& part, Kept& kept, const Executor& executor) {
+  kept.resize(part.size());
+  return executor.sum_chunks(
+      part.size(), kCoarseGrain, Extents{}, [&](std::size_t begin, std::size_t end) {
+        Extents extents;
+        part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
+          if (!is_finite(world)) return;
+          kept[i] = 1;
+          extents += {world, world};
+        });
+        return extents;
+      });
 }
 
 std::size_t count_dropped(const Kept& kept) {
@@ -213,18 +231,6 @@ std::string name_of(std::span<const std::filesystem::path> inputs) {
          (inputs.size() == 1 ? "" : " and " + std::to_string(inputs.size() - 1) + " more inputs");
 }
 
-struct Extents {
-  Vec3d low{kNone, kNone, kNone};
-  Vec3d high{-kNone, -kNone, -kNone};
-  static constexpr double kNone = std::numeric_limits<double>::infinity();
-
-  Extents& operator+=(const Extents& other) {
-    low = min(low, other.low);
-    high = max(high, other.high);
-    return *this;
-  }
-};
-
 Extents extents_of(const CloudPart& part, const Kept& kept, const Executor& executor) {
   return executor.sum_chunks(
       part.size(), kCoarseGrain, Extents{}, [&](std::size_t begin, std::size_t end) {
@@ -239,7 +245,8 @@ Extents extents_of(const CloudPart& part, const Kept& kept, const Executor& exec
 /// The parts and what is known of their points on the way to one cloud.
 struct Gathered {
   std::vector<CloudPart> parts;
-  std::vector<Kept> kept;  ///< one a part
+  std::vector<Kept> kept = {};  ///< one a part
+  Extents finite = {};          ///< of the points that are
 
   Extents extents(const Executor& executor) const {
     Extents all;
@@ -269,7 +276,7 @@ Vec3d median_of(const Gathered& gathered) {
 
 /// Drops what is farther from the median than allowed; gives the extents of the rest.
 Extents drop_far(Gathered& gathered, double max_distance_m, const Executor& executor) {
-  const Extents all = gathered.extents(executor);
+  const Extents& all = gathered.finite;
   if (!(all.low.x <= all.high.x)) return all;  // no points
   // Where the whole box is smaller than the distance no point is farther from any other.
   if (is_place(all.low) && is_place(all.high) && length(all.high - all.low) <= max_distance_m)
@@ -287,14 +294,31 @@ Extents drop_far(Gathered& gathered, double max_distance_m, const Executor& exec
   return gathered.extents(executor);
 }
 
+/// Moves the values that stay together, run by run: few are dropped of most clouds.
 template <class T>
 void keep_only(std::vector<T>& values, const Kept& kept) {
   if (values.empty()) return;
-  std::size_t end = 0;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (kept[i] != 0) values[end++] = values[i];
-  const bool is_much_smaller = end < values.size() / 4 * 3;
-  values.resize(end);
+  const std::uint8_t* const flags = kept.data();
+  const std::size_t size = values.size();
+  // The first flag of a kind from `i` on; memchr looks at many at a time.
+  const auto find = [&](std::size_t i, int flag) {
+    const void* const found = i < size ? std::memchr(flags + i, flag, size - i) : nullptr;
+    return found == nullptr
+               ? size
+               : static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - flags);
+  };
+  std::size_t kept_end = 0;
+  for (std::size_t begin = find(0, 1); begin < size;) {
+    const std::size_t end = find(begin, 0);
+    if (kept_end != begin)
+      std::copy(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                values.begin() + static_cast<std::ptrdiff_t>(end),
+                values.begin() + static_cast<std::ptrdiff_t>(kept_end));
+    kept_end += end - begin;
+    begin = find(end, 1);
+  }
+  const bool is_much_smaller = kept_end < size / 4 * 3;
+  values.resize(kept_end);
   if (is_much_smaller) values.shrink_to_fit();
 }
 
@@ -331,9 +355,9 @@ PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin, const Poi
   // transformed in place, each read once, just before it is written. Likewise the kinds.
   std::vector<Vec3f>& positions = part.cloud.positions;
   positions = std::move(cloud.positions);
-  positions.resize(points);
+  resize_large(positions, points);
   part.cloud.origin_kinds = std::exchange(cloud.origin_kinds, {});
-  if (has_sensors) cloud.sensor_positions.resize(points);
+  if (has_sensors) resize_large(cloud.sensor_positions, points);
   if (has_kinds) cloud.origin_kinds.resize(points);
   executor.for_chunks(points, kCoarseGrain, [&](std::size_t begin, std::size_t end) {
     part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun& run) {
@@ -352,33 +376,44 @@ PointCloud localized(CloudPart&& part, const Kept& kept, Vec3d origin, const Poi
   return cloud;
 }
 
-/// Leaves out the points with a flag, 1 or 0 each; gives how many. No flags: none.
-std::size_t drop_flagged(PointCloud& cloud, Kept flags, const Executor& executor) {
-  for (std::uint8_t& flag : flags) flag = flag == 0 ? 1 : 0;
-  const std::size_t dropped = count_dropped(flags);
-  if (dropped > 0) keep_only(cloud, flags, executor);
-  return dropped;
+/// Adds flags, 1 or 0 each, to others; gives how many of the points had none. None at all: 0.
+std::size_t add_flags(const Kept& more, Kept& flags) {
+  if (more.empty()) return 0;
+  flags.resize(more.size());
+  std::size_t added = 0;
+  for (std::size_t i = 0; i < more.size(); ++i) {
+    added += more[i] > flags[i] ? 1 : 0;
+    flags[i] = std::max(flags[i], more[i]);
+  }
+  return added;
 }
 
-/// Leaves out the points on the vehicle that carried the sensor; gives how many.
-std::size_t drop_own_body(PointCloud& cloud, std::optional<double> radius_m,
-                          const Executor& executor) {
-  if (radius_m && *radius_m == 0) return 0;
-  if (radius_m && !cloud.has_beams()) {
+/// The points on the vehicle that carried the sensor, of those without a flag in `left_out`.
+Kept own_body(const PointCloud& cloud, std::optional<double> radius_m, const Kept& left_out,
+              const Executor& executor) {
+  if (!radius_m) return find_own_body(cloud, {}, executor, left_out);
+  if (*radius_m == 0) return {};
+  if (!cloud.has_beams()) {
     throw Error(ErrorKind::usage,
                 "points near their sensor are to be left out, but no point says where it was");
   }
-  return drop_flagged(
-      cloud,
-      radius_m ? points_within(cloud, *radius_m, executor) : find_own_body(cloud, {}, executor),
-      executor);
+  return points_within(cloud, *radius_m, executor);
 }
 
-/// Leaves out the points where the vehicle itself drove; gives how many.
-std::size_t drop_driven_path(PointCloud& cloud, double half_width_m, const Executor& executor) {
+/// Leaves out the points with a flag in `moving` and those of the vehicle: on it, and where it
+/// drove. The cloud is gone through once, when all of them are known.
+void leave_out(PointCloud& cloud, Kept moving, const LoadOptions& options, LoadReport& report,
+               const Executor& executor) {
+  Kept left_out;
+  report.in_boxes = add_flags(moving, left_out);
+  moving = {};
+  report.own_body = add_flags(own_body(cloud, options.own_body_m, left_out, executor), left_out);
   DrivenPathOptions path;
-  path.half_width_m = half_width_m;
-  return drop_flagged(cloud, find_in_driven_path(cloud, path, executor), executor);
+  path.half_width_m = options.driven_path_m;
+  report.driven_path = add_flags(find_in_driven_path(cloud, path, executor, left_out), left_out);
+  if (report.in_boxes + report.own_body + report.driven_path == 0) return;
+  for (std::uint8_t& flag : left_out) flag = flag == 0 ? 1 : 0;  // now of those that stay
+  keep_only(cloud, left_out, executor);
 }
 
 /// Of the points that are kept, in the order of the cloud, those in boxes of moving objects, 1 or 0
@@ -400,7 +435,8 @@ void look_at_parts(std::span<const Source> sources, const LoadOptions& options, 
                    LoadReport& report, const Executor& executor) {
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
     CloudPart& part = gathered.parts[p];
-    gathered.kept.push_back(finite_points(part, executor));
+    gathered.kept.emplace_back();
+    gathered.finite += find_finite(part, gathered.kept.back(), executor);
     if (options.strict) require_all_finite(part, gathered.kept.back());
     report.points_read += part.size();
     if (part.is_sequence) {
@@ -426,7 +462,7 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   const PointOrigins origins(options);
   LoadReport report;
   LoadClock clock(report.seconds);
-  Gathered gathered{read_parts(sources, options, executor, progress), {}};
+  Gathered gathered{read_parts(sources, options, executor, progress)};
   const std::optional<PlacedByTimes> placed =
       place_by_times(gathered.parts, options, executor, progress);
   const bool any_drive =
@@ -462,9 +498,7 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   // Before any point is taken away: where one was, its beam did return.
   if (options.empty_beams) cloud.empty_beams = find_empty_beams(cloud, {}, executor);
   clock.end("find empty beams");
-  if (!moving.empty()) report.in_boxes = drop_flagged(cloud, std::move(moving), executor);
-  report.own_body = drop_own_body(cloud, options.own_body_m, executor);
-  report.driven_path = drop_driven_path(cloud, options.driven_path_m, executor);
+  leave_out(cloud, std::move(moving), options, report, executor);
   report_own_body(name_of(inputs), report, options, progress);
   clock.end("leave the vehicle out");
   report.origins = count_origins(cloud);

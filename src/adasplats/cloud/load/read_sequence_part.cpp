@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <functional>
 #include <mutex>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/large_vector.h"
 
 namespace adasplats {
 
@@ -86,13 +88,14 @@ void for_each_scan(std::size_t count, const Executor& executor, ProgressSink& pr
   progress.end_step();
 }
 
-void number_scans(CloudPart& part, std::uint32_t first_scan_index) {
+void number_scans(CloudPart& part, std::uint32_t first_scan_index, const Executor& executor) {
   std::vector<std::uint32_t>& scans = part.cloud.scan_indices;
-  scans.resize(part.size());
-  for (std::size_t k = 0; k < part.runs.size(); ++k)
+  resize_large(scans, part.size());
+  executor.for_chunks(part.runs.size(), 1, [&](std::size_t k, std::size_t) {
     std::fill(scans.begin() + static_cast<std::ptrdiff_t>(part.runs[k].begin),
               scans.begin() + static_cast<std::ptrdiff_t>(part.runs[k].end),
               first_scan_index + static_cast<std::uint32_t>(k));
+  });
 }
 
 template <class T>
@@ -134,18 +137,32 @@ void read_with_reader(const KittiSequence& sequence, const std::vector<std::size
   if (std::ranges::all_of(cloud.lasers, unknown)) cloud.lasers.clear();
 }
 
+/// Sizes the arrays of a part whose runs are known, each by a thread: what takes long is that the
+/// system gives their memory.
+void size_arrays(bool has_labels, CloudPart& part, const Executor& executor) {
+  const std::size_t points = part.size();
+  PointCloud& cloud = part.cloud;
+  std::vector<std::function<void()>> tasks;
+  const auto add = [&](auto& values) {
+    tasks.emplace_back([&values, points] { resize_large(values, points); });
+  };
+  add(cloud.positions);
+  add(cloud.sensor_positions);
+  add(cloud.intensities);
+  add(cloud.scan_indices);
+  if (part.beams.from_hdl64) add(cloud.lasers);
+  if (has_labels) {
+    add(cloud.classes);
+    add(cloud.instances);
+  }
+  executor.for_chunks(tasks.size(), 1, [&](std::size_t task, std::size_t) { tasks[task](); });
+}
+
 void read_files(const KittiSequence& sequence, const std::vector<std::size_t>& chosen,
                 CloudPart& part, const Executor& executor, ProgressSink& progress) {
   part.runs = runs_of(sequence, chosen);
-  const std::size_t points = part.size();
+  size_arrays(!sequence.labels.empty(), part, executor);
   PointCloud& cloud = part.cloud;
-  cloud.positions.resize(points);
-  cloud.intensities.resize(points);
-  if (part.beams.from_hdl64) cloud.lasers.resize(points);
-  if (!sequence.labels.empty()) {
-    cloud.classes.resize(points);
-    cloud.instances.resize(points);
-  }
   for_each_scan(chosen.size(), executor, progress, [&](std::size_t k) {
     const PartRun& run = part.runs[k];
     store_scan(run, read_kitti_scan(sequence, chosen[k]), cloud);
@@ -167,7 +184,7 @@ CloudPart read_sequence_part(const KittiSequence& sequence, const LoadOptions& o
     read_with_reader(sequence, chosen, part, executor, progress);
   else
     read_files(sequence, chosen, part, executor, progress);
-  number_scans(part, first_scan_index);
+  number_scans(part, first_scan_index, executor);
   for (const std::size_t scan : chosen) part.cloud.scan_poses.push_back(sequence.trajectory[scan]);
   return part;
 }
