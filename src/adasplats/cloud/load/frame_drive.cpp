@@ -33,15 +33,21 @@ FileScan read_frame(const std::filesystem::path& file) {
     throw Error(ErrorKind::data, file.string() +
                                      ": its points have no times (a column time, "
                                      "timestamp or gps_time), other files' have");
-  FileScan frame;
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < read.size(); ++i) {
     if (!is_place(read.positions[i]) || !std::isfinite(read.times[i])) continue;
-    frame.positions.push_back(read.positions[i]);
-    frame.times.push_back(read.times[i]);
-    if (!read.intensities.empty()) frame.intensities.push_back(read.intensities[i]);
-    if (!read.classes.empty()) frame.classes.push_back(read.classes[i]);
+    read.positions[kept] = read.positions[i];
+    read.times[kept] = read.times[i];
+    if (!read.intensities.empty()) read.intensities[kept] = read.intensities[i];
+    if (!read.classes.empty()) read.classes[kept] = read.classes[i];
+    ++kept;
   }
-  return frame;
+  read.positions.resize(kept);
+  read.times.resize(kept);
+  if (!read.intensities.empty()) read.intensities.resize(kept);
+  if (!read.classes.empty()) read.classes.resize(kept);
+  read.instances = {};
+  return read;
 }
 
 /// Reads the scans of a drive.
@@ -58,11 +64,14 @@ class FrameReader final : public ScanReader {
   }
 
   KittiScan read(const std::filesystem::path& file) const override {
-    const FileScan frame = read_frame(file);
+    FileScan frame = read_frame(file);
     KittiScan scan;
     if (frame.positions.empty()) return scan;
     const auto [first, last] = std::ranges::minmax(frame.times);
     const RigidTransform scan_from_world = pose_at(0.5 * (first + last)).inverse();
+    scan.positions.reserve(frame.size());
+    scan.origins.reserve(frame.size());
+    scan.lasers.reserve(frame.size());
     for (std::size_t i = 0; i < frame.positions.size(); ++i) {
       if (!boxes_.empty())
         scan.in_boxes.push_back(boxes_.hold(frame.times[i], frame.positions[i]) ? 1 : 0);
@@ -70,9 +79,9 @@ class FrameReader final : public ScanReader {
       scan.positions.push_back(vec_cast<float>(scan_from_world * frame.positions[i]));
       scan.origins.push_back(vec_cast<float>(scan_from_world * pose.translation));
       scan.lasers.push_back(recognition_.cones.nearest(pose.inverse() * frame.positions[i]).first);
-      if (!frame.intensities.empty()) scan.intensities.push_back(frame.intensities[i]);
-      if (with_classes_ && !frame.classes.empty()) scan.classes.push_back(frame.classes[i]);
     }
+    scan.intensities = std::move(frame.intensities);
+    if (with_classes_) scan.classes = std::move(frame.classes);
     return scan;
   }
 

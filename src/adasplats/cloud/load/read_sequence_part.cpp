@@ -98,9 +98,19 @@ void number_scans(CloudPart& part, std::uint32_t first_scan_index, const Executo
   });
 }
 
+/// One attribute of all scans, one after the other; each scan's own goes as it is taken over. Empty
+/// where `points` is not how many there are.
 template <class T>
-void append_to(std::vector<T>& values, const std::vector<T>& part) {
-  values.insert(values.end(), part.begin(), part.end());
+void join(std::vector<KittiScan>& scans, std::vector<T> KittiScan::*attribute, std::size_t points,
+          std::vector<T>& all) {
+  std::size_t size = 0;
+  for (const KittiScan& scan : scans) size += (scan.*attribute).size();
+  if (size == points) all.reserve(size);
+  prefer_large_pages(all.data(), all.capacity() * sizeof(T));
+  for (KittiScan& scan : scans) {
+    const std::vector<T> values = std::move(scan.*attribute);
+    if (size == points) all.insert(all.end(), values.begin(), values.end());
+  }
 }
 
 /// Scans of a reader: how many points they have is known when they are read.
@@ -109,29 +119,33 @@ void read_with_reader(const KittiSequence& sequence, const std::vector<std::size
   std::vector<KittiScan> scans(chosen.size());
   for_each_scan(chosen.size(), executor, progress,
                 [&](std::size_t k) { scans[k] = read_all_returns(sequence, chosen[k]); });
-  std::size_t begin = 0;
-  PointCloud& cloud = part.cloud;
+  std::size_t points = 0;
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    const std::size_t end = begin + scans[k].positions.size();
-    part.runs.push_back({begin, end, sequence.scans[chosen[k]],
+    const std::size_t end = points + scans[k].positions.size();
+    part.runs.push_back({points, end, sequence.scans[chosen[k]],
                          sequence.trajectory[chosen[k]].world_from_sensor, chosen[k]});
-    append_to(cloud.positions, scans[k].positions);
-    append_to(cloud.intensities, scans[k].intensities);
-    append_to(cloud.classes, scans[k].classes);
-    append_to(cloud.instances, scans[k].instances);
-    append_to(cloud.lasers, scans[k].lasers);
-    append_to(part.scan_origins, scans[k].origins);
-    append_to(part.in_boxes, scans[k].in_boxes);
-    scans[k] = {};
-    begin = end;
+    points = end;
   }
-  if (cloud.intensities.size() != begin) cloud.intensities.clear();
-  if (cloud.classes.size() != begin) cloud.classes.clear();
-  if (cloud.instances.size() != begin) cloud.instances.clear();
+  PointCloud& cloud = part.cloud;
+  std::vector<std::function<void()>> tasks;
+  const auto add = [&](auto attribute, auto& all) {
+    tasks.emplace_back([&scans, &all, attribute, points] { join(scans, attribute, points, all); });
+  };
+  add(&KittiScan::positions, cloud.positions);
+  add(&KittiScan::origins, part.scan_origins);
+  add(&KittiScan::intensities, cloud.intensities);
+  add(&KittiScan::classes, cloud.classes);
+  add(&KittiScan::instances, cloud.instances);
+  add(&KittiScan::lasers, cloud.lasers);
+  add(&KittiScan::in_boxes, part.in_boxes);
+  executor.for_chunks(tasks.size(), 1, [&](std::size_t task, std::size_t) { tasks[task](); });
   if (part.beams.from_hdl64) {
-    for (const PartRun& run : part.runs)
+    cloud.lasers.resize(points);
+    executor.for_chunks(part.runs.size(), 1, [&](std::size_t k, std::size_t) {
+      const PartRun& run = part.runs[k];
       for (std::size_t i = run.begin; i < run.end; ++i)
-        cloud.lasers.push_back(part.beams.laser_of(run.scan, vec_cast<double>(cloud.positions[i])));
+        cloud.lasers[i] = part.beams.laser_of(run.scan, vec_cast<double>(cloud.positions[i]));
+    });
   }
   const auto unknown = [](std::uint16_t laser) { return laser == kNoLaser; };
   if (std::ranges::all_of(cloud.lasers, unknown)) cloud.lasers.clear();
