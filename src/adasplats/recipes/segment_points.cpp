@@ -68,7 +68,7 @@ class PointSegmenter {
     std::vector<fs::path> sequences;
     std::vector<fs::path> files;
     for (const fs::path& input : job_.inputs)
-      for (const CloudInput& part : any_cloud_inputs(input))
+      for (const CloudInput& part : cloud_inputs(input, SensorScans::taken))
         (part.is_sequence ? sequences : files).push_back(part.path);
     if (!files.empty() && !sequences.empty())
       throw Error(ErrorKind::usage, "sequences and files of points have outputs of two kinds");

@@ -97,9 +97,6 @@ bool same_extension(const std::vector<fs::path>& files) {
       files, [&](const fs::path& file) { return extension(file) == extension(files.front()); });
 }
 
-/// Whether scans in the frame of their sensor are files like others.
-enum class SensorScans : std::uint8_t { refused, taken };
-
 /// Whether all there is are files of points in one format and trajectories.
 bool holds_scans_alone(const Folder& folder) {
   const auto points = folder.files.find(FileKind::points);
@@ -156,9 +153,7 @@ std::vector<fs::path> sequences_of_tree(const fs::path& folder) {
   return sequences;
 }
 
-namespace {
-
-std::vector<CloudInput> inputs_of(const fs::path& path, SensorScans scans) {
+std::vector<CloudInput> cloud_inputs(const fs::path& path, SensorScans scans) {
   std::error_code ignored;  // what cannot be looked into fails when it is opened as a file
   if (!fs::is_directory(path, ignored)) return {{path, false}};
   if (is_kitti_sequence(path)) return {{path, true}};
@@ -168,16 +163,6 @@ std::vector<CloudInput> inputs_of(const fs::path& path, SensorScans scans) {
   std::vector<CloudInput> inputs;
   for (const fs::path& sequence : folder.sequences) inputs.push_back({sequence, true});
   return inputs;
-}
-
-}  // namespace
-
-std::vector<CloudInput> cloud_inputs(const fs::path& path) {
-  return inputs_of(path, SensorScans::refused);
-}
-
-std::vector<CloudInput> any_cloud_inputs(const fs::path& path) {
-  return inputs_of(path, SensorScans::taken);
 }
 
 void require_one_world(std::span<const CloudInput> sequences) {

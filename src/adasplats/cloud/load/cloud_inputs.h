@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <vector>
@@ -14,6 +15,10 @@ struct CloudInput {
   bool is_sequence = false;  ///< a sequence folder, else a file of points
 };
 
+/// Whether scans in the frame of their sensor are files like others: for who reads them with a
+/// trajectory, or reads no points.
+enum class SensorScans : std::uint8_t { refused, taken };
+
 /// What a path means as points, for every part of the program that takes some:
 /// - what is no folder: that, as a file of points;
 /// - a sequence folder (with `velodyne`): that;
@@ -25,12 +30,10 @@ struct CloudInput {
 /// Errors: no_input (a folder without points; one that cannot be listed), data (scans in the
 /// sensor's frame, as `simulate` writes them beside poses.csv, or several .bin), usage for every
 /// other folder, with a list of what is in it: sequences beside files of points, points of several
-/// extensions, meshes, models or trajectories among them.
-std::vector<CloudInput> cloud_inputs(const std::filesystem::path& path);
-
-/// The same, but scans in the sensor's frame and trajectories beside files of points are no errors:
-/// for who reads them with a trajectory, or reads no points.
-std::vector<CloudInput> any_cloud_inputs(const std::filesystem::path& path);
+/// extensions, meshes, models or trajectories among them. Where `scans` are taken, scans in the
+/// sensor's frame and trajectories beside files of points are no errors.
+std::vector<CloudInput> cloud_inputs(const std::filesystem::path& path,
+                                     SensorScans scans = SensorScans::refused);
 
 /// The sequences of a tree by name, as cloud_inputs finds them, whatever else is there; the folder
 /// itself where it is one. Errors: no_input (a folder that cannot be listed).

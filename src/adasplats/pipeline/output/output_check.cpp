@@ -39,7 +39,7 @@ bool counts_in(const fs::path& folder, const fs::path& file) {
   const fs::path parent = file.has_parent_path() ? file.parent_path() : fs::path(".");
   if (!is_same(folder, parent) || !has_extension_of_a_kind(file)) return false;
   try {
-    return std::ranges::any_of(any_cloud_inputs(folder),
+    return std::ranges::any_of(cloud_inputs(folder, SensorScans::taken),
                                [](const CloudInput& input) { return !input.is_sequence; });
   } catch (const Error&) {
     return false;  // whoever reads the folder says what is wrong with it

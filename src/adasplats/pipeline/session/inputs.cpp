@@ -22,7 +22,7 @@ std::optional<LabelScheme> label_scheme_for(const std::string& labels,
                                             std::span<const fs::path> inputs) {
   if (!labels.empty()) return load_label_scheme(labels);
   for (const fs::path& input : inputs) {
-    for (const CloudInput& one : any_cloud_inputs(input)) {
+    for (const CloudInput& one : cloud_inputs(input, SensorScans::taken)) {
       if (one.is_sequence && fs::is_directory(one.path / "labels")) return semantickitti_labels();
     }
   }
@@ -36,7 +36,7 @@ std::string scheme_reference(const std::string& labels, const LabelScheme& schem
 
 std::vector<fs::path> resolve_cloud_inputs(const fs::path& input) {
   require_input(input);
-  const std::vector<CloudInput> inputs = any_cloud_inputs(input);
+  const std::vector<CloudInput> inputs = cloud_inputs(input, SensorScans::taken);
   if (inputs.size() > 1 && !inputs.front().is_sequence) return {input};
   std::vector<fs::path> paths;
   paths.reserve(inputs.size());
