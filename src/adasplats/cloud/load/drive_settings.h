@@ -3,9 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string_view>
 #include <utility>
 
+#include "adasplats/cloud/poses/mount.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/setting.h"
 #include "adasplats/core/words.h"
 
@@ -33,10 +37,61 @@ inline constexpr std::pair<std::string_view, SweepPoints> kSweepPoints[] = {
     {"compensated", SweepPoints::compensated}};
 inline Words<SweepPoints> words_of(SweepPoints) { return kSweepPoints; }
 
-/// How the scans of a drive whose files are given with a trajectory are meant, for every struct
-/// with these members.
-template <class Drive, class Visit>
-void visit_drive_settings(Drive& drive, const char* group, Visit&& visit) {
+/// How a drive whose scans are files, given with a trajectory, is meant; for what loads points and
+/// for what casts their beams again.
+struct DriveSettings {
+  /// Of the vehicle or of the sensor, as read_trajectory takes it.
+  std::filesystem::path trajectory;
+  /// Boxes of moving objects (MovingBoxes), whose points are left out of scans with times.
+  std::filesystem::path boxes;
+  /// The lever arm: where the sensor sits in the frame of the trajectory's poses, m. Not given: the
+  /// poses are the sensor's own, or it is found.
+  std::optional<Vec3d> mount;
+  /// The boresight: yaw, pitch and roll of the sensor there, degrees. Of points in world
+  /// coordinates it turns the poses of scans and moves no origin.
+  Vec3d mount_rotation_deg;
+  /// What points' times lack to those of the trajectory, s. Not given: found (possible_clocks).
+  std::optional<double> time_offset_s;
+  PointsIn points_in = PointsIn::found;
+  SweepPoints sweep_points = SweepPoints::found;
+  std::filesystem::path scan_times;  ///< read_scan_times(); empty: none
+  /// Beams start at their poses even where they are seen to start beside them (ScanBeams).
+  bool beams_from_poses = false;
+
+  /// As far as one is given; a rotation alone is one.
+  std::optional<MountSettings> given_mount() const {
+    if (!mount && mount_rotation_deg == Vec3d{}) return std::nullopt;
+    return MountSettings{mount.value_or(Vec3d{}), mount_rotation_deg};
+  }
+};
+
+/// Where the sensor sits and what its clock lacks.
+template <class Visit>
+void visit_mount_settings(DriveSettings& drive, const char* group, Visit&& visit) {
+  visit(
+      Setting{.name = "mount",
+              .help = "Lever arm: where the sensor sits in the frame of the trajectory's poses, m "
+                      "(default: they are the sensor's own)",
+              .group = group},
+      drive.mount);
+  visit(Setting{.name = "mount_rotation",
+                .help = "Boresight: its yaw, pitch and roll there, degrees. Points in world "
+                        "coordinates need none: it turns the poses of scans alone",
+                .key = "mount_rotation_deg",
+                .group = group},
+        drive.mount_rotation_deg);
+  visit(Setting{.name = "time_offset",
+                .help = "Added to the points' times they are those of the trajectory, s (default: "
+                        "found from clocks of GPS, UTC and PTP)",
+                .value = "S",
+                .key = "time_offset_s",
+                .group = group},
+        drive.time_offset_s);
+}
+
+/// How the scans are meant.
+template <class Visit>
+void visit_scan_settings(DriveSettings& drive, const char* group, Visit&& visit) {
   visit(Setting{.name = "points_in",
                 .help = "Which frame the points of a folder of scans with a trajectory are in",
                 .group = group},

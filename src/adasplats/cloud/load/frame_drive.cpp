@@ -448,16 +448,16 @@ KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& fr
 
 }  // namespace
 
-FrameDrive drive_of(const std::filesystem::path& folder, const LoadOptions& options) {
-  FrameDrive drive{.folder = folder, .trajectory = options.trajectory, .boxes = options.boxes};
-  drive.time_offset_s = options.time_offset_s;
-  if (options.mount || !(options.mount_rotation_deg == Vec3d{}))
-    drive.mount = MountSettings{options.mount.value_or(Vec3d{}), options.mount_rotation_deg};
-  drive.points_in = options.points_in;
-  drive.sweep_points = options.sweep_points;
-  drive.scan_times = options.scan_times;
-  drive.beams_from_poses = options.beams_from_poses;
-  return drive;
+FrameDrive drive_of(const std::filesystem::path& folder, const DriveSettings& settings) {
+  return {.folder = folder,
+          .trajectory = settings.trajectory,
+          .boxes = settings.boxes,
+          .time_offset_s = settings.time_offset_s,
+          .mount = settings.given_mount(),
+          .points_in = settings.points_in,
+          .sweep_points = settings.sweep_points,
+          .scan_times = settings.scan_times,
+          .beams_from_poses = settings.beams_from_poses};
 }
 
 bool has_timed_frames(const std::filesystem::path& folder) {

@@ -15,8 +15,6 @@
 
 namespace adasplats {
 
-struct LoadOptions;
-
 /// A drive whose scans are files of points, and the trajectory of the vehicle or of the sensor.
 struct FrameDrive {
   std::filesystem::path folder;         ///< of the files, one a scan (scan_files())
@@ -31,8 +29,8 @@ struct FrameDrive {
   bool beams_from_poses = false;     ///< of points in the sensor's frame: recognise nothing
 };
 
-/// As the options of load_cloud() have it.
-FrameDrive drive_of(const std::filesystem::path& folder, const LoadOptions& options);
+/// A folder and what is said of it.
+FrameDrive drive_of(const std::filesystem::path& folder, const DriveSettings& settings);
 
 /// Whether a folder holds files of points of one extension, the first of which has times of at most
 /// a second: scans, not tiles of a recording.

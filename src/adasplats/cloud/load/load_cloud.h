@@ -21,8 +21,11 @@
 
 namespace adasplats {
 
-/// How files become a point cloud.
-struct LoadOptions {
+/// How files become a point cloud. `trajectory` says where the sensor was when it measured the
+/// points that have no sensor position: at their times (TimedOrigins), where they and its poses
+/// have some. Else its nearest position (in the plane): a guess, metres off, OriginKind::guessed,
+/// which turns normals alone.
+struct LoadOptions : DriveSettings {
   /// Column of the semantic class; empty: the first of label, class, classification, semantic,
   /// scalar_label, scalar_Classification, sem_class that is there.
   std::string label_field;
@@ -32,32 +35,12 @@ struct LoadOptions {
   /// The station that measured every point that has no sensor position, world coordinates. It must
   /// be possible (station_objection()). OriginKind::stated.
   std::optional<Vec3d> viewpoint;
-  /// A trajectory that says where the sensor was when it measured the points that have no sensor
-  /// position: at their times (TimedOrigins), where they and its poses have some. Else its nearest
-  /// position (in the plane): a guess, metres off, OriginKind::guessed, which turns normals alone.
-  std::filesystem::path trajectory;
-  /// The lever arm: where the sensor sits in the frame of the trajectory's poses, m. Not given: the
-  /// poses are the sensor's own.
-  std::optional<Vec3d> mount;
-  /// The boresight: yaw, pitch and roll of the sensor there, degrees. Points are in world
-  /// coordinates, so it turns the poses of scans and moves no origin.
-  Vec3d mount_rotation_deg;
-  /// What points' times lack to those of the trajectory, s. Not given: found (possible_clocks).
-  std::optional<double> time_offset_s;
-  /// Boxes of moving objects (MovingBoxes), whose points are left out of scans with times.
-  std::filesystem::path boxes;
-  /// How a folder of scans with a trajectory is meant, and the times of its scans (FrameDrive).
-  PointsIn points_in = PointsIn::found;
-  SweepPoints sweep_points = SweepPoints::found;
-  std::filesystem::path scan_times;
   /// Of a sequence: `count` scans (or as many as there are) from `first` on, every `stride`-th.
   std::size_t first_scan = 0;
   std::size_t scan_count = static_cast<std::size_t>(-1);
   std::size_t scan_stride = 1;
   /// Points not finite are an error instead of being dropped and counted.
   bool strict = false;
-  /// Sensor positions of sequences are their poses' even where beams start beside them (ScanBeams).
-  bool beams_from_poses = false;
   /// Read whole records of truncated LAS files.
   bool salvage = false;
   /// Points farther than this from the median of all points are dropped and counted, m.
@@ -153,32 +136,14 @@ void visit_settings(LoadOptions& load, Visit&& visit) {
                       "that have no sensor position; a guess, nothing is checked with it",
               .group = kGroup},
       load.trajectory);
-  visit(
-      Setting{.name = "mount",
-              .help = "Lever arm: where the sensor sits in the frame of the trajectory's poses, m "
-                      "(default: they are the sensor's own)",
-              .group = kGroup},
-      load.mount);
-  visit(Setting{.name = "mount_rotation",
-                .help = "Boresight: its yaw, pitch and roll there, degrees. Points in world "
-                        "coordinates need none: it turns the poses of scans alone",
-                .key = "mount_rotation_deg",
-                .group = kGroup},
-        load.mount_rotation_deg);
-  visit(Setting{.name = "time_offset",
-                .help = "Added to the points' times they are those of the trajectory, s (default: "
-                        "found from clocks of GPS, UTC and PTP)",
-                .value = "S",
-                .key = "time_offset_s",
-                .group = kGroup},
-        load.time_offset_s);
+  visit_mount_settings(load, kGroup, visit);
   visit(Setting{.name = "boxes",
                 .help = "Boxes of objects by time (CSV: time,id,stationary,x,y,z,size_x,size_y,"
                         "size_z,yaw): what those that move hold is left out of scans with times",
                 .value = "FILE",
                 .group = kGroup},
         load.boxes);
-  visit_drive_settings(load, kGroup, visit);
+  visit_scan_settings(load, kGroup, visit);
   visit(Setting{.name = "beams_from_poses",
                 .help = "Beams of sequences start at their poses, even where the sensor is "
                         "recognised",

@@ -43,15 +43,8 @@ KittiSequence open_frames(const HeldOutScans& scans, Session& session) {
     throw Error(ErrorKind::usage, scans.sequence.string() +
                                       ": has poses of its own; `trajectory` is for a folder of "
                                       "scans, one a file");
-  FrameDrive given{.folder = scans.sequence, .trajectory = scans.trajectory, .boxes = scans.boxes};
+  FrameDrive given = drive_of(scans.sequence, scans);
   given.with_classes = false;
-  given.time_offset_s = scans.time_offset_s;
-  if (scans.mount || !(scans.mount_rotation_deg == Vec3d{}))
-    given.mount = MountSettings{scans.mount.value_or(Vec3d{}), scans.mount_rotation_deg};
-  given.points_in = scans.points_in;
-  given.sweep_points = scans.sweep_points;
-  given.scan_times = scans.scan_times;
-  given.beams_from_poses = scans.beams_from_poses;
   auto drive = open_frame_drive(given, session.executor, session.progress);
   if (!drive)
     throw Error(ErrorKind::data, scans.sequence.string() +

@@ -25,39 +25,17 @@
 namespace adasplats {
 
 /// Held-out scans of a sequence.
-struct HeldOutScans {
-  std::filesystem::path sequence;
-  ScanRange scans;                ///< of the sequence
-  bool beams_from_poses = false;  ///< even where the sensor is recognised
-  /// Of a folder of scans: where the vehicle or the sensor was, and boxes of what moves
-  /// (FrameDrive).
-  std::filesystem::path trajectory, boxes;
-  std::optional<Vec3d> mount;  ///< these as LoadOptions has them
-  Vec3d mount_rotation_deg;
-  std::optional<double> time_offset_s;
-  PointsIn points_in = PointsIn::found;
-  SweepPoints sweep_points = SweepPoints::found;
-  std::filesystem::path scan_times;
-  std::filesystem::path motion;  ///< poses that say how the sensor of raw scans moved, or empty
+struct HeldOutScans : DriveSettings {
+  std::filesystem::path sequence;  ///< or, with a trajectory, a folder of scans
+  ScanRange scans;                 ///< of the sequence
+  std::filesystem::path motion;    ///< poses that say how the sensor of raw scans moved, or empty
 };
 
 /// What is for a folder of scans with a trajectory alone.
 template <class Visit>
 void visit_settings(HeldOutScans& scans, Visit&& visit) {
-  visit(Setting{.name = "mount",
-                .help = "Of a folder of scans in the sensor's frame: where the sensor sits in the "
-                        "frame of the trajectory's poses, m"},
-        scans.mount);
-  visit(Setting{.name = "mount_rotation",
-                .help = "Its yaw, pitch and roll there, degrees",
-                .key = "mount_rotation_deg"},
-        scans.mount_rotation_deg);
-  visit(Setting{.name = "time_offset",
-                .help = "Added to the points' times they are those of the trajectory, s",
-                .value = "S",
-                .key = "time_offset_s"},
-        scans.time_offset_s);
-  visit_drive_settings(scans, "", visit);
+  visit_mount_settings(scans, "", visit);
+  visit_scan_settings(scans, "", visit);
 }
 
 /// The chosen scans with where their beams started. Errors: usage (a motion for compensated scans;
