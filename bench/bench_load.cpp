@@ -3,7 +3,8 @@
 // What loading a drive costs: seconds of its parts, processor time and peak memory, with one thread
 // and with several, each load in a process of its own, and from both the share that does not get
 // faster with threads (Amdahl). With --beside the same program of another build takes turns.
-// All of them have to load the very same bytes.
+// All of them have to load the very same bytes. Shares need a machine that does nothing else; ratios
+// of processor time do not.
 //   bench_load DRIVE [--trajectory FILE] [--rounds N] [--threads N] [--beside PROGRAM] [--json
 //   FILE]
 
@@ -159,7 +160,7 @@ void run(const Options& options, const std::string& self) {
       std::printf(" %14.3f", row.of(name));
       figures[row.program][std::to_string(row.threads)][name] = row.of(name);
     }
-    if (rows.size() == 4)
+    if (rows.size() == 4 && rows[2].of(name) > 0 && rows[3].of(name) > 0)
       std::printf("   %.2f and %.2f of before", rows[0].of(name) / rows[2].of(name),
                   rows[1].of(name) / rows[3].of(name));
     std::printf("\n");
