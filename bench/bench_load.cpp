@@ -3,8 +3,8 @@
 // What loading a drive costs: seconds of its parts, processor time and peak memory, with one thread
 // and with several, each load in a process of its own, and from both the share that does not get
 // faster with threads (Amdahl). With --beside the same program of another build takes turns.
-// All of them have to load the very same bytes. Shares need a machine that does nothing else; ratios
-// of processor time do not.
+// All of them have to load the very same bytes. Shares need a machine that does nothing else;
+// ratios of processor time do not.
 //   bench_load DRIVE [--trajectory FILE] [--rounds N] [--threads N] [--beside PROGRAM] [--json
 //   FILE]
 
