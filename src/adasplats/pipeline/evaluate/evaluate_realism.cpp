@@ -47,7 +47,7 @@ KittiSequence open_scans(const std::filesystem::path& given, const RealismJob& j
   const std::filesystem::path folder = resolve_cloud_input(given);
   if (is_kitti_sequence(folder)) {
     KittiSequence sequence = open_kitti_sequence(folder);
-    sequence.beams = recognize_beams(sequence);
+    sequence.beams = recognize_beams(sequence, session.executor);
     return sequence;
   }
   const std::filesystem::path own = given / "poses.csv";
