@@ -747,6 +747,7 @@ class Scans:
         format: Literal[
             "semantickitti", "ply", "npy", "npz", "pcd", "las", "range-image", "mcap"
         ] = "semantickitti",
+        point_order: Literal["kitti", "firing"] = "kitti",
     ) -> None: ...
 
 class Hits:

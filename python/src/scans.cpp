@@ -56,6 +56,7 @@ constexpr const char* kSaveDoc =
     "Write the scans into a folder, which is made where it is not there.\n\n"
     "format: 'semantickitti' (FOLDER/sequences/00), 'ply', 'npy', 'npz', 'pcd', 'las',\n"
     "'range-image' or 'mcap' (FOLDER/scans.mcap): docs/formats.md.\n"
+    "point_order, of 'semantickitti': 'kitti', as KITTI's own files, or 'firing', as here.\n"
     "Raises OSError, ValueError.";
 
 /// An attribute of every scan, or one that a scan may lack.
@@ -112,19 +113,20 @@ ScanList scans_of(const ScanList& list, const py::slice& slice) {
   return part;
 }
 
-void take_format(Keywords& keywords, ScanFormat& format) {
+void take_format(Keywords& keywords, ScanFormat& format, PointOrder& order) {
   keywords.take<ScanFormat>("format", format, kScanFormats);
+  keywords.take<PointOrder>("point_order", order, kPointOrders);
 }
 
 void save_scans(const ScanList& list, py::handle folder, const py::kwargs& kwargs) {
   Keywords keywords("save", kwargs);
   ScanFormat format = ScanFormat::semantickitti;
-  take_format(keywords, format);
+  ScanWriterOptions writing;
+  take_format(keywords, format, writing.order);
   keywords.finish();
   const std::filesystem::path path = path_of(folder, "folder");
   const py::gil_scoped_release released;
   std::filesystem::create_directories(path);
-  ScanWriterOptions writing;
   writing.image_size = list.image_size;
   writing.labels = list.labels.get();
   const auto writer = make_scan_writer(path, format, writing);
@@ -144,7 +146,8 @@ void bind_scans(py::module_& module) {
       "save", "self, folder",
       [](Keywords& keywords) {
         ScanFormat format = ScanFormat::semantickitti;
-        take_format(keywords, format);
+        PointOrder order = PointOrder::kitti;
+        take_format(keywords, format, order);
       },
       kSaveDoc);
   py::class_<ScanList, std::shared_ptr<ScanList>> type(

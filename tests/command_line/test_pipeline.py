@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """From points to numbers on a tiny place, end to end."""
 import json
+import math
 import struct
 import unittest
 
@@ -21,6 +22,31 @@ class Pipeline(ProgramTest):
             self.assertGreater(report["completeness_m"], 0, method)
             self.assertIn("road", report["by_class"])
             self.assertGreater(report["by_class"]["road"]["points"], 100)
+
+    def test_order_of_points(self):
+        """Oracle: the same points by the way they turn, which azimuths show."""
+        model = self.model("ordered.ply")
+        found = {}
+        for order in ["kitti", "firing"]:
+            scans = self.folder / f"in order {order}"
+            self.run_good("simulate", model, "--trajectory", self.poses, "--sensor",
+                          "velodyne-vlp-16", "-o", scans, "--point-order", order)
+            data = (scans / "sequences/00/velodyne/000000.bin").read_bytes()
+            found[order] = [record[:3] for record in struct.iter_unpack("<4f", data)]
+            self.assertEqual((scans / "poses/00.txt").read_text(),
+                             (scans / "sequences/00/poses.txt").read_text())
+        self.assertTrue(sorted(found["kitti"]) == sorted(found["firing"]))
+        self.assertFalse(found["kitti"] == found["firing"])
+        azimuths = [math.atan2(y, x) % (2 * math.pi) for x, y, _ in found["kitti"]]
+        passed = [k for k in range(1, len(azimuths)) if azimuths[k] < azimuths[k - 1]]
+        elevations = [math.atan2(z, math.hypot(x, y)) for x, y, z in found["kitti"]]
+        rings = [elevations[a:b] for a, b in zip([0, *passed], [*passed, len(azimuths)])]
+        self.assertGreater(len(rings), 4)
+        for above, below in zip(rings, rings[1:]):
+            self.assertGreater(min(above), max(below))
+        self.run_bad(64, "simulate", model, "--trajectory", self.poses, "-o",
+                     self.folder / "none", "--format", "ply", "--point-order", "kitti",
+                     says=["--point-order"])
 
     def test_reports_have_the_documented_keys(self):
         model = self.folder / "m.ply"

@@ -211,7 +211,9 @@ class SimKitti32(ProgramTest):
         self.assertAlmostEqual(simulated.poses[1][0][3], pose_of(4)[0][3], delta=1e-9)
         self.assertEqual(simulated.times, [0.1, 0.4])
         self.assertEqual(sorted(path.name for path in self.output.iterdir()),
-                         ["adasplats.json", "sequences"])
+                         ["adasplats.json", "poses", "sequences"])
+        self.assertEqual((self.output / "poses" / "04.txt").read_text(),
+                         (self.output / "sequences" / "04" / "poses.txt").read_text())
 
     def test_threads_and_seeds(self):
         digests = []

@@ -147,8 +147,7 @@ std::string npy_labels(const Scan& scan) {
 
 ScanFields fields_of(ScanFormat format) {
   ScanFields fields;
-  if (format == ScanFormat::semantickitti)
-    fields.ranges = fields.rings = fields.columns = fields.times = fields.return_indices = false;
+  if (format == ScanFormat::semantickitti) fields.ranges = fields.columns = fields.times = false;
   return fields;
 }
 

@@ -35,7 +35,7 @@ struct ScanBytes {
 };
 ScanBytes scan_bytes(ScanFormat format);
 
-/// Attributes that files of the format hold; others need not be computed.
+/// Attributes that files of the format hold or their order needs; others need not be computed.
 ScanFields fields_of(ScanFormat format);
 
 // One scan as a file, in the sensor frame. All are atomic.

@@ -16,11 +16,17 @@ namespace {
 
 class SequenceWriter final : public ScanWriter {
  public:
-  SequenceWriter(const std::filesystem::path& folder, const std::string& name)
-      : ScanWriter(folder), sequence_("sequences/" + name + "/"), writer_(folder / sequence_) {}
+  SequenceWriter(const std::filesystem::path& folder, const std::string& name, PointOrder order)
+      : ScanWriter(folder),
+        sequence_("sequences/" + name + "/"),
+        order_(order),
+        writer_(folder / sequence_, folder / "poses" / (name + ".txt")) {}
 
   EncodedScan encode(std::size_t index, const Scan& scan) const override {
-    EncodedScan encoded = SemanticKittiWriter::encode(index, scan);
+    EncodedScan encoded =
+        order_ == PointOrder::firing
+            ? SemanticKittiWriter::encode(index, scan)
+            : SemanticKittiWriter::encode(index, reordered(scan, kitti_order(scan)));
     for (EncodedFile& file : encoded.files) file.name = sequence_ + file.name;
     return encoded;
   }
@@ -35,6 +41,7 @@ class SequenceWriter final : public ScanWriter {
 
  private:
   std::string sequence_;
+  PointOrder order_;
   SemanticKittiWriter writer_;
 };
 
@@ -118,13 +125,13 @@ void ScanWriter::write(std::size_t index, const Scan& scan) {
 }
 
 std::unique_ptr<ScanWriter> make_sequence_writer(const std::filesystem::path& folder,
-                                                 const std::string& name) {
-  return std::make_unique<SequenceWriter>(folder, name);
+                                                 const std::string& name, PointOrder order) {
+  return std::make_unique<SequenceWriter>(folder, name, order);
 }
 
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
                                              const ScanWriterOptions& options) {
-  if (format == ScanFormat::semantickitti) return make_sequence_writer(folder, "00");
+  if (format == ScanFormat::semantickitti) return make_sequence_writer(folder, "00", options.order);
   if (format == ScanFormat::mcap) return std::make_unique<MessageWriter>(folder);
   return std::make_unique<FileWriter>(folder, format, options);
 }

@@ -10,6 +10,7 @@
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/dataset/encoded_scan.h"
+#include "adasplats/dataset/kitti_order.h"
 #include "adasplats/dataset/range_image.h"
 #include "adasplats/dataset/scan_files.h"
 #include "adasplats/simulate/scan/scan.h"
@@ -17,9 +18,10 @@
 namespace adasplats {
 
 struct ScanWriterOptions {
-  ImageSize image_size;                 ///< of range images (image_size_of)
-  double full_intensity = 1.0;          ///< LAS: what becomes its largest intensity
-  const LabelScheme* labels = nullptr;  ///< colours of range images; outlives the writer
+  ImageSize image_size;                  ///< of range images (image_size_of)
+  double full_intensity = 1.0;           ///< LAS: what becomes its largest intensity
+  const LabelScheme* labels = nullptr;   ///< colours of range images; outlives the writer
+  PointOrder order = PointOrder::kitti;  ///< of points in semantickitti's files
 };
 
 /// Makes scans of one drive files of a folder. What a scan becomes can be worked out and written by
@@ -55,15 +57,18 @@ class ScanWriter {
   std::filesystem::path folder_;
 };
 
-/// A writer into `folder`, which exists. semantickitti: FOLDER/sequences/00 as SemanticKittiWriter;
-/// range_image: files of write_range_image(); mcap: FOLDER/scans.mcap as McapWriter; else
-/// NNNNNN.EXT of scan_files.h. All but semantickitti have poses.csv beside them. Errors:
-/// cannot_create, io; mcap: data (times that ROS cannot express).
+/// A writer into `folder`, which exists. semantickitti: FOLDER/sequences/00 as SemanticKittiWriter
+/// and FOLDER/poses/00.txt, points in `options.order`; range_image: files of write_range_image();
+/// mcap: FOLDER/scans.mcap as McapWriter; else NNNNNN.EXT of scan_files.h. All but semantickitti
+/// have poses.csv beside them. Errors: cannot_create, io; mcap: data (times that ROS cannot
+/// express).
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
                                              const ScanWriterOptions& options = {});
 
-/// SemanticKITTI's layout with a sequence of that name: FOLDER/sequences/NAME.
+/// SemanticKITTI's layout with a sequence of that name: FOLDER/sequences/NAME and, with the same
+/// text as its poses.txt, FOLDER/poses/NAME.txt, where KITTI's odometry data set has it.
 std::unique_ptr<ScanWriter> make_sequence_writer(const std::filesystem::path& folder,
-                                                 const std::string& name);
+                                                 const std::string& name,
+                                                 PointOrder order = PointOrder::kitti);
 
 }  // namespace adasplats

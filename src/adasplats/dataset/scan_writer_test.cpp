@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/dataset/numbered_scan_test.h"
+#include "adasplats/io/base/atomic_file.h"
 
 namespace adasplats {
 namespace {
@@ -51,7 +53,7 @@ TEST(ScanWriter, NamesOfEveryFormat) {
             (Names{"000000_label.npy", "000000_label.png", "000000_range.npy", "000000_range.png",
                    "000001_range.npy", "000001_range.png", "poses.csv"}));
   EXPECT_EQ(written_names(ScanFormat::mcap), (Names{"poses.csv", "scans.mcap"}));
-  EXPECT_EQ(written_names(ScanFormat::semantickitti), Names{"sequences"});
+  EXPECT_EQ(written_names(ScanFormat::semantickitti), (Names{"poses", "sequences"}));
 }
 
 TEST(ScanWriter, SequenceIsReadBack) {
@@ -61,6 +63,37 @@ TEST(ScanWriter, SequenceIsReadBack) {
   writer->finish();
   const KittiSequence sequence = open_kitti_sequence(folder.path() / "sequences/00");
   EXPECT_EQ(read_kitti_scan(sequence, 0).positions.size(), 3U);
+}
+
+// Oracle: the files of a scan whose points were put in order before.
+TEST(ScanWriter, SequencesHaveKittisOrderOrThatOfFirings) {
+  const TemporaryFolder folder;
+  Scan scan = scan_number(0, 90);
+  for (std::size_t i = 0; i < 90; ++i) {  // two rings that turn to the right
+    const auto angle = -0.13F * static_cast<float>(i / 2);
+    scan.rings[i] = static_cast<std::uint16_t>(i % 2);
+    scan.positions[i] = {9 * std::cos(angle), 9 * std::sin(angle), static_cast<float>(i % 2)};
+  }
+  const auto written = [&](const char* name, PointOrder order) {
+    const std::filesystem::path path = folder.path() / name;
+    std::filesystem::create_directories(path);
+    const auto writer = make_sequence_writer(path, "05", order);
+    writer->write(0, scan);
+    writer->finish();
+    EXPECT_EQ(read_file(path / "poses/05.txt"), read_file(path / "sequences/05/poses.txt"));
+    const KittiSequence sequence = open_kitti_sequence(path / "sequences/05");
+    EXPECT_EQ(sequence.labels.size(), 1U);
+    return read_kitti_scan(sequence, 0);
+  };
+  const KittiScan fired = written("fired", PointOrder::firing);
+  EXPECT_EQ(fired.intensities, scan.intensities);
+  EXPECT_EQ(fired.classes, scan.classes);
+  const KittiScan kitti = written("kitti", PointOrder::kitti);
+  const Scan expected = reordered(scan, kitti_order(scan));
+  EXPECT_NE(kitti.intensities, scan.intensities);
+  EXPECT_EQ(kitti.intensities, expected.intensities);
+  EXPECT_EQ(kitti.classes, expected.classes);
+  EXPECT_EQ(kitti.instances, expected.instances);
 }
 
 TEST(ScanWriter, FolderThatIsNotThere) {

@@ -76,8 +76,9 @@ bool ascends(const Trajectory& trajectory) {
 
 }  // namespace
 
-SemanticKittiWriter::SemanticKittiWriter(std::filesystem::path sequence_folder)
-    : folder_(std::move(sequence_folder)) {
+SemanticKittiWriter::SemanticKittiWriter(std::filesystem::path sequence_folder,
+                                         std::filesystem::path more_poses)
+    : folder_(std::move(sequence_folder)), more_poses_(std::move(more_poses)) {
   std::error_code ignored;  // what cannot be looked into cannot be written either
   if (std::filesystem::exists(folder_ / "poses.txt", ignored))
     throw Error(ErrorKind::cannot_create,
@@ -154,6 +155,10 @@ void SemanticKittiWriter::finish() {
   write_file(folder_ / "calib.txt", "Tr: " + matrix_text(kCameraFromVelodyne) + "\n");
   // Several drives one after another have no common clock; readers then count scans.
   if (ascends(trajectory_)) write_file(folder_ / "times.txt", times);
+  if (!more_poses_.empty()) {
+    create_folder(more_poses_.parent_path());
+    write_file(more_poses_, poses);
+  }
   write_file(folder_ / "poses.txt", poses);
 }
 

@@ -19,9 +19,11 @@ namespace adasplats {
 /// whole, and the same scans written again after an interruption give the same bytes.
 class SemanticKittiWriter {
  public:
-  /// `sequence_folder` is created; the parent must exist or be creatable.
+  /// `sequence_folder` is created; the parent must exist or be creatable. `more_poses`: a file that
+  /// gets the text of poses.txt, too; empty: none.
   /// Errors: cannot_create (also where the folder already holds a whole sequence).
-  explicit SemanticKittiWriter(std::filesystem::path sequence_folder);
+  explicit SemanticKittiWriter(std::filesystem::path sequence_folder,
+                               std::filesystem::path more_poses = {});
 
   /// The files of scan number `index`, named relative to the sequence folder. Several threads may
   /// call it at once.
@@ -41,7 +43,7 @@ class SemanticKittiWriter {
   void require_alike(const EncodedScan& scan);
   void note(std::size_t index, const TimedPose& pose, std::size_t points);
 
-  std::filesystem::path folder_;
+  std::filesystem::path folder_, more_poses_;
   Trajectory trajectory_;                                 ///< by index
   std::vector<std::optional<std::size_t>> point_counts_;  ///< by index; nothing: not written yet
   bool has_labels_ = false;

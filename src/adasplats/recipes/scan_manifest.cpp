@@ -124,7 +124,8 @@ Json simulate_content(const SimulateJob& job, const ScanSettings& settings,
                   {"noise", settings.noise},
                   {"weather", content_of(settings.weather)},
                   {"seed", settings.seed},
-                  {"format", word_of(job.format, kScanFormats)}};
+                  {"format", word_of(job.format, kScanFormats)},
+                  {"point_order", word_of(job.point_order, kPointOrders)}};
   if (settings.unit_offsets) content["sensor"]["range_offsets_m"] = settings.sensor.range_offsets_m;
   if (const LabelScheme* labels = scene.labels()) content["labels"] = labels_content(*labels);
   if (!job.scan.ray_drop.empty()) content["ray_drop"] = file_content(job.scan.ray_drop);

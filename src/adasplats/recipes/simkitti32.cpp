@@ -105,6 +105,7 @@ Json content_of(const SimKitti32Job& job, const Source& source, const LidarModel
                   {"sensor", sensor_content(sensor)},
                   {"seed", session.seed}};
   put_settings(job, content);
+  content["point_order"] = word_of(PointOrder::kitti, kPointOrders);
   content["model"] = model_content(job.method);
   if (!job.ray_drop.empty()) content["ray_drop"] = sha256_of_file(job.ray_drop);
   content["inputs"] = input_hashes(source, session);

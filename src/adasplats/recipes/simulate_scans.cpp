@@ -58,8 +58,9 @@ void require_returns(const SimulateResult& result, const ModelScene& scene,
                   " m (are trajectory and model in one frame? offset and mount shift it)");
 }
 
-ScanWriterOptions writing_options(const ScanSimulator& simulator) {
+ScanWriterOptions writing_options(const ScanSimulator& simulator, PointOrder order) {
   ScanWriterOptions writing;
+  writing.order = order;
   writing.image_size = image_size_of(simulator.firings());
   writing.labels = simulator.scene().labels();
   return writing;
@@ -67,15 +68,16 @@ ScanWriterOptions writing_options(const ScanSimulator& simulator) {
 
 /// Casts the scans that are not there yet and writes them beside that.
 ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> scans,
-                        ScanFormat format, ResumableFolder& folder, Session& session,
+                        const SimulateJob& job, ResumableFolder& folder, Session& session,
                         SimulateResult& result) {
   const ModelScene& scene = simulator.scene();
   // An attempt that was interrupted at its very end had been given the poses already.
   std::filesystem::remove(folder.path() / "sequences" / "00" / "poses.txt");
-  const auto writer = make_scan_writer(folder.path(), format, writing_options(simulator));
+  const auto writer =
+      make_scan_writer(folder.path(), job.format, writing_options(simulator, job.point_order));
   const std::size_t first = keep_written_scans(*writer, folder, scans);
   const LidarModel& sensor = simulator.settings().sensor;
-  require_room(folder.path(), format, scans.size() - first, sensor.rays_per_scan(),
+  require_room(folder.path(), job.format, scans.size() - first, sensor.rays_per_scan(),
                simulator.settings().beam.returns);
   result.scans = scans.size();
   result.scans_resumed = first;
@@ -126,7 +128,7 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   const Stopwatch all;
   ReportTimes times;
   try {
-    times = write_scans(simulator, scans, job.format, folder, session, result);
+    times = write_scans(simulator, scans, job, folder, session, result);
     session.progress.end_step();
     folder.commit(nlohmann::ordered_json::object(), {});
   } catch (const Error&) {

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/dataset/kitti_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace adasplats {
+namespace {
+
+using Numbers = std::vector<std::uint32_t>;
+
+/// Points by their rings, as they come within one, and where each ring begins.
+struct Rings {
+  Numbers points;
+  std::vector<std::size_t> begins;  ///< one more than rings
+};
+
+Rings rings_of(const Scan& scan) {
+  const std::size_t rings =
+      scan.size() == 0 ? 0
+                       : *std::max_element(scan.rings.begin(), scan.rings.end()) + std::size_t{1};
+  Rings found{Numbers(scan.size()), std::vector<std::size_t>(rings + 1)};
+  for (const std::uint16_t ring : scan.rings) ++found.begins[ring + std::size_t{1}];
+  std::partial_sum(found.begins.begin(), found.begins.end(), found.begins.begin());
+  std::vector<std::size_t> next = found.begins;
+  for (std::uint32_t i = 0; i < scan.size(); ++i) found.points[next[scan.rings[i]]++] = i;
+  return found;
+}
+
+/// Whether a point is a later return of the firing of the point before it.
+bool is_later_return(const Scan& scan, std::uint32_t i) {
+  return !scan.return_indices.empty() && scan.return_indices[i] > 0;
+}
+
+/// Steps from firing to firing, by the way they turn.
+struct Turns {
+  std::size_t left = 0, right = 0;
+};
+
+Turns turns_of(const Scan& scan, const Rings& rings) {
+  Turns turns;
+  for (std::size_t k = 1; k < rings.points.size(); ++k) {
+    const std::uint32_t i = rings.points[k - 1], j = rings.points[k];
+    if (scan.rings[i] != scan.rings[j] || is_later_return(scan, j)) continue;
+    const Vec3f a = scan.positions[i], b = scan.positions[j];
+    const float turn = a.x * b.y - a.y * b.x;
+    turns.left += turn > 0 ? 1 : 0;
+    turns.right += turn < 0 ? 1 : 0;
+  }
+  return turns;
+}
+
+/// Noise of angles turns some steps back; a pattern that goes to and fro turns every second one.
+bool is_steady(const Turns& turns) {
+  constexpr std::size_t kOneInTen = 10;
+  return kOneInTen * std::min(turns.left, turns.right) <= turns.left + turns.right;
+}
+
+/// Turns a ring round, firing by firing.
+void reverse_firings(const Scan& scan, std::span<std::uint32_t> ring) {
+  std::reverse(ring.begin(), ring.end());
+  for (std::size_t begin = 0, end = 0; begin < ring.size(); begin = end) {
+    while (end < ring.size() && is_later_return(scan, ring[end])) ++end;
+    if (end < ring.size()) ++end;  // the first return of the firing, now the last
+    std::reverse(ring.begin() + static_cast<std::ptrdiff_t>(begin),
+                 ring.begin() + static_cast<std::ptrdiff_t>(end));
+  }
+}
+
+/// Lets a counter-clockwise ring begin where it passes azimuth 0.
+void begin_ahead(const Scan& scan, std::span<std::uint32_t> ring) {
+  const auto at = [&](std::uint32_t i) { return scan.positions[i]; };
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const std::uint32_t before = ring[(k == 0 ? ring.size() : k) - 1];
+    if (!(at(before).y < 0 && at(ring[k]).y >= 0 && at(ring[k]).x > 0)) continue;
+    std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(k), ring.end());
+    return;
+  }
+}
+
+/// Noise of angles takes some beams beside azimuth 0 over it: they go to the end of a ring that
+/// they belong to.
+void part_ends(const Scan& scan, std::span<std::uint32_t> ring) {
+  constexpr float kBesideTan = 0.02F;  // of 1.1 degrees, more than the noise of any sensor
+  const auto is_beside = [&](std::uint32_t i) {
+    const Vec3f p = scan.positions[i];
+    return p.x > 0 && std::fabs(p.y) < kBesideTan * p.x;
+  };
+  const auto lead_end = std::find_if_not(ring.begin(), ring.end(), is_beside);
+  if (lead_end == ring.end()) return;
+  const auto tail_begin = std::find_if_not(ring.rbegin(), ring.rend(), is_beside).base();
+  Numbers parted;
+  parted.reserve(ring.size());
+  const auto take = [&](auto begin, auto end, bool left) {
+    for (; begin != end; ++begin)
+      if ((scan.positions[*begin].y >= 0) == left) parted.push_back(*begin);
+  };
+  take(tail_begin, ring.end(), true);
+  take(ring.begin(), lead_end, true);
+  parted.insert(parted.end(), lead_end, tail_begin);
+  take(tail_begin, ring.end(), false);
+  take(ring.begin(), lead_end, false);
+  std::ranges::copy(parted, ring.begin());
+}
+
+template <class T>
+void reorder(std::vector<T>& values, const std::vector<T>& from,
+             std::span<const std::uint32_t> order) {
+  if (from.size() != order.size()) return;  // scans need not have it
+  values.resize(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) values[i] = from[order[i]];
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> kitti_order(const Scan& scan) {
+  if (scan.rings.size() != scan.size()) throw std::logic_error("kitti_order: a scan without rings");
+  Rings rings = rings_of(scan);
+  const Turns turns = turns_of(scan, rings);
+  if (!is_steady(turns)) {
+    std::iota(rings.points.begin(), rings.points.end(), 0U);
+    return std::move(rings.points);
+  }
+  for (std::size_t k = 0; k + 1 < rings.begins.size(); ++k) {
+    const std::span ring =
+        std::span(rings.points).subspan(rings.begins[k], rings.begins[k + 1] - rings.begins[k]);
+    if (turns.right > turns.left) reverse_firings(scan, ring);
+    begin_ahead(scan, ring);
+    part_ends(scan, ring);
+  }
+  return std::move(rings.points);
+}
+
+Scan reordered(const Scan& scan, std::span<const std::uint32_t> order) {
+  Scan made;
+  made.world_from_sensor = scan.world_from_sensor;
+  made.time_s = scan.time_s;
+  made.rays = scan.rays;
+  reorder(made.positions, scan.positions, order);
+  for_each_scan_attribute(
+      [&](const auto& attribute) { reorder(attribute.of(made), attribute.of(scan), order); });
+  return made;
+}
+
+}  // namespace adasplats
