@@ -98,7 +98,8 @@ TEST(KittiOrder, ReturnsOfAFiringStayInTheirOrder) {
   const Scan single = scan_of(load_lidar_model("velodyne-vlp-16"));
   Scan twice;
   for (std::size_t i = 0; i < single.size(); ++i) {
-    for (std::uint8_t k = 0; k < (i % 3 == 0 ? 1 : 2); ++k) {
+    const std::uint8_t returns = i % 3 == 0 ? 1 : 2;
+    for (std::uint8_t k = 0; k < returns; ++k) {
       twice.positions.push_back(single.positions[i]);
       twice.rings.push_back(single.rings[i]);
       twice.columns.push_back(single.columns[i]);

@@ -70,7 +70,8 @@ TEST(ScanWriter, SequencesHaveKittisOrderOrThatOfFirings) {
   const TemporaryFolder folder;
   Scan scan = scan_number(0, 90);
   for (std::size_t i = 0; i < 90; ++i) {  // two rings that turn to the right
-    const auto angle = -0.13F * static_cast<float>(i / 2);
+    const std::size_t column = i / 2;
+    const auto angle = -0.13F * static_cast<float>(column);
     scan.rings[i] = static_cast<std::uint16_t>(i % 2);
     scan.positions[i] = {9 * std::cos(angle), 9 * std::sin(angle), static_cast<float>(i % 2)};
   }
