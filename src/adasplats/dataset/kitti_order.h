@@ -26,7 +26,8 @@ inline Words<PointOrder> words_of(PointOrder) { return kPointOrders; }
 /// top, each counter-clockwise from azimuth 0 (straight ahead), whichever way the sensor turns.
 /// KITTI's files hold no rings; readers find them where azimuths pass from below 0 to above ("scan
 /// unfolding", Triess et al. 2020, "Scan-based Semantic Segmentation of LiDAR Point Clouds: An
-/// Experimental Study"), which gives every ring of this order once it has points on both sides.
+/// Experimental Study"). That gives the rings of this order, where each has points on both sides of
+/// azimuth 0 and points are as measured (deskewed ones of the ends of a sweep can overlap behind).
 /// Returns of one firing stay in their order. Scans of sensors that do not turn steadily, as those
 /// with rosettes, stay in the order of their firings. Needs positions and rings, and
 /// return_indices where a firing can return twice (std::logic_error without rings).
