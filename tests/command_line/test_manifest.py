@@ -93,6 +93,8 @@ class Manifest(ProgramTest):
             "--white-intensity": (["--rain", "20"],
                                   ["--rain", "20", "--white-intensity", "100"]),
             "--format": ([], ["--format", "npy"]),
+            "--point-order": (["--format", "semantickitti"],
+                              ["--format", "semantickitti", "--point-order", "firing"]),
             "--seed": ([], ["--seed", "9"]),
         }
 
