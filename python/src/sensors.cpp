@@ -25,6 +25,22 @@ void fields(Archive& archive, RosettePattern& rosette) {
 }
 
 template <class Archive>
+void fields(Archive& archive, UnitIntensity& unit) {
+  archive("step", unit.step);
+  archive("highest", unit.highest);
+  archive("ring_nodes", unit.ring_nodes);
+  archive("ring_expected", unit.ring_expected);
+  archive("ring_level", unit.ring_level);
+  archive("levels", unit.levels);
+  archive("zero_share", unit.zero_share);
+  archive("reported", unit.reported);
+  archive("zero_field", unit.zero_field);
+  archive("texture_field", unit.texture_field);
+  archive("texture_unevenness", unit.texture_unevenness);
+  archive("ring_texture", unit.ring_texture);
+}
+
+template <class Archive>
 void fields(Archive& archive, LidarModel& model) {
   archive("name", model.name);
   archive("elevations_rad", model.elevations_rad);
@@ -32,6 +48,8 @@ void fields(Archive& archive, LidarModel& model) {
   archive("beam_origins_m", model.beam_origins_m);
   archive("firing_times_s", model.firing_times_s);
   archive("range_offsets_m", model.range_offsets_m);
+  archive("ring_noise_m", model.ring_noise_m);
+  archive("intensity", model.intensity);
   archive("columns", model.columns);
   archive("first_azimuth_rad", model.first_azimuth_rad);
   archive("rotation_hz", model.rotation_hz);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/recipes/scan_manifest.h"
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/words.h"
@@ -86,6 +87,23 @@ Json content_of(const Settings& settings) {
 
 }  // namespace
 
+/// SHA-256 of all that decides the intensities of a unit.
+std::string digest_of(const UnitIntensity& unit) {
+  Sha256 hash;
+  const auto add = [&](const auto& values) {
+    hash.add(values.data(), values.size() * sizeof(values[0]));
+  };
+  const std::array scalars = {unit.step, unit.highest, unit.texture_unevenness,
+                              static_cast<double>(unit.ring_nodes)};
+  add(scalars);
+  for (const auto* table : {&unit.ring_expected, &unit.ring_level, &unit.levels, &unit.zero_share,
+                            &unit.reported, &unit.ring_texture})
+    add(*table);
+  add(unit.zero_field);
+  add(unit.texture_field);
+  return hash.digest();
+}
+
 Json sensor_content(const LidarModel& sensor) {
   Json json = {{"name", sensor.name},
                {"rings", sensor.rings()},
@@ -98,6 +116,8 @@ Json sensor_content(const LidarModel& sensor) {
                {"range_resolution_m", sensor.range_resolution_m},
                {"divergence_rad", {sensor.divergence_rad[0], sensor.divergence_rad[1]}},
                {"divergence_kind", word_of(sensor.divergence_kind, kDivergenceKinds)}};
+  if (!sensor.ring_noise_m.empty()) json["ring_noise_m"] = sensor.ring_noise_m;
+  if (sensor.intensity) json["intensity"] = digest_of(*sensor.intensity);
   Sha256 hash;
   for (const Firing& firing : firings_of(sensor)) {
     const float numbers[] = {firing.direction.x, firing.direction.y, firing.direction.z,

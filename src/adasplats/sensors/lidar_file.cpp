@@ -46,6 +46,7 @@ void sort_beams(LidarFile& file) {
   reorder(file.model.beam_origins_m, order);
   reorder(file.model.firing_times_s, order);
   reorder(file.model.range_offsets_m, order);
+  reorder(file.model.ring_noise_m, order);
   reorder(file.column_steps, order);
   reorder(file.column_phases, order);
 }
@@ -105,6 +106,8 @@ void LidarFile::clear_pattern() {
   model.beam_origins_m.clear();
   model.firing_times_s.clear();
   model.range_offsets_m.clear();
+  model.ring_noise_m.clear();
+  model.intensity.reset();
   model.free_pattern.clear();
   model.rosette.reset();
   column_steps.clear();

@@ -20,7 +20,8 @@ void check(const LidarModel& model) {
     return count == 0 || count == model.elevations_rad.size();
   };
   if (!one_a_beam(model.azimuth_offsets_rad.size()) || !one_a_beam(model.beam_origins_m.size()) ||
-      !one_a_beam(model.firing_times_s.size()) || !one_a_beam(model.range_offsets_m.size()))
+      !one_a_beam(model.firing_times_s.size()) || !one_a_beam(model.range_offsets_m.size()) ||
+      !one_a_beam(model.ring_noise_m.size()))
     throw std::logic_error("a LiDAR model needs one value a beam, or none");
   if (!(model.rotation_hz > 0)) throw std::logic_error("a LiDAR model needs rotation_hz > 0");
 }

@@ -9,6 +9,7 @@
 
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/sensors/divergence.h"
+#include "adasplats/sensors/unit_intensity.h"
 
 namespace adasplats {
 
@@ -47,6 +48,11 @@ struct LidarModel {
   /// What each ring of this very unit measures beside the range: to be added to what it reports.
   /// One a ring, or empty for zero. Simulated only where that is asked for (SimulateOptions).
   std::vector<double> range_offsets_m;
+  /// Standard deviation of the noise of each ring of this unit; instead of range_noise_m where not
+  /// empty.
+  std::vector<double> ring_noise_m;
+  /// What this unit makes of intensities; without: they are reported as the scene has them.
+  std::optional<UnitIntensity> intensity;
   std::uint32_t columns = 0;     ///< azimuth steps a revolution
   double first_azimuth_rad = 0;  ///< of the head when a revolution begins
   double rotation_hz = 10.0;     ///< revolutions, or scans of a free pattern, a second

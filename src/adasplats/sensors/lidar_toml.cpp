@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <locale>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -53,13 +54,22 @@ const Keys& sensor_keys() {
                             "rosette",
                             "firing_times_us",
                             "beam_origins_m",
-                            "range_offsets_m"};
+                            "range_offsets_m",
+                            "ring_noise_m",
+                            "intensity"};
   return keys;
 }
 
 const Keys& rosette_keys() {
   static const Keys keys = {"prism_turns_per_minute", "deflection_deg", "points_per_s",
                             "laser_tilts_deg"};
+  return keys;
+}
+
+const Keys& intensity_keys() {
+  static const Keys keys = {
+      "step",     "highest",    "ring_expected", "ring_level",         "levels",      "zero_share",
+      "reported", "zero_field", "texture_field", "texture_unevenness", "ring_texture"};
   return keys;
 }
 
@@ -159,6 +169,25 @@ class SensorTable {
     return numbers;
   }
 
+  /// Lists of equally many numbers, one behind the other; `columns`: how many, 0: as the first has.
+  std::vector<float> rows(std::string_view key, double low, double high,
+                          std::size_t& columns) const {
+    std::vector<float> values;
+    for (const toml::node* row : elements(key)) {
+      const toml::array* list = row->as_array();
+      if (list == nullptr || list->empty())
+        throw error_at(row->source(), std::string(key) + " is not a list of lists of numbers");
+      if (columns == 0) columns = list->size();
+      if (list->size() != columns)
+        throw error_at(row->source(), std::string(key) + " has a list of " +
+                                          std::to_string(list->size()) + " numbers, expected " +
+                                          std::to_string(columns));
+      for (const toml::node& number : *list)
+        values.push_back(static_cast<float>(number_of(number, key, low, high)));
+    }
+    return values;
+  }
+
   /// Points, or one that stands for all of `count`.
   std::vector<Vec3d> points(std::string_view key, std::size_t count) const {
     const std::vector<const toml::node*> rows = elements(key);
@@ -254,6 +283,69 @@ void read_one_a_beam(const SensorTable& table, std::string_view key, std::size_t
   values = std::move(read);
 }
 
+constexpr double kBright = 1e9;  // no unit of intensities goes so far
+
+void require_ascending(const SensorTable& table, const char* key, std::span<const float> values,
+                       std::size_t columns) {
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (i % columns != 0 && !(values[i] > values[i - 1]))
+      throw table.error(key, "is not ascending");
+}
+
+FieldShares read_shares(const SensorTable& table, const char* key) {
+  FieldShares shares = {};
+  if (!table.has(key)) return shares;
+  const std::vector<double> read = table.numbers(key, 0, 1);
+  if (read.size() != shares.size())
+    throw table.error(key, "has " + std::to_string(read.size()) + " shares, expected " +
+                               std::to_string(shares.size()));
+  double sum = 0;
+  for (std::size_t k = 0; k < shares.size(); ++k) sum += shares[k] = read[k];
+  if (sum > 1) throw table.error(key, "has shares of more than 1 together");
+  return shares;
+}
+
+std::vector<float> floats_of(const std::vector<double>& values) {
+  return {values.begin(), values.end()};
+}
+
+UnitIntensity read_intensity(const SensorTable& sensor, std::size_t rings) {
+  const SensorTable table = sensor.table("intensity", intensity_keys());
+  for (const char* key : {"highest", "levels", "zero_share", "reported"})
+    if (!table.has(key)) throw table.error(key, "is missing");
+  UnitIntensity unit;
+  unit.step = table.number("step", 0, 0, kBright);
+  unit.highest = table.number("highest", 0, 0, kBright);
+  if (table.has("ring_expected") != table.has("ring_level"))
+    throw table.error("ring_expected", "and ring_level stand together");
+  unit.ring_expected = table.rows("ring_expected", -kBright, kBright, unit.ring_nodes);
+  unit.ring_level = table.rows("ring_level", -kBright, kBright, unit.ring_nodes);
+  if (unit.ring_nodes > 0) {
+    require_ascending(table, "ring_expected", unit.ring_expected, unit.ring_nodes);
+    for (const std::size_t values : {unit.ring_expected.size(), unit.ring_level.size()})
+      if (values != rings * unit.ring_nodes)
+        throw table.error("ring_level",
+                          "and ring_expected need one list a ring, of " + std::to_string(rings));
+  }
+  unit.levels = floats_of(table.numbers("levels", -kBright, kBright));
+  require_ascending(table, "levels", unit.levels, unit.levels.size());
+  unit.zero_share = floats_of(table.numbers("zero_share", 0, 1));
+  std::size_t nodes = kTextureNodes;
+  unit.reported = table.rows("reported", 0, kBright, nodes);
+  if (unit.zero_share.size() != unit.levels.size() ||
+      unit.reported.size() != unit.levels.size() * kTextureNodes)
+    throw table.error("levels", "needs as many values in zero_share and lists in reported");
+  unit.zero_field = read_shares(table, "zero_field");
+  unit.texture_field = read_shares(table, "texture_field");
+  unit.texture_unevenness = table.number("texture_unevenness", 0, 0, 3);
+  unit.ring_texture = floats_of(table.numbers("ring_texture", 0, 100));
+  if (!unit.ring_texture.empty() && unit.ring_texture.size() != rings)
+    throw table.error("ring_texture", "has " + std::to_string(unit.ring_texture.size()) +
+                                          " values, expected " + std::to_string(rings) +
+                                          ", one a ring");
+  return unit;
+}
+
 void read_beams(const SensorTable& table, LidarFile& file) {
   LidarModel& model = file.model;
   if (table.has("elevations_deg") || has_fan(table) || !file.has_beams()) {
@@ -271,6 +363,9 @@ void read_beams(const SensorTable& table, LidarFile& file) {
   read_one_a_beam(table, "firing_times_us", beams, std::move(times_s), model.firing_times_s);
   read_one_a_beam(table, "range_offsets_m", beams,
                   table.numbers("range_offsets_m", -kFar_m, kFar_m), model.range_offsets_m);
+  read_one_a_beam(table, "ring_noise_m", beams, table.numbers("ring_noise_m", 0, kFar_m),
+                  model.ring_noise_m);
+  if (table.has("intensity")) model.intensity = read_intensity(table, beams);
   read_one_a_beam(table, "column_steps", beams, table.whole_numbers("column_steps", 1),
                   file.column_steps);
   read_one_a_beam(table, "column_phases", beams, table.whole_numbers("column_phases", 0),
@@ -322,6 +417,7 @@ void read_measuring(const SensorTable& table, LidarModel& model) {
     throw table.error(table.has("max_range_m") ? "max_range_m" : "min_range_m",
                       "leaves no range between min_range_m and max_range_m");
   model.range_noise_m = table.number("range_noise_m", model.range_noise_m, 0, kFar_m);
+  if (table.has("range_noise_m")) model.ring_noise_m.clear();  // of what it is like
   model.range_resolution_m =
       table.number("range_resolution_m", model.range_resolution_m, 0, kFar_m);
   if (table.has("angular_noise_deg"))
@@ -368,9 +464,9 @@ void read_divergence(const SensorTable& table, LidarModel& model) {
 
 /// A rosette or a list of rays has no beams that turn.
 void check_untouched(const SensorTable& table, const LidarModel& model) {
-  for (const char* key :
-       {"azimuth_offsets_deg", "beam_origins_m", "firing_times_us", "column_steps", "column_phases",
-        "columns", "first_azimuth_deg", "clockwise", "range_offsets_m"})
+  for (const char* key : {"azimuth_offsets_deg", "beam_origins_m", "firing_times_us",
+                          "column_steps", "column_phases", "columns", "first_azimuth_deg",
+                          "clockwise", "range_offsets_m", "ring_noise_m", "intensity"})
     if (table.has(key))
       throw table.error(key, "does not fit a sensor that is a rosette or a list of rays");
   for (const Firing& firing : model.free_pattern)

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iomanip>
 #include <locale>
 #include <numbers>
 #include <numeric>
@@ -96,6 +97,49 @@ double offset_at(std::span<const double> offsets, std::size_t ring) {
   return ring < offsets.size() ? offsets[ring] : 0.0;
 }
 
+/// Numbers of six digits.
+template <class Number>
+std::string rounded_list(std::span<const Number> numbers) {
+  std::string text;
+  for (const Number number : numbers) {
+    std::ostringstream one;
+    one.imbue(std::locale::classic());
+    one << std::setprecision(6) << static_cast<double>(number);
+    text += (text.empty() ? "" : ", ") + one.str();
+  }
+  return "[" + text + "]";
+}
+
+std::string rows_text(const char* key, std::span<const float> values, std::size_t columns) {
+  std::string text = std::string(key) + " = [\n";
+  for (std::size_t i = 0; i < values.size(); i += columns)
+    text += "  " + rounded_list(values.subspan(i, columns)) + ",\n";
+  return text + "]\n";
+}
+
+/// The table [intensity], which has to be the last of a file.
+std::string intensity_text(const UnitIntensity& unit) {
+  std::string text = "\n[intensity]\n";
+  text += "step = " + exact_text(unit.step) + "\nhighest = " + exact_text(unit.highest) + "\n";
+  if (unit.ring_nodes > 0) {
+    text += "# What the model expects, and the level that a laser makes of it, topmost first.\n";
+    text += rows_text("ring_expected", unit.ring_expected, unit.ring_nodes);
+    text += rows_text("ring_level", unit.ring_level, unit.ring_nodes);
+  }
+  text +=
+      "# Of each level: the share of returns with intensity zero; what the others report where\n"
+      "# the texture field is -3 to 3.\n";
+  text += lines_of("levels", rounded_list(std::span<const float>(unit.levels)));
+  text += lines_of("zero_share", rounded_list(std::span<const float>(unit.zero_share)));
+  text += rows_text("reported", unit.reported, kTextureNodes);
+  text += "# Shares of octaves in the fields, fine to coarse; the rest of 1 is white.\n";
+  text += "zero_field = " + rounded_list(std::span<const double>(unit.zero_field)) + "\n";
+  text += "texture_field = " + rounded_list(std::span<const double>(unit.texture_field)) + "\n";
+  text += "texture_unevenness = " + exact_text(unit.texture_unevenness) + "\n";
+  if (unit.ring_texture.empty()) return text;
+  return text + lines_of("ring_texture", rounded_list(std::span<const float>(unit.ring_texture)));
+}
+
 /// The keys of a file of the library in its order, but for those that say the elevations.
 std::vector<SensorEntry> entries_of(std::string_view library_toml) {
   const toml::table table = toml::parse(library_toml);
@@ -117,7 +161,8 @@ std::vector<SensorEntry> entries_of(std::string_view library_toml) {
 
 }  // namespace
 
-std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets& offsets) {
+std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets& offsets,
+                             const UnitTraits& traits) {
   const auto library = lidar_library();
   const auto known = std::ranges::find(library, library_name, &LibraryLidar::name);
   if (known == library.end()) throw Error(ErrorKind::usage, unknown_lidar_model(library_name));
@@ -139,11 +184,22 @@ std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets&
       "reports\n# (simulated where --unit-offsets asks for it).\n";
   for (SensorEntry& entry : entries_of(known->toml)) {
     if (entry.key == "name") entry.value = toml_text(toml::value(library_name + "-unit"));
-    if (entry.key == "source") entry.value = toml_text(toml::value(file.model.source + kFoundBy));
+    if (entry.key == "source")
+      entry.value = toml_text(toml::value(
+          file.model.source + kFoundBy +
+          (traits.fitted_to.empty() ? "" : "; the rest fitted to " + traits.fitted_to)));
+    if (entry.key == "max_range_m" && traits.max_range_m)
+      entry.value = exact_text(*traits.max_range_m);
     text += lines_of(entry.key, entry.value);
   }
-  return text + lines_of("elevations_deg", text_of_numbers(elevations_deg)) +
-         lines_of("range_offsets_m", text_of_numbers(ranges_m));
+  text += lines_of("elevations_deg", text_of_numbers(elevations_deg)) +
+          lines_of("range_offsets_m", text_of_numbers(ranges_m));
+  if (!traits.ring_noise_m.empty()) {
+    std::vector<double> noise_m;
+    for (const std::size_t ring : rings) noise_m.push_back(offset_at(traits.ring_noise_m, ring));
+    text += lines_of("ring_noise_m", text_of_numbers(noise_m));
+  }
+  return traits.intensity == nullptr ? text : text + intensity_text(*traits.intensity);
 }
 
 }  // namespace adasplats

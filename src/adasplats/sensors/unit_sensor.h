@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
+
+#include "adasplats/sensors/unit_intensity.h"
 
 namespace adasplats {
 
@@ -14,10 +17,19 @@ struct UnitOffsets {
   std::span<const double> elevation_rad;
 };
 
+/// What else is of one unit (fit_unit()).
+struct UnitTraits {
+  std::span<const double> ring_noise_m;  ///< topmost first; empty: not known
+  std::optional<double> max_range_m;
+  const UnitIntensity* intensity = nullptr;
+  std::string fitted_to;  ///< for the reader of the file
+};
+
 /// The file of one unit of a sensor of the library (TOML, as load_lidar_model reads it): its keys
 /// with the elevations corrected, and range_offsets_m. Elevations to 1e-5 degrees, ranges to 0.01
 /// mm. Errors: usage (unknown name); std::logic_error for a sensor without beams or more offsets
 /// than beams.
-std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets& offsets);
+std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets& offsets,
+                             const UnitTraits& traits = {});
 
 }  // namespace adasplats

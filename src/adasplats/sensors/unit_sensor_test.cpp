@@ -68,6 +68,100 @@ TEST(UnitSensor, OffsetsOfRangesAreOneABeamAndSortedWithThem) {
                [&] { load_lidar_model(short_list.string()); });
 }
 
+UnitIntensity intensity_of_two_levels(std::size_t rings) {
+  UnitIntensity unit;
+  unit.step = 0.01;
+  unit.highest = 0.99;
+  unit.ring_nodes = 2;
+  for (std::size_t ring = 0; ring < rings; ++ring) {
+    unit.ring_expected.insert(unit.ring_expected.end(), {0.1F, 0.5F});
+    unit.ring_level.insert(unit.ring_level.end(), {0.125F, 0.5F + static_cast<float>(ring) / 128});
+    unit.ring_texture.push_back(1 + static_cast<float>(ring) / 64);
+  }
+  unit.levels = {0.125F, 0.75F};
+  unit.zero_share = {0.5F, 0.25F};
+  for (std::size_t k = 0; k < 2 * kTextureNodes; ++k)
+    unit.reported.push_back(static_cast<float>(k) / 32);
+  unit.zero_field = {0.25, 0.125, 0, 0.5};
+  unit.texture_field = {0, 0.125, 0.25, 0};
+  unit.texture_unevenness = 0.5;
+  return unit;
+}
+
+// Oracle: what was written.
+TEST(UnitSensor, TraitsAreReadBack) {
+  const TemporaryFolder folder;
+  const std::string name = "velodyne-vlp-16";
+  const UnitIntensity intensity = intensity_of_two_levels(16);
+  std::vector<double> noise_m;
+  for (int ring = 0; ring < 16; ++ring) noise_m.push_back(0.001 * (ring + 1));
+  UnitTraits traits;
+  traits.ring_noise_m = noise_m;
+  traits.max_range_m = 79.5;
+  traits.intensity = &intensity;
+  traits.fitted_to = "3 scans of here";
+  const auto file = folder.write("unit.toml", unit_sensor_toml(name, {}, traits));
+  const LidarModel unit = load_lidar_model(file.string());
+  ASSERT_EQ(unit.ring_noise_m.size(), noise_m.size());
+  for (std::size_t k = 0; k < noise_m.size(); ++k)
+    EXPECT_NEAR(unit.ring_noise_m[k], noise_m[k], 0.51e-5);
+  EXPECT_EQ(unit.max_range_m, 79.5);
+  EXPECT_NE(unit.source.find("3 scans of here"), std::string::npos);
+  ASSERT_TRUE(unit.intensity.has_value());
+  EXPECT_EQ(unit.intensity->step, 0.01);
+  EXPECT_EQ(unit.intensity->highest, 0.99);
+  EXPECT_EQ(unit.intensity->ring_nodes, 2U);
+  for (std::size_t k = 0; k < 32; ++k)
+    EXPECT_NEAR(unit.intensity->ring_level[k], intensity.ring_level[k], 1e-6F);
+  EXPECT_EQ(unit.intensity->ring_expected, intensity.ring_expected);
+  EXPECT_EQ(unit.intensity->levels, intensity.levels);
+  EXPECT_EQ(unit.intensity->zero_share, intensity.zero_share);
+  EXPECT_EQ(unit.intensity->reported, intensity.reported);
+  EXPECT_EQ(unit.intensity->zero_field, intensity.zero_field);
+  EXPECT_EQ(unit.intensity->texture_field, intensity.texture_field);
+  EXPECT_EQ(unit.intensity->texture_unevenness, 0.5);
+  EXPECT_EQ(unit.intensity->ring_texture.size(), 16U);
+  // A sensor that is like it has it, too; its own noise or beams replace it.
+  const auto like = folder.write("like.toml", std::string("like = \"unit.toml\"\n"));
+  EXPECT_EQ(load_lidar_model(like.string()).ring_noise_m, unit.ring_noise_m);
+  const auto plain =
+      folder.write("plain.toml", std::string("like = \"unit.toml\"\nrange_noise_m = 0.01\n"));
+  EXPECT_TRUE(load_lidar_model(plain.string()).ring_noise_m.empty());
+  const auto other =
+      folder.write("other.toml", std::string("like = \"unit.toml\"\nelevations_deg = [1, 2]\n"));
+  EXPECT_FALSE(load_lidar_model(other.string()).intensity.has_value());
+}
+
+TEST(UnitSensor, ErrorsOfIntensitiesSayWhatIsWrong) {
+  const TemporaryFolder folder;
+  const std::string row = "[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14]";
+  const std::string good =
+      "highest = 1\nlevels = [0.1]\nzero_share = [0]\nreported = [" + row + "]\n";
+  const auto error_is = [&](const std::string& lines, const std::string& says) {
+    const auto file =
+        folder.write("bad.toml", "columns = 4\nelevations_deg = [-1, 2]\n[intensity]\n" + lines);
+    expect_error(ErrorKind::config, {says}, [&] { load_lidar_model(file.string()); });
+  };
+  const auto file =
+      folder.write("good.toml", "columns = 4\nelevations_deg = [-1, 2]\n[intensity]\n" + good);
+  EXPECT_TRUE(load_lidar_model(file.string()).intensity.has_value());
+  error_is("highest = 1\n", "levels is missing");
+  error_is(good + "zero_fields = [0, 0, 0, 0]\n", "did you mean 'zero_field'");
+  error_is(good + "zero_field = [1, 1, 0, 0]\n", "more than 1 together");
+  error_is(good + "zero_field = [1]\n", "has 1 shares, expected 4");
+  error_is(good + "ring_texture = [1]\n", "has 1 values, expected 2");
+  error_is(good + "ring_expected = [[0, 1], [0, 1]]\n", "stand together");
+  error_is(good + "ring_expected = [[0, 1], [1, 0]]\nring_level = [[0, 1], [0, 1]]\n",
+           "is not ascending");
+  error_is(good + "ring_expected = [[0, 1], [0]]\nring_level = [[0, 1], [0, 1]]\n",
+           "has a list of 1 numbers, expected 2");
+  error_is(good + "ring_expected = [[0, 1]]\nring_level = [[0, 1]]\n", "one list a ring");
+  error_is("highest = 1\nlevels = [0.1, 0.2]\nzero_share = [0]\nreported = [" + row + "]\n",
+           "needs as many values");
+  error_is("highest = 1\nlevels = [0.1]\nzero_share = [2]\nreported = [" + row + "]\n",
+           "zero_share is not a number from 0 to 1");
+}
+
 TEST(UnitSensor, OffsetsOfOtherSensorsAreNoUnit) {
   expect_error(ErrorKind::usage, {"vlp-16", "did you mean"},
                [] { unit_sensor_toml("vlp-16", {}); });

@@ -43,6 +43,14 @@ TEST(Elementary, AgreesWithTheLibrary) {
   EXPECT_LT(worst(0, 1e-6, expm1_of, expm1_of_x, relative), 2);
 }
 
+// Oracle: the complementary error function of the C library.
+TEST(Elementary, ShareOfNormalNumbers) {
+  for (double x = -6; x <= 6; x += 0.01)
+    ASSERT_NEAR(normal_share(x), 0.5 * std::erfc(-x / std::numbers::sqrt2), 1e-7) << x;
+  EXPECT_EQ(normal_share(-40), 0);
+  EXPECT_EQ(normal_share(40), 1);
+}
+
 TEST(Elementary, Borders) {
   EXPECT_EQ(exp_of(0), 1);
   EXPECT_EQ(exp_of(-1e9), 0);

@@ -142,6 +142,7 @@ DeviceRules::DeviceRules(const ScanRules& rules, const DeviceBuffer<PrimitiveVal
     : view_(rules.view()),
       firings_(upload_values(rules.firings(), stream)),
       range_offsets_m_(upload_values(rules.range_offsets_m(), stream)),
+      ring_noise_m_(upload_values(rules.ring_noise_m(), stream)),
       weights_(upload_values(rules.weights(), stream)),
       blocked_(upload_values(rules.blocked(), stream)),
       expected_(upload_values(rules.expected(), stream)) {
@@ -161,10 +162,29 @@ DeviceRules::DeviceRules(const ScanRules& rules, const DeviceBuffer<PrimitiveVal
   }
   view_.firings = firings_.data();
   view_.range_offsets_m = range_offsets_m_.data();
+  view_.ring_noise_m = ring_noise_m_.data();
+  upload_intensity(rules.intensity(), stream);
   view_.weights = weights_.data();
   view_.blocked = blocked_.data();
   view_.air.expected = expected_.data();
   view_.primitives = primitives.data();
+}
+
+/// The tables of a unit's intensities, one behind the other.
+void DeviceRules::upload_intensity(const UnitIntensity* unit, cudaStream_t stream) {
+  if (unit == nullptr) return;
+  std::vector<float> values;
+  for (const auto* table : {&unit->ring_expected, &unit->ring_level, &unit->levels,
+                            &unit->zero_share, &unit->reported, &unit->ring_texture})
+    values.insert(values.end(), table->begin(), table->end());
+  unit_tables_ = upload_values(std::span<const float>(values), stream);
+  IntensityRules& rules = view_.intensity;
+  rules.ring_expected = unit_tables_.data();
+  rules.ring_level = rules.ring_expected + unit->ring_expected.size();
+  rules.levels = rules.ring_level + unit->ring_level.size();
+  rules.zero_share = rules.levels + unit->levels.size();
+  rules.reported = rules.zero_share + unit->zero_share.size();
+  rules.ring_texture = rules.reported + unit->reported.size();
 }
 
 std::size_t report_blocks(std::size_t scans, std::size_t firings) {

@@ -21,13 +21,17 @@ class DeviceRules {
   const FiringRules& view() const { return view_; }
 
  private:
+  void upload_intensity(const UnitIntensity* unit, cudaStream_t stream);
+
   FiringRules view_;
   DeviceBuffer<Firing> firings_;
   DeviceBuffer<double> range_offsets_m_;
+  DeviceBuffer<double> ring_noise_m_;
   DeviceBuffer<float> weights_;
   DeviceBuffer<std::uint8_t> blocked_;
   DeviceBuffer<double> expected_;
   DeviceBuffer<float> gains_;
+  DeviceBuffer<float> unit_tables_;
 };
 
 /// The poses of the scans of a launch, on the device.

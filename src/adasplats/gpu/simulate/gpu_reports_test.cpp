@@ -35,6 +35,30 @@ struct ReportCase {
   bool has_response = false;
 };
 
+UnitIntensity some_unit(std::size_t rings) {
+  UnitIntensity unit;
+  unit.step = 0.01;
+  unit.highest = 0.99;
+  unit.ring_nodes = 3;
+  for (std::size_t ring = 0; ring < rings; ++ring) {
+    const float gain = 0.8F + 0.1F * static_cast<float>(ring);
+    for (const float node : {0.1F, 0.5F, 0.9F}) {
+      unit.ring_expected.push_back(node);
+      unit.ring_level.push_back(gain * node);
+    }
+    unit.ring_texture.push_back(gain);
+  }
+  unit.levels = {0.1F, 0.4F, 0.8F};
+  unit.zero_share = {0.4F, 0.1F, 0.01F};
+  for (const float level : unit.levels)
+    for (std::size_t k = 0; k < kTextureNodes; ++k)
+      unit.reported.push_back(level * (0.4F + 0.08F * static_cast<float>(k)));
+  unit.zero_field = {0.2, 0.2, 0.3, 0.1};
+  unit.texture_field = {0.1, 0.1, 0.2, 0.1};
+  unit.texture_unevenness = 0.6;
+  return unit;
+}
+
 /// An option with its name; `of` sets it.
 struct Option {
   const char* name;
@@ -57,6 +81,20 @@ std::vector<Option> options() {
       {"two returns", [](ReportCase& s) { s.options.beam.returns = 2; }},
       {"last", [](ReportCase& s) { s.options.beam.mode = ReturnMode::last; }},
       {"drop", [](ReportCase& s) { s.drops = true; }},
+      {"drop in patches",
+       [](ReportCase& s) {
+         s.drops = true;
+         s.ray_drop.field = FieldShares{0.1, 0.2, 0.3, 0.2};
+       }},
+      {"noise of rings",
+       [](ReportCase& s) {
+         s.sensor.ring_noise_m = {0.01, 0.02, 0, 0.005, 0.03};
+       }},
+      {"unit's intensities",
+       [](ReportCase& s) {
+         s.has_intensities = true;
+         s.sensor.intensity = some_unit(5);
+       }},
       {"rain", [](ReportCase& s) { s.options.weather.rain_mm_h = 60; }},
       {"fog", [](ReportCase& s) { s.options.weather.fog_visibility_m = 40; }},
       {"snow", [](ReportCase& s) { s.options.weather.snow_mm_h = 10; }},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "adasplats/core/maths/elementary.h"
+#include "adasplats/simulate/scan/beam_field.h"
 
 namespace adasplats {
 
@@ -13,6 +14,8 @@ struct DropRules {
   bool on = false;
   double weights[kDropFeatures] = {};
   double usual_reflectance = 0.3;
+  bool has_field = false;  ///< what is lost comes in patches
+  FieldWeights field;
 };
 
 struct DropFeatures {

@@ -10,6 +10,7 @@
 #include "adasplats/simulate/scan/air.h"
 #include "adasplats/simulate/scan/drop_chance.h"
 #include "adasplats/simulate/scan/echoes.h"
+#include "adasplats/simulate/scan/intensity_rules.h"
 #include "adasplats/simulate/scan/scan_ray.h"
 #include "adasplats/splats/reflectance/response_gain.h"
 
@@ -39,6 +40,9 @@ struct FiringRules {
   double range_resolution_m = 0;            ///< likewise
   const double* range_offsets_m = nullptr;  ///< of rings; null: not applied
   std::uint32_t range_offset_count = 0;
+  const double* ring_noise_m = nullptr;  ///< of rings, instead of range_noise_m; null: not known
+  std::uint32_t ring_noise_count = 0;
+  IntensityRules intensity;
   // the beam
   BeamOptions beam;
   const float* weights = nullptr;  ///< of sub-rays
@@ -121,6 +125,12 @@ ADASPLATS_HD inline double quantised(const FiringRules& rules, double range_m) {
   return step_m > 0 ? step_m * std::round(range_m / step_m) : range_m;
 }
 
+/// Standard deviation of ranges, m.
+ADASPLATS_HD inline double range_noise_of(const FiringRules& rules, const Firing& firing) {
+  return firing.ring < rules.ring_noise_count ? rules.ring_noise_m[firing.ring]
+                                              : rules.range_noise_m;
+}
+
 /// What the sensor reports of return `k` of a firing in clear air; false: nothing. The intensity is
 /// NaN where the place has none.
 ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanState& scan,
@@ -133,18 +143,24 @@ ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanStat
   float cosine = 1;
   if (rules.drop.on || rules.has_response)
     cosine = cos_incidence_of(rules, scan, fired, values.normal);
+  const bool has_fields = rules.intensity.on || (rules.drop.on && rules.drop.has_field);
+  BeamFieldParts fields;  // NOLINT: filled where it is read
+  if (has_fields) fields = beam_field_parts(rules.seed, scan.scan_index, fired.ring, fired.column);
   if (rules.drop.on) {
     const bool blocked = rules.blocked != nullptr && rules.blocked[firing] != 0;
     const double chance =
         blocked ? 1.0 : drop_chance(rules.drop, echo.range_m, cosine, values.reflectance);
-    if (scan_draw(rules.seed, Draw::drop, scan.scan_index, firing, k).uniform() < chance)
-      return false;
+    const double drawn =
+        rules.drop.has_field
+            ? normal_share(field_value(fields, BeamField::drop, rules.drop.field))
+            : scan_draw(rules.seed, Draw::drop, scan.scan_index, firing, k).uniform();
+    if (drawn < chance) return false;
   }
   auto range_m = static_cast<double>(echo.range_m);
   if (fired.ring < rules.range_offset_count) range_m -= rules.range_offsets_m[fired.ring];
-  if (rules.range_noise_m > 0)
-    range_m += rules.range_noise_m *
-               scan_draw(rules.seed, Draw::range, scan.scan_index, firing, k).normal();
+  const double noise_m = range_noise_of(rules, fired);
+  if (noise_m > 0)
+    range_m += noise_m * scan_draw(rules.seed, Draw::range, scan.scan_index, firing, k).normal();
   reported.range_m = static_cast<float>(quantised(rules, range_m));
   if (!in_range(rules, reported.range_m)) return false;
   reported.primitive = echo.primitive;
@@ -157,16 +173,18 @@ ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanStat
     reported.intensity *=
         gain_of(rules.range_gain, reported.range_m) * gain_of(rules.incidence_gain, cosine);
   }
+  if (rules.intensity.on && values.reflectance == values.reflectance)
+    reported.intensity = unit_intensity(rules.intensity, fired.ring, reported.intensity, fields);
   return true;
 }
 
 /// What weather makes of the `count` returns of one firing, in place, by three steps: a particle in
 /// the air may answer nearer than the farthest of them; each gets lost or fainter; of all that is
 /// left the sensor reports some, where the particle is among them in an order of its own. Gives how
-/// many. kRoom: of `returns` and more than `count`.
+/// many. `noise_m`: of ranges in clear air. kRoom: of `returns` and more than `count`.
 template <int kRoom>
 ADASPLATS_HD inline int in_air(const FiringRules& rules, ReportedReturn* returns, int count,
-                               Random random) {
+                               double noise_m, Random random) {
   const AirRules& air = rules.air;
   double end_m = count == 0 ? air.max_range_m : 0.0;
   for (int i = 0; i < count; ++i) {
@@ -195,13 +213,12 @@ ADASPLATS_HD inline int in_air(const FiringRules& rules, ReportedReturn* returns
     if (lost) continue;
     const double through = exp_of(-2.0 * air.extinction_per_m * range_m);
     // Noise is as the inverse root of the power: sigma exp(alpha r), of which sigma is in already.
-    const double sigma_m =
-        rules.range_noise_m * std::sqrt(expm1_of(2.0 * air.extinction_per_m * range_m));
+    const double sigma_m = noise_m * std::sqrt(expm1_of(2.0 * air.extinction_per_m * range_m));
     if (sigma_m > 0) {
       one.range_m = static_cast<float>(quantised(rules, range_m + sigma_m * normal));
       if (!in_range(rules, one.range_m)) continue;
     }
-    one.intensity = static_cast<float>(intensity * through);
+    one.intensity = converted(rules.intensity, static_cast<float>(intensity * through));
     add(one, power * through);
   }
   int kept = left_count;
@@ -243,7 +260,7 @@ ADASPLATS_HD inline int report_firing(const FiringRules& rules, const ScanState&
     out[count++] = reported;
   }
   if (rules.air.is_clear()) return count;
-  return in_air<kMost + 1>(rules, out, count,
+  return in_air<kMost + 1>(rules, out, count, range_noise_of(rules, rules.firings[firing]),
                            Random(weather_seed(rules.seed), scan.scan_index, firing));
 }
 

@@ -140,8 +140,12 @@ std::array<double, RayDropModel::kFeatures> RayDropModel::features(
 }
 
 DropRules RayDropModel::rules() const {
-  DropRules rules{true, {}, usual_reflectance};
+  DropRules rules;
+  rules.on = true;
+  rules.usual_reflectance = usual_reflectance;
   std::copy_n(weights.begin(), kFeatures, rules.weights);
+  rules.has_field = field.has_value();
+  if (field) rules.field = field_weights(*field);
   return rules;
 }
 

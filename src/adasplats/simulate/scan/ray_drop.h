@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,6 +41,8 @@ struct RayDropModel {
   std::array<double, kFeatures> weights = {};
   /// Stands for the reflectance where it is not known.
   double usual_reflectance = 0.3;
+  /// Which echoes are lost where many may be: in patches (beam_field.h). Empty: each by itself.
+  std::optional<FieldShares> field;
   std::string fitted_to;  ///< sensor, recording: for the reader of the file
   /// By elevation, then azimuth.
   std::vector<BlockedSector> blocked;

@@ -23,7 +23,7 @@ namespace {
 
 const std::vector<std::string>& known_keys() {
   static const std::vector<std::string> keys = {"fitted_to", "usual_reflectance", "weights",
-                                                "blocked"};
+                                                "field", "blocked"};
   return keys;
 }
 
@@ -33,13 +33,14 @@ std::string degrees_text(float angle_rad) {
   return exact_text(std::round(static_cast<double>(angle_rad) / kDegree * 1e4) / 1e4);
 }
 
-std::string weights_text(const RayDropModel& model) {
+template <class Numbers>
+std::string list_text(const Numbers& numbers) {
   std::string text;
-  for (const double weight : model.weights) {
+  for (const double number : numbers) {
     text += text.empty() ? "" : ", ";
-    text += exact_text(weight);
+    text += exact_text(number);
   }
-  return text;
+  return "[" + text + "]";
 }
 
 /// Sectors of one elevation as one table.
@@ -96,6 +97,7 @@ class DropFile {
     const toml::array& list = array_of(*weights, "weights", RayDropModel::kFeatures);
     for (std::size_t k = 0; k < list.size(); ++k)
       model.weights[k] = number_of(list[k], "weights", -1e9, 1e9);
+    if (const toml::node* node = table_.get("field")) model.field = field_of(*node);
     if (const toml::node* node = table_.get("blocked")) model.blocked = sectors_of(*node);
     return model;
   }
@@ -137,6 +139,18 @@ class DropFile {
     return *list;
   }
 
+  FieldShares field_of(const toml::node& node) const {
+    FieldShares shares{};
+    const toml::array& list = array_of(node, "field", kFieldOctaves);
+    double sum = 0;
+    for (std::size_t k = 0; k < kFieldOctaves; ++k) {
+      shares[k] = number_of(list[k], "field", 0, 1);
+      sum += shares[k];
+    }
+    if (sum > 1) throw error_at(node.source(), "field has shares of more than 1 together");
+    return shares;
+  }
+
   float angle_rad(const toml::node& node, const char* key) const {
     return static_cast<float>(number_of(node, key, -180, 180) * kDegree);
   }
@@ -176,7 +190,12 @@ void save_ray_drop(const std::filesystem::path& path, const RayDropModel& model)
       "r in units of 10 m, cos of the\n# incidence; always in blocked directions.\n";
   text += "fitted_to = " + quoted(model.fitted_to) + "\n";
   text += "usual_reflectance = " + exact_text(model.usual_reflectance) + "\n";
-  text += "weights = [" + weights_text(model) + "]\n";
+  text += "weights = " + list_text(model.weights) + "\n";
+  if (model.field)
+    text +=
+        "# Shares of octaves in the field that decides where echoes are lost, fine to coarse.\n"
+        "field = " +
+        list_text(*model.field) + "\n";
   write_file(path, text + blocked_text(model.blocked));
 }
 

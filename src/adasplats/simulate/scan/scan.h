@@ -119,7 +119,7 @@ inline Words<PointFrame> words_of(PointFrame) { return kPointFrames; }
 
 struct SimulateOptions {
   std::uint64_t seed = 0;     ///< of noise, drop, weather; drawn by (seed, scan index, firing)
-  bool noise = true;          ///< apply the sensor's range and angular noise
+  bool noise = true;          ///< apply the sensor's noise, and what its unit does to intensities
   bool unit_offsets = false;  ///< apply LidarModel::range_offsets_m
   BeamOptions beam;
   const RayDropModel* ray_drop = nullptr;  ///< none: every echo is reported

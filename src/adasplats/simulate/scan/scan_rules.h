@@ -47,6 +47,9 @@ class ScanRules {
   /// Table of AirRules.
   std::span<const double> expected() const { return expected_; }
   std::span<const double> range_offsets_m() const;
+  std::span<const double> ring_noise_m() const;
+  /// Null where intensities are reported as the scene has them.
+  const UnitIntensity* intensity() const;
   /// What scans have of what is wanted.
   ScanFields fields() const;
   bool deskews() const { return options_.frame == PointFrame::deskewed; }

@@ -238,6 +238,28 @@ TEST_F(ScanNoise, ThreadsDoNotChangeAByte) {
   }
 }
 
+// Oracle: ranges of the same scan without noise; 2 %: five deviations of the root of 2,500 squares.
+TEST_F(ScanNoise, RingsHaveTheirOwn) {
+  const Scan without = [&] {
+    Drive drive = drive_;
+    drive.options.noise = false;
+    return drive.scan();
+  }();
+  const double ring_noise_m[] = {0.001, 0.03};
+  for (std::size_t ring = 0; ring < drive_.sensor.rings(); ++ring)
+    drive_.sensor.ring_noise_m.push_back(ring_noise_m[ring % 2]);
+  const Scan scan = drive_.scan();
+  double squares[2] = {0, 0}, counts[2] = {0, 0};
+  ASSERT_EQ(scan.size(), without.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const double error_m = static_cast<double>(scan.ranges_m[i] - without.ranges_m[i]);
+    squares[scan.rings[i] % 2] += error_m * error_m;
+    ++counts[scan.rings[i] % 2];
+  }
+  for (const int odd : {0, 1})
+    EXPECT_NEAR(std::sqrt(squares[odd] / counts[odd]) / ring_noise_m[odd], 1, 0.05);
+}
+
 // Oracle: the same scan without offsets. What is to be added to what a ring reports is what it
 // reports too little.
 TEST(SimulateScan, OffsetsOfAUnitAreAppliedOnDemand) {

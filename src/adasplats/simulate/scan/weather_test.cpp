@@ -99,7 +99,8 @@ Scan in_weather(const Scan& clear, std::span<const Firing> firings, const LidarM
           clear.intensities.empty() ? std::numeric_limits<float>::quiet_NaN()
                                     : clear.intensities[begin],
           0, 0};
-    count = in_air<8>(rules, returns.data(), count, Random(weather_seed(seed), scan_index, i));
+    count = in_air<8>(rules, returns.data(), count, rules.range_noise_m,
+                      Random(weather_seed(seed), scan_index, i));
     for (int k = 0; k < count; ++k) {
       const ReportedReturn& one = returns.at(static_cast<std::size_t>(k));
       const bool in_the_air = one.primitive == Hit::kNone;
