@@ -76,6 +76,7 @@ struct Program {
     commands.push_back(make_evaluate_segmentation_command(evaluate));
     commands.push_back(make_evaluate_realism_command(evaluate));
     commands.push_back(make_fit_drop_command(app));
+    commands.push_back(make_fit_sensor_command(app));
     commands.push_back(make_simkitti32_command(app));
     commands.push_back(make_compare_command(app));
     commands.push_back(make_demo_command(app));

@@ -20,6 +20,7 @@ SUBCOMMANDS = [
     ["info"],
     ["sensors"],
     ["fit-drop"],
+    ["fit-sensor"],
     ["evaluate", "echoes"],
     ["evaluate", "labels"],
     ["evaluate", "segmentation"],

@@ -28,6 +28,7 @@ std::unique_ptr<Command> make_evaluate_segmentation_command(CLI::App& evaluate);
 std::unique_ptr<Command> make_evaluate_realism_command(CLI::App& evaluate);
 std::unique_ptr<Command> make_simkitti32_command(CLI::App& program);
 std::unique_ptr<Command> make_fit_drop_command(CLI::App& program);
+std::unique_ptr<Command> make_fit_sensor_command(CLI::App& program);
 std::unique_ptr<Command> make_sensors_command(CLI::App& program);
 std::unique_ptr<Command> make_compare_command(CLI::App& program);
 std::unique_ptr<Command> make_view_command(CLI::App& program);

@@ -45,17 +45,6 @@ float cos_incidence(const SceneView& view, Vec3f direction, std::uint32_t primit
   return std::min(std::fabs(dot(direction, normal)), 1.0F);
 }
 
-/// What a beam meets, as the drop model sees it.
-EchoConditions echo_of(const EchoScene& scene, const Ray& ray, const Hit& hit) {
-  const auto& intensities = scene.attributes.intensities;
-  EchoConditions echo;
-  echo.range_m = hit.t;
-  echo.cos_incidence = cos_incidence(scene.attributes.view, ray.direction, hit.primitive);
-  echo.reflectance = hit.primitive < intensities.size() ? intensities[hit.primitive]
-                                                        : std::numeric_limits<float>::quiet_NaN();
-  return echo;
-}
-
 /// Pairs of intensities of one scan.
 struct IntensityPairs {
   std::vector<float> predicted;
@@ -130,6 +119,16 @@ BeamEchoes kept(const BeamEchoes& beams, const Keep& keep) {
 }
 
 }  // namespace
+
+EchoConditions echo_of(const EchoScene& scene, const Ray& ray, const Hit& hit) {
+  const auto& intensities = scene.attributes.intensities;
+  EchoConditions echo;
+  echo.range_m = hit.t;
+  echo.cos_incidence = cos_incidence(scene.attributes.view, ray.direction, hit.primitive);
+  echo.reflectance = hit.primitive < intensities.size() ? intensities[hit.primitive]
+                                                        : std::numeric_limits<float>::quiet_NaN();
+  return echo;
+}
 
 double rank_correlation(std::span<const float> a, std::span<const float> b) {
   if (a.size() != b.size()) throw std::logic_error("rank_correlation: sizes differ");

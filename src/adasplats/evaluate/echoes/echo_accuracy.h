@@ -25,6 +25,9 @@ struct EchoScene {
   Vec3d origin;                    ///< world coordinates of the local origin
 };
 
+/// What a ray that hits the scene meets, as the drop model sees it; the direction is not filled.
+EchoConditions echo_of(const EchoScene& scene, const Ray& ray, const Hit& hit);
+
 /// Predicted against measured intensities of beams that hit the model, in the unit of the file.
 struct IntensityAccuracy {
   std::size_t rays = 0;

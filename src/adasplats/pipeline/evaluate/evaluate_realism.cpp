@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/realism/scan_residuals.h"
+#include "adasplats/pipeline/evaluate/ring_scans.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/sensors/lidar_model.h"
 
@@ -22,7 +22,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kStepScans = 8;       // that tell the azimuth step: they agree to 1 %
 constexpr std::size_t kResidualPairs = 12;  // of each side: medians of thousands of points
 constexpr std::size_t kScansAtOnce = 16;    // between two calls of the progress sink
 
@@ -33,43 +32,9 @@ struct Side {
   std::vector<std::size_t> chosen;
 };
 
-/// Whether a side has no poses of its own, so that the job's trajectory is for it.
-bool needs_trajectory(const std::filesystem::path& given) {
-  return !is_kitti_sequence(resolve_cloud_input(given)) &&
-         !std::filesystem::exists(given / "poses.csv");
-}
-
-KittiSequence open_scans(const std::filesystem::path& given, const RealismJob& job,
-                         Session& session) {
-  require_input(given);
-  if (!std::filesystem::is_directory(given))
-    throw Error(ErrorKind::usage, given.string() + ": is a file; scans are a sequence or a folder");
-  const std::filesystem::path folder = resolve_cloud_input(given);
-  if (is_kitti_sequence(folder)) {
-    KittiSequence sequence = open_kitti_sequence(folder);
-    sequence.beams = recognize_beams(sequence, session.executor);
-    return sequence;
-  }
-  const std::filesystem::path own = given / "poses.csv";
-  FrameDrive drive{.folder = given,
-                   .trajectory = std::filesystem::exists(own) ? own : job.trajectory};
-  drive.with_classes = false;
-  if (drive.trajectory.empty())
-    throw Error(ErrorKind::usage, given.string() +
-                                      ": scans without poses; they need a poses.csv beside them "
-                                      "or a `trajectory`");
-  auto opened = open_frame_drive(drive, session.executor, session.progress);
-  if (!opened)
-    throw Error(ErrorKind::data,
-                given.string() +
-                    ": is no folder of scans with a pose each, so nothing tells which "
-                    "beam measured a point");
-  return std::move(*opened);
-}
-
 Side open_side(std::string name, const std::filesystem::path& given, const RealismJob& job,
                Session& session) {
-  Side side{std::move(name), open_scans(given, job, session), {}};
+  Side side{std::move(name), open_ring_scans(given, job.trajectory, session), {}};
   side.chosen = chosen_scans(job.scans, side.sequence.scans.size(), side.sequence.folder);
   if (side.chosen.size() < kLeastRealismScans)
     throw Error(ErrorKind::data,
@@ -90,33 +55,6 @@ void require_one_sensor(const Side& simulated, const Side& real) {
   throw Error(ErrorKind::data, "SIMULATED is of sensor '" + simulated.sequence.beams.sensor +
                                    "', REAL of '" + real.sequence.beams.sensor +
                                    "': scans of two sensors are no matter of realism");
-}
-
-/// Where each laser leaves above the sensor's origin.
-std::vector<double> heights_m_of(const LidarModel& sensor) {
-  std::vector<double> heights_m(sensor.rings(), 0);
-  for (std::size_t ring = 0; ring < std::min(heights_m.size(), sensor.beam_origins_m.size());
-       ++ring)
-    heights_m[ring] = sensor.beam_origins_m[ring].z;
-  return heights_m;
-}
-
-double step_of(const Side& side, std::span<const double> heights_m) {
-  std::vector<double> steps_rad;
-  const std::size_t scans = std::min(kStepScans, side.chosen.size());
-  for (std::size_t k = 0; k < scans; ++k) {
-    const std::size_t index = side.chosen[k * side.chosen.size() / scans];
-    const RingScan scan =
-        arrange_in_rings(side.sequence, index, read_all_returns(side.sequence, index), heights_m);
-    const double step_rad = azimuth_step_rad(scan);
-    if (step_rad > 0) steps_rad.push_back(step_rad);
-  }
-  const double step_rad = median_of_known(std::move(steps_rad));
-  // A turn of less than 64 steps has no patch; finer ones than 0.01 degrees no LiDAR has.
-  if (step_rad > 0.01 * kDegree && step_rad < 360 * kDegree / static_cast<double>(kPatchColumns))
-    return step_rad;
-  throw Error(ErrorKind::data, side.name + ", " + side.sequence.folder.string() +
-                                   ": nothing tells how far a ring's firings are apart");
 }
 
 RealismScan seen(const Side& side, std::size_t index, std::span<const double> heights_m,
@@ -215,8 +153,8 @@ RealismReport evaluate_realism(const RealismJob& job, Session& session) {
   report.sensor = real.sequence.beams.sensor;
   report.simulated_scans = simulated.chosen.size();
   report.real_scans = real.chosen.size();
-  const std::vector<double> heights_m = heights_m_of(load_lidar_model(report.sensor));
-  report.azimuth_step_rad = step_of(real, heights_m);
+  const std::vector<double> heights_m = laser_heights_m(load_lidar_model(report.sensor));
+  report.azimuth_step_rad = firing_step_rad(real.sequence, real.chosen, heights_m, real.name);
   const auto scans_of = [&](const Side& side) {
     return seen_scans(side, heights_m, report.azimuth_step_rad, session);
   };

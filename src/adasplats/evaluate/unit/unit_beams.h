@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/core/progress.h"
+#include "adasplats/evaluate/echoes/echo_accuracy.h"
+#include "adasplats/sensors/lidar_model.h"
+
+namespace adasplats {
+
+/// A beam that a real sensor fired, with what a model of the place says of it.
+struct UnitBeam {
+  std::uint32_t scan = 0;    ///< number in the sequence
+  std::uint32_t column = 0;  ///< azimuth step within its ring; the next beam's is one more
+  std::uint16_t ring = 0;    ///< topmost 0
+  bool hit = false;          ///< the model is there; else its three values mean nothing
+  float range_m = 0;         ///< measured, lasers' offsets taken out; NaN: nothing came back
+  float intensity = 0;       ///< measured; NaN: nothing came back, or not known
+  float expected_m = 0;      ///< range of the model
+  float cos_incidence = 1;
+  float reflectance = 0;         ///< of the model; NaN: not known
+  float expected_intensity = 0;  ///< with the model's response; NaN: not known
+  Vec3f direction;               ///< in the scan's frame
+
+  bool returned() const { return range_m == range_m; }
+};
+
+inline bool same_ring(const UnitBeam& a, const UnitBeam& b) {
+  return a.scan == b.scan && a.ring == b.ring;
+}
+
+/// Whether three neighbouring beams of a ring returned from one surface: ranges less than 0.3 m
+/// apart, as the statistics of realism have it.
+inline bool on_one_surface(const UnitBeam& a, const UnitBeam& b, const UnitBeam& c) {
+  constexpr float kOneSurface_m = 0.3F;
+  return same_ring(a, c) && std::fabs(b.range_m - a.range_m) < kOneSurface_m &&
+         std::fabs(c.range_m - b.range_m) < kOneSurface_m;
+}
+
+/// All beams of the scans `indices` of a sequence whose sensor is recognised, scan by scan, ring by
+/// ring, clockwise. Beams without return are those that `step_rad` leaves between two returns of a
+/// ring; where they went is between these. Errors: those of read_kitti_scan.
+std::vector<UnitBeam> collect_unit_beams(const EchoScene& scene, const KittiSequence& sequence,
+                                         std::span<const std::size_t> indices,
+                                         std::span<const double> heights_m, double step_rad,
+                                         const Executor& executor, ProgressSink& progress);
+
+}  // namespace adasplats

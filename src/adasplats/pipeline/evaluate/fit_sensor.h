@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "adasplats/evaluate/unit/fit_unit.h"
+#include "adasplats/pipeline/session/scan_range.h"
+#include "adasplats/pipeline/session/session.h"
+
+namespace adasplats {
+
+/// A model and measured scans in it, of one unit of a sensor.
+struct FitSensorJob {
+  std::filesystem::path model, scans_of;
+  ScanRange scans;
+  std::filesystem::path motion;      ///< of raw scans of a sequence; empty: its own poses
+  std::filesystem::path trajectory;  ///< of a folder of files without a poses.csv in it
+};
+
+struct FitSensorResult : UnitFit {
+  std::string sensor;       ///< of the library, recognised by the points
+  std::string sensor_toml;  ///< the file of this unit
+  std::size_t scans = 0, beams = 0, returns = 0;
+  bool has_offsets = false;  ///< the model holds a calibration of this unit's lasers
+};
+
+/// Fits what one unit makes of what its beams meet (fit_unit()), and writes it as a sensor. Offsets
+/// of lasers are those of the model's calibration. Errors: data (a sensor that is not recognised;
+/// scans that say nothing of the azimuths), those of the readers.
+FitSensorResult fit_sensor(const FitSensorJob& job, Session& session);
+
+/// The keys of --report.
+nlohmann::ordered_json to_json(const FitSensorResult& result);
+
+}  // namespace adasplats

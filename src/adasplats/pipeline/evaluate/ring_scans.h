@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/pipeline/session/session.h"
+#include "adasplats/sensors/lidar_model.h"
+
+namespace adasplats {
+
+/// Scans whose points tell which ring measured them: a sequence, or a folder of files, one a scan,
+/// with a poses.csv in it or a `trajectory`. The sensor is recognised where it can be
+/// (ScanBeams::sensor). Errors: usage (a file; scans without poses), data (no folder of scans),
+/// those of the readers.
+KittiSequence open_ring_scans(const std::filesystem::path& given,
+                              const std::filesystem::path& trajectory, Session& session);
+
+/// Whether scans have no poses of their own, so that a trajectory is for them.
+bool needs_trajectory(const std::filesystem::path& given);
+
+/// Where each laser leaves above the sensor's origin, m, topmost first.
+std::vector<double> laser_heights_m(const LidarModel& sensor);
+
+/// How far firings of a ring are apart in the `chosen` scans. Error: data (nothing tells it; the
+/// message begins with `name`).
+double firing_step_rad(const KittiSequence& sequence, std::span<const std::size_t> chosen,
+                       std::span<const double> heights_m, const std::string& name);
+
+}  // namespace adasplats

@@ -1,0 +1,72 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a unit measures, learned from scans that another one took and that stand for the real ones."""
+import tomllib
+import unittest
+
+from support import ProgramTest, write_poses
+
+SENSOR = "velodyne-hdl-64e-kitti"
+
+
+class FitSensor(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        write_poses(self.poses, 8)
+        self.model()
+
+    def scans(self, name, sensor, *arguments):
+        path = self.folder / name
+        self.run_good("simulate", self.folder / "model.ply", "--trajectory", self.poses, "--sensor",
+                      sensor, "-o", path, *arguments)
+        return path
+
+    def test_the_noise_of_a_unit_is_found_and_simulated(self):
+        real = self.scans("real", SENSOR, "--range-noise", 0.008, "--max-range", 20)
+        unit = self.folder / "unit.toml"
+        report = self.report("fit-sensor", self.folder / "model.ply", real, "-o", unit)
+        self.assertEqual(report["sensor"], SENSOR)
+        self.assertEqual(report["scans"], 8)
+        noise_m = sorted(report["ring_noise_m"])
+        self.assertEqual(len(noise_m), 64)
+        self.assertAlmostEqual(noise_m[32], 0.008, delta=0.0008)
+        # The model has no intensities.
+        self.assertEqual([text.split(":")[0] for text in report["not_told"]], ["intensities"])
+        # Walls beyond 20 m are hit and give nothing back.
+        self.assertAlmostEqual(report["max_range_m"], 20, delta=0.11)
+        written = tomllib.loads(unit.read_text(encoding="utf-8"))
+        self.assertEqual(len(written["ring_noise_m"]), 64)
+        self.assertEqual(written["max_range_m"], report["max_range_m"])
+        again = self.scans("again", unit)
+        realism = self.report("evaluate", "realism", again, real)
+        self.assertAlmostEqual(realism["statistics"]["range_noise_m"]["simulated"], 0.008,
+                               delta=0.0008)
+        # Without noise, none.
+        still = self.scans("still", unit, "--no-noise")
+        realism = self.report("evaluate", "realism", still, real)
+        self.assertLess(realism["statistics"]["range_noise_m"]["simulated"], 0.003)
+
+    def test_threads_are_no_matter(self):
+        real = self.scans("real", SENSOR)
+        texts = []
+        for threads in (1, 3):
+            unit = self.folder / f"unit{threads}.toml"
+            self.run_good("fit-sensor", self.folder / "model.ply", real, "-o", unit, "--threads",
+                          threads)
+            texts.append(unit.read_bytes())
+        self.assertEqual(*texts)
+
+    def test_errors(self):
+        real = self.scans("real", SENSOR)
+        model, unit = self.folder / "model.ply", self.folder / "unit.toml"
+        command = ["fit-sensor"]
+        self.run_bad(66, *command, model, self.folder / "gone", "-o", unit, says=["gone"])
+        self.run_bad(64, *command, model, self.cloud, "-o", unit, says=["is a file"])
+        self.run_bad(64, *command, model, real, "-o", unit, "--drop", unit, says=["the same file"])
+        self.assertFalse(unit.exists())
+        other = self.scans("other", self.sensor)  # of 16 beams that no sensor of the library has
+        self.run_bad(65, *command, model, other, "-o", unit, says=["no sensor of the library"])
+
+
+if __name__ == "__main__":
+    unittest.main()
