@@ -22,7 +22,7 @@ class FitSensor(ProgramTest):
         return path
 
     def test_the_noise_of_a_unit_is_found_and_simulated(self):
-        real = self.scans("real", SENSOR, "--range-noise", 0.008, "--max-range", 20)
+        real = self.scans("real", SENSOR, "--range-noise", 0.008, "--max-range", 15)
         unit = self.folder / "unit.toml"
         report = self.report("fit-sensor", self.folder / "model.ply", real, "-o", unit)
         self.assertEqual(report["sensor"], SENSOR)
@@ -32,8 +32,8 @@ class FitSensor(ProgramTest):
         self.assertAlmostEqual(noise_m[32], 0.008, delta=0.0008)
         # The model has no intensities.
         self.assertEqual([text.split(":")[0] for text in report["not_told"]], ["intensities"])
-        # Walls beyond 20 m are hit and give nothing back.
-        self.assertAlmostEqual(report["max_range_m"], 20, delta=0.11)
+        # Walls beyond 15 m are hit and give nothing back.
+        self.assertAlmostEqual(report["max_range_m"], 15, delta=0.11)
         written = tomllib.loads(unit.read_text(encoding="utf-8"))
         self.assertEqual(len(written["ring_noise_m"]), 64)
         self.assertEqual(written["max_range_m"], report["max_range_m"])
