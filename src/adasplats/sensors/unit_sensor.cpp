@@ -196,6 +196,7 @@ std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets&
           lines_of("range_offsets_m", text_of_numbers(ranges_m));
   if (!traits.ring_noise_m.empty()) {
     std::vector<double> noise_m;
+    noise_m.reserve(rings.size());
     for (const std::size_t ring : rings) noise_m.push_back(offset_at(traits.ring_noise_m, ring));
     text += lines_of("ring_noise_m", text_of_numbers(noise_m));
   }

@@ -79,7 +79,7 @@ double octave_correlation(std::size_t octave, std::size_t lag) {
 }
 
 FieldShares shares_of(const LagCorrelations& correlations) {
-  double of[kFieldLags.size()][kFieldOctaves];
+  double of[kFieldLags.size()][kFieldOctaves] = {};
   for (std::size_t l = 0; l < kFieldLags.size(); ++l)
     for (std::size_t k = 0; k < kFieldOctaves; ++k) of[l][k] = octave_correlation(k, kFieldLags[l]);
   FieldShares shares = {0.1, 0.1, 0.1, 0.1};

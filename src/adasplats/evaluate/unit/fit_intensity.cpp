@@ -50,8 +50,7 @@ std::vector<KnownReturn> known_returns(std::span<const UnitBeam> beams, std::siz
 double step_of(std::vector<float> values) {
   constexpr std::size_t kMostSteps = 4096;
   std::ranges::sort(values);
-  const auto [end, last] = std::ranges::unique(values);
-  values.erase(end, last);
+  values.erase(std::unique(values.begin(), values.end()), values.end());
   if (values.size() < 2 || values.size() > kMostSteps) return 0;
   double step = 1e9;
   for (std::size_t i = 1; i < values.size(); ++i)
