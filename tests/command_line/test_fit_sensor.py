@@ -64,6 +64,14 @@ class FitSensor(ProgramTest):
         self.run_bad(64, *command, model, self.cloud, "-o", unit, says=["is a file"])
         self.run_bad(64, *command, model, real, "-o", unit, "--drop", unit, says=["the same file"])
         self.assertFalse(unit.exists())
+        # Poses that are wrong by metres: no parser sees it.
+        poses = next(real.rglob("poses.txt"))
+        rows = [line.split() for line in poses.read_text(encoding="utf-8").splitlines()]
+        for row in rows:
+            row[3], row[11] = str(float(row[3]) + 3), str(float(row[11]) - 3)
+        poses.write_text("".join(" ".join(row) + "\n" for row in rows), encoding="utf-8")
+        self.run_bad(65, *command, model, real, "-o", unit, says=["within 0.5 m", "another place"])
+        self.assertFalse(unit.exists())
         other = self.scans("other", self.sensor)  # of 16 beams that no sensor of the library has
         self.run_bad(65, *command, model, other, "-o", unit, says=["no sensor of the library"])
 

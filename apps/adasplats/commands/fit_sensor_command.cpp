@@ -65,6 +65,7 @@ class FitSensorCommand final : public Command {
     table.add_row({"sensor", result.sensor});
     table.add_row({"beams, returns of " + grouped(result.scans) + " scans",
                    grouped(result.beams) + ", " + grouped(result.returns)});
+    table.add_row({"returns within 0.5 m of the model", fixed(100 * result.agreement, 1) + " %"});
     table.add_row({"range offsets of lasers",
                    result.has_offsets ? "of the model's calibration" : "none: no calibration"});
     if (!result.ring_noise_m.empty()) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/error.h"
+#include "adasplats/evaluate/share.h"
 #include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
 #include "adasplats/pipeline/evaluate/ring_scans.h"
 #include "adasplats/pipeline/scene/model_scene.h"
@@ -34,6 +35,27 @@ KittiSequence open_measured(const FitSensorJob& job, Session& session) {
   return sequence;
 }
 
+/// Share of the returns that the model has within half a metre: nine in ten where scans and model
+/// are of one place, four in ten where they are not but both are of roads.
+double agreement_of(const std::vector<UnitBeam>& beams) {
+  std::size_t returns = 0, near = 0;
+  for (const UnitBeam& beam : beams) {
+    if (!beam.returned()) continue;
+    ++returns;
+    near += beam.hit && std::fabs(beam.range_m - beam.expected_m) < 0.5F ? 1 : 0;
+  }
+  return share_of(near, returns);
+}
+
+void require_one_place(double agreement, const FitSensorJob& job) {
+  constexpr double kLeast = 0.6;
+  if (agreement >= kLeast) return;
+  throw Error(ErrorKind::data,
+              job.scans_of.string() + ": " + std::to_string(std::lround(100 * agreement)) +
+                  " % of the returns lie within 0.5 m of the model, expected at least 60 %: the "
+                  "scans are of another place, or their poses are wrong");
+}
+
 }  // namespace
 
 FitSensorResult fit_sensor(const FitSensorJob& job, Session& session) {
@@ -50,6 +72,8 @@ FitSensorResult fit_sensor(const FitSensorJob& job, Session& session) {
       collect_unit_beams({scene.tracer(), scene.attributes(), scene.origin()}, sequence, chosen,
                          heights_m, step_rad, session.executor, session.progress);
   FitSensorResult result;
+  result.agreement = agreement_of(beams);
+  require_one_place(result.agreement, job);
   session.progress.begin_step("fit the unit", 0);
   static_cast<UnitFit&>(result) = fit_unit(beams, sensor.rings(), sensor.max_range_m);
   session.progress.end_step();
@@ -78,6 +102,7 @@ nlohmann::ordered_json to_json(const FitSensorResult& result) {
                                  {"scans", result.scans},
                                  {"beams", result.beams},
                                  {"returns", result.returns},
+                                 {"within_half_a_metre", result.agreement},
                                  {"range_offsets", result.has_offsets},
                                  {"ring_noise_m", result.ring_noise_m},
                                  {"not_told", result.not_told}};

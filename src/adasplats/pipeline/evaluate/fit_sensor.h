@@ -24,12 +24,14 @@ struct FitSensorResult : UnitFit {
   std::string sensor;       ///< of the library, recognised by the points
   std::string sensor_toml;  ///< the file of this unit
   std::size_t scans = 0, beams = 0, returns = 0;
+  double agreement = 0;      ///< share of the returns that the model has within half a metre
   bool has_offsets = false;  ///< the model holds a calibration of this unit's lasers
 };
 
 /// Fits what one unit makes of what its beams meet (fit_unit()), and writes it as a sensor. Offsets
 /// of lasers are those of the model's calibration. Errors: data (a sensor that is not recognised;
-/// scans that say nothing of the azimuths), those of the readers.
+/// scans that say nothing of the azimuths; fewer than 60 % of the returns within half a metre of
+/// the model: another place), those of the readers.
 FitSensorResult fit_sensor(const FitSensorJob& job, Session& session);
 
 /// The keys of --report.
