@@ -61,8 +61,8 @@ TimedPose pose_of(std::size_t frame) {
   return {0.1 * place, {rotation_from_yaw_pitch_roll(0.01 * place, 0, 0), {place, 0, 0}}};
 }
 
-World world_of(std::size_t frames, std::size_t splats_per_frame, const Executor& executor) {
-  World world(0, {}, executor);
+World world_of(std::size_t frames, std::size_t splats_per_frame) {
+  World world(0, {});
   for (std::size_t frame = 0; frame < frames; ++frame) {
     WorldObject moving;
     moving.geometry = world.add_geometry(traffic(splats_per_frame, frame));
@@ -110,7 +110,7 @@ void run(const Options& options) {
   const Executor executor(options.threads);
   std::vector<Figure> figures;
   for (const std::size_t frames : {kFewFrames, kManyFrames})
-    figures.push_back({frames, world_of(frames, options.splats_per_frame, executor)});
+    figures.push_back({frames, world_of(frames, options.splats_per_frame)});
   measure(figures, executor);
   const double ratio = figures[1].median_s() / figures[0].median_s();
   std::printf("%zu splats a frame, %d threads\n", options.splats_per_frame, executor.threads());

@@ -10,6 +10,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/gpu/simulate/device_report.h"
+#include "adasplats/gpu/simulate/device_world.h"
 #include "adasplats/gpu/simulate/scan_batches.h"
 
 namespace adasplats {
@@ -95,6 +96,7 @@ struct ReportLane {
   std::shared_ptr<Stream> stream = std::make_shared<Stream>();
   Event begin, traced, counted;
   BatchPoses poses;
+  WorldObjects objects;
   PinnedBuffer<ScanPose> frame_poses;
   DeviceBuffer<ScanPose> device_frame_poses;
   DeviceBuffer<Hit> hits;
@@ -119,6 +121,7 @@ struct DeviceReporter {
   ~DeviceReporter() {
     const DeviceGuard guard(part->device);
     for (auto& lane : lanes) lane.reset();
+    world.reset();
     rules.reset();
     primitives = {};
     firings = {};
@@ -132,6 +135,7 @@ struct DeviceReporter {
   OrderedFirings firings;
   DeviceBuffer<PrimitiveValues> primitives;
   std::unique_ptr<DeviceRules> rules;
+  std::unique_ptr<DeviceWorld> world;
   std::array<std::unique_ptr<ReportLane>, kLanes> lanes;
 };
 
@@ -147,6 +151,7 @@ using gpu::ReportLane;
 struct GpuReporter::Run {
   std::span<const ScanMotion> motions;
   std::uint64_t first_number;
+  const World* world;
   Results results;
   std::size_t devices;
   std::size_t scans = 0;  ///< of a batch
@@ -169,6 +174,7 @@ GpuReporter::GpuReporter(const gpu::SceneParts& scene, const ScanRules& rules)
       hits_a_firing_(rules.beam().hits_per_firing()),
       returns_a_firing_(static_cast<std::size_t>(rules.beam().returns)),
       depth_(rules.beam().depth),
+      scan_duration_s_(1.0 / rules.sensor().rotation_hz),
       fields_(rules.fields()),
       deskews_(rules.deskews()),
       pinned_(std::make_shared<gpu::PinnedPool>()) {
@@ -250,6 +256,16 @@ void GpuReporter::reserve_all(Run& run) {
   }
 }
 
+/// What was built of another world, or of this one before it grew, is dropped.
+void GpuReporter::prepare_world(Run& run) {
+  if (run.world == nullptr) return;
+  for (auto& device : devices_) {
+    const DeviceGuard guard(device->part->device);
+    if (device->world == nullptr || !device->world->is_of(*run.world))
+      device->world = std::make_unique<gpu::DeviceWorld>(*run.world);
+  }
+}
+
 /// Queues all that makes batch k, until it is known how many returns there are.
 void GpuReporter::begin(Run& run, std::size_t k) {
   DeviceReporter& device = run.device_of(*this, k);
@@ -277,9 +293,13 @@ void GpuReporter::begin(Run& run, std::size_t k) {
     lane.attributes = std::make_shared<DeviceBuffer<std::uint8_t>>(
         ReturnLayout(fields_, room, nullptr).bytes, stream);
   }
+  const std::size_t rays = lane.count * source.firing_count;
+  if (run.world != nullptr)
+    lane.objects.upload(*run.world, *device.world, motions, poses.first_scan, scan_duration_s_,
+                        stream);
   lane.begin.record(stream);
-  device.part->scene->cast(source, lane.count * source.firing_count, depth_, lane.hits.data(),
-                           stream);
+  device.part->scene->cast(source, rays, depth_, lane.hits.data(), stream);
+  if (run.world != nullptr) lane.objects.add_hits(source, rays, depth_, lane.hits.data(), stream);
   lane.traced.record(stream);
   const FiringRules& rules = device.rules->view();
   gpu::queue_reports(rules, poses, lane.hits.data(), lane.space(), stream);
@@ -329,10 +349,13 @@ void GpuReporter::end(Run& run, std::size_t k, BatchSink sink) {
 }
 
 ReportTimes GpuReporter::report(std::span<const ScanMotion> scans, std::uint64_t first_number,
-                                Results results, BatchSink sink) {
+                                const World* world, Results results, BatchSink sink) {
   if (scans.empty()) return {};
-  Run run{scans, first_number, results, results == Results::device ? 1 : devices_.size(), 0, {}};
+  const std::size_t devices = results == Results::device ? 1 : devices_.size();
+  if (world != nullptr && world->empty()) world = nullptr;
+  Run run{scans, first_number, world, results, devices, 0, {}};
   reserve_all(run);
+  prepare_world(run);
   const Stopwatch all;
   double in_sink_s = 0;
   const auto timed_sink = [&](ScanBatch&& batch) {

@@ -12,6 +12,7 @@
 #include "adasplats/simulate/scan/scan_batch.h"
 #include "adasplats/simulate/scan/scan_caster.h"
 #include "adasplats/simulate/scan/scan_rules.h"
+#include "adasplats/simulate/world/world.h"
 
 namespace adasplats {
 
@@ -36,8 +37,9 @@ class GpuReporter {
 
   /// As ScanCaster::report(), in batches; `sink` has them in their order. In host memory they are
   /// page-locked. On a device (the first one alone) they are complete.
-  ReportTimes report(std::span<const ScanMotion> scans, std::uint64_t first_number, Results results,
-                     BatchSink sink);
+  /// `world`: what is cast beside the place, or null; it is the one of the rules' attributes.
+  ReportTimes report(std::span<const ScanMotion> scans, std::uint64_t first_number,
+                     const World* world, Results results, BatchSink sink);
 
  private:
   struct Run;
@@ -45,6 +47,7 @@ class GpuReporter {
   std::size_t scans_at_once(std::size_t scans, std::size_t lanes) const;
   void reserve(gpu::ReportLane& lane, std::size_t scans, Results results) const;
   void reserve_all(Run& run);
+  void prepare_world(Run& run);
   void begin(Run& run, std::size_t k);
   void end(Run& run, std::size_t k, BatchSink sink);
 
@@ -53,6 +56,7 @@ class GpuReporter {
   std::size_t hits_a_firing_;
   std::size_t returns_a_firing_;
   int depth_;
+  double scan_duration_s_;
   ScanFields fields_;
   bool deskews_;
   std::vector<std::unique_ptr<gpu::DeviceReporter>> devices_;

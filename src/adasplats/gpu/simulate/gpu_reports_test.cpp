@@ -33,6 +33,8 @@ struct ReportCase {
   bool has_classes = false;
   bool has_intensities = false;
   bool has_response = false;
+  bool has_objects = false;
+  std::shared_ptr<World> world;  ///< of `has_objects`
 };
 
 UnitIntensity some_unit(std::size_t rings) {
@@ -105,6 +107,7 @@ std::vector<Option> options() {
          s.options.frame = PointFrame::deskewed;
        }},
       {"classes", [](ReportCase& s) { s.has_classes = true; }},
+      {"objects", [](ReportCase& s) { s.has_objects = true; }},
       {"intensities", [](ReportCase& s) { s.has_intensities = true; }},
       {"response", [](ReportCase& s) { s.has_intensities = s.has_response = true; }},
       {"few fields",
@@ -156,6 +159,11 @@ class ReportsOnGpu : public testing::TestWithParam<GpuBackend> {
   }
 
   std::unique_ptr<ScanRules> rules_of(ReportCase& setup) {
+    if (setup.has_objects) setup.world = world();
+    return rules_of_world(setup);
+  }
+
+  std::unique_ptr<ScanRules> rules_of_world(ReportCase& setup) {
     if (setup.drops) setup.options.ray_drop = &setup.ray_drop;
     PrimitiveAttributes attributes;
     attributes.view = {disks_, nullptr};
@@ -165,9 +173,63 @@ class ReportsOnGpu : public testing::TestWithParam<GpuBackend> {
     }
     if (setup.has_intensities) attributes.intensities = intensities_;
     if (setup.has_response) attributes.response = &response_;
+    if (setup.world) attributes = setup.world->attributes(attributes);
     return std::make_unique<ScanRules>(
         setup.sensor, firings_of(setup.sensor), setup.options,
         std::make_shared<PrimitiveTable>(primitive_table(attributes, executor_)));
+  }
+
+  static TimedPose object_pose(double time_s, Vec3d local, double yaw_rad) {
+    return {time_s, {rotation_from_yaw_pitch_roll(yaw_rad, 0.05, 0), kPlaceOrigin + local}};
+  }
+
+  /// Meshes and splats near the sensor that turn, pass by, come and go, and are there in one scan.
+  std::shared_ptr<World> world() const {
+    auto world = std::make_shared<World>(static_cast<std::uint32_t>(disks_.size()), kPlaceOrigin);
+    MeshModel wall;
+    wall.mesh.vertices = {{0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1}};
+    wall.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    SplatModel bush;
+    for (std::uint64_t i = 0; i < 300; ++i) {
+      Random random(12, 1, i);
+      bush.disks.push_back({static_cast<float>(random.uniform(0, 900)) * any_direction(random),
+                            static_cast<float>(random.uniform(50, 200)), any_direction(random)});
+      bush.classes.push_back(static_cast<std::uint16_t>(i % 3));
+      bush.intensities.push_back(static_cast<float>(random.uniform(0, 1)));
+    }
+    const std::size_t walls = world->add_geometry(wall);
+    const std::size_t bushes = world->add_geometry(bush);
+    const std::size_t once = world->add_geometry(wall);
+    const auto add = [&](std::size_t geometry, Trajectory poses, bool only_during) {
+      WorldObject object;
+      object.geometry = geometry;
+      object.trajectory = std::move(poses);
+      object.only_during = only_during;
+      object.instance = static_cast<std::uint16_t>(40 + world->object_count());
+      if (geometry == bushes) object.scale = 1e-3;  // it is in millimetres
+      if (geometry == once) object.only_scan = 9;   // of the scans 7 to 11
+      world->add_object(std::move(object));
+    };
+    add(walls, {object_pose(0, {2, 0, 0}, 0), object_pose(0.5, {2, 2, 0}, 2)}, false);
+    add(walls, {object_pose(0.13, {-2, -1, 0}, 0), object_pose(0.31, {-3, 1, 0}, -1)}, true);
+    add(bushes, {object_pose(0, {0, 3, 0}, 0), object_pose(0.2, {-2, 3, 0.5}, 9)}, false);
+    add(bushes, {object_pose(0, {0, -4, 0}, 1)}, false);
+    add(once, {object_pose(0, {1.5, 1.5, 0}, 0.7)}, false);
+    return world;
+  }
+
+  /// By the CPU; `by_gpu`: by the GPU.
+  std::vector<Scan> reported(const ReportCase& setup, const ScanRules& rules,
+                             std::span<const ScanMotion> motions, bool by_gpu) const {
+    const ScanCaster& caster = by_gpu ? scene_->scan_caster() : *caster_;
+    if (setup.world == nullptr) return reported_by(caster, rules, motions, executor_);
+    if (!by_gpu)
+      return reported_by(*make_world_caster(*caster_, *setup.world, executor_, 7), rules, motions,
+                         executor_);
+    std::vector<Scan> scans;
+    scene_->report(rules, motions, 7, setup.world.get(), executor_,
+                   [&](std::size_t, Scan&& scan) { scans.push_back(std::move(scan)); });
+    return scans;
   }
 
   /// Some stand still, where `moves` others move.
@@ -232,8 +294,8 @@ TEST_P(ReportsOnGpu, AnyTwoOptionsGiveTheBytesOfTheCpu) {
       all[j].of(setup);
       const auto rules = rules_of(setup);
       const std::vector<ScanMotion> motions = scans_of(setup.moves);
-      const std::vector<Scan> expected = reported_by(*caster_, *rules, motions, executor_);
-      expect_same(reported_by(scene_->scan_caster(), *rules, motions, executor_), expected);
+      const std::vector<Scan> expected = reported(setup, *rules, motions, false);
+      expect_same(reported(setup, *rules, motions, true), expected);
       for (const Scan& scan : expected) returns += scan.size();
       if (HasFailure()) return;
     }
@@ -246,8 +308,35 @@ TEST_P(ReportsOnGpu, AllOptionsAtOnce) {
   for (const Option& option : options()) option.of(setup);
   const auto rules = rules_of(setup);
   const std::vector<ScanMotion> motions = scans_of(true);
-  expect_same(reported_by(scene_->scan_caster(), *rules, motions, executor_),
-              reported_by(*caster_, *rules, motions, executor_));
+  expect_same(reported(setup, *rules, motions, true), reported(setup, *rules, motions, false));
+}
+
+// Oracle: the CPU, which counts them first.
+TEST_P(ReportsOnGpu, ObjectsAreSeenFromManyScansAtOnce) {
+  ReportCase setup = plain();
+  setup.has_objects = setup.has_classes = true;
+  const auto rules = rules_of(setup);
+  std::vector<ScanMotion> motions;
+  for (int i = 0; i < 30; ++i)
+    for (const ScanMotion& motion : scans_of(true)) motions.push_back(motion);
+  const std::vector<Scan> expected = reported(setup, *rules, motions, false);
+  std::size_t of_objects = 0, of_the_one_scan = 0;
+  for (const Scan& scan : expected)
+    for (const std::uint16_t instance : scan.instances) {
+      of_objects += instance >= 40 && instance < 45 ? 1 : 0;
+      of_the_one_scan += instance == 44 ? 1 : 0;
+    }
+  EXPECT_GT(of_objects, 10'000U);
+  EXPECT_GT(of_the_one_scan, 0U);
+  expect_same(reported(setup, *rules, motions, true), expected);
+  // The world grows: what was made of it does not hold any more.
+  WorldObject more;
+  more.trajectory = {object_pose(0, {1, 0, 0}, 0)};
+  setup.world->add_object(more);
+  const auto more_rules = rules_of_world(setup);
+  const auto with_more = reported(setup, *more_rules, motions, true);
+  expect_same(with_more, reported(setup, *more_rules, motions, false));
+  EXPECT_FALSE(with_more.front().positions == expected.front().positions);
 }
 
 TEST_P(ReportsOnGpu, BatchesHoldTheScans) {
@@ -261,7 +350,7 @@ TEST_P(ReportsOnGpu, BatchesHoldTheScans) {
   const std::vector<Scan> expected = reported_by(*caster_, *rules, motions, executor_);
   std::vector<ScanBatch> kept;  // as Python may: their memory is theirs
   std::size_t next = 0;
-  scene_->report(*rules, motions, 7, GpuScene::Results::host, [&](ScanBatch&& batch) {
+  scene_->report(*rules, motions, 7, nullptr, GpuScene::Results::host, [&](ScanBatch&& batch) {
     EXPECT_EQ(batch.first, next);
     EXPECT_EQ(batch.device, -1);
     next += batch.scans();
@@ -285,7 +374,7 @@ TEST_P(ReportsOnGpu, BatchesOnTheDeviceAreCounted) {
   const std::vector<ScanMotion> motions = scans_of(false);
   const std::vector<Scan> expected = reported_by(*caster_, *rules, motions, executor_);
   std::vector<ScanBatch> kept;
-  scene_->report(*rules, motions, 7, GpuScene::Results::device,
+  scene_->report(*rules, motions, 7, nullptr, GpuScene::Results::device,
                  [&](ScanBatch&& batch) { kept.push_back(std::move(batch)); });
   std::size_t scan = 0;
   for (const ScanBatch& batch : kept) {

@@ -55,10 +55,16 @@ class SceneScanCaster final : public ScanCaster {
   ReportTimes report(const ScanRules& rules, std::span<const ScanMotion> scans,
                      std::uint64_t first_number, const Executor& executor,
                      ScanSink sink) const override {
+    return report_scans(rules, scans, first_number, nullptr, executor, sink);
+  }
+
+  ReportTimes report_scans(const ScanRules& rules, std::span<const ScanMotion> scans,
+                           std::uint64_t first_number, const World* world, const Executor& executor,
+                           ScanSink sink) const {
     std::vector<Scan> taken;
     return with_reporter(rules, [&](GpuReporter& reporter) {
       return reporter.report(
-          scans, first_number, GpuScene::Results::host, [&](const ScanBatch& batch) {
+          scans, first_number, world, GpuScene::Results::host, [&](const ScanBatch& batch) {
             if (taken.size() < batch.scans()) taken.resize(batch.scans());
             executor.for_chunks(batch.scans(), 1, [&](std::size_t i, std::size_t) {
               copy_scan(batch, i, scans[batch.first + i], rules.firings().size(), taken[i]);
@@ -70,10 +76,10 @@ class SceneScanCaster final : public ScanCaster {
   }
 
   ReportTimes report_batches(const ScanRules& rules, std::span<const ScanMotion> scans,
-                             std::uint64_t first_number, GpuScene::Results results,
-                             GpuScene::BatchSink sink) const {
+                             std::uint64_t first_number, const World* world,
+                             GpuScene::Results results, GpuScene::BatchSink sink) const {
     return with_reporter(rules, [&](GpuReporter& reporter) {
-      return reporter.report(scans, first_number, results, sink);
+      return reporter.report(scans, first_number, world, results, sink);
     });
   }
 
@@ -194,8 +200,14 @@ double GpuScene::build_seconds() const { return impl_->build_seconds; }
 const Tracer& GpuScene::tracer() const { return *impl_->tracer; }
 const ScanCaster& GpuScene::scan_caster() const { return *impl_->caster; }
 ReportTimes GpuScene::report(const ScanRules& rules, std::span<const ScanMotion> scans,
-                             std::uint64_t first_number, Results results, BatchSink sink) const {
-  return impl_->caster->report_batches(rules, scans, first_number, results, sink);
+                             std::uint64_t first_number, const World* world, Results results,
+                             BatchSink sink) const {
+  return impl_->caster->report_batches(rules, scans, first_number, world, results, sink);
+}
+ReportTimes GpuScene::report(const ScanRules& rules, std::span<const ScanMotion> scans,
+                             std::uint64_t first_number, const World* world,
+                             const Executor& executor, ScanCaster::ScanSink sink) const {
+  return impl_->caster->report_scans(rules, scans, first_number, world, executor, sink);
 }
 
 std::unique_ptr<GpuScanner> GpuScene::scanner(const LidarModel& sensor,

@@ -15,6 +15,7 @@
 #include "adasplats/simulate/scan/scan_batch.h"
 #include "adasplats/simulate/scan/scan_caster.h"
 #include "adasplats/simulate/scan/scan_rules.h"
+#include "adasplats/simulate/world/world.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {
@@ -134,9 +135,15 @@ class GpuScene {
   enum class Results : std::uint8_t { host, device };
   using BatchSink = FunctionRef<void(ScanBatch&& batch)>;
   /// ScanCaster::report() without a copy: as many scans at once as a launch has. Less GPU memory
-  /// makes batches smaller. Errors: unavailable (not enough for one scan).
+  /// makes batches smaller. `world`: what is cast beside the place, whose scan `first_number` is
+  /// the first; null: nothing. Errors: unavailable (not enough for one scan).
   ReportTimes report(const ScanRules& rules, std::span<const ScanMotion> scans,
-                     std::uint64_t first_number, Results results, BatchSink sink) const;
+                     std::uint64_t first_number, const World* world, Results results,
+                     BatchSink sink) const;
+  /// The same, scan by scan: what make_world_caster() reports.
+  ReportTimes report(const ScanRules& rules, std::span<const ScanMotion> scans,
+                     std::uint64_t first_number, const World* world, const Executor& executor,
+                     ScanCaster::ScanSink sink) const;
 
   /// `scene.view` must be what the GpuScene was made from.
   std::unique_ptr<GpuRenderer> renderer(const ImageScene& scene, const ImageOptions& options) const;

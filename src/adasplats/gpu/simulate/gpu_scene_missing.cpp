@@ -29,8 +29,12 @@ std::string_view GpuScene::name() const { throw_missing(); }
 double GpuScene::build_seconds() const { throw_missing(); }
 const Tracer& GpuScene::tracer() const { throw_missing(); }
 const ScanCaster& GpuScene::scan_caster() const { throw_missing(); }
-ReportTimes GpuScene::report(const ScanRules&, std::span<const ScanMotion>, std::uint64_t, Results,
-                             BatchSink) const {
+ReportTimes GpuScene::report(const ScanRules&, std::span<const ScanMotion>, std::uint64_t,
+                             const World*, Results, BatchSink) const {
+  throw_missing();
+}
+ReportTimes GpuScene::report(const ScanRules&, std::span<const ScanMotion>, std::uint64_t,
+                             const World*, const Executor&, ScanCaster::ScanSink) const {
   throw_missing();
 }
 std::unique_ptr<GpuScanner> GpuScene::scanner(const LidarModel&, std::span<const Firing>) const {

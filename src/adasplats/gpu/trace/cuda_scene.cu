@@ -6,8 +6,8 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/trace/cuda_scene.h"
+#include "adasplats/gpu/trace/scene_trees.h"
 #include "adasplats/gpu/trace/wide_traversal.cuh"
-#include "adasplats/trace/castable.h"
 
 namespace adasplats::gpu {
 namespace {
@@ -26,23 +26,9 @@ constexpr int kMostHits = 64;
 constexpr unsigned kLeastBlocksOfSmall = 12;
 constexpr int kPostponeInSmall = 20;
 
-struct Trees {
-  TreeView<LeafDisk> disks;
-  TreeView<LeafTriangle> triangles;
-};
-
-template <int kWait, class Best>
-__device__ void cast_one(const Trees& trees, Ray ray, Best& best) {
-  if (!castable(ray)) return;
-  ray.t_min = first_t(ray);
-  const BoxRay boxes = box_ray(ray);
-  walk<kWait>(trees.disks, ray, boxes, best);
-  walk<kWait>(trees.triangles, ray, boxes, best);
-}
-
 template <int kWait, unsigned kBlocks, Sensors kSensors>
 __global__ void __launch_bounds__(kCastBlock, kBlocks)
-    cast_nearest_kernel(Trees trees, RaySource source, std::uint64_t count, Hit* hits) {
+    cast_nearest_kernel(TreesView trees, RaySource source, std::uint64_t count, Hit* hits) {
   const std::uint64_t i = std::uint64_t{blockIdx.x} * kCastBlock + threadIdx.x;
   if (i >= count) return;
   NearestHit best;
@@ -52,7 +38,7 @@ __global__ void __launch_bounds__(kCastBlock, kBlocks)
 
 template <class Best>
 __global__ void __launch_bounds__(kCastBlock)
-    cast_hits_kernel(Trees trees, RaySource source, std::uint64_t count, int depth, Hit* hits) {
+    cast_hits_kernel(TreesView trees, RaySource source, std::uint64_t count, int depth, Hit* hits) {
   const std::uint64_t i = std::uint64_t{blockIdx.x} * kCastBlock + threadIdx.x;
   if (i >= count) return;
   Best best(depth);
@@ -62,26 +48,10 @@ __global__ void __launch_bounds__(kCastBlock)
 
 class CudaScene final : public DeviceScene {
  public:
-  CudaScene(const SceneView& scene, const TreeOptions& options) : stream_(std::in_place) {
-    if (scene.primitive_count() >= Hit::kNone)
-      throw Error(ErrorKind::data, "a scene of " + std::to_string(scene.primitive_count()) +
-                                       " primitives; at most 2^32 - 2 can be told apart");
-    const cudaStream_t stream = stream_->get();
-    if (!scene.disks.empty()) {
-      const DeviceBuffer<Disk> disks(scene.disks, stream);
-      disks_ = build_tree(disks.data(), disks.size(), options, stream);
-    }
-    if (scene.triangle_count() > 0) {
-      std::vector<Triangle> corners(scene.triangle_count());
-      for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = scene.mesh->triangle(i);
-      const DeviceBuffer<Triangle> triangles(std::span<const Triangle>(corners), stream);
-      triangles_ = build_tree(triangles.data(), triangles.size(),
-                              static_cast<std::uint32_t>(scene.disk_count()), options, stream);
-    }
-    stream_->wait("build the ray tree on the GPU");
-  }
+  CudaScene(const SceneView& scene, const TreeOptions& options)
+      : stream_(std::in_place), trees_(build_scene_trees(scene, options, stream_->get())) {}
   CudaScene(const Disk* disks, std::size_t count, cudaStream_t stream)
-      : disks_(build_tree(disks, count, TreeOptions{}, stream)) {}
+      : trees_{build_tree(disks, count, TreeOptions{}, stream), {}} {}
 
   std::string_view name() const override { return "cuda"; }
 
@@ -92,7 +62,7 @@ class CudaScene final : public DeviceScene {
     if (count > kMostBlocks * kCastBlock)
       throw Error(ErrorKind::data, "too many rays for one launch");
     if (count == 0) return;
-    const Trees trees = {disks_.view(), triangles_.view()};
+    const TreesView trees = trees_.view();
     const auto blocks = static_cast<unsigned>((count + kCastBlock - 1) / kCastBlock);
     const bool still = source.first_poses == nullptr;
     if (depth == 1 && still) {
@@ -113,7 +83,7 @@ class CudaScene final : public DeviceScene {
 
  private:
   template <Sensors kSensors>
-  static void launch_nearest(unsigned blocks, const Trees& trees, const RaySource& source,
+  static void launch_nearest(unsigned blocks, const TreesView& trees, const RaySource& source,
                              std::uint64_t count, Hit* hits, cudaStream_t stream) {
     if (count < kSmallLaunch) {
       cast_nearest_kernel<kPostponeInSmall, kLeastBlocksOfSmall, kSensors>
@@ -124,8 +94,9 @@ class CudaScene final : public DeviceScene {
     }
   }
 
-  static void launch_few(int depth, unsigned blocks, const Trees& trees, const RaySource& source,
-                         std::uint64_t count, Hit* hits, cudaStream_t stream) {
+  static void launch_few(int depth, unsigned blocks, const TreesView& trees,
+                         const RaySource& source, std::uint64_t count, Hit* hits,
+                         cudaStream_t stream) {
     switch (depth) {
       case 2:
         cast_hits_kernel<FewNearestHits<2>>
@@ -146,11 +117,31 @@ class CudaScene final : public DeviceScene {
   }
 
   std::optional<Stream> stream_;  ///< of the trees' memory, where it is the scene's own
-  WideTree<LeafDisk> disks_;
-  WideTree<LeafTriangle> triangles_;
+  SceneTrees trees_;
 };
 
 }  // namespace
+
+SceneTrees build_scene_trees(const SceneView& scene, const TreeOptions& options,
+                             cudaStream_t stream) {
+  if (scene.primitive_count() >= Hit::kNone)
+    throw Error(ErrorKind::data, "a scene of " + std::to_string(scene.primitive_count()) +
+                                     " primitives; at most 2^32 - 2 can be told apart");
+  SceneTrees trees;
+  if (!scene.disks.empty()) {
+    const DeviceBuffer<Disk> disks(scene.disks, stream);
+    trees.disks = build_tree(disks.data(), disks.size(), options, stream);
+  }
+  if (scene.triangle_count() > 0) {
+    std::vector<Triangle> corners(scene.triangle_count());
+    for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = scene.mesh->triangle(i);
+    const DeviceBuffer<Triangle> triangles(std::span<const Triangle>(corners), stream);
+    trees.triangles = build_tree(triangles.data(), triangles.size(),
+                                 static_cast<std::uint32_t>(scene.disk_count()), options, stream);
+  }
+  cuda_check(cudaStreamSynchronize(stream), "build the ray tree on the GPU");
+  return trees;
+}
 
 std::unique_ptr<DeviceScene> make_cuda_scene(const SceneView& scene) {
   return make_cuda_scene(scene, TreeOptions{});

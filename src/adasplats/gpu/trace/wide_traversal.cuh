@@ -7,8 +7,10 @@
 #include <cstdint>
 
 #include "adasplats/core/maths/ray.h"
+#include "adasplats/gpu/trace/scene_trees.h"
 #include "adasplats/gpu/trace/wide_tree.h"
 #include "adasplats/scene/intersect.h"
+#include "adasplats/trace/castable.h"
 
 // Private to gpu/: how one ray walks a WideTree. Box tests use fused multiply-adds and reciprocals:
 // their error is a few ulps of the distance, which the margin of the boxes (box_margin) covers.
@@ -26,6 +28,11 @@ class NearestHit {
     if (Hit{t, primitive} < hit_) hit_ = {t, primitive};
   }
   __device__ void store(Hit* hits, int) const { hits[0] = hit_; }
+  /// Calls use(hit) for all that are kept, the nearest first.
+  template <class Use>
+  __device__ void for_each(Use&& use) const {
+    if (hit_.valid()) use(hit_);
+  }
 
  private:
   Hit hit_;
@@ -49,6 +56,10 @@ class NearestHits {
   }
   __device__ void store(Hit* hits, int depth) const {
     for (int k = 0; k < depth; ++k) hits[k] = k < count_ ? hits_[k] : Hit{};
+  }
+  template <class Use>
+  __device__ void for_each(Use&& use) const {
+    for (int k = 0; k < count_; ++k) use(hits_[k]);
   }
 
  private:
@@ -82,6 +93,12 @@ class FewNearestHits {
 #pragma unroll
     for (int k = 0; k < kDepth; ++k)
       if (k < depth) hits[k] = hits_[k];
+  }
+  template <class Use>
+  __device__ void for_each(Use&& use) const {
+#pragma unroll
+    for (int k = 0; k < kDepth; ++k)
+      if (hits_[k].valid()) use(hits_[k]);
   }
 
  private:
@@ -281,6 +298,16 @@ __device__ void walk(const TreeView<Leaf>& tree, Ray ray, const BoxRay& boxes, B
       nodes = stack[--depth];
     }
   }
+}
+
+/// Offers every hit of a ray in a scene.
+template <int kPostpone, class Best>
+__device__ void cast_one(const TreesView& trees, Ray ray, Best& best) {
+  if (!castable(ray)) return;
+  ray.t_min = first_t(ray);
+  const BoxRay boxes = box_ray(ray);
+  walk<kPostpone>(trees.disks, ray, boxes, best);
+  walk<kPostpone>(trees.triangles, ray, boxes, best);
 }
 
 }  // namespace adasplats::gpu

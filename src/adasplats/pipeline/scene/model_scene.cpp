@@ -69,7 +69,7 @@ void ModelScene::prepare(const std::string& name, Session& session) {
 }
 
 void ModelScene::add_objects(FunctionRef<void(World&)> fill) {
-  world_.emplace(static_cast<std::uint32_t>(view().primitive_count()), origin(), executor_);
+  world_.emplace(static_cast<std::uint32_t>(view().primitive_count()), origin());
   fill(*world_);
   attributes_ = world_->attributes(place_attributes());
   primitive_table_.reset();

@@ -85,9 +85,11 @@ ReportTimes ScanSimulator::run(std::span<const ScanMotion> scans, std::uint64_t 
   return sum;
 }
 
-/// Casts into the place and, scan by scan, what is in the world.
+/// Casts into the place and, object by object, what is in the world.
 ReportTimes ScanSimulator::run_repeating(std::span<const ScanMotion> scans,
                                          std::uint64_t first_number, Sink sink) {
+  if (scene_.gpu() != nullptr)
+    return scene_.gpu()->report(rules_, scans, first_number, scene_.world(), executor_, sink);
   if (scene_.world() == nullptr)
     return scene_.scan_caster().report(rules_, scans, first_number, executor_, sink);
   return make_world_caster(scene_.scan_caster(), *scene_.world(), executor_, first_number)
@@ -97,13 +99,12 @@ ReportTimes ScanSimulator::run_repeating(std::span<const ScanMotion> scans,
 ReportTimes ScanSimulator::run_batches(std::span<const ScanMotion> scans,
                                        std::uint64_t first_number, GpuScene::Results results,
                                        GpuScene::BatchSink sink) {
-  const GpuScene* const gpu = scene_.world() == nullptr ? scene_.gpu() : nullptr;
-  if (gpu != nullptr && repeats(settings_.sensor))
-    return gpu->report(rules_, scans, first_number, results, sink);
+  if (scene_.gpu() != nullptr && repeats(settings_.sensor))
+    return scene_.gpu()->report(rules_, scans, first_number, scene_.world(), results, sink);
   if (results == GpuScene::Results::device)
     throw Error(ErrorKind::unavailable,
-                "scans stay in GPU memory where the scene is on a GPU (`device` cuda), nothing is "
-                "in its world, and the sensor's pattern repeats");
+                "scans stay in GPU memory where the scene is on a GPU (`device` cuda) and the "
+                "sensor's pattern repeats");
   return run(scans, first_number,
              [&](std::size_t i, Scan&& scan) { sink(batch_of(i, std::move(scan))); });
 }

@@ -98,9 +98,9 @@ class ScanSimulator {
   /// Scan i has the number `first_number` + i, which names its noise, the firings of a pattern that
   /// does not repeat, and what moves in the world.
   ReportTimes run(std::span<const ScanMotion> scans, std::uint64_t first_number, Sink sink);
-  /// The same in batches without a copy. On a GPU a batch has as many scans as a launch; else, and
-  /// where something is in the world, one, in memory of its own. Errors: unavailable (results on a
-  /// device from a scene on the CPU, or with a world).
+  /// The same in batches without a copy. On a GPU a batch has as many scans as a launch; else one,
+  /// in memory of its own. Errors: unavailable (results on a device from a scene on the CPU, or
+  /// of a pattern that does not repeat).
   ReportTimes run_batches(std::span<const ScanMotion> scans, std::uint64_t first_number,
                           GpuScene::Results results, GpuScene::BatchSink sink);
   /// One scan.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace adasplats {
 namespace {
@@ -13,21 +12,7 @@ namespace {
 constexpr std::size_t kRaysPerBundle = 64;  // of one ring: 10 degrees of an HDL-64
 static_assert(kFineGrain % kRaysPerBundle == 0);
 
-/// Where a ray comes into a sphere, m, not below 0; infinite where it does not within its length.
-double entry_m(const Ray& ray, const WorldSphere& sphere) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
-  const Vec3d to_center = sphere.center - vec_cast<double>(ray.origin);
-  const double along = dot(to_center, vec_cast<double>(ray.direction));
-  const double squared_half =
-      sphere.radius * sphere.radius - (dot(to_center, to_center) - along * along);
-  if (!(squared_half >= 0)) return kNever;
-  const double half = std::sqrt(squared_half);
-  if (along + half < 0 || along - half > static_cast<double>(ray.t_max)) return kNever;
-  return std::max(0.0, along - half);
-}
-
-/// The rays that may meet one object, in its own frame and unit. They begin where they come near
-/// it, so that objects in millimetres, say, do not ask for more digits than floats have.
+/// The rays that may meet one object.
 struct ObjectRays {
   std::vector<Ray> rays;
   std::vector<std::uint32_t> firings;
@@ -40,41 +25,21 @@ struct ObjectRays {
   }
 };
 
-Ray ray_in_object(const Ray& ray, double begin_m, Vec3d scene_origin, const PlacedObject& placed,
-                  const RigidTransform& world_from_object) {
-  const double scale = placed.object.scale;
-  const Mat3d object_from_world = world_from_object.rotation.transposed();
-  const Vec3d direction = vec_cast<double>(ray.direction);
-  const Vec3d begin = vec_cast<double>(ray.origin) + begin_m * direction;
-  const Vec3d from_object = (scene_origin - world_from_object.translation) + begin;
-  const Vec3d origin =
-      (object_from_world * from_object) / scale - origin_of(placed.geometry->place);
-  const auto in_object = [&](float t) {
-    return static_cast<float>((static_cast<double>(t) - begin_m) / scale);
-  };
-  return {vec_cast<float>(origin), std::max(0.0F, in_object(ray.t_min)),
-          vec_cast<float>(object_from_world * direction), in_object(ray.t_max)};
-}
-
-ObjectRays rays_in_object(const ScanRays& scan, const PlacedObject& placed,
-                          const WorldSphere& sphere, const Executor& executor) {
-  const WorldSphere local = {sphere.center - scan.scene_origin, sphere.radius};
-  const bool moves = scan.duration_s > 0 && placed.object.trajectory.size() > 1;
-  const RigidTransform standing = placed.world_from_object(scan.begin_s);
+ObjectRays rays_in_object(const ScanRays& scan, const ObjectSighting& object,
+                          const ObjectPose* knots, const Executor& executor) {
+  const WorldSphere sphere = {object.center, object.radius_m};
   const auto take = [&](std::size_t i, ObjectRays& part) {
-    const double begin_m = entry_m(scan.rays[i], local);
-    if (!std::isfinite(begin_m)) return;
-    if (moves && !placed.is_there(scan.time_of(i), scan.time_of(i))) return;
-    const RigidTransform pose = moves ? placed.world_from_object(scan.time_of(i)) : standing;
-    part.rays.push_back(ray_in_object(scan.rays[i], begin_m, scan.scene_origin, placed, pose));
+    ObjectRay made;
+    if (!object_ray(object, knots, scan.rays[i], scan.firings[i].share, made)) return;
+    part.rays.push_back(made.ray);
     part.firings.push_back(static_cast<std::uint32_t>(i));
-    part.begins_m.push_back(begin_m);
+    part.begins_m.push_back(made.begin_m);
   };
   std::vector<ObjectRays> parts((scan.rays.size() + kFineGrain - 1) / kFineGrain);
   executor.for_chunks(scan.rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     ObjectRays& part = parts[begin / kFineGrain];
     for (std::size_t first = begin; first < end; first += kRaysPerBundle) {
-      if (!scan.bundles[first / kRaysPerBundle].may_meet(local)) continue;
+      if (!scan.bundles[first / kRaysPerBundle].may_meet(sphere)) continue;
       const std::size_t behind = std::min(end, first + kRaysPerBundle);
       for (std::size_t i = first; i < behind; ++i) take(i, part);
     }
@@ -84,15 +49,9 @@ ObjectRays rays_in_object(const ScanRays& scan, const PlacedObject& placed,
   return all;
 }
 
-/// Brings hits in an object's frame to the ray of the scan; those that leave its range by rounding
-/// are none. `found` is in ascending order again.
-void to_scan(std::span<Hit> found, const Ray& ray, double begin_m, const PlacedObject& placed) {
-  for (Hit& hit : found) {
-    if (!hit.valid()) continue;
-    const auto t = static_cast<float>(begin_m + placed.object.scale * static_cast<double>(hit.t));
-    const bool in_range = t > ray.t_min && t <= ray.t_max;
-    hit = in_range ? Hit{t, placed.first_primitive + hit.primitive} : Hit{};
-  }
+/// `found` is in ascending order again.
+void to_scan(std::span<Hit> found, const ObjectSighting& object, double begin_m, const Ray& ray) {
+  for (Hit& hit : found) hit = scan_hit(hit, object, begin_m, ray);
   // Different distances in the object may be one in the world.
   std::sort(found.begin(), found.end());
 }
@@ -147,16 +106,17 @@ std::vector<RayBundle> bundles_of(std::span<const Ray> rays) {
   return bundles;
 }
 
-void add_object_hits(const ScanRays& scan, const PlacedObject& placed, const WorldSphere& sphere,
-                     int depth, std::span<Hit> hits, const Executor& executor) {
-  const ObjectRays local = rays_in_object(scan, placed, sphere, executor);
+void add_object_hits(const ScanRays& scan, const ObjectSighting& object, const ObjectPose* knots,
+                     const Tracer& tracer, int depth, std::span<Hit> hits,
+                     const Executor& executor) {
+  const ObjectRays local = rays_in_object(scan, object, knots, executor);
   if (local.rays.empty()) return;
   const auto slots = static_cast<std::size_t>(depth);
   std::vector<Hit> found(local.rays.size() * slots);
   if (depth == 1) {
-    placed.geometry->tracer->nearest(local.rays, found, executor);
+    tracer.nearest(local.rays, found, executor);
   } else {
-    placed.geometry->tracer->nearest_hits(local.rays, depth, found, executor);
+    tracer.nearest_hits(local.rays, depth, found, executor);
   }
   executor.for_chunks(local.rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<Hit> buffer;
@@ -164,7 +124,7 @@ void add_object_hits(const ScanRays& scan, const PlacedObject& placed, const Wor
       const std::span<Hit> of_ray = std::span(found).subspan(i * slots, slots);
       if (!of_ray.front().valid()) continue;
       const std::size_t firing = local.firings[i];
-      to_scan(of_ray, scan.rays[firing], local.begins_m[i], placed);
+      to_scan(of_ray, object, local.begins_m[i], scan.rays[firing]);
       merge_nearest(hits.subspan(firing * slots, slots), of_ray, buffer);
     }
   });

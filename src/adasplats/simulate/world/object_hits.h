@@ -9,7 +9,9 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/maths/ray.h"
 #include "adasplats/simulate/scan/scan_ray.h"
+#include "adasplats/simulate/world/object_ray.h"
 #include "adasplats/simulate/world/placed_object.h"
+#include "adasplats/trace/tracer.h"
 
 namespace adasplats {
 
@@ -25,27 +27,20 @@ struct RayBundle {
   bool may_meet(const WorldSphere& sphere) const;
 };
 
-/// The rays of one scan, relative to the place's local origin, and when they are cast.
+/// The rays of one scan, relative to the place's local origin.
 struct ScanRays {
   std::vector<Ray> rays;
   std::vector<FiringRay> firings;
   std::vector<RayBundle> bundles;  ///< of 64 each
-  Vec3d scene_origin;
-  double begin_s = 0;
-  double duration_s = 0;  ///< 0: a snapshot
-
-  double end_s() const { return begin_s + duration_s; }
-  double time_of(std::size_t ray) const {
-    return begin_s + static_cast<double>(firings[ray].share) * duration_s;
-  }
 };
 
 /// Of every 64 rays.
 std::vector<RayBundle> bundles_of(std::span<const Ray> rays);
 
-/// Merges the hits of one object, which is within `sphere` during the scan, into those of the rays
-/// of a scan: hits[i * depth + k] of firing i, ascending.
-void add_object_hits(const ScanRays& scan, const PlacedObject& placed, const WorldSphere& sphere,
-                     int depth, std::span<Hit> hits, const Executor& executor);
+/// Merges the hits of one object into those of the rays of a scan: hits[i * depth + k] of firing i,
+/// ascending. `knots`: of all objects of the scan.
+void add_object_hits(const ScanRays& scan, const ObjectSighting& object, const ObjectPose* knots,
+                     const Tracer& tracer, int depth, std::span<Hit> hits,
+                     const Executor& executor);
 
 }  // namespace adasplats

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "adasplats/core/error.h"
 
@@ -26,18 +28,52 @@ std::uint16_t usual_class(std::span<const std::uint16_t> classes) {
   return most == counts.end() ? std::uint16_t{0} : most->first;
 }
 
+ObjectPose knot_at(const PlacedObject& placed, double time_s, double share, Vec3d scene_origin) {
+  const RigidTransform pose = placed.world_from_object(time_s);
+  const Mat3d object_from_world = pose.rotation.transposed();
+  const Vec3d* const rows = object_from_world.rows;
+  return {{rows[0], rows[1], rows[2]}, scene_origin - pose.translation, share};
+}
+
+/// Begin, end, and in between the times of the object's poses, with as many others as it takes for
+/// it to turn by less than half a degree from one to the next.
+std::vector<double> knot_times(const PlacedObject& placed, double begin_s, double end_s) {
+  constexpr double kHalfDegree_rad = 0.5 * std::numbers::pi / 180;
+  constexpr double kMostParts = 64;
+  const Trajectory& poses = placed.object.trajectory;
+  std::vector<double> times = {begin_s};
+  RigidTransform before = placed.world_from_object(begin_s);
+  const auto go_to = [&](double time_s) {
+    const RigidTransform here = placed.world_from_object(time_s);
+    const double turn_rad = angle_between(before.rotation, here.rotation);
+    const double parts = std::clamp(std::ceil(turn_rad / kHalfDegree_rad), 1.0, kMostParts);
+    const double from_s = times.back();
+    for (double part = 1; part < parts; ++part)
+      times.push_back(from_s + part / parts * (time_s - from_s));
+    times.push_back(time_s);
+    before = here;
+  };
+  auto pose = std::ranges::upper_bound(poses, begin_s, {}, &TimedPose::time_s);
+  for (; pose != poses.end() && pose->time_s < end_s; ++pose) go_to(pose->time_s);
+  go_to(end_s);
+  return times;
+}
+
 }  // namespace
 
-ObjectGeometry::ObjectGeometry(Place model, std::vector<std::uint16_t> instances_of_primitives,
-                               const Executor& executor)
+ObjectGeometry::ObjectGeometry(Place model, std::vector<std::uint16_t> instances_of_primitives)
     : place(std::move(model)),
       instances(std::move(instances_of_primitives)),
-      tracer(make_cpu_tracer(view_of(place), executor)),
       usual_class(adasplats::usual_class(classes_of(place))),
       primitives(static_cast<std::uint32_t>(view_of(place).primitive_count())) {
   if (!instances.empty() && instances.size() != primitives)
     throw std::logic_error("World: one instance a splat is needed");
   std::tie(box.low, box.high) = world_box_of(place);
+}
+
+const Tracer& ObjectGeometry::tracer(const Executor& executor) const {
+  std::call_once(built_, [&] { tracer_ = make_cpu_tracer(view_of(place), executor); });
+  return *tracer_;
 }
 
 WorldSphere swept_sphere(const PlacedObject& placed, double begin_s, double end_s) {
@@ -60,6 +96,33 @@ WorldSphere swept_sphere(const PlacedObject& placed, double begin_s, double end_
   for (; pose != poses.end() && pose->time_s < end_s; ++pose) go_on(pose->world_from_sensor);
   if (end_s > begin_s) go_on(placed.world_from_object(end_s));
   return {path.center(), 0.5 * length(path.size()) + bend + radius + kMargin_m};
+}
+
+ObjectSighting sighting_of(const PlacedObject& placed, double begin_s, double duration_s,
+                           Vec3d scene_origin, std::vector<ObjectPose>& knots) {
+  const Trajectory& poses = placed.object.trajectory;
+  const double end_s = begin_s + duration_s;
+  const WorldSphere sphere = swept_sphere(placed, begin_s, end_s);
+  ObjectSighting sighting;
+  sighting.center = sphere.center - scene_origin;
+  sighting.radius_m = sphere.radius;
+  sighting.geometry_origin = origin_of(placed.geometry->place);
+  sighting.scale = placed.object.scale;
+  sighting.geometry = static_cast<std::uint32_t>(placed.object.geometry);
+  sighting.first_primitive = placed.first_primitive;
+  sighting.first_knot = static_cast<std::uint32_t>(knots.size());
+  if (!placed.moves(duration_s)) {
+    knots.push_back(knot_at(placed, begin_s, 0, scene_origin));
+    return sighting;
+  }
+  if (placed.object.only_during) {
+    sighting.first_share = static_cast<float>((poses.front().time_s - begin_s) / duration_s);
+    sighting.last_share = static_cast<float>((poses.back().time_s - begin_s) / duration_s);
+  }
+  for (const double time_s : knot_times(placed, begin_s, end_s))
+    knots.push_back(knot_at(placed, time_s, (time_s - begin_s) / duration_s, scene_origin));
+  sighting.knot_count = static_cast<std::uint32_t>(knots.size()) - sighting.first_knot;
+  return sighting;
 }
 
 void check_object(const WorldObject& object) {

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/simulate/world/object_ray.h"
 #include "adasplats/simulate/world/world.h"
 #include "adasplats/splats/model/place.h"
 #include "adasplats/trace/tracer.h"
@@ -34,14 +36,20 @@ struct WorldBox {
 /// What objects are made of. It does not move in memory: its tracer keeps views.
 struct ObjectGeometry {
   /// `instances`: one a primitive, or empty.
-  ObjectGeometry(Place model, std::vector<std::uint16_t> instances, const Executor& executor);
+  ObjectGeometry(Place model, std::vector<std::uint16_t> instances);
+
+  /// Built by who asks first: on a GPU nobody does.
+  const Tracer& tracer(const Executor& executor) const;
 
   Place place;
   std::vector<std::uint16_t> instances;
-  std::unique_ptr<Tracer> tracer;
   WorldBox box;               ///< in the object's frame, before it is scaled
   std::uint16_t usual_class;  ///< that most primitives have
   std::uint32_t primitives;
+
+ private:
+  mutable std::once_flag built_;
+  mutable std::unique_ptr<Tracer> tracer_;
 };
 
 /// An object and the numbers of its primitives in the world.
@@ -57,10 +65,16 @@ struct PlacedObject {
   RigidTransform world_from_object(double time_s) const {
     return interpolate(object.trajectory, time_s);
   }
+  /// It moves as long as a scan lasts.
+  bool moves(double duration_s) const { return duration_s > 0 && object.trajectory.size() > 1; }
 };
 
 /// Holds the whole object at every time from begin_s to end_s, world coordinates.
 WorldSphere swept_sphere(const PlacedObject& placed, double begin_s, double end_s);
+
+/// The object in a scan from begin_s on; duration_s 0: a snapshot. Appends its poses to `knots`.
+ObjectSighting sighting_of(const PlacedObject& placed, double begin_s, double duration_s,
+                           Vec3d scene_origin, std::vector<ObjectPose>& knots);
 
 /// Errors: those of World::add_object().
 void check_object(const WorldObject& object);

@@ -19,9 +19,10 @@ namespace adasplats {
 struct World::Impl {
   std::uint32_t first_primitive;
   Vec3d scene_origin;
-  const Executor* executor;
   std::vector<std::unique_ptr<ObjectGeometry>> geometries;
+  std::vector<bool> lasting;  ///< geometries of objects that are not of one scan alone
   std::vector<PlacedObject> objects;
+  std::shared_ptr<const int> identity = std::make_shared<int>(0);
   std::uint32_t next_primitive;
   std::vector<std::size_t> in_all_scans;  ///< objects
   /// Objects of one scan: what other scans have costs nothing.
@@ -65,12 +66,10 @@ void World::Impl::fill(std::vector<T>& all, std::span<const T> place, T missing,
   if (!any) all.clear();
 }
 
-World::World(std::uint32_t first_primitive, Vec3d scene_origin, const Executor& executor)
-    : impl_(std::make_unique<Impl>()) {
+World::World(std::uint32_t first_primitive, Vec3d scene_origin) : impl_(std::make_unique<Impl>()) {
   impl_->first_primitive = first_primitive;
   impl_->next_primitive = first_primitive;
   impl_->scene_origin = scene_origin;
-  impl_->executor = &executor;
 }
 
 World::~World() = default;
@@ -78,8 +77,10 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
 std::size_t World::add_geometry(Place geometry, std::vector<std::uint16_t> instances) {
-  impl_->geometries.push_back(std::make_unique<ObjectGeometry>(
-      std::move(geometry), std::move(instances), *impl_->executor));
+  impl_->geometries.push_back(
+      std::make_unique<ObjectGeometry>(std::move(geometry), std::move(instances)));
+  impl_->lasting.push_back(false);
+  impl_->identity = std::make_shared<int>(0);
   return impl_->geometries.size() - 1;
 }
 
@@ -95,7 +96,9 @@ void World::add_object(WorldObject object) {
     impl_->by_scan[*object.only_scan].push_back(index);
   } else {
     impl_->in_all_scans.push_back(index);
+    impl_->lasting[object.geometry] = true;
   }
+  impl_->identity = std::make_shared<int>(0);
   impl_->objects.push_back({std::move(object), geometry, impl_->next_primitive});
   impl_->next_primitive += geometry->primitives;
 }
@@ -110,21 +113,33 @@ void World::add_hits(std::uint64_t scan_index, const LidarModel& sensor,
                      const Executor& executor) const {
   if (depth < 1 || hits.size() != firings.size() * static_cast<std::size_t>(depth))
     throw std::logic_error("World: `depth` hits a firing are needed");
+  ObjectSightings there;
+  sight(scan_index, motion, scan_duration_s, there);
+  if (there.objects.empty() || firings.empty()) return;
   ScanRays scan;
-  scan.scene_origin = impl_->scene_origin;
-  scan.duration_s = motion.knots.empty() ? 0.0 : std::max(0.0, scan_duration_s);
-  scan.begin_s = motion.reference.time_s - 0.5 * scan.duration_s;
-  const std::vector<std::size_t> there = impl_->objects_in(scan_index, scan.begin_s, scan.end_s());
-  if (there.empty() || firings.empty()) return;
   scan.rays = scan_rays(sensor, firings, motion, impl_->scene_origin, executor);
   scan.firings = firing_rays(sensor, firings);
   scan.bundles = bundles_of(scan.rays);
-  for (const std::size_t i : there) {
-    const PlacedObject& placed = impl_->objects[i];
-    const WorldSphere sphere = swept_sphere(placed, scan.begin_s, scan.end_s());
-    add_object_hits(scan, placed, sphere, depth, hits, executor);
-  }
+  for (const ObjectSighting& object : there.objects)
+    add_object_hits(scan, object, there.knots.data(),
+                    impl_->geometries[object.geometry]->tracer(executor), depth, hits, executor);
 }
+
+void World::sight(std::uint64_t scan_index, const ScanMotion& motion, double scan_duration_s,
+                  ObjectSightings& all) const {
+  const double duration_s = motion.knots.empty() ? 0.0 : std::max(0.0, scan_duration_s);
+  const double begin_s = motion.reference.time_s - 0.5 * duration_s;
+  for (const std::size_t i : impl_->objects_in(scan_index, begin_s, begin_s + duration_s))
+    all.objects.push_back(
+        sighting_of(impl_->objects[i], begin_s, duration_s, impl_->scene_origin, all.knots));
+}
+
+std::size_t World::geometry_count() const { return impl_->geometries.size(); }
+SceneView World::geometry_view(std::size_t geometry) const {
+  return view_of(impl_->geometries.at(geometry)->place);
+}
+bool World::is_in_all_scans(std::size_t geometry) const { return impl_->lasting.at(geometry); }
+std::shared_ptr<const int> World::identity() const { return impl_->identity; }
 
 PrimitiveAttributes World::attributes(const PrimitiveAttributes& place) {
   if (empty()) return place;

@@ -15,6 +15,7 @@
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/simulate/scan/scan_caster.h"
 #include "adasplats/simulate/scan/scan_motion.h"
+#include "adasplats/simulate/world/object_ray.h"
 #include "adasplats/splats/model/place.h"
 
 namespace adasplats {
@@ -44,15 +45,25 @@ struct ObjectBox {
   Vec3d size_m;                   ///< length, width, height
 };
 
+/// Objects in scans, and their poses: ObjectSighting::first_knot is an index of `knots`.
+struct ObjectSightings {
+  std::vector<ObjectSighting> objects;
+  std::vector<ObjectPose> knots;
+
+  void clear() {
+    objects.clear();
+    knots.clear();
+  }
+};
+
 /// What moves in a place and what was put there: cast apart from the place itself, object by
 /// object, so that its cost is up to the objects that a scan can see, not to those of all other
 /// scans.
 class World {
  public:
   /// `first_primitive`: of the first object, which is the number of primitives of the place.
-  /// `scene_origin`: world coordinates of the place's local origin. Tracers are built on
-  /// `executor`, which must outlive the adding of geometries.
-  World(std::uint32_t first_primitive, Vec3d scene_origin, const Executor& executor);
+  /// `scene_origin`: world coordinates of the place's local origin.
+  World(std::uint32_t first_primitive, Vec3d scene_origin);
   ~World();
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
@@ -76,6 +87,18 @@ class World {
   void add_hits(std::uint64_t scan_index, const LidarModel& sensor, std::span<const Firing> firings,
                 const ScanMotion& motion, double scan_duration_s, int depth, std::span<Hit> hits,
                 const Executor& executor) const;
+
+  /// Appends the objects that are there in a scan, in the order in which they were added: what a
+  /// device needs to cast them as add_hits() does.
+  void sight(std::uint64_t scan_index, const ScanMotion& motion, double scan_duration_s,
+             ObjectSightings& all) const;
+  std::size_t geometry_count() const;
+  SceneView geometry_view(std::size_t geometry) const;
+  /// Whether objects that are there in many scans are made of it.
+  bool is_in_all_scans(std::size_t geometry) const;
+  /// Another one for every world, and after every geometry or object that is added: who keeps what
+  /// was made of it knows by it whether that still holds.
+  std::shared_ptr<const int> identity() const;
 
   /// What primitives of the place and of the objects carry: `place` continued; views of this world.
   /// What some objects or the place lack is 0 for them (intensities: NaN).

@@ -33,7 +33,7 @@ class WorldFileTest : public testing::Test {
     return read_world_file(folder_.write("world.toml", content));
   }
   World filled(const std::string& content) const {
-    World world(0, {}, executor_);
+    World world(0, {});
     add_objects(world, read(content), semantickitti_labels());
     return world;
   }

@@ -116,7 +116,7 @@ class WorldTest : public testing::Test {
     world.add_hits(scan, sensor_, firings_, motion, kRevolution_s, depth, hits, executor_);
     return hits;
   }
-  World world() const { return {kPlacePrimitives, kSceneOrigin, executor_}; }
+  static World world() { return {kPlacePrimitives, kSceneOrigin}; }
   /// After the middle of the scan.
   double time_of(const Firing& firing) const {
     return static_cast<double>(firing.time_s) - 0.5 * kRevolution_s;
@@ -415,7 +415,7 @@ TEST_F(WorldTest, SameBytesOnAnyThreads) {
 }
 
 TEST_F(WorldTest, AttributesGoOnWhereThoseOfThePlaceEnd) {
-  World world(2, {}, executor_);
+  World world(2, {});
   SplatModel splats;
   splats.disks.resize(3, {{0, 0, 0}, 1, {1, 0, 0}});
   splats.classes = {252, 254, 252};
@@ -454,7 +454,7 @@ TEST_F(WorldTest, AttributesGoOnWhereThoseOfThePlaceEnd) {
 }
 
 TEST_F(WorldTest, AttributesThatNobodyHasStayEmpty) {
-  World world(2, {}, executor_);
+  World world(2, {});
   EXPECT_TRUE(world.empty());
   const std::vector<std::uint16_t> classes = {40, 50};
   PrimitiveAttributes place;
@@ -518,7 +518,7 @@ TEST_F(WorldTest, ObjectsThatMakeNoSense) {
   EXPECT_THROW(world.add_object(object(1, {{0, {}}})), std::logic_error);
   EXPECT_THROW(world.add_geometry(SplatModel{}, {1}), std::logic_error);
   EXPECT_TRUE(world.empty());
-  World full(Hit::kNone - 2, {}, executor_);
+  World full(Hit::kNone - 2, {});
   EXPECT_THROW(full.add_object(object(full.add_geometry(wall_mesh(1, 1)), {{0, {}}})), Error);
 }
 
@@ -543,7 +543,7 @@ TEST_F(WorldTest, CasterAddsTheWorldToThePlace) {
   ground.disks = {{{0, 0, -2}, 90, {0, 0, 1}}};
   const auto tracer = make_brute_force_tracer(ground.view());
   const auto place = make_cpu_scan_caster(*tracer, kSceneOrigin, executor_);
-  World world(1, kSceneOrigin, executor_);
+  World world(1, kSceneOrigin);
   WorldObject box = object(world.add_geometry(box_mesh({1, 1, 2})), {{0, pose(8, 0, 0)}});
   box.only_scan = 11;
   world.add_object(box);

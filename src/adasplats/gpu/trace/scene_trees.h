@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "adasplats/gpu/trace/wide_tree.h"
+#include "adasplats/scene/scene.h"
+
+namespace adasplats::gpu {
+
+/// Private to gpu/: what a kernel needs of the trees of a scene.
+struct TreesView {
+  TreeView<LeafDisk> disks;
+  TreeView<LeafTriangle> triangles;
+};
+
+/// The trees of a scene's disks and triangles on one device.
+struct SceneTrees {
+  WideTree<LeafDisk> disks;
+  WideTree<LeafTriangle> triangles;
+
+  TreesView view() const { return {disks.view(), triangles.view()}; }
+};
+
+/// On the current device; complete when this returns. Primitives are numbered as hits are. Errors:
+/// data (more of them than can be told apart).
+SceneTrees build_scene_trees(const SceneView& scene, const TreeOptions& options,
+                             cudaStream_t stream);
+
+}  // namespace adasplats::gpu

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "adasplats/core/maths/ray.h"
+#include "adasplats/core/maths/vec3.h"
+
+namespace adasplats {
+
+/// Where an object is at one moment of a scan.
+struct ObjectPose {
+  Vec3d rows[3];     ///< of the rotation, object from world
+  Vec3d offset;      ///< from the object to the place's local origin, world axes, m
+  double share = 0;  ///< of the revolution that is over then
+};
+
+/// An object in one scan: all that its rays and hits are made from, on the CPU and on GPUs.
+struct ObjectSighting {
+  Vec3d center;           ///< of a sphere that holds it during the scan, relative to the place's
+  double radius_m = 0;    ///< local origin, m
+  Vec3d geometry_origin;  ///< of its geometry's local frame, in the object's
+  double scale = 1;       ///< m per unit of the geometry
+  float first_share = 0;  ///< of the revolution, from which it is there...
+  float last_share = 1;   ///< ...to which
+  std::uint32_t geometry = 0;
+  std::uint32_t first_primitive = 0;  ///< in the world
+  std::uint32_t first_knot = 0;       ///< its poses by ascending shares: in ObjectSightings
+  std::uint32_t knot_count = 1;       ///< one: it stands still
+};
+
+/// A ray in the frame and unit of an object's geometry. It begins where it comes near the object,
+/// so that objects in millimetres, say, do not ask for more digits than floats have.
+struct ObjectRay {
+  Ray ray;
+  double begin_m = 0;  ///< of the scan's ray, where this one begins
+};
+
+/// Where a ray comes into a sphere, m, not below 0; negative where it does not within its length.
+ADASPLATS_HD inline double entry_m(const Ray& ray, Vec3d center, double radius_m) {
+  constexpr double kNever = -1;
+  const Vec3d to_center = center - vec_cast<double>(ray.origin);
+  const double along = dot(to_center, vec_cast<double>(ray.direction));
+  const double squared_half = radius_m * radius_m - (dot(to_center, to_center) - along * along);
+  if (!(squared_half >= 0)) return kNever;
+  const double half = std::sqrt(squared_half);
+  if (along + half < 0 || along - half > static_cast<double>(ray.t_max)) return kNever;
+  return along - half > 0 ? along - half : 0;
+}
+
+inline ADASPLATS_HD Vec3d turned(const ObjectPose& pose, Vec3d v) {
+  return {dot(pose.rows[0], v), dot(pose.rows[1], v), dot(pose.rows[2], v)};
+}
+
+/// A distance along the scan's ray in the unit of the geometry, from where the object's ray begins.
+ADASPLATS_HD inline double in_object(double t_m, double begin_m, double scale) {
+  return (t_m - begin_m) / scale;
+}
+
+/// The last of `count` knots, at least two, that has one behind it and is not behind `share`; the
+/// first where all are.
+ADASPLATS_HD inline std::uint32_t segment_of(const ObjectPose* knots, std::uint32_t count,
+                                             double share) {
+  std::uint32_t first = 0, behind = count - 1;
+  while (behind - first > 1) {
+    const std::uint32_t middle = (first + behind) / 2;
+    (knots[middle].share <= share ? first : behind) = middle;
+  }
+  return first;
+}
+
+/// THE ray of a firing that may meet an object, for every backend. `ray`: relative to the place's
+/// local origin; `share`: of the revolution, when it is fired. Between knots, half a degree apart
+/// at most, origins and directions are mixed linearly, as those of the sensor are. False: it
+/// misses.
+ADASPLATS_HD inline bool object_ray(const ObjectSighting& object, const ObjectPose* all_knots,
+                                    const Ray& ray, float share, ObjectRay& made) {
+  const double begin_m = entry_m(ray, object.center, object.radius_m);
+  if (begin_m < 0 || share < object.first_share || share > object.last_share) return false;
+  const Vec3d direction = vec_cast<double>(ray.direction);
+  const Vec3d begin = vec_cast<double>(ray.origin) + begin_m * direction;
+  const ObjectPose* const knots = all_knots + object.first_knot;
+  Vec3d from_object, along;
+  if (object.knot_count < 2) {
+    from_object = turned(knots[0], knots[0].offset + begin);
+    along = turned(knots[0], direction);
+  } else {
+    const std::uint32_t segment = segment_of(knots, object.knot_count, static_cast<double>(share));
+    const ObjectPose& from = knots[segment];
+    const ObjectPose& to = knots[segment + 1];
+    const double late = (static_cast<double>(share) - from.share) / (to.share - from.share);
+    const auto mixed = [late](Vec3d a, Vec3d b) { return (1 - late) * a + late * b; };
+    const Vec3d there = mixed(from.offset, to.offset) + begin;
+    from_object = mixed(turned(from, there), turned(to, there));
+    along = normalized(mixed(turned(from, direction), turned(to, direction)));
+  }
+  const Vec3d origin = from_object / object.scale - object.geometry_origin;
+  const auto least =
+      static_cast<float>(in_object(static_cast<double>(ray.t_min), begin_m, object.scale));
+  const auto most =
+      static_cast<float>(in_object(static_cast<double>(ray.t_max), begin_m, object.scale));
+  made = {{vec_cast<float>(origin), least > 0.0F ? least : 0.0F, vec_cast<float>(along), most},
+          begin_m};
+  return true;
+}
+
+/// A hit of an object's ray as one of the scan's; none where rounding takes it out of its range.
+ADASPLATS_HD inline Hit scan_hit(Hit found, const ObjectSighting& object, double begin_m,
+                                 const Ray& ray) {
+  if (!found.valid()) return {};
+  const auto t = static_cast<float>(begin_m + object.scale * static_cast<double>(found.t));
+  const bool in_range = t > ray.t_min && t <= ray.t_max;
+  return in_range ? Hit{t, object.first_primitive + found.primitive} : Hit{};
+}
+
+}  // namespace adasplats
