@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <unordered_map>
@@ -82,6 +83,21 @@ std::size_t World::add_geometry(Place geometry, std::vector<std::uint16_t> insta
   impl_->lasting.push_back(false);
   impl_->identity = std::make_shared<int>(0);
   return impl_->geometries.size() - 1;
+}
+
+std::size_t World::add_geometries(std::size_t count, FunctionRef<NewGeometry(std::size_t)> made,
+                                  const Executor& executor) {
+  std::vector<std::unique_ptr<ObjectGeometry>> added(count);
+  executor.for_chunks(count, 1, [&](std::size_t i, std::size_t) {
+    NewGeometry geometry = made(i);
+    added[i] =
+        std::make_unique<ObjectGeometry>(std::move(geometry.place), std::move(geometry.instances));
+  });
+  const std::size_t first = impl_->geometries.size();
+  std::ranges::move(added, std::back_inserter(impl_->geometries));
+  impl_->lasting.resize(first + count, false);
+  impl_->identity = std::make_shared<int>(0);
+  return first;
 }
 
 void World::add_object(WorldObject object) {

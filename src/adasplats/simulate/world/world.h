@@ -11,6 +11,7 @@
 
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/executor.h"
+#include "adasplats/core/function_ref.h"
 #include "adasplats/core/maths/ray.h"
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/simulate/scan/scan_caster.h"
@@ -35,6 +36,13 @@ struct WorldObject {
   double scale = 1;
   std::optional<std::uint16_t> class_id;  ///< instead of the geometry's classes
   std::uint16_t instance = 0;             ///< 0: the geometry's instances, if it has any
+};
+
+/// What an object is made of. `instances`: one a primitive, or empty; with them a geometry is the
+/// points of many objects, which has no box.
+struct NewGeometry {
+  Place place;
+  std::vector<std::uint16_t> instances;
 };
 
 /// A box around an object, as data sets of objects have it.
@@ -68,9 +76,12 @@ class World {
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
-  /// Geometries are numbered in the order in which they come. `instances`: one a primitive, or
-  /// empty; with them a geometry is the points of many objects, which has no box.
+  /// Geometries are numbered in the order in which they come.
   std::size_t add_geometry(Place geometry, std::vector<std::uint16_t> instances = {});
+  /// `count` of them at once, the i-th of made(i), which several threads call; gives the number of
+  /// the first.
+  std::size_t add_geometries(std::size_t count, FunctionRef<NewGeometry(std::size_t)> made,
+                             const Executor& executor);
   /// Errors: usage (no poses, times that do not ascend, a scale that is not positive); data (more
   /// primitives than have numbers); std::logic_error (no such geometry).
   void add_object(WorldObject object);

@@ -522,6 +522,40 @@ TEST_F(WorldTest, ObjectsThatMakeNoSense) {
   EXPECT_THROW(full.add_object(object(full.add_geometry(wall_mesh(1, 1)), {{0, {}}})), Error);
 }
 
+// Oracle: one geometry after the other.
+TEST_F(WorldTest, GeometriesThatAreMadeAtOnceAreNumberedInTheirOrder) {
+  constexpr std::size_t kCount = 40;
+  const auto box = [](std::size_t i) {
+    const float half = 0.5F + 0.02F * static_cast<float>(i);
+    return box_mesh({half, half, half});
+  };
+  const auto add_boxes = [](World& world, std::size_t first) {
+    for (std::size_t i = 0; i < kCount; ++i) {
+      WorldObject placed = object(first + i, {{0, pose(8, 0.1 * static_cast<double>(i), 0)}});
+      placed.only_scan = i;
+      world.add_object(std::move(placed));
+    }
+  };
+  World single = world(), several = world();
+  single.add_geometry(wall_mesh(1, 1));
+  for (std::size_t i = 0; i < kCount; ++i) single.add_geometry(box(i));
+  add_boxes(single, 1);
+  several.add_geometry(wall_mesh(1, 1));
+  const std::size_t first = several.add_geometries(
+      kCount,
+      [&](std::size_t i) {
+        return NewGeometry{box(i), {}};
+      },
+      executor_);
+  ASSERT_EQ(first, 1U);
+  add_boxes(several, first);
+  for (std::size_t scan = 0; scan < kCount; ++scan) {
+    const std::vector<Hit> hits = hits_of(several, standing(), scan);
+    EXPECT_NE(hits, nothing());
+    EXPECT_EQ(hits, hits_of(single, standing(), scan));
+  }
+}
+
 TEST_F(WorldTest, NothingInManyForms) {
   World world = this->world();
   EXPECT_EQ(hits_of(world, standing()), nothing());
