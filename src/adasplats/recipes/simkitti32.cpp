@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <utility>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/dataset/parallel_scan_writer.h"
 #include "adasplats/dataset/scan_values.h"
@@ -245,26 +247,36 @@ class Simulation {
 
   std::size_t add_moving(std::span<const std::size_t> scans, const IntensityResponse* response,
                          World& world) const {
-    session_.progress.begin_step("splats of what moves", scans.size());
-    MovingSplatOptions options;
-    options.radius_m = job_.moving_radius_m;
-    std::size_t splats = 0;
-    for (const std::size_t scan : scans) {
-      const std::size_t number = source_.numbers[scan];
-      MovingSplats moving = moving_splats(read_kitti_scan(source_.sequence, number), labels_,
-                                          options, session_.executor);
-      session_.progress.advance(scan + 1);
-      if (moving.splats.size() == 0) continue;
-      splats += moving.splats.size();
-      if (response != nullptr) to_reflectances(moving.splats, *response);
+    session_.progress.begin_step("splats of what moves", kPassUnits);
+    std::vector<std::size_t> splats(scans.size());
+    std::size_t first = 0;
+    {
+      const ProgressPass pass(session_.executor, scans.size());
+      first = world.add_geometries(scans.size(), [&](std::size_t k) {
+        MovingSplats moving = moving_in(source_.numbers[scans[k]]);
+        splats[k] = moving.splats.size();
+        if (response != nullptr) to_reflectances(moving.splats, *response);
+        return NewGeometry{std::move(moving.splats), std::move(moving.instances)};
+      });
+    }
+    for (std::size_t k = 0; k < scans.size(); ++k) {
+      if (splats[k] == 0) continue;
+      const std::size_t number = source_.numbers[scans[k]];
       WorldObject object;
-      object.geometry = world.add_geometry(std::move(moving.splats), std::move(moving.instances));
+      object.geometry = first + k;
       object.trajectory = {source_.sequence.trajectory[number]};
       object.only_scan = number;
       world.add_object(std::move(object));
     }
     session_.progress.end_step();
-    return splats;
+    return std::accumulate(splats.begin(), splats.end(), std::size_t{0});
+  }
+
+  MovingSplats moving_in(std::size_t number) const {
+    MovingSplatOptions options;
+    options.radius_m = job_.moving_radius_m;
+    return moving_splats(read_kitti_scan(source_.sequence, number), labels_, options,
+                         session_.executor);
   }
 
   /// The place has reflectances; these are intensities as the sensor at zero measured them.
@@ -288,15 +300,49 @@ class Simulation {
   std::unique_ptr<ScanWriter> writer_;
 };
 
-void count_classes(const fs::path& written, const Source& source, SimKitti32Result& result) {
+/// Counts of some scans; they add up.
+struct ClassCounts {
+  std::map<std::uint16_t, ClassCount> by_class;
+
+  void operator+=(const ClassCounts& other) {
+    for (const auto& [id, count] : other.by_class) {
+      by_class[id].original += count.original;
+      by_class[id].simulated += count.simulated;
+    }
+  }
+};
+
+/// How many points of a label file each class has.
+void count_labels(const fs::path& file, std::vector<std::size_t>& of_class) {
+  for (const std::uint32_t label : read_kitti_labels(file)) ++of_class[label & 0xffff];
+}
+
+void count_classes(const fs::path& written, const Source& source, Session& session,
+                   SimKitti32Result& result) {
+  constexpr std::size_t kClasses = 1 << 16, kScansAtOnce = 8;
   const KittiSequence simulated = open_kitti_sequence(written);
-  for (std::size_t i = 0; i < simulated.scans.size(); ++i) {
-    for (const std::uint16_t id : read_kitti_scan(simulated, i).classes)
-      ++result.by_class[id].simulated;
-    for (const std::uint16_t id : read_kitti_scan(source.sequence, source.numbers[i]).classes)
-      ++result.by_class[id].original;
+  session.progress.begin_step("count", kPassUnits);
+  const auto of_scans = [&](std::size_t begin, std::size_t end) {
+    std::vector<std::size_t> originals(kClasses), simulateds(kClasses);
+    for (std::size_t i = begin; i < end; ++i) {
+      count_labels(source.sequence.labels[source.numbers[i]], originals);
+      count_labels(simulated.labels[i], simulateds);
+    }
+    ClassCounts counts;
+    for (std::size_t id = 0; id < kClasses; ++id) {
+      if (originals[id] == 0 && simulateds[id] == 0) continue;
+      counts.by_class[static_cast<std::uint16_t>(id)] = {originals[id], simulateds[id]};
+    }
+    return counts;
+  };
+  {
+    const ProgressPass pass(session.executor, simulated.labels.size());
+    result.by_class =
+        session.executor.sum_chunks(simulated.labels.size(), kScansAtOnce, ClassCounts{}, of_scans)
+            .by_class;
   }
   for (const auto& [id, count] : result.by_class) result.points += count.simulated;
+  session.progress.end_step();
 }
 
 Json classes_json(const SimKitti32Result& result, const LabelScheme& labels) {
@@ -344,8 +390,8 @@ SimKitti32Result run_simkitti32(const SimKitti32Job& job, Session& session) {
   SimKitti32Result result;
   Simulation(job, source, settings, folder, session).run(result);
   result.rays = result.scans * settings.sensor.rays_per_scan();
-  session.progress.begin_step("count", 0);
-  count_classes(folder.path() / "sequences" / source.name, source, result);
+  count_classes(folder.path() / "sequences" / source.name, source, session, result);
+  session.progress.begin_step("finish", 0);
   const std::vector<std::string> aids = job.keep_model || !fs::exists(folder.path() / kModelFile)
                                             ? std::vector<std::string>{}
                                             : std::vector<std::string>{kModelFile};
