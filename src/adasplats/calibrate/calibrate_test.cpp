@@ -198,6 +198,16 @@ TEST(Calibration, IsInterpolatedBetweenTheScansAround) {
   EXPECT_EQ(found->position, (Vec3d{3.1, 0.2, 0}));
 }
 
+TEST(Calibration, OffsetsOfLasersMoveNoScan) {
+  EXPECT_TRUE(drive_along_x().moves_scans());
+  Calibration calibration;
+  calibration.lasers.range_m = {0.01, 0.02};
+  calibration.poses.push_back({10, {}, {}, {}});
+  EXPECT_FALSE(calibration.moves_scans());
+  calibration.mount.shift_m.z = 0.1;
+  EXPECT_TRUE(calibration.moves_scans());
+}
+
 TEST(Calibration, IsHeldForOneScanBeyondItsEndsAndNotExtrapolated) {
   EXPECT_NEAR(drive_along_x().at(10.7, {7, 0, 0})->shift_m.x, 0.03, 1e-12);
   EXPECT_NEAR(drive_along_x().at(9.9, {-1, 0, 0})->shift_m.x, 0, 1e-12);

@@ -123,6 +123,12 @@ RigidTransform PoseCorrection::corrected_from_given() const {
   return moved_about(position, rotation_rad, shift_m);
 }
 
+bool Calibration::moves_scans() const {
+  return !mount.empty() || std::ranges::any_of(poses, [](const PoseCorrection& pose) {
+    return !(pose.rotation_rad == Vec3d{}) || !(pose.shift_m == Vec3d{});
+  });
+}
+
 std::optional<PoseCorrection> Calibration::at(double time_s, Vec3d position) const {
   for (const PoseCorrection& pose : poses)
     if (pose.time_s == time_s && pose.position == position) return pose;

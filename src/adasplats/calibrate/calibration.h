@@ -46,6 +46,8 @@ struct Calibration {
   double smooth_s = 0;
 
   bool empty() const { return mount.empty() && poses.empty() && lasers.empty(); }
+  /// Whether anything but offsets of lasers is corrected.
+  bool moves_scans() const;
 
   /// What a pose needs that was not estimated: that of the two scans around its time, or of the
   /// scans within `smooth_s`, where the given poses lead past its position. Nothing elsewhere:

@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/recipes/simulate_scans.h"
 
-#include <algorithm>
-#include <array>
-#include <cstdio>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
@@ -19,6 +15,7 @@
 #include "adasplats/pipeline/output/resumable_folder.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/recipes/no_returns.h"
 #include "adasplats/recipes/scan_folder.h"
 #include "adasplats/recipes/scan_manifest.h"
 
@@ -33,29 +30,12 @@ std::vector<EncodedFile> boxes_of(const ModelScene& scene, std::size_t index, co
   return encode_kitti_boxes("boxes", index, sensed_boxes(boxes, scan, scene.labels()));
 }
 
-/// "12.3".
-std::string decimetres(double metres) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.1f", metres);
-  return text.data();
-}
-
-/// Throws data where no ray met anything, with how far from the model the sensor was.
+/// Throws data where no ray met anything.
 void require_returns(const SimulateResult& result, const ModelScene& scene,
                      std::span<const ScanMotion> scans, const LidarModel& sensor) {
   if (result.hits != 0 || result.scans_resumed != 0) return;
-  const auto [low, high] = scene.middle_box();
-  double nearest_m = std::numeric_limits<double>::infinity();
-  for (const ScanMotion& scan : scans) {
-    const Vec3d at = scan.reference.world_from_sensor.translation;
-    nearest_m = std::min(nearest_m, length(max(max(low - at, at - high), Vec3d{})));
-  }
-  throw Error(ErrorKind::data,
-              "no returns: none of " + std::to_string(result.rays) + " rays in " +
-                  std::to_string(result.scans) + " scans met anything; the sensor was " +
-                  decimetres(nearest_m) + " m from the model's box at its nearest and sees " +
-                  decimetres(sensor.min_range_m) + " to " + decimetres(sensor.max_range_m) +
-                  " m (are trajectory and model in one frame? offset and mount shift it)");
+  throw_no_returns(result.rays, scene, scans, sensor,
+                   "are trajectory and model in one frame? offset and mount shift it");
 }
 
 ScanWriterOptions writing_options(const ScanSimulator& simulator, PointOrder order) {

@@ -85,10 +85,14 @@ HeldOutPoses calibrate_held_out(const ModelScene& scene, KittiSequence& sequence
   const SplatModel* model = scene.splats();
   if (model == nullptr || model->calibration.empty()) return HeldOutPoses::as_given;
   if (apply(model->calibration, sequence)) return HeldOutPoses::interpolated;
-  progress.warn(sequence.folder.string() +
-                ": its scans are not of the drive that the model was calibrated with (by their "
-                "times and places), so their poses are taken as given");
+  progress.warn(not_of_calibrated_drive(sequence.folder) + ", so their poses are taken as given");
   return HeldOutPoses::not_covered;
+}
+
+std::string not_of_calibrated_drive(const std::filesystem::path& folder) {
+  return folder.string() +
+         ": its scans are not of the drive that the model was calibrated with (by their times and "
+         "places)";
 }
 
 HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequence,

@@ -60,6 +60,9 @@ inline Words<HeldOutPoses> words_of(HeldOutPoses) { return kHeldOutPoses; }
 HeldOutPoses calibrate_held_out(const ModelScene& scene, KittiSequence& sequence,
                                 ProgressSink& progress);
 
+/// "FOLDER: its scans are not of the drive that the model was calibrated with".
+std::string not_of_calibrated_drive(const std::filesystem::path& folder);
+
 /// What held-out beams say of a model.
 struct HeldOutResult : ResimulateResult {
   HeldOutPoses poses = HeldOutPoses::as_given;
