@@ -333,6 +333,7 @@ def simkitti32(
     fog: float | None = None,
     snow: float = 0.0,
     white_intensity: float = 1.0,
+    model: Path | None = None,
     ray_drop: Path | None = None,
     overwrite: bool = False,
     device: Device = "auto",

@@ -53,8 +53,9 @@ constexpr const char* kSimKitti32Doc =
     "on\n"
     "where it stopped. offset: of the sensor in world axes, m; noise: of ranges, m; depth: hits of "
     "a\n"
-    "ray that are averaged; moving: simulate what moves, too. Gives the report as a dict. Raises\n"
-    "ValueError, OSError.";
+    "ray that are averaged; moving: simulate what moves, too. model: the static model, instead of "
+    "one\n"
+    "that is made of the scans. Gives the report as a dict. Raises ValueError, OSError.";
 
 constexpr const char* kCompareDoc =
     "Compare all methods on the same data with the same rays.\n\n"
@@ -192,6 +193,7 @@ struct SimKitti32Call {
     keywords.take("labels", job.labels);
     take_scan_range(keywords, job.scans);
     take_settings(keywords, job);
+    keywords.take("model", job.model);
     keywords.take("ray_drop", job.ray_drop);
     keywords.take("overwrite", job.overwrite);
     work.has_seed = true;

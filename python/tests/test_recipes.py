@@ -102,6 +102,20 @@ def test_simkitti32(street, tmp_path):
         adasplats.simkitti32(street.sequence, tmp_path / "here")
 
 
+def test_simkitti32_takes_a_model(street, tmp_path):
+    def make(name, **options):
+        return adasplats.simkitti32(street.sequence, tmp_path / name, sensor=street.sensor,
+                                    scan_count=2, device="cpu", **options)
+
+    made = make("made", keep_model=True)
+    model = tmp_path / "made" / "model.ply"
+    assert make("given", model=model)["points"] == made["points"]
+    with pytest.raises(ValueError, match="holds the input"):
+        make("made", model=model, overwrite=True)
+    with pytest.raises(ValueError, match="model_every has no effect with a model that is given"):
+        make("no", model=model, model_every=2)
+
+
 def test_simkitti32_has_the_weather_and_the_drop_of_simulate(street, tmp_path):
     def points(name, **options):
         return adasplats.simkitti32(street.sequence, tmp_path / name, sensor=street.sensor,

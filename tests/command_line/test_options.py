@@ -139,6 +139,8 @@ class OptionsTest(ProgramTest):
                     "--label-field", "label")
         self.refuse("--moving-radius", "simkitti32", sequence, "-o", self.folder / "out",
                     "--no-moving", "--moving-radius", "0.2")
+        self.refuse("--model-every", "simkitti32", sequence, "-o", self.folder / "out", "--model",
+                    model, "--model-every", "2")
         self.refuse("--most-driving-scans", "synth", "street", "-o", self.folder / "out",
                     "--driving-spacing", "0", "--most-driving-scans", "3")
 

@@ -13,7 +13,8 @@ import time
 import unittest
 from pathlib import Path
 
-from support import BUILDING, POLE, PROGRAM, ROAD, ProgramTest, tiny_place, tree_digest
+from support import (BUILDING, POLE, PROGRAM, ROAD, ProgramTest, tiny_place, tree_digest,
+                     write_cloud)
 
 MOVING_CAR = 252
 INSTANCE = 7
@@ -120,7 +121,7 @@ def nearest_classes(points, originals):
     return found
 
 
-class SimKitti32(ProgramTest):
+class SequenceTest(ProgramTest):
     def setUp(self):
         super().setUp()
         self.sequence = self.folder / "dataset ü" / "sequences" / "04"
@@ -132,6 +133,8 @@ class SimKitti32(ProgramTest):
         return ["simkitti32", self.sequence, "-o", output or self.output, "--sensor", self.sensor,
                 *arguments]
 
+
+class SimKitti32(SequenceTest):
     def test_read_back(self):
         report = self.report(*self.command())
         original = Sequence(self.sequence)
@@ -289,6 +292,121 @@ class SimKitti32(ProgramTest):
         (self.sequence / "labels").rmdir()
         self.run_bad(65, *self.command(), says=["labels"])
         self.assertFalse(self.output.exists() or self.unfinished.exists())
+
+
+def with_comments(model, comments):
+    """The bytes of a model with more lines in its header."""
+    head, body = model.read_bytes().split(b"\nend_header\n", 1)
+    lines = "".join(f"\ncomment adasplats.calibration_{line}" for line in comments)
+    return head + lines.encode() + b"\nend_header\n" + body
+
+
+def pose_comment(index, shift_x, time_s=None):
+    place = " ".join(repr(pose_of(index)[i][3]) for i in range(3))
+    return f"pose {0.1 * index if time_s is None else time_s} {place} 0 0 0 {shift_x} 0 0"
+
+
+class GivenModel(SequenceTest):
+    def setUp(self):
+        super().setUp()
+        made = self.folder / "made"
+        self.run_good(*self.command("--keep-model", output=made))
+        self.made = made
+        self.place = self.folder / "place.ply"
+        self.place.write_bytes((made / "model.ply").read_bytes())
+
+    def given(self, *arguments, **options):
+        return self.command("--model", self.place, *arguments, **options)
+
+    def calibrated(self, *comments):
+        self.place.write_bytes(with_comments(self.made / "model.ply", comments))
+
+    def refuse(self, code, *arguments, says):
+        self.run_bad(code, *self.given(*arguments), says=says)
+        self.assertFalse(self.output.exists() or self.unfinished.exists())
+
+    def test_same_scans_as_with_the_model_that_is_made(self):
+        before = self.place.read_bytes(), self.place.stat().st_mtime_ns
+        report = self.report(*self.given())
+        self.assertNotIn("model", report)
+        for part in ["sequences", "poses"]:
+            self.assertEqual(tree_digest(self.output / part), tree_digest(self.made / part))
+        self.assertFalse((self.output / "model.ply").exists())
+        manifest = json.loads((self.output / "adasplats.json").read_text())
+        digest = hashlib.sha256(before[0]).hexdigest()
+        self.assertEqual(manifest["model"], {"sha256": digest, "poses": "as given"})
+        self.assertFalse({"method", "model_every", "keep_model"} & set(manifest))
+        self.run_good(*self.given("--overwrite"))
+        self.assertEqual((self.place.read_bytes(), self.place.stat().st_mtime_ns), before)
+
+    def test_another_model_does_not_go_on(self):
+        self.run_good(*self.given())
+        whole = tree_digest(self.output)
+        self.output.rename(self.unfinished)  # as a run that was killed near its end leaves it
+        model = self.place.read_bytes()
+        self.calibrated("smooth_s 0")
+        self.run_bad(73, *self.given(), says=["model.sha256 was", ".out.unfinished"])
+        self.run_bad(73, *self.command(), says=[".out.unfinished"])
+        self.place.write_bytes(model)
+        self.run_good(*self.given())
+        self.assertEqual(tree_digest(self.output), whole)
+
+    def test_how_a_model_is_made_has_no_effect(self):
+        for words in [["--method", "basic"], ["--model-every", "2"], ["--keep-model"]]:
+            self.refuse(64, *words, says=[words[0], "has no effect with a model that is given"])
+        kept = self.made / "model.ply"
+        self.run_bad(64, *self.command("--model", kept, "--overwrite", output=self.made),
+                     says=["holds the input"])
+        self.assertTrue(kept.exists())
+
+    def test_scans_stand_where_a_calibrated_model_has_them(self):
+        # Of the first and the last scan; the others are between them.
+        self.calibrated("mount 0 0 0 0.05 0 0", "smooth_s 0", pose_comment(0, 0.5),
+                        pose_comment(SCANS - 1, 1.0))
+        self.run_good(*self.given("--noise", "0"))
+        manifest = json.loads((self.output / "adasplats.json").read_text())
+        self.assertEqual(manifest["model"]["poses"], "calibration interpolated")
+        simulated = Sequence(self.output / "sequences" / "04")
+        for k in range(SCANS):
+            pose = pose_of(k)
+            moved = [0.05 * pose[0][0] + 0.5 + 0.1 * k, 0.05 * pose[1][0], -0.5]
+            for i in range(3):
+                self.assertAlmostEqual(simulated.poses[k][i][3], pose[i][3] + moved[i], delta=1e-9)
+            cars = [point for point, label in zip(simulated.world(k), simulated.classes(k))
+                    if label == MOVING_CAR]
+            self.assertGreater(len(cars), 10)
+            for point in cars:
+                self.assertAlmostEqual(point[0], 6.5 + k + moved[0], delta=0.1)
+        # A part of the sequence that the calibration is of, too.
+        self.calibrated("smooth_s 0", pose_comment(1, 0.5), pose_comment(3, 0.5))
+        self.run_good(*self.given("--overwrite", "--scans", "1:3"))
+
+    def test_calibration_of_another_drive(self):
+        elsewhere = ["smooth_s 0", pose_comment(0, 0.1, 70), pose_comment(5, 0.1, 71)]
+        self.calibrated(*elsewhere)
+        self.refuse(65, says=["its scans are not of the drive that the model was calibrated with"])
+        # Offsets of lasers alone move no scan, of whatever drive.
+        offsets = " ".join(["0.01"] * 64)
+        elsewhere = [line.replace(" 0.1 0 0", " 0 0 0") for line in elsewhere]
+        self.calibrated(f"range_offsets_m {offsets}", f"elevation_offsets_rad {offsets}",
+                        *elsewhere)
+        self.run_good(*self.given())
+        self.assertEqual(tree_digest(self.output / "sequences"),
+                         tree_digest(self.made / "sequences"))
+
+    def test_model_of_another_place(self):
+        write_cloud(self.cloud, [(x + 1000, y, z, label) for x, y, z, label in tiny_place()])
+        self.place = self.model("far.ply", "--no-calibrate")
+        self.refuse(65, says=["no returns", f"in {SCANS} scans", "m from the model's box"])
+
+    def test_models_that_cannot_be_used(self):
+        write_cloud(self.cloud, tiny_place(), labels=False)
+        self.run_good("model", self.cloud, "-o", self.place)
+        self.refuse(65, says=["place.ply", "has no classes"])
+        self.place.write_text("ply\n")
+        self.refuse(65, says=["place.ply"])
+        self.place.unlink()
+        self.refuse(66, says=["place.ply"])
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ constexpr const char* kSimkitti32Examples =
     "  adasplats simkitti32 dataset/sequences/08 -o simkitti32\n"
     "  adasplats simkitti32 sequences/00 -o vlp16 --sensor velodyne-vlp-16 --offset 0,0,0\n"
     "  adasplats simkitti32 sequences/08 -o part --scans 0:500 --model-every 2\n"
+    "  adasplats simkitti32 sequences/08 -o made --model model.ply  # model ... --remove moving\n"
     "Interrupted (Ctrl-C, kill -9), the same command goes on where it stopped and gives the same\n"
     "bytes. What the data set is and how it was made is in adasplats.json.\n";
 
@@ -38,6 +39,10 @@ class SimKitti32Command final : public Command {
         ->capture_default_str()
         ->type_name("SCHEME");
     add_settings(app, job_);
+    add_path(app, "--model", job_.model,
+             "This one instead of one that is made of the scans, with its classes; where it is "
+             "calibrated, scans stand at the poses that it corrected")
+        ->group("Static model");
     add_path(app, "--ray-drop", job_.ray_drop,
              "Beams that get lost as a real sensor's: a file of 'adasplats fit-drop'");
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
@@ -17,11 +19,15 @@
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/scan_writer.h"
 #include "adasplats/io/base/sha256.h"
+#include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
+#include "adasplats/pipeline/output/output_check.h"
+#include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/output/resumable_folder.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/scene/scan_simulator.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/pipeline/session/settings_json.h"
+#include "adasplats/recipes/no_returns.h"
 #include "adasplats/recipes/scan_manifest.h"
 #include "adasplats/simulate/world/moving_points.h"
 #include "adasplats/simulate/world/world.h"
@@ -31,6 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+constexpr const char* kSimKitti32 = "simkitti32";
 const std::string kModelFile = "model.ply";
 
 /// The part of a sequence that is simulated: scan i of the output is scan numbers[i] of the input.
@@ -38,6 +45,8 @@ struct Source {
   KittiSequence sequence;
   std::vector<std::size_t> numbers;
   std::string name;  ///< of the output's sequence folder
+  Trajectory poses;  ///< of the sensor that measured scan i, where the static model is right
+  HeldOutPoses poses_are = HeldOutPoses::as_given;
 };
 
 /// "08" for ".../sequences/08"; folders of other names become 00.
@@ -52,14 +61,66 @@ std::string sequence_name(const fs::path& folder) {
 Source open_source(const SimKitti32Job& job, const Executor& executor) {
   require_input(job.sequence);
   const fs::path folder = resolve_cloud_input(job.sequence);
-  Source source{open_kitti_sequence(folder), {}, sequence_name(folder)};
+  Source source;
+  source.sequence = open_kitti_sequence(folder);
+  source.name = sequence_name(folder);
   require_poses_that_fit(source.sequence, executor);
   if (source.sequence.labels.empty())
     throw Error(ErrorKind::data, folder.string() +
                                      ": has no labels/, which say what moves and what simulated "
                                      "points are");
   source.numbers = chosen_scans(job.scans, source.sequence.scans.size(), folder);
+  for (const std::size_t number : source.numbers)
+    source.poses.push_back(source.sequence.trajectory[number]);
   return source;
+}
+
+/// Where the simulated sensor stands.
+std::vector<ScanMotion> motions_of(const SimKitti32Job& job, const Source& source) {
+  return still_scans(shifted(source.poses, job.offset_m));
+}
+
+/// Brings the scans to where a given model has them.
+void take_calibration(const ModelScene& given, Source& source) {
+  const SplatModel* const model = given.splats();
+  if (model == nullptr || !model->calibration.moves_scans()) return;
+  if (!apply(model->calibration, source.poses))
+    throw Error(ErrorKind::data, not_of_calibrated_drive(source.sequence.folder) +
+                                     ": nothing tells where in the model they are");
+  source.poses_are = HeldOutPoses::interpolated;
+}
+
+/// Throws data unless a ray of the first scans meets the place. What moves is not in it yet, which
+/// would be met wherever the place is.
+void require_in_view(const ModelScene& place, std::span<const ScanMotion> scans,
+                     const LidarModel& sensor) {
+  constexpr std::size_t kScans = 10;
+  const std::span<const ScanMotion> first = scans.first(std::min(kScans, scans.size()));
+  const std::vector<Firing> firings = firings_of(sensor);
+  for (const ScanMotion& scan : first) {
+    bool is_met = false;
+    place.scan_caster().cast(
+        sensor, firings, std::span(&scan, 1), 1, [&](std::size_t, std::span<const Hit> hits) {
+          is_met = std::ranges::any_of(hits, [](const Hit& hit) { return hit.valid(); });
+        });
+    if (is_met) return;
+  }
+  throw_no_returns(firings.size() * first.size(), place, first, sensor,
+                   "are sequence and model in one frame? offset shifts the sensor");
+}
+
+/// The model that a user gives, with the poses of `source` as it has them. Null: none is given.
+std::unique_ptr<ModelScene> open_given(const SimKitti32Job& job, const LidarModel& sensor,
+                                       Source& source, Session& session) {
+  if (job.model.empty()) return nullptr;
+  auto given = std::make_unique<ModelScene>(job.model, job.labels, session);
+  if (given->attributes().classes.empty())
+    throw Error(ErrorKind::data, job.model.string() +
+                                     ": has no classes, which simulated points get theirs from "
+                                     "(make it of points with labels)");
+  take_calibration(*given, source);
+  require_in_view(*given, motions_of(job, source), sensor);
+  return given;
 }
 
 /// SHA-256 of all files that the output depends on, by their names in the sequence folder.
@@ -72,16 +133,13 @@ Json input_hashes(const Source& source, Session& session) {
     files.push_back(sequence.scans[number]);
     files.push_back(sequence.labels[number]);
   }
-  constexpr std::size_t kBlock = 64;  // between two looks at whether the user wants to stop
-  session.progress.begin_step("hash the inputs", files.size());
+  session.progress.begin_step("hash the inputs", kPassUnits);
   std::vector<std::string> digests(files.size());
-  for (std::size_t first = 0; first < files.size(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, files.size() - first);
-    session.executor.for_chunks(count, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        digests[first + i] = sha256_of_file(files[first + i]);
+  {
+    const ProgressPass pass(session.executor, files.size());
+    session.executor.for_chunks(files.size(), 1, [&](std::size_t i, std::size_t) {
+      digests[i] = sha256_of_file(files[i]);
     });
-    session.progress.advance(first + count);
   }
   session.progress.end_step();
   Json hashes = Json::object();
@@ -90,8 +148,12 @@ Json input_hashes(const Source& source, Session& session) {
   return hashes;
 }
 
-/// The method and all of its settings.
-Json model_content(SplatMethod method) {
+/// The method and all of its settings, or which file it is.
+Json model_content(const SimKitti32Job& job, const Source& source) {
+  if (!job.model.empty())
+    return {{"sha256", sha256_of_file(job.model)},
+            {"poses", word_of(source.poses_are, kHeldOutPoses)}};
+  const SplatMethod method = job.method;
   Json json = {{"method", word_of(method, kSplatMethods)}};
   const ModelRecipe recipe = RecipeChoice{.method = method}.recipe();
   std::visit([&json](const auto& settings) { put_settings(settings, json); }, recipe);
@@ -108,7 +170,9 @@ Json content_of(const SimKitti32Job& job, const Source& source, const LidarModel
                   {"seed", session.seed}};
   put_settings(job, content);
   content["point_order"] = word_of(PointOrder::kitti, kPointOrders);
-  content["model"] = model_content(job.method);
+  for (const char* key : {"method", "model_every", "keep_model"})
+    if (!job.model.empty()) content.erase(key);
+  content["model"] = model_content(job, source);
   if (!job.ray_drop.empty()) content["ray_drop"] = sha256_of_file(job.ray_drop);
   content["inputs"] = input_hashes(source, session);
   return content;
@@ -117,16 +181,18 @@ Json content_of(const SimKitti32Job& job, const Source& source, const LidarModel
 /// Makes the scans that are not there yet.
 class Simulation {
  public:
+  /// `given`: the static model, or null where it is made.
   Simulation(const SimKitti32Job& job, const Source& source, const ScanSettings& settings,
-             ResumableFolder& folder, Session& session)
+             std::unique_ptr<ModelScene> given, ResumableFolder& folder, Session& session)
       : job_(job),
         source_(source),
+        scene_(std::move(given)),
         labels_(load_label_scheme(job.labels)),
         settings_(settings),
         folder_(folder),
         session_(session),
         sequence_(fs::path("sequences") / source.name),
-        scans_(still_scans(poses())),
+        scans_(motions_of(job, source)),
         writer_(prepared_writer()) {}
 
   void run(SimKitti32Result& result) {
@@ -134,7 +200,7 @@ class Simulation {
     result.scans = source_.numbers.size();
     result.scans_resumed = result.scans - missing.size();
     if (!missing.empty()) {
-      make_model(result);
+      if (!scene_) make_model(result);
       simulate(missing, result);
     } else {
       writer_->finish();
@@ -142,13 +208,6 @@ class Simulation {
   }
 
  private:
-  Trajectory poses() const {
-    Trajectory chosen;
-    for (const std::size_t number : source_.numbers)
-      chosen.push_back(source_.sequence.trajectory[number]);
-    return shifted(std::move(chosen), job_.offset_m);
-  }
-
   /// An attempt that was interrupted at its very end had been given the poses already.
   std::unique_ptr<ScanWriter> prepared_writer() const {
     fs::remove(folder_.path() / sequence_ / "poses.txt");
@@ -165,22 +224,34 @@ class Simulation {
   }
 
   std::vector<std::size_t> keep_what_is_there() {
-    session_.progress.begin_step("check what is there", source_.numbers.size());
+    const std::size_t count = source_.numbers.size();
+    session_.progress.begin_step("check what is there", kPassUnits);
+    std::vector<std::uint8_t> is_there(count);
+    {
+      const ProgressPass pass(session_.executor, count);
+      session_.executor.for_chunks(count, 1, [&](std::size_t i, std::size_t) {
+        is_there[i] = folder_.has(files_of(i)) ? 1 : 0;
+      });
+    }
     std::vector<std::size_t> missing;
-    for (std::size_t i = 0; i < source_.numbers.size(); ++i) {
-      if (folder_.has(files_of(i))) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (is_there[i] != 0) {
         writer_->keep(i, scans_[i].reference);
       } else {
         missing.push_back(i);
       }
-      session_.progress.advance(i + 1);
     }
     session_.progress.end_step();
     return missing;
   }
 
+  /// The model as its file has it, so that it does not matter whether this run made it.
   void make_model(SimKitti32Result& result) {
-    if (folder_.has(kModelFile)) return;
+    if (!folder_.has(kModelFile)) write_model(result);
+    scene_ = std::make_unique<ModelScene>(folder_.path() / kModelFile, job_.labels, session_);
+  }
+
+  void write_model(SimKitti32Result& result) {
     ModelFileJob model;
     model.inputs = {source_.sequence.folder};
     model.output = folder_.path() / kModelFile;
@@ -196,18 +267,16 @@ class Simulation {
     folder_.record(kModelFile);
   }
 
-  /// The model as its file has it, so that it does not matter whether this run made it.
   void simulate(std::span<const std::size_t> missing, SimKitti32Result& result) {
     const Stopwatch watch;
-    ModelScene scene(folder_.path() / kModelFile, job_.labels, session_);
     if (job_.moving) {
-      const IntensityResponse* const response = scene.attributes().response;
-      scene.add_objects(
+      const IntensityResponse* const response = scene_->attributes().response;
+      scene_->add_objects(
           [&](World& world) { result.moving_splats = add_moving(missing, response, world); });
     }
     ScanSettings settings = settings_;
     settings.fields = fields_of(ScanFormat::semantickitti);
-    ScanSimulator simulator(scene, std::move(settings), session_.executor);
+    ScanSimulator simulator(*scene_, std::move(settings), session_.executor);
     ParallelWriteOptions parallel;
     parallel.threads = session_.executor.threads();
     parallel.writes = FileWrites::in_place;
@@ -264,7 +333,7 @@ class Simulation {
       const std::size_t number = source_.numbers[scans[k]];
       WorldObject object;
       object.geometry = first + k;
-      object.trajectory = {source_.sequence.trajectory[number]};
+      object.trajectory = {source_.poses[scans[k]]};
       object.only_scan = number;
       world.add_object(std::move(object));
     }
@@ -291,6 +360,7 @@ class Simulation {
 
   const SimKitti32Job& job_;
   const Source& source_;
+  std::unique_ptr<ModelScene> scene_;  ///< of the static model, as soon as there is one
   LabelScheme labels_;
   const ScanSettings& settings_;
   ResumableFolder& folder_;
@@ -300,49 +370,15 @@ class Simulation {
   std::unique_ptr<ScanWriter> writer_;
 };
 
-/// Counts of some scans; they add up.
-struct ClassCounts {
-  std::map<std::uint16_t, ClassCount> by_class;
-
-  void operator+=(const ClassCounts& other) {
-    for (const auto& [id, count] : other.by_class) {
-      by_class[id].original += count.original;
-      by_class[id].simulated += count.simulated;
-    }
-  }
-};
-
-/// How many points of a label file each class has.
-void count_labels(const fs::path& file, std::vector<std::size_t>& of_class) {
-  for (const std::uint32_t label : read_kitti_labels(file)) ++of_class[label & 0xffff];
-}
-
-void count_classes(const fs::path& written, const Source& source, Session& session,
-                   SimKitti32Result& result) {
-  constexpr std::size_t kClasses = 1 << 16, kScansAtOnce = 8;
-  const KittiSequence simulated = open_kitti_sequence(written);
+void count(const fs::path& written, const Source& source, Session& session,
+           SimKitti32Result& result) {
+  std::vector<fs::path> originals;
+  for (const std::size_t number : source.numbers)
+    originals.push_back(source.sequence.labels[number]);
   session.progress.begin_step("count", kPassUnits);
-  const auto of_scans = [&](std::size_t begin, std::size_t end) {
-    std::vector<std::size_t> originals(kClasses), simulateds(kClasses);
-    for (std::size_t i = begin; i < end; ++i) {
-      count_labels(source.sequence.labels[source.numbers[i]], originals);
-      count_labels(simulated.labels[i], simulateds);
-    }
-    ClassCounts counts;
-    for (std::size_t id = 0; id < kClasses; ++id) {
-      if (originals[id] == 0 && simulateds[id] == 0) continue;
-      counts.by_class[static_cast<std::uint16_t>(id)] = {originals[id], simulateds[id]};
-    }
-    return counts;
-  };
-  {
-    const ProgressPass pass(session.executor, simulated.labels.size());
-    result.by_class =
-        session.executor.sum_chunks(simulated.labels.size(), kScansAtOnce, ClassCounts{}, of_scans)
-            .by_class;
-  }
-  for (const auto& [id, count] : result.by_class) result.points += count.simulated;
+  result.by_class = count_classes(originals, open_kitti_sequence(written).labels, session.executor);
   session.progress.end_step();
+  for (const auto& [id, of_class] : result.by_class) result.points += of_class.simulated;
 }
 
 Json classes_json(const SimKitti32Result& result, const LabelScheme& labels) {
@@ -374,23 +410,33 @@ ScanSettings settings_of(const SimKitti32Job& job, std::uint64_t seed) {
 
 std::vector<UnusedSetting> unused_settings(const SimKitti32Job& job) {
   std::vector<UnusedSetting> unused;
-  if (job.moving) return unused;
-  for (UnusedSetting& each : all_unused(job, "without what moves")) {
-    if (std::string_view(each.setting.name) == "moving_radius") unused.push_back(std::move(each));
-  }
+  const auto take = [&](bool has_no_effect, const std::set<std::string_view>& names,
+                        const char* why) {
+    if (!has_no_effect) return;
+    for (UnusedSetting& each : all_unused(job, why))
+      if (names.contains(each.setting.name)) unused.push_back(std::move(each));
+  };
+  take(!job.moving, {"moving_radius"}, "without what moves");
+  take(!job.model.empty(), {"method", "model_every", "keep_model"}, "with a model that is given");
   return unused;
 }
 
 SimKitti32Result run_simkitti32(const SimKitti32Job& job, Session& session) {
   const Stopwatch total;
   const ScanSettings settings = settings_of(job, session.seed);
-  const Source source = open_source(job, session.executor);
-  ResumableFolder folder(job.output, job.overwrite, "simkitti32",
+  if (!job.model.empty()) {
+    require_input(job.model);
+    require_folder_apart(job.output, std::span(&job.model, 1));
+  }
+  Source source = open_source(job, session.executor);
+  checked_output_folder(job.output, job.overwrite, kSimKitti32);  // before long work
+  std::unique_ptr<ModelScene> given = open_given(job, settings.sensor, source, session);
+  ResumableFolder folder(job.output, job.overwrite, kSimKitti32,
                          content_of(job, source, settings.sensor, session));
   SimKitti32Result result;
-  Simulation(job, source, settings, folder, session).run(result);
+  Simulation(job, source, settings, std::move(given), folder, session).run(result);
   result.rays = result.scans * settings.sensor.rays_per_scan();
-  count_classes(folder.path() / "sequences" / source.name, source, session, result);
+  count(folder.path() / "sequences" / source.name, source, session, result);
   session.progress.begin_step("finish", 0);
   const std::vector<std::string> aids = job.keep_model || !fs::exists(folder.path() / kModelFile)
                                             ? std::vector<std::string>{}

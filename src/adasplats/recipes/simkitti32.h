@@ -15,6 +15,7 @@
 #include "adasplats/pipeline/model/unused_settings.h"
 #include "adasplats/pipeline/session/scan_range.h"
 #include "adasplats/pipeline/session/session.h"
+#include "adasplats/recipes/class_counts.h"
 #include "adasplats/recipes/model_file.h"
 #include "adasplats/simulate/scan/returns.h"
 #include "adasplats/simulate/scan/weather.h"
@@ -31,12 +32,14 @@ struct SimKitti32Job {
   std::size_t model_every = 1;  ///< of those, every n-th makes the static model
   SplatMethod method = SplatMethod::consistent;
   std::string sensor = "hdl-32-paper";
-  Vec3d offset_m = {0, 0, -0.5};   ///< of the sensor, in world axes
-  double noise_m = 0.005;          ///< standard deviation of the range
-  int depth = 5;                   ///< D, hits of a ray that are averaged
-  bool moving = true;              ///< what moves is simulated, too
-  double moving_radius_m = 0.14;   ///< of the splats of what moves
-  bool keep_model = false;         ///< as model.ply beside the sequences
+  Vec3d offset_m = {0, 0, -0.5};  ///< of the sensor, in world axes
+  double noise_m = 0.005;         ///< standard deviation of the range
+  int depth = 5;                  ///< D, hits of a ray that are averaged
+  bool moving = true;             ///< what moves is simulated, too
+  double moving_radius_m = 0.14;  ///< of the splats of what moves
+  bool keep_model = false;        ///< as model.ply beside the sequences
+  /// The static model; empty: it is made of the scans, by `method` and `model_every`.
+  std::filesystem::path model;
   std::filesystem::path ray_drop;  ///< fitted model; empty: every echo is reported
   Weather weather;
   std::filesystem::path output;
@@ -88,12 +91,6 @@ void visit_settings(SimKitti32Job& job, Visit&& visit) {
 /// The settings that have no effect beside the others.
 std::vector<UnusedSetting> unused_settings(const SimKitti32Job& job);
 
-/// Points of one class in the sequence and in what was simulated.
-struct ClassCount {
-  std::size_t original = 0;
-  std::size_t simulated = 0;
-};
-
 struct SimKitti32Result {
   std::size_t scans = 0;
   std::size_t scans_resumed = 0;  ///< of them an interrupted run had written
@@ -101,14 +98,17 @@ struct SimKitti32Result {
   std::size_t points = 0;
   std::size_t moving_splats = 0;  ///< of the scans that this run wrote
   std::map<std::uint16_t, ClassCount> by_class;
-  std::optional<ModelResult> model;  ///< nothing where an interrupted run had made it
+  std::optional<ModelResult> model;  ///< nothing where it was given or an interrupted run made it
   double seconds_simulated = 0;
   double seconds = 0;
 };
 
 /// Makes the data set. Interrupted at any moment, the same job goes on where it stopped and gives
-/// the same bytes. Errors: data (no labels), usage (no scans), cannot_create (also where what was
-/// left unfinished is of another job, other inputs or another version).
+/// the same bytes. Scans that a given model was calibrated with, or between, stand at the poses
+/// that it was corrected to. Errors: data (no labels; a given model without classes, of another
+/// drive by its calibration, or that no ray of the first scans meets), usage (no scans),
+/// cannot_create (also where what was left unfinished is of another job, other inputs or another
+/// version).
 SimKitti32Result run_simkitti32(const SimKitti32Job& job, Session& session);
 
 /// The keys of its --report.
