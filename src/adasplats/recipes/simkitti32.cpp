@@ -321,12 +321,15 @@ class Simulation {
     std::size_t first = 0;
     {
       const ProgressPass pass(session_.executor, scans.size());
-      first = world.add_geometries(scans.size(), [&](std::size_t k) {
-        MovingSplats moving = moving_in(source_.numbers[scans[k]]);
-        splats[k] = moving.splats.size();
-        if (response != nullptr) to_reflectances(moving.splats, *response);
-        return NewGeometry{std::move(moving.splats), std::move(moving.instances)};
-      });
+      first = world.add_geometries(
+          scans.size(),
+          [&](std::size_t k) {
+            MovingSplats moving = moving_in(source_.numbers[scans[k]]);
+            splats[k] = moving.splats.size();
+            if (response != nullptr) to_reflectances(moving.splats, *response);
+            return NewGeometry{std::move(moving.splats), std::move(moving.instances)};
+          },
+          session_.executor);
     }
     for (std::size_t k = 0; k < scans.size(); ++k) {
       if (splats[k] == 0) continue;
