@@ -19,14 +19,14 @@ struct Rings {
 };
 
 Rings rings_of(const Scan& scan) {
+  const std::size_t points = scan.rings.size();
   const std::size_t rings =
-      scan.size() == 0 ? 0
-                       : *std::max_element(scan.rings.begin(), scan.rings.end()) + std::size_t{1};
-  Rings found{Numbers(scan.size()), std::vector<std::size_t>(rings + 1)};
+      points == 0 ? 0 : *std::max_element(scan.rings.begin(), scan.rings.end()) + std::size_t{1};
+  Rings found{Numbers(points), std::vector<std::size_t>(rings + 1)};
   for (const std::uint16_t ring : scan.rings) ++found.begins[ring + std::size_t{1}];
   std::partial_sum(found.begins.begin(), found.begins.end(), found.begins.begin());
   std::vector<std::size_t> next = found.begins;
-  for (std::uint32_t i = 0; i < scan.size(); ++i) found.points[next[scan.rings[i]]++] = i;
+  for (std::uint32_t i = 0; i < points; ++i) found.points[next[scan.rings[i]]++] = i;
   return found;
 }
 

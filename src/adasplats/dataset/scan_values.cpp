@@ -11,26 +11,33 @@
 #include "adasplats/core/error.h"
 
 namespace adasplats {
-std::string points_with_intensity(const Scan& scan) {
+
+std::string points_with_intensity(const Scan& scan, std::span<const std::uint32_t> order) {
   using Record = std::array<float, 4>;
-  std::string bytes(scan.size() * sizeof(Record), '\0');
+  const std::size_t count = scan.size();
+  const Vec3f* const positions = scan.positions.data();
+  const float* const intensities = scan.intensities.empty() ? nullptr : scan.intensities.data();
+  std::string bytes(count * sizeof(Record), '\0');
   char* to = bytes.data();
-  for (std::size_t i = 0; i < scan.size(); ++i, to += sizeof(Record)) {
-    const Vec3f p = scan.positions[i];
+  for (std::size_t i = 0; i < count; ++i, to += sizeof(Record)) {
+    const std::size_t from = order.empty() ? i : order[i];
+    const Vec3f p = positions[from];
+    const float measured = intensities == nullptr ? 0.0F : intensities[from];
     // Networks that are trained on such files do not survive a NaN.
-    const float intensity =
-        scan.intensities.empty() || std::isnan(scan.intensities[i]) ? 0.0F : scan.intensities[i];
-    const Record record = {p.x, p.y, p.z, intensity};
+    const Record record = {p.x, p.y, p.z, std::isnan(measured) ? 0.0F : measured};
     std::memcpy(to, record.data(), sizeof(record));
   }
   return bytes;
 }
 
-std::vector<std::uint32_t> packed_labels(const Scan& scan) {
-  std::vector<std::uint32_t> labels(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    const std::uint32_t instance = scan.instances.empty() ? 0 : scan.instances[i];
-    const std::uint32_t semantic_class = scan.classes.empty() ? 0 : scan.classes[i];
+std::vector<std::uint32_t> packed_labels(const Scan& scan, std::span<const std::uint32_t> order) {
+  const std::size_t count = scan.size();
+  const bool has_instances = !scan.instances.empty(), has_classes = !scan.classes.empty();
+  std::vector<std::uint32_t> labels(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t from = order.empty() ? i : order[i];
+    const std::uint32_t instance = has_instances ? scan.instances[from] : 0;
+    const std::uint32_t semantic_class = has_classes ? scan.classes[from] : 0;
     labels[i] = instance << 16 | semantic_class;
   }
   return labels;
@@ -40,9 +47,9 @@ std::vector<std::uint8_t> returns_of_firings(const Scan& scan) {
   std::vector<std::uint8_t> counts(scan.size(), 1);
   if (scan.return_indices.empty()) return counts;
   std::size_t begin = 0;
-  for (std::size_t end = 1; end <= scan.size(); ++end) {
+  for (std::size_t end = 1; end <= counts.size(); ++end) {
     // Indices ascend within a firing.
-    const bool same = end < scan.size() && scan.rings[end] == scan.rings[begin] &&
+    const bool same = end < counts.size() && scan.rings[end] == scan.rings[begin] &&
                       scan.columns[end] == scan.columns[begin] &&
                       scan.return_indices[end] > scan.return_indices[end - 1];
     if (same) continue;

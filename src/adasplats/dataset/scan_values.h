@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,13 @@ namespace adasplats {
 
 /// x, y, z (sensor frame, m) and intensity of each point, four floats; intensity 0 where it is not
 /// known. As the bytes of a file: a copy less of what is most of a data set.
-std::string points_with_intensity(const Scan& scan);
+/// `order`: which point is the i-th; empty: the i-th.
+std::string points_with_intensity(const Scan& scan, std::span<const std::uint32_t> order = {});
 
 /// instance << 16 | class of each point, 0 for what the scan does not have.
-std::vector<std::uint32_t> packed_labels(const Scan& scan);
+/// `order` as there.
+std::vector<std::uint32_t> packed_labels(const Scan& scan,
+                                         std::span<const std::uint32_t> order = {});
 
 /// How many returns the firing of each point has; points of one firing stand side by side.
 std::vector<std::uint8_t> returns_of_firings(const Scan& scan);

@@ -23,10 +23,9 @@ class SequenceWriter final : public ScanWriter {
         writer_(folder / sequence_, folder / "poses" / (name + ".txt")) {}
 
   EncodedScan encode(std::size_t index, const Scan& scan) const override {
-    EncodedScan encoded =
-        order_ == PointOrder::firing
-            ? SemanticKittiWriter::encode(index, scan)
-            : SemanticKittiWriter::encode(index, reordered(scan, kitti_order(scan)));
+    EncodedScan encoded = order_ == PointOrder::firing
+                              ? SemanticKittiWriter::encode(index, scan)
+                              : SemanticKittiWriter::encode(index, scan, kitti_order(scan));
     for (EncodedFile& file : encoded.files) file.name = sequence_ + file.name;
     return encoded;
   }

@@ -86,15 +86,16 @@ SemanticKittiWriter::SemanticKittiWriter(std::filesystem::path sequence_folder,
   create_folder(folder_ / "velodyne");
 }
 
-EncodedScan SemanticKittiWriter::encode(std::size_t index, const Scan& scan) {
+EncodedScan SemanticKittiWriter::encode(std::size_t index, const Scan& scan,
+                                        std::span<const std::uint32_t> order) {
   EncodedScan encoded;
   encoded.pose = {scan.time_s, scan.world_from_sensor};
   encoded.points = scan.size();
   encoded.has_classes = !scan.classes.empty();
   const std::string name = scan_name(index);
   if (encoded.has_classes)
-    encoded.files.push_back({"labels/" + name + ".label", bytes_of(packed_labels(scan))});
-  encoded.files.push_back({"velodyne/" + name + ".bin", points_with_intensity(scan)});
+    encoded.files.push_back({"labels/" + name + ".label", bytes_of(packed_labels(scan, order))});
+  encoded.files.push_back({"velodyne/" + name + ".bin", points_with_intensity(scan, order)});
   return encoded;
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "adasplats/cloud/poses/trajectory.h"
@@ -26,8 +27,9 @@ class SemanticKittiWriter {
                                std::filesystem::path more_poses = {});
 
   /// The files of scan number `index`, named relative to the sequence folder. Several threads may
-  /// call it at once.
-  static EncodedScan encode(std::size_t index, const Scan& scan);
+  /// call it at once. `order`: which point is the i-th; empty: the i-th.
+  static EncodedScan encode(std::size_t index, const Scan& scan,
+                            std::span<const std::uint32_t> order = {});
   /// Scan number `index` is written: its pose is kept for finish(). One call at a time. Scans have
   /// classes all or none (std::logic_error otherwise; empty ones fit both).
   void note_written(std::size_t index, const EncodedScan& scan);
