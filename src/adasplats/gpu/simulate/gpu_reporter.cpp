@@ -339,7 +339,10 @@ void GpuReporter::end(Run& run, std::size_t k, BatchSink sink) {
     lane.attributes = nullptr;
   } else {
     const std::size_t bytes = ReturnLayout(fields_, batch.returns(), nullptr).bytes;
-    auto memory = pinned_->get(std::max(bytes, ReturnLayout(fields_, room, nullptr).bytes / 2));
+    // Of two sizes, so that memory of one batch does for any other.
+    const std::size_t most =
+        ReturnLayout(fields_, run.scans * firings_ * returns_a_firing_, nullptr).bytes;
+    auto memory = pinned_->get(bytes <= most / 2 ? most / 2 : most);
     batch.arrays = ReturnLayout(fields_, batch.returns(), memory.get()).arrays;
     gpu::copy_returns(there.arrays, batch.returns(), batch.arrays, stream);
     lane.stream->wait("copy returns from the GPU");
