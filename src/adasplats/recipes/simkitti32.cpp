@@ -20,6 +20,7 @@
 #include "adasplats/dataset/scan_writer.h"
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
+#include "adasplats/pipeline/evaluate/fit_sensor.h"
 #include "adasplats/pipeline/output/output_check.h"
 #include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/output/resumable_folder.h"
@@ -109,6 +110,34 @@ void require_in_view(const ModelScene& place, std::span<const ScanMotion> scans,
                    "are sequence and model in one frame? offset shifts the sensor");
 }
 
+/// Share of what some scans measured, without what moves, that the place has within half a metre.
+double agreement_of(const ModelScene& place, const Source& source, const LabelScheme& labels,
+                    const Executor& executor) {
+  constexpr std::size_t kScans = 5;  // spread over all
+  constexpr float kNear_m = 0.5F;
+  const std::size_t step = (source.numbers.size() + kScans - 1) / kScans;
+  std::size_t returns = 0, near = 0;
+  for (std::size_t k = 0; k < source.numbers.size(); k += step) {
+    const KittiScan scan = read_kitti_scan(source.sequence, source.numbers[k]);
+    const ScanPose pose = scan_pose(source.poses[k].world_from_sensor, place.origin());
+    std::vector<Ray> rays;
+    std::vector<float> ranges_m;
+    for (std::size_t i = 0; i < scan.positions.size(); ++i) {
+      const SemanticClass* const known = labels.find(scan.classes[i]);
+      const float range_m = length(scan.positions[i]);
+      if ((known != nullptr && known->mobility == Mobility::moving) || !(range_m > 0)) continue;
+      rays.push_back({pose.origin, 0, normalized(turned(pose, scan.positions[i]))});
+      ranges_m.push_back(range_m);
+    }
+    std::vector<Hit> hits(rays.size());
+    place.tracer().nearest(rays, hits, executor);
+    returns += hits.size();
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      near += hits[i].valid() && std::fabs(hits[i].t - ranges_m[i]) < kNear_m ? 1 : 0;
+  }
+  return returns == 0 ? 0 : static_cast<double>(near) / static_cast<double>(returns);
+}
+
 /// The model that a user gives, with the poses of `source` as it has them. Null: none is given.
 std::unique_ptr<ModelScene> open_given(const SimKitti32Job& job, const LidarModel& sensor,
                                        Source& source, Session& session) {
@@ -120,6 +149,9 @@ std::unique_ptr<ModelScene> open_given(const SimKitti32Job& job, const LidarMode
                                      "(make it of points with labels)");
   take_calibration(*given, source);
   require_in_view(*given, motions_of(job, source), sensor);
+  const LabelScheme labels = load_label_scheme(job.labels);
+  require_one_place(agreement_of(*given, source, labels, session.executor),
+                    source.sequence.folder.string());
   return given;
 }
 

@@ -47,16 +47,16 @@ double agreement_of(const std::vector<UnitBeam>& beams) {
   return share_of(near, returns);
 }
 
-void require_one_place(double agreement, const FitSensorJob& job) {
+}  // namespace
+
+void require_one_place(double agreement, const std::string& scans) {
   constexpr double kLeast = 0.6;
   if (agreement >= kLeast) return;
   throw Error(ErrorKind::data,
-              job.scans_of.string() + ": " + std::to_string(std::lround(100 * agreement)) +
+              scans + ": " + std::to_string(std::lround(100 * agreement)) +
                   " % of the returns lie within 0.5 m of the model, expected at least 60 %: the "
                   "scans are of another place, or their poses are wrong");
 }
-
-}  // namespace
 
 FitSensorResult fit_sensor(const FitSensorJob& job, Session& session) {
   require_input(job.model);
@@ -73,7 +73,7 @@ FitSensorResult fit_sensor(const FitSensorJob& job, Session& session) {
                          heights_m, step_rad, session.executor, session.progress);
   FitSensorResult result;
   result.agreement = agreement_of(beams);
-  require_one_place(result.agreement, job);
+  require_one_place(result.agreement, job.scans_of.string());
   session.progress.begin_step("fit the unit", 0);
   static_cast<UnitFit&>(result) = fit_unit(beams, sensor.rings(), sensor.max_range_m);
   session.progress.end_step();

@@ -37,4 +37,8 @@ FitSensorResult fit_sensor(const FitSensorJob& job, Session& session);
 /// The keys of --report.
 nlohmann::ordered_json to_json(const FitSensorResult& result);
 
+/// `agreement`: share of the returns that the model has within half a metre. Errors: data (fewer
+/// than 60 %: `scans` are of another place, or their poses are wrong).
+void require_one_place(double agreement, const std::string& scans);
+
 }  // namespace adasplats
