@@ -134,7 +134,8 @@ void save_scans(const ScanList& list, py::handle folder, const py::kwargs& kwarg
   ParallelWriteOptions parallel;
   parallel.threads = executor.threads();
   ParallelScanWriter files(*writer, parallel);
-  for (std::size_t i = 0; i < list.scans.size(); ++i) files.write(i, list.scans[i]);
+  for (std::size_t i = 0; i < list.scans.size(); ++i)
+    files.write(i, {*list.scans[i], list.scans[i]});
   files.finish();
 }
 

@@ -30,7 +30,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kTypes =
      {"car", "Car"},
      {"vehicle", "Car"}}};
 
-std::size_t points_within(const RigidTransform& box_from_sensor, Vec3d size_m, const Scan& scan) {
+std::size_t points_within(const RigidTransform& box_from_sensor, Vec3d size_m,
+                          const ScanView& scan) {
   const Vec3d half = 0.5 * size_m + Vec3d{kMargin_m, kMargin_m, kMargin_m};
   std::size_t count = 0;
   for (const Vec3f& position : scan.positions) {
@@ -82,7 +83,7 @@ std::string_view kitti_type(std::string_view class_name) {
   return "Misc";
 }
 
-std::vector<SensedBox> sensed_boxes(std::span<const ObjectBox> boxes, const Scan& scan,
+std::vector<SensedBox> sensed_boxes(std::span<const ObjectBox> boxes, const ScanView& scan,
                                     const LabelScheme* labels) {
   std::vector<SensedBox> sensed;
   for (const ObjectBox& box : boxes) {

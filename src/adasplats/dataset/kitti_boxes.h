@@ -11,6 +11,7 @@
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/dataset/encoded_scan.h"
+#include "adasplats/simulate/scan/scan_view.h"
 #include "adasplats/simulate/world/world.h"
 
 namespace adasplats {
@@ -32,7 +33,7 @@ std::string_view kitti_type(std::string_view class_name);
 
 /// Brings boxes into the frame of a scan. `labels` names the classes; without it they are Misc.
 /// Boxes that are tilted in the sensor frame keep their yaw alone.
-std::vector<SensedBox> sensed_boxes(std::span<const ObjectBox> boxes, const Scan& scan,
+std::vector<SensedBox> sensed_boxes(std::span<const ObjectBox> boxes, const ScanView& scan,
                                     const LabelScheme* labels);
 
 /// Writes two files for scan `index`, a line a box that has at least `least_points` points:

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <type_traits>
 
 namespace adasplats {
 namespace {
@@ -18,7 +19,7 @@ struct Rings {
   std::vector<std::size_t> begins;  ///< one more than rings
 };
 
-Rings rings_of(const Scan& scan) {
+Rings rings_of(const ScanView& scan) {
   const std::size_t points = scan.rings.size();
   const std::size_t rings =
       points == 0 ? 0 : *std::max_element(scan.rings.begin(), scan.rings.end()) + std::size_t{1};
@@ -31,7 +32,7 @@ Rings rings_of(const Scan& scan) {
 }
 
 /// Whether a point is a later return of the firing of the point before it.
-bool is_later_return(const Scan& scan, std::uint32_t i) {
+bool is_later_return(const ScanView& scan, std::uint32_t i) {
   return !scan.return_indices.empty() && scan.return_indices[i] > 0;
 }
 
@@ -40,7 +41,7 @@ struct Turns {
   std::size_t left = 0, right = 0;
 };
 
-Turns turns_of(const Scan& scan, const Rings& rings) {
+Turns turns_of(const ScanView& scan, const Rings& rings) {
   Turns turns;
   for (std::size_t k = 1; k < rings.points.size(); ++k) {
     const std::uint32_t i = rings.points[k - 1], j = rings.points[k];
@@ -60,7 +61,7 @@ bool is_steady(const Turns& turns) {
 }
 
 /// Turns a ring round, firing by firing.
-void reverse_firings(const Scan& scan, std::span<std::uint32_t> ring) {
+void reverse_firings(const ScanView& scan, std::span<std::uint32_t> ring) {
   std::reverse(ring.begin(), ring.end());
   for (std::size_t begin = 0, end = 0; begin < ring.size(); begin = end) {
     while (end < ring.size() && is_later_return(scan, ring[end])) ++end;
@@ -71,7 +72,7 @@ void reverse_firings(const Scan& scan, std::span<std::uint32_t> ring) {
 }
 
 /// Lets a counter-clockwise ring begin where it passes azimuth 0.
-void begin_ahead(const Scan& scan, std::span<std::uint32_t> ring) {
+void begin_ahead(const ScanView& scan, std::span<std::uint32_t> ring) {
   const auto at = [&](std::uint32_t i) { return scan.positions[i]; };
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const std::uint32_t before = ring[(k == 0 ? ring.size() : k) - 1];
@@ -83,7 +84,7 @@ void begin_ahead(const Scan& scan, std::span<std::uint32_t> ring) {
 
 /// Noise of angles takes some beams beside azimuth 0 over it: they go to the end of a ring that
 /// they belong to.
-void part_ends(const Scan& scan, std::span<std::uint32_t> ring) {
+void part_ends(const ScanView& scan, std::span<std::uint32_t> ring) {
   constexpr float kBesideTan = 0.02F;  // of 1.1 degrees, more than the noise of any sensor
   const auto is_beside = [&](std::uint32_t i) {
     const Vec3f p = scan.positions[i];
@@ -107,7 +108,7 @@ void part_ends(const Scan& scan, std::span<std::uint32_t> ring) {
 }
 
 template <class T>
-void reorder(std::vector<T>& values, const std::vector<T>& from,
+void reorder(std::vector<T>& values, std::span<const std::type_identity_t<T>> from,
              std::span<const std::uint32_t> order) {
   if (from.size() != order.size()) return;  // scans need not have it
   values.resize(order.size());
@@ -116,7 +117,7 @@ void reorder(std::vector<T>& values, const std::vector<T>& from,
 
 }  // namespace
 
-std::vector<std::uint32_t> kitti_order(const Scan& scan) {
+std::vector<std::uint32_t> kitti_order(const ScanView& scan) {
   if (scan.rings.size() != scan.size()) throw std::logic_error("kitti_order: a scan without rings");
   Rings rings = rings_of(scan);
   const Turns turns = turns_of(scan, rings);
@@ -134,7 +135,7 @@ std::vector<std::uint32_t> kitti_order(const Scan& scan) {
   return std::move(rings.points);
 }
 
-Scan reordered(const Scan& scan, std::span<const std::uint32_t> order) {
+Scan reordered(const ScanView& scan, std::span<const std::uint32_t> order) {
   Scan made;
   made.world_from_sensor = scan.world_from_sensor;
   made.time_s = scan.time_s;

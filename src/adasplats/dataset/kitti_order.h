@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adasplats/core/words.h"
-#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
 
@@ -31,9 +31,9 @@ inline Words<PointOrder> words_of(PointOrder) { return kPointOrders; }
 /// Returns of one firing stay in their order. Scans of sensors that do not turn steadily, as those
 /// with rosettes, stay in the order of their firings. Needs positions and rings, and
 /// return_indices where a firing can return twice (std::logic_error without rings).
-std::vector<std::uint32_t> kitti_order(const Scan& scan);
+std::vector<std::uint32_t> kitti_order(const ScanView& scan);
 
 /// The scan with its points in that order: every point once, with all its attributes.
-Scan reordered(const Scan& scan, std::span<const std::uint32_t> order);
+Scan reordered(const ScanView& scan, std::span<const std::uint32_t> order);
 
 }  // namespace adasplats

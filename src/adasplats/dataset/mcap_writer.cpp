@@ -25,7 +25,7 @@ McapWriter::McapWriter(const std::filesystem::path& path)
       points_(
           file_.add_channel(ros_channel("/points", kPointCloud2Type, point_cloud2_definition()))) {}
 
-std::vector<McapMessage> McapWriter::messages(const Scan& scan) const {
+std::vector<McapMessage> McapWriter::messages(const ScanView& scan) const {
   const std::uint64_t time_ns = ros_time_ns(scan.time_s);
   std::vector<McapMessage> messages;
   messages.push_back(mcap_message(

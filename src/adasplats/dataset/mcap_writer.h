@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "adasplats/io/mcap/mcap_file.h"
-#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
 
@@ -23,11 +23,11 @@ class McapWriter {
 
   /// The messages of a scan. Several threads may call it at once.
   /// Errors: data (a time that ROS cannot express: ros_time_ns).
-  std::vector<McapMessage> messages(const Scan& scan) const;
+  std::vector<McapMessage> messages(const ScanView& scan) const;
   /// The messages of the next scan, by ascending time. Errors: io.
   void append(std::span<const McapMessage> messages);
   /// Both. Errors: of either.
-  void write(const Scan& scan) { append(messages(scan)); }
+  void write(const ScanView& scan) { append(messages(scan)); }
   /// Makes the file whole. Call once, last.
   void finish() { file_.finish(); }
 

@@ -28,8 +28,7 @@ struct ParallelScanWriter::Impl {
   struct Waiting {
     std::size_t turn = 0;
     std::size_t index = 0;
-    std::shared_ptr<const Scan> scan;
-    std::shared_ptr<Scan> own;  ///< the same, where nobody else holds it
+    HeldScan scan;
   };
   struct Written {
     std::size_t index = 0;
@@ -42,9 +41,8 @@ struct ParallelScanWriter::Impl {
   std::mutex mutex;
   std::condition_variable work, room;  ///< for threads; for the caller
   std::deque<Waiting> waiting;
-  std::vector<std::shared_ptr<Scan>> used;  ///< whose memory is free again
-  std::map<std::size_t, Written> written;   ///< by turn, whose turn has not come
-  std::size_t taken = 0, appended = 0;      ///< turns
+  std::map<std::size_t, Written> written;  ///< by turn, whose turn has not come
+  std::size_t taken = 0, appended = 0;     ///< turns
   bool is_appending = false;
   bool closed = false;
   std::exception_ptr failure;
@@ -64,7 +62,7 @@ struct ParallelScanWriter::Impl {
       try {
         Written done = write_files(next);
         const std::size_t turn = next.turn;
-        give_back(std::move(next));
+        next.scan = {};  // others can have its memory
         append_in_turn(turn, std::move(done));
       } catch (...) {
         fail();
@@ -72,26 +70,20 @@ struct ParallelScanWriter::Impl {
     }
   }
 
-  void give_back(Waiting done) {
-    if (!done.own) return;
-    const std::lock_guard lock(mutex);
-    used.push_back(std::move(done.own));
-  }
-
-  void put(std::size_t index, std::shared_ptr<const Scan> scan, std::shared_ptr<Scan> own) {
+  void put(std::size_t index, HeldScan scan) {
     const std::size_t most = kScansUnderWayPerThread * threads.size();
     std::unique_lock lock(mutex);
     room.wait(lock, [&] { return failure || taken - appended < most; });
     if (failure) std::rethrow_exception(failure);
-    waiting.push_back({taken++, index, std::move(scan), std::move(own)});
+    waiting.push_back({taken++, index, std::move(scan)});
     work.notify_one();
   }
 
   Written write_files(const Waiting& next) const {
-    Written done{next.index, writer.encode(next.index, *next.scan), {}};
+    Written done{next.index, writer.encode(next.index, next.scan.scan), {}};
     std::vector<EncodedFile>& files = done.scan.files;
     if (options.more_files) {
-      std::vector<EncodedFile> more = options.more_files(next.index, *next.scan);
+      std::vector<EncodedFile> more = options.more_files(next.index, next.scan.scan);
       files.insert(files.begin(), std::make_move_iterator(more.begin()),
                    std::make_move_iterator(more.end()));
     }
@@ -154,22 +146,8 @@ ParallelScanWriter::~ParallelScanWriter() {
   impl_->close();
 }
 
-void ParallelScanWriter::write(std::size_t index, std::shared_ptr<const Scan> scan) {
-  impl_->put(index, std::move(scan), nullptr);
-}
-
-void ParallelScanWriter::write(std::size_t index, Scan&& scan) {
-  std::shared_ptr<Scan> own;
-  {
-    const std::lock_guard lock(impl_->mutex);
-    if (!impl_->used.empty()) {
-      own = std::move(impl_->used.back());
-      impl_->used.pop_back();
-    }
-  }
-  if (!own) own = std::make_shared<Scan>();
-  std::swap(*own, scan);
-  impl_->put(index, own, own);
+void ParallelScanWriter::write(std::size_t index, HeldScan scan) {
+  impl_->put(index, std::move(scan));
 }
 
 void ParallelScanWriter::finish() {

@@ -12,7 +12,7 @@
 #include "adasplats/dataset/encoded_scan.h"
 #include "adasplats/dataset/scan_writer.h"
 #include "adasplats/io/base/sha256.h"
-#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
 
@@ -21,7 +21,7 @@ struct ParallelWriteOptions {
   FileWrites writes = FileWrites::atomic;
   bool hashed = false;  ///< whether `written` needs the SHA-256 of files; else they are empty
   /// More files of a scan; several threads call it at once.
-  std::function<std::vector<EncodedFile>(std::size_t index, const Scan& scan)> more_files;
+  std::function<std::vector<EncodedFile>(std::size_t index, const ScanView& scan)> more_files;
   /// Hears of every scan whose files are written, in the order of write() and one at a time, on any
   /// thread; the main file is the last one.
   std::function<void(std::size_t index, std::size_t points, std::span<const FileDigest> files)>
@@ -42,9 +42,7 @@ class ParallelScanWriter {
 
   /// Takes a scan; waits while too many are under way. What a thread failed with is thrown here or
   /// in finish(), whichever is called next. One call at a time, by ascending numbers.
-  void write(std::size_t index, std::shared_ptr<const Scan> scan);
-  /// Leaves a scan that is written in its place, where there is one: its memory can be used again.
-  void write(std::size_t index, Scan&& scan);
+  void write(std::size_t index, HeldScan scan);
   /// Waits until all scans are written, then for ScanWriter::finish(). Call once, last.
   void finish();
 

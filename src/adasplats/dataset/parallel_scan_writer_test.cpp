@@ -45,7 +45,8 @@ std::map<std::string, std::string> written_by(ScanFormat format, int threads) {
   options.threads = threads;
   options.writes = FileWrites::in_place;
   ParallelScanWriter parallel(*writer, options);
-  for (std::size_t i = 0; i < kScans; ++i) parallel.write(i, scan_number(i, points_of(i)));
+  for (std::size_t i = 0; i < kScans; ++i)
+    parallel.write(i, held_scan(scan_number(i, points_of(i))));
   parallel.finish();
   return files_in(folder.path());
 }
@@ -70,7 +71,7 @@ TEST(ParallelScanWriter, TellsOfWholeScansInTheirOrder) {
   ParallelWriteOptions options;
   options.threads = 4;
   options.hashed = true;
-  options.more_files = [](std::size_t index, const Scan& scan) {
+  options.more_files = [](std::size_t index, const ScanView& scan) {
     // The later ones are ready first.
     std::this_thread::sleep_for(std::chrono::microseconds(100 * (kScans - index)));
     return std::vector<EncodedFile>{
@@ -86,7 +87,8 @@ TEST(ParallelScanWriter, TellsOfWholeScansInTheirOrder) {
       EXPECT_EQ(file.sha256, sha256_of_file(folder.path() / file.name));
   };
   ParallelScanWriter parallel(*writer, options);
-  for (std::size_t i = 0; i < kScans; ++i) parallel.write(i, scan_number(i, points_of(i)));
+  for (std::size_t i = 0; i < kScans; ++i)
+    parallel.write(i, held_scan(scan_number(i, points_of(i))));
   parallel.finish();
   ASSERT_EQ(told.size(), kScans);
   for (std::size_t i = 0; i < kScans; ++i) EXPECT_EQ(told[i], i);
@@ -99,14 +101,14 @@ TEST(ParallelScanWriter, FewScansAreUnderWay) {
   std::atomic<bool> go = false;
   ParallelWriteOptions options;
   options.threads = 2;
-  options.more_files = [&](std::size_t, const Scan&) {
+  options.more_files = [&](std::size_t, const ScanView&) {
     while (!go) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return std::vector<EncodedFile>{};
   };
   ParallelScanWriter parallel(*writer, options);
   std::thread caller([&] {
     for (std::size_t i = 0; i < kScans; ++i) {
-      parallel.write(i, scan_number(i, 1));
+      parallel.write(i, held_scan(scan_number(i, 1)));
       ++begun;
     }
   });
@@ -128,7 +130,7 @@ TEST(ParallelScanWriter, FailuresReachTheCaller) {
     options.writes = FileWrites::in_place;
     ParallelScanWriter parallel(*writer, options);
     expect_error(ErrorKind::cannot_create, {"000004.ply"}, [&] {
-      for (std::size_t i = 0; i < 100; ++i) parallel.write(i, scan_number(i, 3));
+      for (std::size_t i = 0; i < 100; ++i) parallel.write(i, held_scan(scan_number(i, 3)));
       parallel.finish();
     });
     EXPECT_FALSE(fs::exists(folder.path() / "poses.csv"));
@@ -139,7 +141,7 @@ TEST(ParallelScanWriter, FailuresReachTheCaller) {
   ParallelScanWriter parallel(*writer, {});
   Scan early = scan_number(0, 1);
   early.time_s = -1;
-  parallel.write(0, std::move(early));
+  parallel.write(0, held_scan(std::move(early)));
   expect_error(ErrorKind::data, {"-1"}, [&] { parallel.finish(); });
 }
 
@@ -148,7 +150,7 @@ TEST(ParallelScanWriter, GivenUpWithoutFinish) {
   const auto writer = make_scan_writer(folder.path(), ScanFormat::semantickitti);
   {
     ParallelScanWriter parallel(*writer, {});
-    for (std::size_t i = 0; i < 3; ++i) parallel.write(i, scan_number(i, 3));
+    for (std::size_t i = 0; i < 3; ++i) parallel.write(i, held_scan(scan_number(i, 3)));
   }
   EXPECT_FALSE(fs::exists(folder.path() / "sequences/00/poses.txt"));
 }

@@ -53,7 +53,7 @@ ImageSize image_size_of(std::span<const Firing> firings) {
   return size;
 }
 
-RangeImage range_image(const Scan& scan, ImageSize size) {
+RangeImage range_image(const ScanView& scan, ImageSize size) {
   RangeImage image{size, std::vector<float>(size.rings * size.columns), {}};
   const bool has_labels = !scan.classes.empty() || !scan.instances.empty();
   if (has_labels) image.labels.resize(image.ranges_m.size());

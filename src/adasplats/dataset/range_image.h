@@ -11,7 +11,7 @@
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/dataset/encoded_scan.h"
-#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
 
@@ -33,7 +33,7 @@ struct RangeImage {
 };
 
 /// Throws std::logic_error for a point outside the image.
-RangeImage range_image(const Scan& scan, ImageSize size);
+RangeImage range_image(const ScanView& scan, ImageSize size);
 
 /// Writes into `folder`, all of shape rings x columns: STEM_range.npy (float32, m, 0: no return),
 /// STEM_range.png (16-bit grey, 256 steps a metre as in KITTI's depth maps, 0: no return, 65535:

@@ -89,7 +89,7 @@ std::uint8_t point_field_type(ColumnType type) {
 
 /// Column and range follow from the rest, or nearly; the widest come first, so that all are
 /// aligned.
-std::vector<ColumnView> message_columns(const Scan& scan) {
+std::vector<ColumnView> message_columns(const ScanView& scan) {
   std::vector<ColumnView> columns = scan_columns(scan);
   std::erase_if(columns, [](const ColumnView& column) {
     return column.name == "column" || column.name == "range";
@@ -163,7 +163,7 @@ std::uint64_t ros_time_ns(double time_s) {
          static_cast<std::uint64_t>(fraction_ns);
 }
 
-std::string point_cloud2_message(const Scan& scan, std::string_view frame) {
+std::string point_cloud2_message(const ScanView& scan, std::string_view frame) {
   const std::vector<ColumnView> columns = message_columns(scan);
   std::size_t step = 0;
   for (const ColumnView& column : columns) step += type_bytes(column.type);

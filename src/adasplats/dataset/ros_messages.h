@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "adasplats/core/maths/rigid_transform.h"
-#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
 
@@ -28,7 +28,7 @@ std::uint64_t ros_time_ns(double time_s);
 /// scan has them: x y z intensity time (float32; time in seconds since the revolution began), label
 /// instance ring (uint16), return_index (uint8). Every field lies at a multiple of its size.
 /// Errors: data (a time as above, more than 4 GiB of points).
-std::string point_cloud2_message(const Scan& scan, std::string_view frame);
+std::string point_cloud2_message(const ScanView& scan, std::string_view frame);
 
 /// A TFMessage of one transform: where `child_frame` is in `frame` at a time. Errors: as above.
 std::string transform_message(const RigidTransform& frame_from_child, double time_s,

@@ -54,7 +54,7 @@ struct LasFields {
   std::vector<std::uint8_t> classes, return_numbers, returns;
   std::vector<double> times;
 
-  LasFields(const Scan& scan, double full_intensity) : returns(returns_of_firings(scan)) {
+  LasFields(const ScanView& scan, double full_intensity) : returns(returns_of_firings(scan)) {
     intensities.reserve(scan.intensities.size());
     for (const float value : scan.intensities) {
       const double share = std::isnan(value) ? 0.0 : static_cast<double>(value) / full_intensity;
@@ -85,19 +85,19 @@ struct LasFields {
 /// Most formats have as many bytes a point.
 constexpr std::size_t kExpectedPointBytes = 48;
 
-std::string ply_bytes(const Scan& scan) {
+std::string ply_bytes(const ScanView& scan) {
   ByteBuffer file(scan.size() * kExpectedPointBytes);
   put_ply(file, scan.size(), scan_columns(scan));
   return file.take();
 }
 
-std::string pcd_bytes(const Scan& scan) {
+std::string pcd_bytes(const ScanView& scan) {
   ByteBuffer file(scan.size() * kExpectedPointBytes);
   put_pcd(file, scan.size(), scan_columns(scan), viewpoint_of(scan.world_from_sensor));
   return file.take();
 }
 
-std::string npz_bytes(const std::filesystem::path& path, const Scan& scan) {
+std::string npz_bytes(const std::filesystem::path& path, const ScanView& scan) {
   static_assert(sizeof(Vec3f) == 3 * sizeof(float));
   std::vector<NamedArray> arrays = {
       {"points", {ColumnType::f32, {scan.size(), 3}, scan.positions.data()}}};
@@ -114,7 +114,8 @@ std::string npz_bytes(const std::filesystem::path& path, const Scan& scan) {
   return file.take();
 }
 
-std::string las_bytes(const std::filesystem::path& path, const Scan& scan, double full_intensity) {
+std::string las_bytes(const std::filesystem::path& path, const ScanView& scan,
+                      double full_intensity) {
   const LasFields fields(scan, full_intensity);
   std::vector<ColumnView> columns = fields.columns();
   for (ColumnView column : scan_columns(scan)) {
@@ -133,12 +134,12 @@ std::string npy_bytes(const NpyArray& array) {
   return file.take();
 }
 
-std::string npy_points(const Scan& scan) {
+std::string npy_points(const ScanView& scan) {
   const std::string points = points_with_intensity(scan);
   return npy_bytes({ColumnType::f32, {scan.size(), 4}, points.data()});
 }
 
-std::string npy_labels(const Scan& scan) {
+std::string npy_labels(const ScanView& scan) {
   const std::vector<std::uint32_t> labels = packed_labels(scan);
   return npy_bytes({ColumnType::u32, {scan.size()}, labels.data()});
 }
@@ -167,31 +168,32 @@ ScanBytes scan_bytes(ScanFormat format) {
   throw std::logic_error("scan_bytes: no such format");
 }
 
-void write_scan_ply(const std::filesystem::path& path, const Scan& scan) {
+void write_scan_ply(const std::filesystem::path& path, const ScanView& scan) {
   write_file(path, ply_bytes(scan));
 }
 
-void write_scan_npy(const std::filesystem::path& path, const Scan& scan) {
+void write_scan_npy(const std::filesystem::path& path, const ScanView& scan) {
   write_file(path, npy_points(scan));
   std::filesystem::path labels_path = path;
   labels_path.replace_filename(path.stem().string() + "_label" + path.extension().string());
   write_file(labels_path, npy_labels(scan));
 }
 
-void write_scan_npz(const std::filesystem::path& path, const Scan& scan) {
+void write_scan_npz(const std::filesystem::path& path, const ScanView& scan) {
   write_file(path, npz_bytes(path, scan));
 }
 
-void write_scan_pcd(const std::filesystem::path& path, const Scan& scan) {
+void write_scan_pcd(const std::filesystem::path& path, const ScanView& scan) {
   write_file(path, pcd_bytes(scan));
 }
 
-void write_scan_las(const std::filesystem::path& path, const Scan& scan, double full_intensity) {
+void write_scan_las(const std::filesystem::path& path, const ScanView& scan,
+                    double full_intensity) {
   write_file(path, las_bytes(path, scan, full_intensity));
 }
 
 std::vector<EncodedFile> encode_scan_files(ScanFormat format, const std::string& stem,
-                                           const Scan& scan, double full_intensity) {
+                                           const ScanView& scan, double full_intensity) {
   std::vector<EncodedFile> files;
   switch (format) {
     case ScanFormat::ply: files.push_back({stem + ".ply", ply_bytes(scan)}); break;

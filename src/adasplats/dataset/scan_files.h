@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adasplats/dataset/encoded_scan.h"
-#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
 
@@ -41,29 +41,29 @@ ScanFields fields_of(ScanFormat format);
 // One scan as a file, in the sensor frame. All are atomic.
 
 /// PLY with the columns of scan_columns().
-void write_scan_ply(const std::filesystem::path& path, const Scan& scan);
+void write_scan_ply(const std::filesystem::path& path, const ScanView& scan);
 
 /// .npy: PATH (float32, N x 4: x y z intensity) and PATH with "_label" before the extension
 /// (uint32, N: instance << 16 | class). Zeros for what the scan does not have.
-void write_scan_npy(const std::filesystem::path& path, const Scan& scan);
+void write_scan_npy(const std::filesystem::path& path, const ScanView& scan);
 
 /// .npz with, as far as the scan has them, points (float32, N x 3), intensities, labels (class
 /// ids), instances, rings, columns, times, ranges, return_indices (N each), world_from_sensor
 /// (float64, 4 x 4) and time (float64, 1).
-void write_scan_npz(const std::filesystem::path& path, const Scan& scan);
+void write_scan_npz(const std::filesystem::path& path, const ScanView& scan);
 
 /// PCD, binary, with the columns of scan_columns(); VIEWPOINT is world_from_sensor.
-void write_scan_pcd(const std::filesystem::path& path, const Scan& scan);
+void write_scan_pcd(const std::filesystem::path& path, const ScanView& scan);
 
 /// LAS 1.4, point format 6, in millimetres. Intensity: 0..`full_intensity` becomes 0..65535.
 /// Classification is the low byte of the class, GPS time the scan's time and the point's. Extra
 /// bytes: intensity_value, label, instance, ring, column, range, as far as the scan has them.
-void write_scan_las(const std::filesystem::path& path, const Scan& scan,
+void write_scan_las(const std::filesystem::path& path, const ScanView& scan,
                     double full_intensity = 1.0);
 
 /// The same as bytes: the files of `format` (ply, npy, npz, pcd or las, else std::logic_error) that
 /// a scan becomes, named `stem` with their extensions. Errors: those of the formats.
 std::vector<EncodedFile> encode_scan_files(ScanFormat format, const std::string& stem,
-                                           const Scan& scan, double full_intensity = 1.0);
+                                           const ScanView& scan, double full_intensity = 1.0);
 
 }  // namespace adasplats

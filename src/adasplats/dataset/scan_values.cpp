@@ -12,7 +12,7 @@
 
 namespace adasplats {
 
-std::string points_with_intensity(const Scan& scan, std::span<const std::uint32_t> order) {
+std::string points_with_intensity(const ScanView& scan, std::span<const std::uint32_t> order) {
   using Record = std::array<float, 4>;
   const std::size_t count = scan.size();
   const Vec3f* const positions = scan.positions.data();
@@ -30,7 +30,8 @@ std::string points_with_intensity(const Scan& scan, std::span<const std::uint32_
   return bytes;
 }
 
-std::vector<std::uint32_t> packed_labels(const Scan& scan, std::span<const std::uint32_t> order) {
+std::vector<std::uint32_t> packed_labels(const ScanView& scan,
+                                         std::span<const std::uint32_t> order) {
   const std::size_t count = scan.size();
   const bool has_instances = !scan.instances.empty(), has_classes = !scan.classes.empty();
   std::vector<std::uint32_t> labels(count);
@@ -43,7 +44,7 @@ std::vector<std::uint32_t> packed_labels(const Scan& scan, std::span<const std::
   return labels;
 }
 
-std::vector<std::uint8_t> returns_of_firings(const Scan& scan) {
+std::vector<std::uint8_t> returns_of_firings(const ScanView& scan) {
   std::vector<std::uint8_t> counts(scan.size(), 1);
   if (scan.return_indices.empty()) return counts;
   std::size_t begin = 0;
@@ -61,7 +62,7 @@ std::vector<std::uint8_t> returns_of_firings(const Scan& scan) {
   return counts;
 }
 
-std::vector<ColumnView> scan_columns(const Scan& scan) {
+std::vector<ColumnView> scan_columns(const ScanView& scan) {
   // An empty scan has no first point to take addresses from.
   const Vec3f* const first = scan.positions.data();
   std::vector<ColumnView> columns = {

@@ -10,27 +10,27 @@
 #include <vector>
 
 #include "adasplats/io/base/table.h"
-#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
 
 /// x, y, z (sensor frame, m) and intensity of each point, four floats; intensity 0 where it is not
 /// known. As the bytes of a file: a copy less of what is most of a data set.
 /// `order`: which point is the i-th; empty: the i-th.
-std::string points_with_intensity(const Scan& scan, std::span<const std::uint32_t> order = {});
+std::string points_with_intensity(const ScanView& scan, std::span<const std::uint32_t> order = {});
 
 /// instance << 16 | class of each point, 0 for what the scan does not have.
 /// `order` as there.
-std::vector<std::uint32_t> packed_labels(const Scan& scan,
+std::vector<std::uint32_t> packed_labels(const ScanView& scan,
                                          std::span<const std::uint32_t> order = {});
 
 /// How many returns the firing of each point has; points of one firing stand side by side.
-std::vector<std::uint8_t> returns_of_firings(const Scan& scan);
+std::vector<std::uint8_t> returns_of_firings(const ScanView& scan);
 
 /// What the scan has, as columns of a file: x y z [intensity] [label] [instance] [ring] [column]
 /// [time] [range] [return_index]. They are views of `scan`. Attributes with another number of
 /// values than points are left out.
-std::vector<ColumnView> scan_columns(const Scan& scan);
+std::vector<ColumnView> scan_columns(const ScanView& scan);
 
 /// "000042": how data sets name scan `index`.
 std::string scan_name(std::size_t index);

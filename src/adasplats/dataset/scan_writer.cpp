@@ -22,7 +22,7 @@ class SequenceWriter final : public ScanWriter {
         order_(order),
         writer_(folder / sequence_, folder / "poses" / (name + ".txt")) {}
 
-  EncodedScan encode(std::size_t index, const Scan& scan) const override {
+  EncodedScan encode(std::size_t index, const ScanView& scan) const override {
     EncodedScan encoded = order_ == PointOrder::firing
                               ? SemanticKittiWriter::encode(index, scan)
                               : SemanticKittiWriter::encode(index, scan, kitti_order(scan));
@@ -64,7 +64,7 @@ class FileWriter final : public WriterWithPoses {
   FileWriter(std::filesystem::path folder, ScanFormat format, const ScanWriterOptions& options)
       : WriterWithPoses(std::move(folder)), format_(format), options_(options) {}
 
-  EncodedScan encode(std::size_t index, const Scan& scan) const override {
+  EncodedScan encode(std::size_t index, const ScanView& scan) const override {
     EncodedScan encoded;
     encoded.pose = {scan.time_s, scan.world_from_sensor};
     encoded.points = scan.size();
@@ -94,7 +94,7 @@ class MessageWriter final : public WriterWithPoses {
   explicit MessageWriter(std::filesystem::path folder)
       : WriterWithPoses(std::move(folder)), writer_(this->folder() / "scans.mcap") {}
 
-  EncodedScan encode(std::size_t /*index*/, const Scan& scan) const override {
+  EncodedScan encode(std::size_t /*index*/, const ScanView& scan) const override {
     EncodedScan encoded;
     encoded.pose = {scan.time_s, scan.world_from_sensor};
     encoded.points = scan.size();
@@ -117,7 +117,7 @@ class MessageWriter final : public WriterWithPoses {
 
 }  // namespace
 
-void ScanWriter::write(std::size_t index, const Scan& scan) {
+void ScanWriter::write(std::size_t index, const ScanView& scan) {
   const EncodedScan encoded = encode(index, scan);
   write_encoded(folder_, encoded.files, FileWrites::atomic);
   append(index, encoded);

@@ -13,7 +13,7 @@
 #include "adasplats/dataset/kitti_order.h"
 #include "adasplats/dataset/range_image.h"
 #include "adasplats/dataset/scan_files.h"
-#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
 
@@ -38,7 +38,7 @@ class ScanWriter {
 
   /// Scan number `index` as bytes; its main_file() is the last of its files. Several threads may
   /// call it at once. Errors: those of the formats.
-  virtual EncodedScan encode(std::size_t index, const Scan& scan) const = 0;
+  virtual EncodedScan encode(std::size_t index, const ScanView& scan) const = 0;
   /// Takes scan number `index`, whose own files are written: what it adds to files of all scans.
   /// One call at a time, in the order of the numbers. Errors: io.
   virtual void append(std::size_t index, const EncodedScan& scan) = 0;
@@ -51,7 +51,7 @@ class ScanWriter {
   virtual void finish() = 0;
 
   /// Encodes scan number `index`, writes its files (atomic) and appends it.
-  void write(std::size_t index, const Scan& scan);
+  void write(std::size_t index, const ScanView& scan);
 
  private:
   std::filesystem::path folder_;

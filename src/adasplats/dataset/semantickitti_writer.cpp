@@ -86,7 +86,7 @@ SemanticKittiWriter::SemanticKittiWriter(std::filesystem::path sequence_folder,
   create_folder(folder_ / "velodyne");
 }
 
-EncodedScan SemanticKittiWriter::encode(std::size_t index, const Scan& scan,
+EncodedScan SemanticKittiWriter::encode(std::size_t index, const ScanView& scan,
                                         std::span<const std::uint32_t> order) {
   EncodedScan encoded;
   encoded.pose = {scan.time_s, scan.world_from_sensor};
@@ -111,7 +111,7 @@ void SemanticKittiWriter::note_written(std::size_t index, const EncodedScan& sca
   note(index, scan.pose, scan.points);
 }
 
-void SemanticKittiWriter::write_scan(std::size_t index, const Scan& scan) {
+void SemanticKittiWriter::write_scan(std::size_t index, const ScanView& scan) {
   const EncodedScan encoded = encode(index, scan);
   require_alike(encoded);
   write_encoded(folder_, encoded.files, FileWrites::atomic);

@@ -10,7 +10,7 @@
 
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/dataset/encoded_scan.h"
-#include "adasplats/simulate/scan/scan.h"
+#include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
 
@@ -28,13 +28,13 @@ class SemanticKittiWriter {
 
   /// The files of scan number `index`, named relative to the sequence folder. Several threads may
   /// call it at once. `order`: which point is the i-th; empty: the i-th.
-  static EncodedScan encode(std::size_t index, const Scan& scan,
+  static EncodedScan encode(std::size_t index, const ScanView& scan,
                             std::span<const std::uint32_t> order = {});
   /// Scan number `index` is written: its pose is kept for finish(). One call at a time. Scans have
   /// classes all or none (std::logic_error otherwise; empty ones fit both).
   void note_written(std::size_t index, const EncodedScan& scan);
   /// Encodes, writes and notes scan number `index`. One call at a time.
-  void write_scan(std::size_t index, const Scan& scan);
+  void write_scan(std::size_t index, const ScanView& scan);
   /// Scan number `index` was written before an interruption: keeps its pose for finish(). Throws
   /// Errors of kind io where its files are missing or have other numbers of points.
   void keep_scan(std::size_t index, const TimedPose& pose);

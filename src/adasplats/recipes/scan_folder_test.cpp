@@ -39,7 +39,8 @@ std::size_t kept_of(const fs::path& output, const std::vector<std::size_t>& poin
       journal.note(count, files);
     };
     ParallelScanWriter files(*writer, options);
-    for (std::size_t i = 0; i < points.size(); ++i) files.write(i, scan_number(i, points[i]));
+    for (std::size_t i = 0; i < points.size(); ++i)
+      files.write(i, held_scan(scan_number(i, points[i])));
     files.finish();
     if (!damaged.empty()) fs::resize_file(folder.path() / damaged, 40);
   }

@@ -339,11 +339,11 @@ class Simulation {
 
   void write_run(ScanSimulator& simulator, std::size_t first, std::size_t count,
                  ParallelScanWriter& files, std::size_t& done) {
-    simulator.run(std::span(scans_).subspan(first, count), source_.numbers[first],
-                  [&](std::size_t i, Scan&& scan) {
-                    files.write(first + i, std::move(scan));
-                    session_.progress.advance(++done);
-                  });
+    simulator.run_held(std::span(scans_).subspan(first, count), source_.numbers[first],
+                       [&](std::size_t i, HeldScan&& scan) {
+                         files.write(first + i, std::move(scan));
+                         session_.progress.advance(++done);
+                       });
   }
 
   std::size_t add_moving(std::span<const std::size_t> scans, const IntensityResponse* response,

@@ -25,7 +25,8 @@ namespace {
 constexpr const char* kCommand = "simulate";
 
 /// Boxes around the objects that a scan sees.
-std::vector<EncodedFile> boxes_of(const ModelScene& scene, std::size_t index, const Scan& scan) {
+std::vector<EncodedFile> boxes_of(const ModelScene& scene, std::size_t index,
+                                  const ScanView& scan) {
   const std::vector<ObjectBox> boxes = scene.world()->boxes(index, scan.time_s);
   return encode_kitti_boxes("boxes", index, sensed_boxes(boxes, scan, scene.labels()));
 }
@@ -67,20 +68,20 @@ ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> sc
   parallel.writes = FileWrites::in_place;
   parallel.hashed = true;
   if (scene.world() != nullptr)
-    parallel.more_files = [&scene](std::size_t i, const Scan& scan) {
+    parallel.more_files = [&scene](std::size_t i, const ScanView& scan) {
       return boxes_of(scene, i, scan);
     };
   parallel.written = [&journal](std::size_t, std::size_t points,
                                 std::span<const FileDigest> files) { journal.note(points, files); };
   ParallelScanWriter files(*writer, parallel);
-  const auto take_scan = [&](std::size_t i, Scan&& scan) {
-    result.rays += scan.rays;
-    result.hits += scan.size();
-    files.write(first + i, std::move(scan));
+  const auto take_scan = [&](std::size_t i, HeldScan&& held) {
+    result.rays += held.scan.rays;
+    result.hits += held.scan.size();
+    files.write(first + i, std::move(held));
     session.progress.advance(first + i + 1);
   };
   ReportTimes times;
-  if (first < scans.size()) times = simulator.run(scans.subspan(first), first, take_scan);
+  if (first < scans.size()) times = simulator.run_held(scans.subspan(first), first, take_scan);
   require_returns(result, scene, scans, sensor);
   files.finish();
   return times;

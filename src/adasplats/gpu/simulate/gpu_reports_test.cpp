@@ -12,6 +12,7 @@
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/gpu/simulate/gpu_scene.h"
 #include "adasplats/simulate/scan/scan_rules.h"
+#include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
 namespace {
@@ -362,7 +363,7 @@ TEST_P(ReportsOnGpu, BatchesHoldTheScans) {
   for (const ScanBatch& batch : kept) {
     for (std::size_t i = 0; i < batch.scans(); ++i) {
       found.emplace_back();
-      copy_scan(batch, i, motions[batch.first + i], rules->firings().size(), found.back());
+      ScanView(batch, i, motions[batch.first + i], rules->firings().size()).copy_to(found.back());
     }
   }
   expect_same(found, expected);

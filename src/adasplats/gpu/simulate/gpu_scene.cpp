@@ -17,6 +17,7 @@
 #include "adasplats/gpu/simulate/gpu_scanner.h"
 #include "adasplats/gpu/trace/gpu_tracer.h"
 #include "adasplats/simulate/image/shading.h"
+#include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
 
@@ -67,7 +68,7 @@ class SceneScanCaster final : public ScanCaster {
           scans, first_number, world, GpuScene::Results::host, [&](const ScanBatch& batch) {
             if (taken.size() < batch.scans()) taken.resize(batch.scans());
             executor.for_chunks(batch.scans(), 1, [&](std::size_t i, std::size_t) {
-              copy_scan(batch, i, scans[batch.first + i], rules.firings().size(), taken[i]);
+              ScanView(batch, i, scans[batch.first + i], rules.firings().size()).copy_to(taken[i]);
             });
             for (std::size_t i = 0; i < batch.scans(); ++i)
               sink(batch.first + i, std::move(taken[i]));

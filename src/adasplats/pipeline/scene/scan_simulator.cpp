@@ -96,6 +96,17 @@ ReportTimes ScanSimulator::run_repeating(std::span<const ScanMotion> scans,
       ->report(rules_, scans, first_number, executor_, sink);
 }
 
+ReportTimes ScanSimulator::run_held(std::span<const ScanMotion> scans, std::uint64_t first_number,
+                                    HeldSink sink) {
+  if (scene_.gpu() == nullptr || !repeats(settings_.sensor))
+    return run(scans, first_number, [&](std::size_t i, Scan&& scan) { sink(i, pool_.hold(scan)); });
+  return run_batches(scans, first_number, GpuScene::Results::host, [&](ScanBatch&& batch) {
+    for (std::size_t i = 0; i < batch.scans(); ++i)
+      sink(batch.first + i,
+           {ScanView(batch, i, scans[batch.first + i], rules_.firings().size()), batch.memory});
+  });
+}
+
 ReportTimes ScanSimulator::run_batches(std::span<const ScanMotion> scans,
                                        std::uint64_t first_number, GpuScene::Results results,
                                        GpuScene::BatchSink sink) {

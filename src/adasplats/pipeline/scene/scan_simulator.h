@@ -18,6 +18,7 @@
 #include "adasplats/simulate/scan/ray_drop.h"
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/simulate/scan/scan_rules.h"
+#include "adasplats/simulate/scan/scan_view.h"
 #include "adasplats/simulate/scan/weather.h"
 
 namespace adasplats {
@@ -98,6 +99,11 @@ class ScanSimulator {
   /// Scan i has the number `first_number` + i, which names its noise, the firings of a pattern that
   /// does not repeat, and what moves in the world.
   ReportTimes run(std::span<const ScanMotion> scans, std::uint64_t first_number, Sink sink);
+  using HeldSink = FunctionRef<void(std::size_t i, HeldScan&& scan)>;
+  /// The same without a copy, for sinks that only read: who is slower than the casting holds a few
+  /// scans, not many.
+  ReportTimes run_held(std::span<const ScanMotion> scans, std::uint64_t first_number,
+                       HeldSink sink);
   /// The same in batches without a copy. On a GPU a batch has as many scans as a launch; else one,
   /// in memory of its own. Errors: unavailable (results on a device from a scene on the CPU, or
   /// of a pattern that does not repeat).
@@ -114,6 +120,7 @@ class ScanSimulator {
   ScanSettings settings_;
   const Executor& executor_;
   ScanRules rules_;
+  ScanPool pool_;
 };
 
 }  // namespace adasplats

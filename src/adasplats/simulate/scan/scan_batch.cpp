@@ -36,21 +36,4 @@ ScanBatch batch_of(std::size_t first, Scan&& scan) {
   return batch;
 }
 
-void copy_scan(const ScanBatch& batch, std::size_t i, const ScanMotion& motion, std::size_t rays,
-               Scan& scan) {
-  scan.world_from_sensor = motion.reference.world_from_sensor;
-  scan.time_s = motion.reference.time_s;
-  scan.rays = rays;
-  const auto copy = [&](auto& values, const auto* array) {
-    if (array == nullptr) {
-      values.clear();
-    } else {
-      values.assign(array + batch.offsets[i], array + batch.offsets[i + 1]);
-    }
-  };
-  copy(scan.positions, batch.arrays.positions);
-  for_each_scan_attribute(
-      [&](const auto& attribute) { copy(attribute.of(scan), attribute.of(batch.arrays)); });
-}
-
 }  // namespace adasplats

@@ -50,8 +50,4 @@ struct ScanBatch {
 /// A batch of one scan, scan `first` of a run, whose arrays it takes.
 ScanBatch batch_of(std::size_t first, Scan&& scan);
 
-/// Scan i of a batch in host memory, in `scan`, whose memory is used again.
-void copy_scan(const ScanBatch& batch, std::size_t i, const ScanMotion& motion, std::size_t rays,
-               Scan& scan);
-
 }  // namespace adasplats

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/simulate/scan/scan_view.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace adasplats {
+
+ScanView::ScanView(const Scan& scan)
+    : world_from_sensor(scan.world_from_sensor),
+      time_s(scan.time_s),
+      rays(scan.rays),
+      positions(scan.positions) {
+  for_each_scan_attribute([&](const auto& attribute) { attribute.of(*this) = attribute.of(scan); });
+}
+
+ScanView::ScanView(const ScanBatch& batch, std::size_t i, const ScanMotion& motion,
+                   std::size_t rays_cast)
+    : world_from_sensor(motion.reference.world_from_sensor),
+      time_s(motion.reference.time_s),
+      rays(rays_cast) {
+  const auto part = [&](auto& values, const auto* array) {
+    if (array != nullptr) values = {array + batch.offsets[i], array + batch.offsets[i + 1]};
+  };
+  part(positions, batch.arrays.positions);
+  for_each_scan_attribute(
+      [&](const auto& attribute) { part(attribute.of(*this), attribute.of(batch.arrays)); });
+}
+
+std::size_t ScanView::size() const {
+  std::size_t most = positions.size();
+  for_each_scan_attribute(
+      [&](const auto& attribute) { most = std::max(most, attribute.of(*this).size()); });
+  return most;
+}
+
+void ScanView::copy_to(Scan& scan) const {
+  scan.world_from_sensor = world_from_sensor;
+  scan.time_s = time_s;
+  scan.rays = rays;
+  scan.positions.assign(positions.begin(), positions.end());
+  for_each_scan_attribute([&](const auto& attribute) {
+    const auto& values = attribute.of(*this);
+    attribute.of(scan).assign(values.begin(), values.end());
+  });
+}
+
+HeldScan held_scan(Scan&& scan) {
+  const auto held = std::make_shared<const Scan>(std::move(scan));
+  return {*held, held};
+}
+
+HeldScan ScanPool::hold(Scan& scan) {
+  std::unique_ptr<Scan> taken;
+  {
+    const std::lock_guard lock(free_->mutex);
+    if (!free_->scans.empty()) {
+      taken = std::move(free_->scans.back());
+      free_->scans.pop_back();
+    }
+  }
+  if (!taken) taken = std::make_unique<Scan>();
+  std::swap(*taken, scan);
+  const std::shared_ptr<Scan> held(taken.release(), [free = free_](Scan* done) {
+    std::unique_ptr<Scan> back(done);
+    const std::lock_guard lock(free->mutex);
+    free->scans.push_back(std::move(back));
+  });
+  return {*held, held};
+}
+
+}  // namespace adasplats
