@@ -3,11 +3,12 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Measures what a user gets of the scans that a GPU traces: points on the device and on the host,
-# files in memory, a model from files to file, classes of points. Writes it as JSON.
+# the same in Python, files in memory, a model from files to file, classes of points. Writes JSON.
 # usage: bench/results_scans.sh BIN_DIR OUT.json [SEQUENCE]
 #   BIN_DIR   folder of the built programs (build/release/bin), of a clean commit
 #   SEQUENCE  kitti-0005/sequences/00; without it models and classes are left out
-# Classes need PyTorch. Needs about 8 GB in TMPDIR, which had better be memory.
+# Python and classes need PyTorch, Python the module of that commit in PYTHONPATH; without them they
+# are left out. Needs about 8 GB in TMPDIR, which had better be memory.
 set -euo pipefail
 
 [[ $# -ge 2 ]] || {
@@ -27,6 +28,9 @@ trap 'rm -rf "$work"' EXIT
 drive=$work/street/true_driving_trajectory.csv
 "$bin/bench_scans" "$work/street.ply" "$drive" --device cuda --scans 2000 --repeats 3 \
   --json "$work/scans.json" >"$work/log"
+if python3 -c 'import torch, adasplats' 2>/dev/null; then
+  "$root/bench/bench_batches.py" "$work/street.ply" "$drive" --json "$work/python.json" >"$work/log"
+fi
 for repeat in 0 1 2; do
   "$bin/adasplats" simulate "$work/street.ply" --trajectory "$drive" --spacing 0.05 --device cuda \
     -o "$work/scans" --report "$work/files$repeat.json" >"$work/log"
@@ -76,9 +80,9 @@ for name in ("model", "calibrated"):
                                     for key in runs[name + "0"]["seconds"]},
                         "seconds_of_load": {key: median_of(name, "seconds_of_load", key)
                                             for key in runs[name + "0"]["seconds_of_load"]}}
-if "segmentation" in runs:
-    result["segmentation"] = {key: value for key, value in runs["segmentation"].items()
-                              if key != "provenance"}
+for name in ("python", "segmentation"):
+    if name in runs:
+        result[name] = {key: value for key, value in runs[name].items() if key != "provenance"}
 pathlib.Path(out).write_text(json.dumps(result, indent=2) + "\n")
 print(json.dumps({k: v for k, v in result.items() if k != "provenance"}, indent=2))
 PYTHON
