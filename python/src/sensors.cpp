@@ -34,10 +34,14 @@ void fields(Archive& archive, UnitIntensity& unit) {
   archive("levels", unit.levels);
   archive("zero_share", unit.zero_share);
   archive("reported", unit.reported);
-  archive("zero_field", unit.zero_field);
-  archive("texture_field", unit.texture_field);
-  archive("texture_unevenness", unit.texture_unevenness);
-  archive("ring_texture", unit.ring_texture);
+}
+
+template <class Archive>
+void fields(Archive& archive, UnitFields& unit) {
+  archive("turns", unit.turns);
+  archive("rings", unit.rings);
+  archive("columns", unit.columns);
+  archive("bytes", unit.bytes);
 }
 
 template <class Archive>
@@ -50,6 +54,7 @@ void fields(Archive& archive, LidarModel& model) {
   archive("range_offsets_m", model.range_offsets_m);
   archive("ring_noise_m", model.ring_noise_m);
   archive("intensity", model.intensity);
+  archive("fields", model.fields);
   archive("columns", model.columns);
   archive("first_azimuth_rad", model.first_azimuth_rad);
   archive("rotation_hz", model.rotation_hz);

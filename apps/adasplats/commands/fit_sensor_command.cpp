@@ -78,10 +78,15 @@ class FitSensorCommand final : public Command {
     if (result.intensity) {
       table.add_row({"intensity: step, highest", fixed(result.intensity->step, 4) + ", " +
                                                      fixed(result.intensity->highest, 2)});
-      table.add_row(
-          {"intensity: texture, unevenness", fixed(result.intensity->texture_unevenness, 2)});
     }
-    if (result.drop) table.add_row({"blocked sectors", grouped(result.drop->blocked.size())});
+    if (result.drop) {
+      double lost = 0;
+      for (const double share : result.drop->edge_runs) lost += share;
+      table.add_row({"range edges with lost beams", fixed(100 * lost, 1) + " %"});
+      table.add_row({"blocked sectors", grouped(result.drop->blocked.size())});
+    }
+    if (result.fields)
+      table.add_row({"turns that tell what is alike", grouped(result.fields->turns)});
     std::string text = table.text();
     for (const std::string& reason : result.not_told) text += "not told: " + reason + "\n";
     text += "\n" + output_.string() + ": simulate --sensor " + output_.string();

@@ -93,14 +93,19 @@ std::string digest_of(const UnitIntensity& unit) {
   const auto add = [&](const auto& values) {
     hash.add(values.data(), values.size() * sizeof(values[0]));
   };
-  const std::array scalars = {unit.step, unit.highest, unit.texture_unevenness,
-                              static_cast<double>(unit.ring_nodes)};
+  const std::array scalars = {unit.step, unit.highest, static_cast<double>(unit.ring_nodes)};
   add(scalars);
-  for (const auto* table : {&unit.ring_expected, &unit.ring_level, &unit.levels, &unit.zero_share,
-                            &unit.reported, &unit.ring_texture})
+  for (const auto* table :
+       {&unit.ring_expected, &unit.ring_level, &unit.levels, &unit.zero_share, &unit.reported})
     add(*table);
-  add(unit.zero_field);
-  add(unit.texture_field);
+  return hash.digest();
+}
+
+std::string digest_of(const UnitFields& fields) {
+  Sha256 hash;
+  const std::array sizes = {fields.turns, fields.rings, fields.columns};
+  hash.add(sizes.data(), sizes.size() * sizeof(sizes[0]));
+  hash.add(fields.bytes.data(), fields.bytes.size());
   return hash.digest();
 }
 
@@ -118,6 +123,7 @@ Json sensor_content(const LidarModel& sensor) {
                {"divergence_kind", word_of(sensor.divergence_kind, kDivergenceKinds)}};
   if (!sensor.ring_noise_m.empty()) json["ring_noise_m"] = sensor.ring_noise_m;
   if (sensor.intensity) json["intensity"] = digest_of(*sensor.intensity);
+  if (sensor.fields) json["fields"] = digest_of(*sensor.fields);
   Sha256 hash;
   for (const Firing& firing : firings_of(sensor)) {
     const float numbers[] = {firing.direction.x, firing.direction.y, firing.direction.z,

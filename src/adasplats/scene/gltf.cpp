@@ -18,6 +18,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/base64.h"
 #include "adasplats/io/base/input_file.h"
 
 namespace adasplats {
@@ -74,27 +75,6 @@ Chunks split(const std::filesystem::path& path, std::string_view file) {
     offset += kChunkHeaderBytes + *length;
   }
   return chunks;
-}
-
-/// RFC 4648; nothing where a character is none of base64.
-std::optional<std::string> from_base64(std::string_view text) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  while (text.ends_with('=')) text.remove_suffix(1);
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3 + 3);
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    const std::size_t digit = kDigits.find(c);
-    if (digit == std::string_view::npos) return std::nullopt;
-    bits = bits << 6 | static_cast<std::uint32_t>(digit);
-    count += 6;
-    if (count < 8) continue;
-    count -= 8;
-    bytes += static_cast<char>(bits >> count & 0xffU);
-  }
-  return bytes;
 }
 
 /// RFC 3986: "%20" for a blank. Anything else behind a % stays as it is.

@@ -108,6 +108,7 @@ void LidarFile::clear_pattern() {
   model.range_offsets_m.clear();
   model.ring_noise_m.clear();
   model.intensity.reset();
+  model.fields.reset();
   model.free_pattern.clear();
   model.rosette.reset();
   column_steps.clear();

@@ -9,6 +9,7 @@
 
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/sensors/divergence.h"
+#include "adasplats/sensors/unit_fields.h"
 #include "adasplats/sensors/unit_intensity.h"
 
 namespace adasplats {
@@ -53,6 +54,8 @@ struct LidarModel {
   std::vector<double> ring_noise_m;
   /// What this unit makes of intensities; without: they are reported as the scene has them.
   std::optional<UnitIntensity> intensity;
+  /// How what this unit measures is alike in neighbouring beams; without: each beam by itself.
+  std::optional<UnitFields> fields;
   std::uint32_t columns = 0;     ///< azimuth steps a revolution
   double first_azimuth_rad = 0;  ///< of the head when a revolution begins
   double rotation_hz = 10.0;     ///< revolutions, or scans of a free pattern, a second

@@ -17,6 +17,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/words.h"
+#include "adasplats/io/base/base64.h"
 #include "adasplats/sensors/lidar_files.h"
 
 namespace adasplats {
@@ -56,7 +57,8 @@ const Keys& sensor_keys() {
                             "beam_origins_m",
                             "range_offsets_m",
                             "ring_noise_m",
-                            "intensity"};
+                            "intensity",
+                            "fields"};
   return keys;
 }
 
@@ -67,9 +69,13 @@ const Keys& rosette_keys() {
 }
 
 const Keys& intensity_keys() {
-  static const Keys keys = {
-      "step",     "highest",    "ring_expected", "ring_level",         "levels",      "zero_share",
-      "reported", "zero_field", "texture_field", "texture_unevenness", "ring_texture"};
+  static const Keys keys = {"step",   "highest",    "ring_expected", "ring_level",
+                            "levels", "zero_share", "reported"};
+  return keys;
+}
+
+const Keys& field_keys() {
+  static const Keys keys = {"turns", "columns", "bytes"};
   return keys;
 }
 
@@ -292,19 +298,6 @@ void require_ascending(const SensorTable& table, const char* key, std::span<cons
       throw table.error(key, "is not ascending");
 }
 
-FieldShares read_shares(const SensorTable& table, const char* key) {
-  FieldShares shares = {};
-  if (!table.has(key)) return shares;
-  const std::vector<double> read = table.numbers(key, 0, 1);
-  if (read.size() != shares.size())
-    throw table.error(key, "has " + std::to_string(read.size()) + " shares, expected " +
-                               std::to_string(shares.size()));
-  double sum = 0;
-  for (std::size_t k = 0; k < shares.size(); ++k) sum += shares[k] = read[k];
-  if (sum > 1) throw table.error(key, "has shares of more than 1 together");
-  return shares;
-}
-
 std::vector<float> floats_of(const std::vector<double>& values) {
   return {values.begin(), values.end()};
 }
@@ -335,15 +328,24 @@ UnitIntensity read_intensity(const SensorTable& sensor, std::size_t rings) {
   if (unit.zero_share.size() != unit.levels.size() ||
       unit.reported.size() != unit.levels.size() * kTextureNodes)
     throw table.error("levels", "needs as many values in zero_share and lists in reported");
-  unit.zero_field = read_shares(table, "zero_field");
-  unit.texture_field = read_shares(table, "texture_field");
-  unit.texture_unevenness = table.number("texture_unevenness", 0, 0, 3);
-  unit.ring_texture = floats_of(table.numbers("ring_texture", 0, 100));
-  if (!unit.ring_texture.empty() && unit.ring_texture.size() != rings)
-    throw table.error("ring_texture", "has " + std::to_string(unit.ring_texture.size()) +
-                                          " values, expected " + std::to_string(rings) +
-                                          ", one a ring");
   return unit;
+}
+
+UnitFields read_fields(const SensorTable& sensor, std::size_t rings) {
+  constexpr std::int64_t kMostTurns = 64, kMostFieldColumns = 1 << 16;
+  const SensorTable table = sensor.table("fields", field_keys());
+  UnitFields fields;
+  fields.rings = static_cast<std::uint32_t>(rings);
+  fields.turns = static_cast<std::uint32_t>(table.whole_number("turns", 1, kMostTurns));
+  fields.columns = static_cast<std::uint32_t>(table.whole_number("columns", 1, kMostFieldColumns));
+  const std::optional<std::string> bytes = from_base64(table.text("bytes", ""));
+  if (!bytes) throw table.error("bytes", "is not base64");
+  const std::size_t expected = std::size_t{fields.turns} * rings * fields.columns * kUnitFields;
+  if (bytes->size() != expected)
+    throw table.error("bytes", "has " + std::to_string(bytes->size()) + " bytes, expected " +
+                                   std::to_string(expected) + ", three of every beam");
+  fields.bytes.assign(bytes->begin(), bytes->end());
+  return fields;
 }
 
 void read_beams(const SensorTable& table, LidarFile& file) {
@@ -366,6 +368,7 @@ void read_beams(const SensorTable& table, LidarFile& file) {
   read_one_a_beam(table, "ring_noise_m", beams, table.numbers("ring_noise_m", 0, kFar_m),
                   model.ring_noise_m);
   if (table.has("intensity")) model.intensity = read_intensity(table, beams);
+  if (table.has("fields")) model.fields = read_fields(table, beams);
   read_one_a_beam(table, "column_steps", beams, table.whole_numbers("column_steps", 1),
                   file.column_steps);
   read_one_a_beam(table, "column_phases", beams, table.whole_numbers("column_phases", 0),
@@ -466,7 +469,7 @@ void read_divergence(const SensorTable& table, LidarModel& model) {
 void check_untouched(const SensorTable& table, const LidarModel& model) {
   for (const char* key : {"azimuth_offsets_deg", "beam_origins_m", "firing_times_us",
                           "column_steps", "column_phases", "columns", "first_azimuth_deg",
-                          "clockwise", "range_offsets_m", "ring_noise_m", "intensity"})
+                          "clockwise", "range_offsets_m", "ring_noise_m", "intensity", "fields"})
     if (table.has(key))
       throw table.error(key, "does not fit a sensor that is a rosette or a list of rays");
   for (const Firing& firing : model.free_pattern)

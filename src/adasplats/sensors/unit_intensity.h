@@ -2,23 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
 namespace adasplats {
 
-/// Octaves of a field of correlated numbers, and how long the correlation of each is.
-inline constexpr std::size_t kFieldOctaves = 4;
-/// Shares of a field's variance, an octave each; what they leave of 1 is white. Fine to coarse.
-using FieldShares = std::array<double, kFieldOctaves>;
-
-/// For how many values of the texture field an intensity is told (texture_node()).
+/// For how many shares of the beams an intensity is told (texture_node()).
 inline constexpr std::size_t kTextureNodes = 15;
 
 /// What one unit reports as intensity where a model of the place expects another one: its lasers'
-/// gains, beams that return with intensity zero, the texture of surfaces that is finer than a
-/// model, and the steps of its converter. fit_unit() finds it. All in the unit of the intensities.
+/// gains, beams that return with intensity zero, how intensities scatter on surfaces of one level,
+/// and the steps of its converter. Which beams report much and which little, UnitFields say.
+/// fit_unit() finds it. All in the unit of the intensities.
 struct UnitIntensity {
   double step = 0;     ///< values are multiples of it; 0: any
   double highest = 0;  ///< none is reported above
@@ -30,15 +25,9 @@ struct UnitIntensity {
 
   std::vector<float> levels;      ///< ascending, for the two tables below
   std::vector<float> zero_share;  ///< of beams with such a level: that report zero
-  std::vector<float> reported;    ///< of the others, kTextureNodes of each level, by texture field
-
-  FieldShares zero_field = {};     ///< decides which beams report zero
-  FieldShares texture_field = {};  ///< decides what the others report
-  /// How unevenly the white part of the texture is spread: standard deviation of the logarithm of
-  /// its amplitude. 0: everywhere the same.
-  double texture_unevenness = 0;
-  /// Amplitude of the white part of each ring, topmost first; empty: 1.
-  std::vector<float> ring_texture;
+  /// Of the others, kTextureNodes of each level: what the shares of them that texture_node() has
+  /// report at most.
+  std::vector<float> reported;
 };
 
 }  // namespace adasplats

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/io/base/base64.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/lidar_library.h"
@@ -117,7 +118,7 @@ std::string rows_text(const char* key, std::span<const float> values, std::size_
   return text + "]\n";
 }
 
-/// The table [intensity], which has to be the last of a file.
+/// The table [intensity], which has to stand behind all keys.
 std::string intensity_text(const UnitIntensity& unit) {
   std::string text = "\n[intensity]\n";
   text += "step = " + exact_text(unit.step) + "\nhighest = " + exact_text(unit.highest) + "\n";
@@ -127,17 +128,22 @@ std::string intensity_text(const UnitIntensity& unit) {
     text += rows_text("ring_level", unit.ring_level, unit.ring_nodes);
   }
   text +=
-      "# Of each level: the share of returns with intensity zero; what the others report where\n"
-      "# the texture field is -3 to 3.\n";
+      "# Of each level: the share of returns with intensity zero; what 0, 1, 3, 7, 15, 25, 35, 50, "
+      "65,\n# 75, 85, 93, 97, 99 and 100 % of the others report at most.\n";
   text += lines_of("levels", rounded_list(std::span<const float>(unit.levels)));
   text += lines_of("zero_share", rounded_list(std::span<const float>(unit.zero_share)));
-  text += rows_text("reported", unit.reported, kTextureNodes);
-  text += "# Shares of octaves in the fields, fine to coarse; the rest of 1 is white.\n";
-  text += "zero_field = " + rounded_list(std::span<const double>(unit.zero_field)) + "\n";
-  text += "texture_field = " + rounded_list(std::span<const double>(unit.texture_field)) + "\n";
-  text += "texture_unevenness = " + exact_text(unit.texture_unevenness) + "\n";
-  if (unit.ring_texture.empty()) return text;
-  return text + lines_of("ring_texture", rounded_list(std::span<const float>(unit.ring_texture)));
+  return text + rows_text("reported", unit.reported, kTextureNodes);
+}
+
+/// The table [fields]: as [intensity], behind all keys.
+std::string fields_text(const UnitFields& fields) {
+  const std::string_view bytes(reinterpret_cast<const char*>(fields.bytes.data()),
+                               fields.bytes.size());
+  return "\n# Turns of this unit: of every beam three bytes, how early its echo is lost, how much "
+         "it\n"
+         "# reports among such surfaces, and the noise of its range (base64).\n[fields]\nturns = " +
+         std::to_string(fields.turns) + "\ncolumns = " + std::to_string(fields.columns) +
+         "\nbytes = \"" + to_base64(bytes) + "\"\n";
 }
 
 /// The keys of a file of the library in its order, but for those that say the elevations.
@@ -200,7 +206,9 @@ std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets&
     for (const std::size_t ring : rings) noise_m.push_back(offset_at(traits.ring_noise_m, ring));
     text += lines_of("ring_noise_m", text_of_numbers(noise_m));
   }
-  return traits.intensity == nullptr ? text : text + intensity_text(*traits.intensity);
+  if (traits.intensity != nullptr) text += intensity_text(*traits.intensity);
+  if (traits.fields != nullptr) text += fields_text(*traits.fields);
+  return text;
 }
 
 }  // namespace adasplats

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "adasplats/sensors/unit_fields.h"
 #include "adasplats/sensors/unit_intensity.h"
 
 namespace adasplats {
@@ -22,6 +23,7 @@ struct UnitTraits {
   std::span<const double> ring_noise_m;  ///< topmost first; empty: not known
   std::optional<double> max_range_m;
   const UnitIntensity* intensity = nullptr;
+  const UnitFields* fields = nullptr;
   std::string fitted_to;  ///< for the reader of the file
 };
 

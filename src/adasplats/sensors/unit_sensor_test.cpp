@@ -76,15 +76,11 @@ UnitIntensity intensity_of_two_levels(std::size_t rings) {
   for (std::size_t ring = 0; ring < rings; ++ring) {
     unit.ring_expected.insert(unit.ring_expected.end(), {0.1F, 0.5F});
     unit.ring_level.insert(unit.ring_level.end(), {0.125F, 0.5F + static_cast<float>(ring) / 128});
-    unit.ring_texture.push_back(1 + static_cast<float>(ring) / 64);
   }
   unit.levels = {0.125F, 0.75F};
   unit.zero_share = {0.5F, 0.25F};
   for (std::size_t k = 0; k < 2 * kTextureNodes; ++k)
     unit.reported.push_back(static_cast<float>(k) / 32);
-  unit.zero_field = {0.25, 0.125, 0, 0.5};
-  unit.texture_field = {0, 0.125, 0.25, 0};
-  unit.texture_unevenness = 0.5;
   return unit;
 }
 
@@ -99,6 +95,10 @@ TEST(UnitSensor, TraitsAreReadBack) {
   traits.ring_noise_m = noise_m;
   traits.max_range_m = 79.5;
   traits.intensity = &intensity;
+  UnitFields fields{2, 16, 5, {}};
+  for (std::size_t i = 0; i < 2 * 16 * 5 * kUnitFields; ++i)
+    fields.bytes.push_back(static_cast<std::uint8_t>(7 * i));
+  traits.fields = &fields;
   traits.fitted_to = "3 scans of here";
   const auto file = folder.write("unit.toml", unit_sensor_toml(name, {}, traits));
   const LidarModel unit = load_lidar_model(file.string());
@@ -117,10 +117,11 @@ TEST(UnitSensor, TraitsAreReadBack) {
   EXPECT_EQ(unit.intensity->levels, intensity.levels);
   EXPECT_EQ(unit.intensity->zero_share, intensity.zero_share);
   EXPECT_EQ(unit.intensity->reported, intensity.reported);
-  EXPECT_EQ(unit.intensity->zero_field, intensity.zero_field);
-  EXPECT_EQ(unit.intensity->texture_field, intensity.texture_field);
-  EXPECT_EQ(unit.intensity->texture_unevenness, 0.5);
-  EXPECT_EQ(unit.intensity->ring_texture.size(), 16U);
+  ASSERT_TRUE(unit.fields.has_value());
+  EXPECT_EQ(unit.fields->turns, 2U);
+  EXPECT_EQ(unit.fields->rings, 16U);
+  EXPECT_EQ(unit.fields->columns, 5U);
+  EXPECT_EQ(unit.fields->bytes, fields.bytes);
   // A sensor that is like it has it, too; its own noise or beams replace it.
   const auto like = folder.write("like.toml", std::string("like = \"unit.toml\"\n"));
   EXPECT_EQ(load_lidar_model(like.string()).ring_noise_m, unit.ring_noise_m);
@@ -130,6 +131,21 @@ TEST(UnitSensor, TraitsAreReadBack) {
   const auto other =
       folder.write("other.toml", std::string("like = \"unit.toml\"\nelevations_deg = [1, 2]\n"));
   EXPECT_FALSE(load_lidar_model(other.string()).intensity.has_value());
+  EXPECT_FALSE(load_lidar_model(other.string()).fields.has_value());
+}
+
+TEST(UnitSensor, ErrorsOfFieldsSayWhatIsWrong) {
+  const TemporaryFolder folder;
+  const auto error_is = [&](const std::string& lines, const std::string& says) {
+    const auto file =
+        folder.write("bad.toml", "columns = 4\nelevations_deg = [-1, 2]\n[fields]\n" + lines);
+    expect_error(ErrorKind::config, {says}, [&] { load_lidar_model(file.string()); });
+  };
+  error_is("columns = 1\nbytes = 'AAAAAAAA'\n", "turns is missing");
+  error_is("turns = 0\ncolumns = 1\nbytes = 'AAAAAAAA'\n", "turns");
+  error_is("turns = 1\ncolumns = 2\nbytes = 'AAAAAAAA'\n", "has 6 bytes, expected 12");
+  error_is("turns = 1\ncolumns = 1\nbytes = 'AAAA*AAA'\n", "is not base64");
+  error_is("turns = 1\ncolumns = 1\nbyte = 'AAAAAAAA'\n", "did you mean 'bytes'");
 }
 
 TEST(UnitSensor, ErrorsOfIntensitiesSayWhatIsWrong) {
@@ -146,10 +162,7 @@ TEST(UnitSensor, ErrorsOfIntensitiesSayWhatIsWrong) {
       folder.write("good.toml", "columns = 4\nelevations_deg = [-1, 2]\n[intensity]\n" + good);
   EXPECT_TRUE(load_lidar_model(file.string()).intensity.has_value());
   error_is("highest = 1\n", "levels is missing");
-  error_is(good + "zero_fields = [0, 0, 0, 0]\n", "did you mean 'zero_field'");
-  error_is(good + "zero_field = [1, 1, 0, 0]\n", "more than 1 together");
-  error_is(good + "zero_field = [1]\n", "has 1 shares, expected 4");
-  error_is(good + "ring_texture = [1]\n", "has 1 values, expected 2");
+  error_is(good + "zero_shares = [0]\n", "did you mean 'zero_share'");
   error_is(good + "ring_expected = [[0, 1], [0, 1]]\n", "stand together");
   error_is(good + "ring_expected = [[0, 1], [1, 0]]\nring_level = [[0, 1], [0, 1]]\n",
            "is not ascending");

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What a unit reports as intensity: levels of its lasers, zeros, texture.
+// What a unit reports as intensity: levels of its lasers, zeros, how the others scatter.
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 
 #include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/evaluate/realism/scan_part.h"
-#include "adasplats/evaluate/unit/field_fit.h"
 #include "adasplats/evaluate/unit/fit_unit.h"
 #include "adasplats/simulate/scan/intensity_rules.h"
 
@@ -111,16 +111,6 @@ void fit_lasers(std::span<const KnownReturn> known, std::size_t rings, UnitInten
   }
 }
 
-IntensityRules rules_of(const UnitIntensity& unit) {
-  IntensityRules rules;
-  rules.on = true;
-  rules.ring_nodes = static_cast<std::uint32_t>(unit.ring_nodes);
-  rules.rings = static_cast<std::uint32_t>(unit.ring_expected.size() / unit.ring_nodes);
-  rules.ring_expected = unit.ring_expected.data();
-  rules.ring_level = unit.ring_level.data();
-  return rules;
-}
-
 /// Known returns by their level: parts [begins[k], begins[k + 1]) of `order`.
 struct LevelParts {
   std::vector<float> levels;  ///< of known returns
@@ -128,7 +118,7 @@ struct LevelParts {
   std::vector<std::size_t> begins;
 
   LevelParts(std::span<const KnownReturn> known, const UnitIntensity& unit) {
-    const IntensityRules rules = rules_of(unit);
+    const IntensityRules rules = intensity_rules(unit);
     levels.reserve(known.size());
     for (const KnownReturn& one : known) levels.push_back(level_of(rules, one.ring, one.expected));
     order.resize(known.size());
@@ -145,8 +135,7 @@ struct LevelParts {
   }
 };
 
-void fit_zeros(std::span<const UnitBeam> beams, std::span<const KnownReturn> known,
-               const LevelParts& parts, UnitIntensity& unit) {
+void fit_zeros(std::span<const KnownReturn> known, const LevelParts& parts, UnitIntensity& unit) {
   for (std::size_t k = 0; k < parts.size(); ++k) {
     double sum = 0, zeros = 0;
     for (const std::uint32_t i : parts.part(k)) {
@@ -160,92 +149,6 @@ void fit_zeros(std::span<const UnitBeam> beams, std::span<const KnownReturn> kno
     unit.levels.push_back(level);
     unit.zero_share.push_back(static_cast<float>(zeros / count));
   }
-  std::vector<double> chances(beams.size(), kNaN);
-  std::vector<std::uint8_t> zero(beams.size(), 0);
-  const GainTable table{unit.levels.data(), unit.zero_share.data(),
-                        static_cast<std::uint32_t>(unit.levels.size())};
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    chances[known[i].beam] = static_cast<double>(gain_of(table, parts.levels[i]));
-    zero[known[i].beam] = known[i].measured <= 0 ? 1 : 0;
-  }
-  unit.zero_field = shares_of(latent_correlations(beams, chances, zero));
-}
-
-/// Numbers of a standard normal distribution in the order of `values`.
-std::vector<double> normal_scores(std::span<const double> values) {
-  std::vector<std::uint32_t> order(values.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
-    return values[a] != values[b] ? values[a] < values[b] : a < b;
-  });
-  constexpr std::size_t kSteps = 2000;
-  std::vector<double> table(kSteps);
-  for (std::size_t k = 0; k < kSteps; ++k)
-    table[k] = normal_quantile((static_cast<double>(k) + 0.5) / kSteps);
-  std::vector<double> scores(values.size());
-  for (std::size_t rank = 0; rank < order.size(); ++rank)
-    scores[order[rank]] = table[rank * kSteps / order.size()];
-  return scores;
-}
-
-/// How even the white part of numbers along a ring is: the mean middle half of their second
-/// differences over the root of the mean square. Less where few large ones are among small ones.
-double evenness_of(std::vector<double> second) {
-  if (second.empty()) return 0;
-  double squares = 0;
-  for (const double value : second) squares += value * value;
-  std::ranges::sort(second);
-  const std::vector<float> ascending(second.begin(), second.end());
-  return mean_between(ascending, 0.25, 0.75) /
-         std::sqrt(squares / static_cast<double>(second.size()));
-}
-
-/// Texture fields of a scan that nobody measured, ring by ring.
-constexpr std::uint32_t kDrawnRings = 64, kDrawnColumns = 2000;
-
-std::vector<double> drawn_textures(const UnitIntensity& unit, double unevenness) {
-  const FieldWeights weights = field_weights(unit.texture_field);
-  std::vector<double> values;
-  values.reserve(std::size_t{kDrawnRings} * kDrawnColumns);
-  for (std::uint32_t ring = 0; ring < kDrawnRings; ++ring)
-    for (std::uint32_t column = 0; column < kDrawnColumns; ++column)
-      values.push_back(texture_value(beam_field_parts(0, 0, ring, column), weights, unevenness, 1));
-  return values;
-}
-
-double drawn_evenness(const UnitIntensity& unit, double unevenness) {
-  const std::vector<double> scores = normal_scores(drawn_textures(unit, unevenness));
-  std::vector<double> second;
-  for (std::size_t i = 0; i + 2 < scores.size(); ++i)
-    if (i / kDrawnColumns == (i + 2) / kDrawnColumns)
-      second.push_back(std::fabs(scores[i] - 2 * scores[i + 1] + scores[i + 2]));
-  return evenness_of(std::move(second));
-}
-
-double fit_unevenness(const UnitIntensity& unit, double evenness) {
-  double low = 0, high = 2;
-  if (drawn_evenness(unit, low) <= evenness) return low;
-  for (int k = 0; k < 6; ++k) {
-    const double middle = 0.5 * (low + high);
-    (drawn_evenness(unit, middle) > evenness ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
-/// How much rings differ in the middle half of their second differences, about 1.
-std::vector<float> amplitudes_of(std::vector<std::vector<float>>& of_rings) {
-  std::vector<double> middles;
-  for (std::vector<float>& second : of_rings) {
-    std::ranges::sort(second);
-    middles.push_back(second.size() < kLeastOfLaser ? kNaN : mean_between(second, 0.25, 0.75));
-  }
-  const double usual = median_of_known(middles);
-  std::vector<float> amplitudes;
-  for (const double middle : middles) {
-    const bool known = middle == middle && usual > 0;
-    amplitudes.push_back(known ? static_cast<float>(std::clamp(middle / usual, 0.3, 3.0)) : 1.0F);
-  }
-  return amplitudes;
 }
 
 /// What the returns of a part report that do not report zero.
@@ -263,58 +166,47 @@ void spread_steps(std::vector<double>& values, double step) {
     values[i] += step * (Random(0, 0, i).uniform() - 0.5);
 }
 
-void fit_texture(std::span<const UnitBeam> beams, std::span<const KnownReturn> known,
-                 const LevelParts& parts, UnitIntensity& unit) {
-  std::vector<double> scores(beams.size(), kNaN);
-  std::vector<std::vector<double>> values(parts.size());
+void fit_reported(std::span<const KnownReturn> known, const LevelParts& parts,
+                  UnitIntensity& unit) {
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    // Equal ones, as neighbours often are, have scores in the order of the beams, side by side.
-    std::vector<std::uint32_t> in_order(parts.part(k).begin(), parts.part(k).end());
-    std::ranges::sort(in_order);
-    values[k] = reported_values(known, in_order);
-    const std::vector<double> of_part = normal_scores(values[k]);
-    std::size_t next = 0;
-    for (const std::uint32_t i : in_order)
-      if (known[i].measured > 0) scores[known[i].beam] = of_part[next++];
-  }
-  unit.texture_field = shares_of(lag_products(beams, scores));
-  std::vector<double> second;
-  std::vector<std::vector<float>> of_rings(unit.ring_expected.size() / unit.ring_nodes);
-  for (std::size_t i = 0; i + 2 < beams.size(); ++i) {
-    if (!on_one_surface(beams[i], beams[i + 1], beams[i + 2])) continue;
-    const double of_three = std::fabs(scores[i] - 2 * scores[i + 1] + scores[i + 2]);
-    if (of_three != of_three) continue;
-    second.push_back(of_three);
-    of_rings[beams[i].ring].push_back(static_cast<float>(of_three));
-  }
-  unit.ring_texture = amplitudes_of(of_rings);
-  unit.texture_unevenness = std::round(1e3 * fit_unevenness(unit, evenness_of(second))) / 1e3;
-  std::vector<double> drawn = drawn_textures(unit, unit.texture_unevenness);
-  std::ranges::sort(drawn);
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    // A level with too few has what the one before it has, the first that of the next.
-    if (values[k].size() < kLeastOfLevel && k > 0) {
+    std::vector<double> values = reported_values(known, parts.part(k));
+    // A level with too few has what the one before it has.
+    if (values.size() < kLeastOfLevel && k > 0) {
       for (std::size_t n = 0; n < kTextureNodes; ++n)
         unit.reported.push_back(unit.reported[unit.reported.size() - kTextureNodes]);
       continue;
     }
-    spread_steps(values[k], unit.step);
-    std::ranges::sort(values[k]);
-    const std::vector<float> ascending(values[k].begin(), values[k].end());
+    spread_steps(values, unit.step);
+    std::ranges::sort(values);
+    const std::vector<float> ascending(values.begin(), values.end());
     for (std::uint32_t n = 0; n < kTextureNodes; ++n) {
-      const auto node = static_cast<double>(texture_node(n));
-      const auto below = std::ranges::lower_bound(drawn, node) - drawn.begin();
-      const double share = static_cast<double>(below) / static_cast<double>(drawn.size());
+      const auto share = static_cast<double>(texture_node(n));
       const double value = ascending.empty() ? unit.step : quantile_of(ascending, share);
       unit.reported.push_back(static_cast<float>(std::max(0.0, value)));
     }
   }
 }
 
+/// Of each beam the share of those of its level that report less; equal ones, as neighbours often
+/// are, in the order of the beams, side by side.
+std::vector<float> shares_below(std::size_t beams, std::span<const KnownReturn> known,
+                                const LevelParts& parts) {
+  std::vector<float> shares(beams, std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    std::vector<std::uint32_t> order(parts.part(k).begin(), parts.part(k).end());
+    std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+      return known[a].measured != known[b].measured ? known[a].measured < known[b].measured : a < b;
+    });
+    const auto count = static_cast<float>(order.size());
+    for (std::size_t rank = 0; rank < order.size(); ++rank)
+      shares[known[order[rank]].beam] = (static_cast<float>(rank) + 0.5F) / count;
+  }
+  return shares;
+}
+
 }  // namespace
 
-std::optional<UnitIntensity> fit_unit_intensity(std::span<const UnitBeam> beams,
-                                                std::size_t rings) {
+std::optional<IntensityFit> fit_unit_intensity(std::span<const UnitBeam> beams, std::size_t rings) {
   const std::vector<KnownReturn> known = known_returns(beams, rings);
   if (known.size() < kLeastReturns) return std::nullopt;
   std::vector<float> measured;
@@ -322,15 +214,17 @@ std::optional<UnitIntensity> fit_unit_intensity(std::span<const UnitBeam> beams,
   for (const KnownReturn& one : known) measured.push_back(one.measured);
   const auto [least, most] = std::ranges::minmax(measured);
   if (!(most > least)) return std::nullopt;
-  UnitIntensity unit;
-  unit.highest = static_cast<double>(most);
-  unit.step = step_of(std::move(measured));
-  if (unit.step > 0) unit.highest = unit.step * std::round(unit.highest / unit.step);
-  fit_lasers(known, rings, unit);
-  const LevelParts parts(known, unit);
-  fit_zeros(beams, known, parts, unit);
-  fit_texture(beams, known, parts, unit);
-  return unit;
+  IntensityFit fit;
+  fit.unit.highest = static_cast<double>(most);
+  fit.unit.step = step_of(std::move(measured));
+  if (fit.unit.step > 0)
+    fit.unit.highest = fit.unit.step * std::round(fit.unit.highest / fit.unit.step);
+  fit_lasers(known, rings, fit.unit);
+  const LevelParts parts(known, fit.unit);
+  fit_zeros(known, parts, fit.unit);
+  fit_reported(known, parts, fit.unit);
+  fit.shares = shares_below(beams.size(), known, parts);
+  return fit;
 }
 
 }  // namespace adasplats

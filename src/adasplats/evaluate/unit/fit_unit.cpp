@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "adasplats/core/constants.h"
-#include "adasplats/core/error.h"
 #include "adasplats/evaluate/realism/scan_part.h"
-#include "adasplats/evaluate/unit/field_fit.h"
 
 namespace adasplats {
 namespace {
@@ -28,12 +26,13 @@ bool modelled_as_one(const UnitBeam& a, const UnitBeam& b, const UnitBeam& c) {
 
 float second_difference(float a, float b, float c) { return std::fabs(a - 2 * b + c); }
 
-double deviation_of(std::vector<float>& second) {
+}  // namespace
+
+double noise_of_second_differences(std::vector<float>& second) {
+  if (second.empty()) return 0;
   std::ranges::sort(second);
   return mean_between(second, 0.25, 0.75) / kMiddleHalf;
 }
-
-}  // namespace
 
 std::vector<double> fit_ring_noise_m(std::span<const UnitBeam> beams, std::size_t rings) {
   constexpr double kLeast_m = 1e-4;
@@ -54,7 +53,8 @@ std::vector<double> fit_ring_noise_m(std::span<const UnitBeam> beams, std::size_
   std::vector<double> known;
   for (std::size_t ring = 0; ring < rings; ++ring) {
     if (measured[ring].size() < kLeastOfRing) continue;
-    const double all_m = deviation_of(measured[ring]), of_model_m = deviation_of(modelled[ring]);
+    const double all_m = noise_of_second_differences(measured[ring]);
+    const double of_model_m = noise_of_second_differences(modelled[ring]);
     noise_m[ring] =
         std::sqrt(std::max(all_m * all_m - of_model_m * of_model_m, kLeast_m * kLeast_m));
     known.push_back(noise_m[ring]);
@@ -77,56 +77,31 @@ std::optional<double> fit_max_range_m(std::span<const UnitBeam> beams) {
   return std::ceil(static_cast<double>(farthest_m) * 10 - 1e-6) / 10;
 }
 
-std::optional<RayDropModel> fit_unit_drop(std::span<const UnitBeam> beams, double max_range_m) {
-  BeamEchoes echoes;
-  std::vector<std::size_t> numbers;
-  for (std::size_t i = 0; i < beams.size(); ++i) {
-    const UnitBeam& beam = beams[i];
-    if (!beam.hit || !(static_cast<double>(beam.expected_m) < max_range_m)) continue;
-    echoes.echoes.push_back(
-        {beam.expected_m, beam.cos_incidence, beam.reflectance, beam.direction});
-    echoes.hit.push_back(1);
-    echoes.lost.push_back(beam.returned() ? 0 : 1);
-    echoes.scans.push_back(beam.scan);
-    numbers.push_back(i);
-  }
-  std::optional<RayDropModel> model;
-  try {
-    model = fit_ray_drop(echoes);
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::data) throw;
-    return std::nullopt;
-  }
-  std::vector<double> chances(beams.size(), kNaN);
-  std::vector<std::uint8_t> lost(beams.size(), 0);
-  const DropRules rules = model->rules();
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const EchoConditions& echo = echoes.echoes[k];
-    if (model->blocks(echo.direction)) continue;
-    chances[numbers[k]] = drop_chance(rules, echo.range_m, echo.cos_incidence, echo.reflectance);
-    lost[numbers[k]] = echoes.lost[k];
-  }
-  model->field = shares_of(latent_correlations(beams, chances, lost));
-  return model;
-}
-
-UnitFit fit_unit(std::span<const UnitBeam> beams, std::size_t rings, double max_range_m) {
+UnitFit fit_unit(std::span<const UnitBeam> beams, const UnitPattern& pattern) {
   UnitFit fit;
+  const std::size_t rings = pattern.rings;
   fit.max_range_m = fit_max_range_m(beams);
   fit.ring_noise_m = fit_ring_noise_m(beams, rings);
   if (fit.ring_noise_m.empty())
     fit.not_told.emplace_back(
         "range noise: fewer than a quarter of the rings have 300 neighbouring returns on smooth "
         "surfaces of the model");
-  fit.intensity = fit_unit_intensity(beams, rings);
-  if (!fit.intensity)
+  std::optional<IntensityFit> intensity = fit_unit_intensity(beams, rings);
+  if (!intensity)
     fit.not_told.emplace_back(
         "intensities: fewer than 10,000 returns with an intensity meet the model where it has "
         "one, or all are alike");
-  fit.drop = fit_unit_drop(beams, fit.max_range_m.value_or(max_range_m));
-  if (!fit.drop)
+  std::optional<DropFit> drop = fit_unit_drop(beams, fit.max_range_m.value_or(pattern.max_range_m));
+  if (!drop)
     fit.not_told.emplace_back(
         "drop-outs: fewer than 100 beams that met the model did not return, or did");
+  if (!fit.ring_noise_m.empty() || intensity || drop)
+    fit.fields = fit_unit_fields(
+        beams, pattern, fit.ring_noise_m,
+        {drop ? std::span<const float>(drop->shares) : std::span<float>(),
+         intensity ? std::span<const float>(intensity->shares) : std::span<float>()});
+  if (intensity) fit.intensity = std::move(intensity->unit);
+  if (drop) fit.drop = std::move(drop->model);
   return fit;
 }
 

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "adasplats/core/maths/random.h"
-#include "adasplats/evaluate/unit/field_fit.h"
 #include "adasplats/simulate/scan/firing_report.h"
 
 namespace adasplats {
@@ -18,41 +17,41 @@ constexpr std::uint16_t kRings = 16;
 constexpr std::uint32_t kColumns = 1000, kScans = 8;
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
-/// A unit whose parameters are known.
+/// A unit whose parameters are known: of the beams with one level those that report less.
 struct Truth {
-  std::vector<float> levels = {0, 1}, zero_share = {0.6F, 0}, reported;
-  FieldShares zero_field = {0.3, 0.1, 0.4, 0}, texture_field = {0, 0.3, 0.2, 0};
-  FieldShares drop_field = {0.1, 0.2, 0.5, 0};
+  UnitIntensity unit;
   IntensityRules rules;
 
   Truth() {
-    for (const float level : levels)
+    unit.step = 0.01;
+    unit.highest = 0.8;
+    unit.levels = {0, 1};
+    unit.zero_share = {0.6F, 0};
+    for (const float level : unit.levels)
       for (std::uint32_t k = 0; k < kTextureNodes; ++k)
-        reported.push_back(0.05F + level * (0.5F + texture_node(k) / 8));
-    rules.on = true;
-    rules.step = 0.01F;
-    rules.highest = 0.8F;
-    rules.level_count = 2;
-    rules.levels = levels.data();
-    rules.zero_share = zero_share.data();
-    rules.reported = reported.data();
-    rules.zero = field_weights(zero_field);
-    rules.texture = field_weights(texture_field);
-    rules.unevenness = 0.6;
+        unit.reported.push_back(0.05F + level * (0.1F + 0.8F * texture_node(k)));
+    rules = intensity_rules(unit);
   }
 };
 
 double noise_m_of(std::uint32_t ring) { return 0.004 + 0.001 * ring; }
 
+constexpr double kLostShare = 0.1, kLostAtEdge = 0.3;
+
+/// What is alike in four beams one after the other.
+double patchy_share(std::uint32_t scan, std::uint16_t ring, std::uint32_t column,
+                    std::uint64_t stream) {
+  return Random(scan, stream, std::uint64_t{ring} << 32 | column / 4).uniform();
+}
+
 /// Beams of scans that the truth measured: walls whose reflectance wanders, 10 to 30 m away, and
-/// one in sixteen farther than the unit sees.
+/// one in sixteen farther than the unit sees. Every fifty beams a wall steps forward or back: of
+/// these edges some lose one beam.
 std::vector<UnitBeam> measured_by(const Truth& truth) {
-  const FieldWeights drop = field_weights(truth.drop_field);
   std::vector<UnitBeam> beams;
   for (std::uint32_t scan = 0; scan < kScans; ++scan)
     for (std::uint16_t ring = 0; ring < kRings; ++ring)
       for (std::uint32_t column = 0; column < kColumns; ++column) {
-        const BeamFieldParts fields = beam_field_parts(5, scan, ring, column);
         Random random(9, scan, std::uint64_t{ring} * kColumns + column);
         UnitBeam beam;
         beam.scan = scan;
@@ -60,19 +59,36 @@ std::vector<UnitBeam> measured_by(const Truth& truth) {
         beam.column = column;
         beam.hit = true;
         const double turn = 0.01 * column + 0.3 * ring;
-        beam.expected_m = static_cast<float>(20 + 10 * std::sin(0.1 * turn));
-        if (column % 16 == 0) beam.expected_m = 60;
+        beam.expected_m =
+            static_cast<float>(20 + 9 * std::sin(0.1 * turn) + (column / 50 % 2 == 0 ? 1 : -1));
+        if (column % 160 == 75) beam.expected_m = 60;
         beam.expected_intensity = static_cast<float>(0.5 + 0.45 * std::sin(turn + scan));
         beam.reflectance = beam.expected_intensity;
         beam.direction = {1, 0, 0};
-        constexpr double chance = 0.1;
-        const bool lost = normal_share(field_value(fields, BeamField::drop, drop)) < chance;
+        const bool at_edge = column > 0 && column % 50 == 0 && random.uniform() < kLostAtEdge;
+        const bool lost = at_edge || patchy_share(scan, ring, column, 1) < kLostShare;
         beam.range_m = beam.expected_m + static_cast<float>(noise_m_of(ring) * random.normal());
-        beam.intensity = unit_intensity(truth.rules, ring, beam.expected_intensity, fields);
+        beam.intensity = unit_intensity(truth.rules, ring, beam.expected_intensity,
+                                        patchy_share(scan, ring, column, 2));
         if (lost || beam.expected_m > 50) beam.range_m = beam.intensity = kNothing;
         beams.push_back(beam);
       }
   return beams;
+}
+
+constexpr UnitPattern kPattern = {kRings, kColumns, 50};
+
+/// Share of the pairs so far apart that are on one side of the half.
+double alike_share(const UnitFields& fields, UnitField field, std::size_t apart) {
+  const auto high = [&](std::size_t beam) {
+    return fields.bytes[beam * kUnitFields + static_cast<std::size_t>(field)] >= 128;
+  };
+  double alike = 0, pairs = 0;
+  for (std::size_t beam = 0; beam + apart < fields.bytes.size() / kUnitFields; ++beam) {
+    alike += high(beam) == high(beam + apart) ? 1 : 0;
+    ++pairs;
+  }
+  return alike / pairs;
 }
 
 class FitUnit : public testing::Test {
@@ -92,38 +108,23 @@ TEST_F(FitUnit, FindsTheNoiseOfEachRing) {
 
 // Oracle: the unit that was drawn.
 TEST_F(FitUnit, FindsHowIntensitiesAreMade) {
-  const auto unit = fit_unit_intensity(beams_, kRings);
-  ASSERT_TRUE(unit.has_value());
-  EXPECT_NEAR(unit->step, 0.01, 1e-6);
-  EXPECT_NEAR(unit->highest, 0.8, 1e-6);
-  for (std::size_t k = 0; k < kFieldOctaves; ++k) {
-    EXPECT_NEAR(unit->zero_field[k], truth_.zero_field[k], 0.15) << k;
-    EXPECT_NEAR(unit->texture_field[k], truth_.texture_field[k], 0.15) << k;
-  }
-  EXPECT_NEAR(unit->texture_unevenness, 0.6, 0.15);
-  // What the fitted unit makes of the same beams: as many zeros, the same mean, as much spread.
-  const IntensityRules rules = [&] {
-    Truth holder;
-    IntensityRules made = holder.rules;
-    made.rings = kRings;
-    made.ring_nodes = static_cast<std::uint32_t>(unit->ring_nodes);
-    made.ring_expected = unit->ring_expected.data();
-    made.ring_level = unit->ring_level.data();
-    made.level_count = static_cast<std::uint32_t>(unit->levels.size());
-    made.levels = unit->levels.data();
-    made.zero_share = unit->zero_share.data();
-    made.reported = unit->reported.data();
-    made.zero = field_weights(unit->zero_field);
-    made.texture = field_weights(unit->texture_field);
-    made.unevenness = unit->texture_unevenness;
-    return made;
-  }();
-  double zeros[2] = {0, 0}, sums[2] = {0, 0}, squares[2] = {0, 0}, count = 0;
-  for (const UnitBeam& beam : beams_) {
+  const auto fit = fit_unit_intensity(beams_, kRings);
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_NEAR(fit->unit.step, 0.01, 1e-6);
+  EXPECT_NEAR(fit->unit.highest, 0.8, 1e-6);
+  // What the fitted unit makes of the same beams: as many zeros, the same mean, as much spread; and
+  // of the shares that it found the very intensities, but for what is between its nodes.
+  const IntensityRules rules = intensity_rules(fit->unit);
+  double zeros[2] = {0, 0}, sums[2] = {0, 0}, squares[2] = {0, 0}, count = 0, errors = 0;
+  for (std::size_t i = 0; i < beams_.size(); ++i) {
+    const UnitBeam& beam = beams_[i];
     if (!beam.returned()) continue;
-    const float values[2] = {
-        beam.intensity, unit_intensity(rules, beam.ring, beam.expected_intensity,
-                                       beam_field_parts(77, beam.scan, beam.ring, beam.column))};
+    ASSERT_EQ(fit->shares[i], fit->shares[i]);
+    const auto again = [&](double share) {
+      return unit_intensity(rules, beam.ring, beam.expected_intensity, share);
+    };
+    const float values[2] = {beam.intensity, again(Random(77, 0, i).uniform())};
+    errors += std::fabs(static_cast<double>(beam.intensity - again(fit->shares[i])));
     ++count;
     for (const int side : {0, 1}) {
       const auto value = static_cast<double>(values[side]);
@@ -135,16 +136,54 @@ TEST_F(FitUnit, FindsHowIntensitiesAreMade) {
   EXPECT_NEAR(zeros[1] / count, zeros[0] / count, 0.03);
   EXPECT_NEAR(sums[1] / count, sums[0] / count, 0.02);
   EXPECT_NEAR(squares[1] / squares[0], 1, 0.08);
+  EXPECT_LT(errors / count, 0.02);
 }
 
-// Oracle: the field and the share that were drawn.
-TEST_F(FitUnit, FindsInWhatPatchesEchoesAreLost) {
+// Oracle: the shares that were drawn. 0.04: five deviations of 2,400 edges.
+TEST_F(FitUnit, FindsWhereBeamsAreLost) {
   const auto drop = fit_unit_drop(beams_, 50);
   ASSERT_TRUE(drop.has_value());
-  ASSERT_TRUE(drop->field.has_value());
-  for (std::size_t k = 0; k < kFieldOctaves; ++k)
-    EXPECT_NEAR((*drop->field)[k], truth_.drop_field[k], 0.2) << k;
-  EXPECT_NEAR(drop->probability({20, 1, 0.5F, {}}), 0.1, 0.03);
+  // A tenth of the edges has lost its neighbours anyhow, and runs are longer there.
+  ASSERT_EQ(drop->model.edge_runs.size(), kMostEdgeRun);
+  EXPECT_NEAR(drop->model.edge_runs[0], kLostAtEdge * (1 - 2 * kLostShare), 0.04);
+  EXPECT_NEAR(drop->model.probability({20, 1, 0.5F, {}}), kLostShare, 0.03);
+  for (std::size_t i = 0; i < beams_.size(); ++i) {
+    const float share = drop->shares[i];
+    if (share != share) continue;
+    const double chance = drop->model.probability(
+        {beams_[i].expected_m, 1, beams_[i].reflectance, beams_[i].direction});
+    ASSERT_EQ(static_cast<double>(share) < chance, !beams_[i].returned()) << i;
+  }
+}
+
+// Oracle: patches of four beams: three in four of neighbours are of one patch, the others are alike
+// as often as not.
+TEST_F(FitUnit, KeepsWhatIsAlikeInNeighbours) {
+  const UnitFit fit = fit_unit(beams_, kPattern);
+  ASSERT_TRUE(fit.fields.has_value());
+  EXPECT_EQ(fit.fields->rings, kRings);
+  EXPECT_EQ(fit.fields->columns, kColumns);
+  ASSERT_EQ(fit.fields->bytes.size(),
+            std::size_t{fit.fields->turns} * kRings * kColumns * kUnitFields);
+  EXPECT_GT(alike_share(*fit.fields, UnitField::intensity, 1), 0.8);
+  EXPECT_NEAR(alike_share(*fit.fields, UnitField::intensity, 8), 0.5, 0.05);
+  EXPECT_NEAR(alike_share(*fit.fields, UnitField::noise, 1), 0.5, 0.05);
+}
+
+// Oracle: the noise that was drawn, from the numbers as a scan reads them.
+TEST_F(FitUnit, FieldsHaveTheNoiseOfEachRing) {
+  const UnitFit fit = fit_unit(beams_, kPattern);
+  ASSERT_TRUE(fit.fields.has_value());
+  const UnitFieldRules rules = {fit.fields->bytes.data(), fit.fields->turns, fit.fields->rings,
+                                fit.fields->columns};
+  for (std::uint32_t ring = 0; ring < kRings; ++ring) {
+    double squares = 0;
+    for (std::uint32_t column = 0; column < kColumns; ++column) {
+      const double noise_m = beam_fields(rules, 3, 8, ring, column, 0).noise_m;
+      squares += noise_m * noise_m;
+    }
+    EXPECT_NEAR(std::sqrt(squares / kColumns) / noise_m_of(ring), 1, 0.15) << ring;
+  }
 }
 
 // Oracle: no return is from beyond 30 m, where a sixteenth of the beams meet something.
@@ -159,24 +198,10 @@ TEST_F(FitUnit, FindsWhereReturnsEnd) {
 
 TEST(FitUnitOfFew, TellsNothingAndSaysSo) {
   const std::vector<UnitBeam> none;
-  const UnitFit fit = fit_unit(none, 16, 100);
+  const UnitFit fit = fit_unit(none, {16, 100, 100});
   EXPECT_TRUE(fit.ring_noise_m.empty());
-  EXPECT_FALSE(fit.intensity || fit.drop || fit.max_range_m);
+  EXPECT_FALSE(fit.intensity || fit.drop || fit.fields || fit.max_range_m);
   EXPECT_EQ(fit.not_told.size(), 3U);
-}
-
-// Oracle: what the shares were made of; and the fields of scans.
-TEST(FieldFit, FindsTheSharesOfCorrelations) {
-  const FieldShares truth = {0.2, 0.1, 0.4, 0.05};
-  LagCorrelations correlations{};
-  for (std::size_t l = 0; l < kFieldLags.size(); ++l)
-    for (std::size_t k = 0; k < kFieldOctaves; ++k)
-      correlations[l] += truth[k] * octave_correlation(k, kFieldLags[l]);
-  const FieldShares found = shares_of(correlations);
-  for (std::size_t k = 0; k < kFieldOctaves; ++k) EXPECT_NEAR(found[k], truth[k], 0.01);
-  EXPECT_EQ(octave_correlation(0, 0), 1);
-  EXPECT_EQ(octave_correlation(0, 6), 0);
-  EXPECT_NEAR(normal_quantile(0.975), 1.959964, 1e-5);
 }
 
 }  // namespace

@@ -55,11 +55,12 @@ __global__ void __launch_bounds__(kThreads)
   if (firing < poses.firings) {
     const std::uint64_t i = std::uint64_t{scan} * poses.firings + firing;
     ReportedReturn found[kMost + 1];
+    const std::uint64_t a_firing = static_cast<std::uint64_t>(rules.beam.sub_rays) *
+                                   static_cast<std::uint64_t>(rules.beam.depth);
+    const ScanHits of_scan = {hits + std::uint64_t{scan} * poses.firings * a_firing, a_firing, 0,
+                              poses.firings};
     count = static_cast<std::uint32_t>(
-        report_firing<kMost>(rules, state_of(poses, scan), firing,
-                             hits + i * static_cast<std::uint64_t>(rules.beam.sub_rays) *
-                                        static_cast<std::uint64_t>(rules.beam.depth),
-                             found));
+        report_firing<kMost>(rules, state_of(poses, scan), firing, of_scan, found));
     const auto room = static_cast<std::uint64_t>(rules.beam.returns);
     for (std::uint32_t k = 0; k < count; ++k) space.returns[i * room + k] = found[k];
     space.counts[i] = static_cast<std::uint8_t>(count);
@@ -164,6 +165,10 @@ DeviceRules::DeviceRules(const ScanRules& rules, const DeviceBuffer<PrimitiveVal
   view_.range_offsets_m = range_offsets_m_.data();
   view_.ring_noise_m = ring_noise_m_.data();
   upload_intensity(rules.intensity(), stream);
+  if (const UnitFields* fields = rules.unit_fields()) {
+    unit_fields_ = upload_values(std::span<const std::uint8_t>(fields->bytes), stream);
+    view_.fields.bytes = unit_fields_.data();
+  }
   view_.weights = weights_.data();
   view_.blocked = blocked_.data();
   view_.air.expected = expected_.data();
@@ -174,8 +179,8 @@ DeviceRules::DeviceRules(const ScanRules& rules, const DeviceBuffer<PrimitiveVal
 void DeviceRules::upload_intensity(const UnitIntensity* unit, cudaStream_t stream) {
   if (unit == nullptr) return;
   std::vector<float> values;
-  for (const auto* table : {&unit->ring_expected, &unit->ring_level, &unit->levels,
-                            &unit->zero_share, &unit->reported, &unit->ring_texture})
+  for (const auto* table :
+       {&unit->ring_expected, &unit->ring_level, &unit->levels, &unit->zero_share, &unit->reported})
     values.insert(values.end(), table->begin(), table->end());
   unit_tables_ = upload_values(std::span<const float>(values), stream);
   IntensityRules& rules = view_.intensity;
@@ -184,7 +189,6 @@ void DeviceRules::upload_intensity(const UnitIntensity* unit, cudaStream_t strea
   rules.levels = rules.ring_level + unit->ring_level.size();
   rules.zero_share = rules.levels + unit->levels.size();
   rules.reported = rules.zero_share + unit->zero_share.size();
-  rules.ring_texture = rules.reported + unit->reported.size();
 }
 
 std::size_t report_blocks(std::size_t scans, std::size_t firings) {

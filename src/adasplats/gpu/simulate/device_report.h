@@ -32,6 +32,7 @@ class DeviceRules {
   DeviceBuffer<double> expected_;
   DeviceBuffer<float> gains_;
   DeviceBuffer<float> unit_tables_;
+  DeviceBuffer<std::uint8_t> unit_fields_;
 };
 
 /// The poses of the scans of a launch, on the device.

@@ -49,17 +49,20 @@ UnitIntensity some_unit(std::size_t rings) {
       unit.ring_expected.push_back(node);
       unit.ring_level.push_back(gain * node);
     }
-    unit.ring_texture.push_back(gain);
   }
   unit.levels = {0.1F, 0.4F, 0.8F};
   unit.zero_share = {0.4F, 0.1F, 0.01F};
   for (const float level : unit.levels)
     for (std::size_t k = 0; k < kTextureNodes; ++k)
       unit.reported.push_back(level * (0.4F + 0.08F * static_cast<float>(k)));
-  unit.zero_field = {0.2, 0.2, 0.3, 0.1};
-  unit.texture_field = {0.1, 0.1, 0.2, 0.1};
-  unit.texture_unevenness = 0.6;
   return unit;
+}
+
+UnitFields some_fields(std::uint32_t rings) {
+  UnitFields fields{2, rings, 37, {}};
+  for (std::uint64_t i = 0; i < std::uint64_t{2} * rings * 37 * kUnitFields; ++i)
+    fields.bytes.push_back(static_cast<std::uint8_t>(Random(4, 0, i).next_bits()));
+  return fields;
 }
 
 /// An option with its name; `of` sets it.
@@ -84,10 +87,15 @@ std::vector<Option> options() {
       {"two returns", [](ReportCase& s) { s.options.beam.returns = 2; }},
       {"last", [](ReportCase& s) { s.options.beam.mode = ReturnMode::last; }},
       {"drop", [](ReportCase& s) { s.drops = true; }},
-      {"drop in patches",
+      {"drop at edges",
        [](ReportCase& s) {
          s.drops = true;
-         s.ray_drop.field = FieldShares{0.1, 0.2, 0.3, 0.2};
+         s.ray_drop.edge_runs = {0.2, 0.1, 0.05, 0, 0.1};
+       }},
+      {"unit's fields",
+       [](ReportCase& s) {
+         s.sensor.ring_noise_m = {0.01, 0.02, 0, 0.005, 0.03};
+         s.sensor.fields = some_fields(5);
        }},
       {"noise of rings",
        [](ReportCase& s) {

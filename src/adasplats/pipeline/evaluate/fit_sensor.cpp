@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/share.h"
@@ -75,7 +76,8 @@ FitSensorResult fit_sensor(const FitSensorJob& job, Session& session) {
   result.agreement = agreement_of(beams);
   require_one_place(result.agreement, job.scans_of.string());
   session.progress.begin_step("fit the unit", 0);
-  static_cast<UnitFit&>(result) = fit_unit(beams, sensor.rings(), sensor.max_range_m);
+  const auto columns = static_cast<std::size_t>(std::lround(2 * std::numbers::pi / step_rad));
+  static_cast<UnitFit&>(result) = fit_unit(beams, {sensor.rings(), columns, sensor.max_range_m});
   session.progress.end_step();
   result.sensor = sequence.beams.sensor;
   result.scans = chosen.size();
@@ -91,6 +93,7 @@ FitSensorResult fit_sensor(const FitSensorJob& job, Session& session) {
   traits.ring_noise_m = result.ring_noise_m;
   traits.max_range_m = result.max_range_m;
   traits.intensity = result.intensity ? &*result.intensity : nullptr;
+  traits.fields = result.fields ? &*result.fields : nullptr;
   traits.fitted_to = fitted_to;
   result.sensor_toml =
       unit_sensor_toml(result.sensor, {offsets.range_m, offsets.elevation_rad}, traits);
@@ -112,13 +115,12 @@ nlohmann::ordered_json to_json(const FitSensorResult& result) {
     json["intensity"] = {{"step", result.intensity->step},
                          {"highest", result.intensity->highest},
                          {"levels", result.intensity->levels},
-                         {"zero_share", result.intensity->zero_share},
-                         {"zero_field", result.intensity->zero_field},
-                         {"texture_field", result.intensity->texture_field},
-                         {"texture_unevenness", result.intensity->texture_unevenness}};
+                         {"zero_share", result.intensity->zero_share}};
+  if (result.fields)
+    json["fields"] = {{"turns", result.fields->turns}, {"columns", result.fields->columns}};
   if (result.drop)
     json["drop"] = {{"weights", result.drop->weights},
-                    {"field", *result.drop->field},
+                    {"edge_runs", result.drop->edge_runs},
                     {"blocked_sectors", result.drop->blocked.size()}};
   return json;
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "adasplats/core/maths/elementary.h"
-#include "adasplats/simulate/scan/beam_field.h"
+#include "adasplats/simulate/scan/edge_runs.h"
 
 namespace adasplats {
 
@@ -14,8 +14,7 @@ struct DropRules {
   bool on = false;
   double weights[kDropFeatures] = {};
   double usual_reflectance = 0.3;
-  bool has_field = false;  ///< what is lost comes in patches
-  FieldWeights field;
+  EdgeRunRules edges;
 };
 
 struct DropFeatures {

@@ -12,6 +12,7 @@
 #include "adasplats/simulate/scan/echoes.h"
 #include "adasplats/simulate/scan/intensity_rules.h"
 #include "adasplats/simulate/scan/scan_ray.h"
+#include "adasplats/simulate/scan/unit_field_rules.h"
 #include "adasplats/splats/reflectance/response_gain.h"
 
 namespace adasplats {
@@ -43,6 +44,8 @@ struct FiringRules {
   const double* ring_noise_m = nullptr;  ///< of rings, instead of range_noise_m; null: not known
   std::uint32_t ring_noise_count = 0;
   IntensityRules intensity;
+  UnitFieldRules fields;
+  bool field_noise = false;  ///< noise of ranges is that of the fields
   // the beam
   BeamOptions beam;
   const float* weights = nullptr;  ///< of sub-rays
@@ -80,7 +83,7 @@ struct ReportedReturn {
 static_assert(sizeof(ReportedReturn) == 16);
 
 /// What a ray's random numbers are for; each has a stream of its own.
-enum class Draw : std::uint64_t { range = 0, angles = 1, drop = 2 };
+enum class Draw : std::uint64_t { range = 0, angles = 1, drop = 2, intensity = 3 };
 
 /// By (seed, scan, firing) and what for. Range noise of a firing's first return has the stream of
 /// the scan alone, as it always had.
@@ -143,23 +146,25 @@ ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanStat
   float cosine = 1;
   if (rules.drop.on || rules.has_response)
     cosine = cos_incidence_of(rules, scan, fired, values.normal);
-  const bool has_fields = rules.intensity.on || (rules.drop.on && rules.drop.has_field);
-  BeamFieldParts fields;  // NOLINT: filled where it is read
-  if (has_fields) fields = beam_field_parts(rules.seed, scan.scan_index, fired.ring, fired.column);
+  const bool has_fields = rules.fields.bytes != nullptr;
+  BeamFields fields;
+  if (has_fields)
+    fields = beam_fields(rules.fields, rules.seed, scan.scan_index, fired.ring, fired.column, k);
   if (rules.drop.on) {
     const bool blocked = rules.blocked != nullptr && rules.blocked[firing] != 0;
     const double chance =
         blocked ? 1.0 : drop_chance(rules.drop, echo.range_m, cosine, values.reflectance);
     const double drawn =
-        rules.drop.has_field
-            ? normal_share(field_value(fields, BeamField::drop, rules.drop.field))
-            : scan_draw(rules.seed, Draw::drop, scan.scan_index, firing, k).uniform();
+        has_fields ? fields.drop
+                   : scan_draw(rules.seed, Draw::drop, scan.scan_index, firing, k).uniform();
     if (drawn < chance) return false;
   }
   auto range_m = static_cast<double>(echo.range_m);
   if (fired.ring < rules.range_offset_count) range_m -= rules.range_offsets_m[fired.ring];
   const double noise_m = range_noise_of(rules, fired);
-  if (noise_m > 0)
+  if (rules.field_noise)
+    range_m += fields.noise_m;
+  else if (noise_m > 0)
     range_m += noise_m * scan_draw(rules.seed, Draw::range, scan.scan_index, firing, k).normal();
   reported.range_m = static_cast<float>(quantised(rules, range_m));
   if (!in_range(rules, reported.range_m)) return false;
@@ -173,8 +178,12 @@ ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanStat
     reported.intensity *=
         gain_of(rules.range_gain, reported.range_m) * gain_of(rules.incidence_gain, cosine);
   }
-  if (rules.intensity.on && values.reflectance == values.reflectance)
-    reported.intensity = unit_intensity(rules.intensity, fired.ring, reported.intensity, fields);
+  if (rules.intensity.on && values.reflectance == values.reflectance) {
+    const double share =
+        has_fields ? fields.intensity
+                   : scan_draw(rules.seed, Draw::intensity, scan.scan_index, firing, k).uniform();
+    reported.intensity = unit_intensity(rules.intensity, fired.ring, reported.intensity, share);
+  }
   return true;
 }
 
@@ -240,17 +249,23 @@ ADASPLATS_HD inline int in_air(const FiringRules& rules, ReportedReturn* returns
 /// What most beams with sub-rays have at most: report_firing() needs less room for them.
 inline constexpr int kFewSubRays = 8;
 
-/// All that a sensor reports of a firing from the hits of its rays, hits[ray * depth + k]: at most
-/// rules.beam.returns, in the order in which it reports them. kMost: at least as many as there are
-/// sub-rays. `out` has room for kMost + 1.
+/// All that a sensor reports of a firing from the hits of its rays, (&hits.of(firing))[ray * depth
+/// + k]: at most rules.beam.returns, in the order in which it reports them. `hits` has those of the
+/// firing and, where it asks for edges, of kMostEdgeRun before and behind it. kMost: at least as
+/// many as there are sub-rays. `out` has room for kMost + 1.
 template <int kMost>
 ADASPLATS_HD inline int report_firing(const FiringRules& rules, const ScanState& scan,
-                                      std::uint32_t firing, const Hit* hits, ReportedReturn* out) {
+                                      std::uint32_t firing, const ScanHits& hits,
+                                      ReportedReturn* out) {
   const auto class_of = [&](std::uint32_t primitive) -> std::uint16_t {
     return primitive < rules.primitive_count ? rules.primitives[primitive].class_id : 0;
   };
   Return echoes[kMost];  // NOLINT: filled as far as it is read
-  const int echo_count = firing_returns<kMost>(hits, rules.weights, rules.beam, class_of, echoes);
+  const bool lost = rules.drop.edges.on && lost_at_edge(rules.drop.edges, rules.firings, hits,
+                                                        rules.seed, scan.scan_index, firing);
+  const int echo_count =
+      lost ? 0
+           : firing_returns<kMost>(&hits.of(firing), rules.weights, rules.beam, class_of, echoes);
   int count = 0;
   for (int k = 0; k < echo_count; ++k) {
     ReportedReturn reported;

@@ -4,7 +4,8 @@
 
 #include <cstdint>
 
-#include "adasplats/simulate/scan/beam_field.h"
+#include "adasplats/core/host_device.h"
+#include "adasplats/sensors/unit_intensity.h"
 #include "adasplats/splats/reflectance/response_gain.h"
 
 namespace adasplats {
@@ -19,11 +20,25 @@ struct IntensityRules {
   const float* levels = nullptr;
   const float* zero_share = nullptr;
   const float* reported = nullptr;
-  const float* ring_texture = nullptr;
-  std::uint32_t ring_texture_count = 0;
-  FieldWeights zero, texture;
-  double unevenness = 0;
 };
+
+/// The tables of a unit, which must outlive it.
+inline IntensityRules intensity_rules(const UnitIntensity& unit) {
+  IntensityRules rules;
+  rules.on = true;
+  rules.step = static_cast<float>(unit.step);
+  rules.highest = static_cast<float>(unit.highest);
+  rules.ring_nodes = static_cast<std::uint32_t>(unit.ring_nodes);
+  if (unit.ring_nodes > 0)
+    rules.rings = static_cast<std::uint32_t>(unit.ring_expected.size() / unit.ring_nodes);
+  rules.ring_expected = unit.ring_expected.data();
+  rules.ring_level = unit.ring_level.data();
+  rules.levels = unit.levels.data();
+  rules.level_count = static_cast<std::uint32_t>(unit.levels.size());
+  rules.zero_share = unit.zero_share.data();
+  rules.reported = unit.reported.data();
+  return rules;
+}
 
 /// A multiple of the step, not above the highest.
 ADASPLATS_HD inline float converted(const IntensityRules& rules, float intensity) {
@@ -58,20 +73,21 @@ ADASPLATS_HD inline float level_of(const IntensityRules& rules, std::uint32_t ri
                  expected);
 }
 
-/// Values of the texture field for which UnitIntensity::reported holds.
+/// Shares for which UnitIntensity::reported holds: finer at both ends.
 ADASPLATS_HD inline float texture_node(std::uint32_t k) {
-  const float nodes[kTextureNodes] = {-3,   -2,   -1.4F, -1, -0.7F, -0.4F, -0.2F, 0,
-                                      0.2F, 0.4F, 0.7F,  1,  1.4F,  2,     3};
+  const float nodes[kTextureNodes] = {0,     0.01F, 0.03F, 0.07F, 0.15F, 0.25F, 0.35F, 0.5F,
+                                      0.65F, 0.75F, 0.85F, 0.93F, 0.97F, 0.99F, 1};
   return nodes[k];
 }
 
-/// Of the beams that do not report zero, before the converter's steps.
-ADASPLATS_HD inline float textured(const IntensityRules& rules, float level, double texture) {
+/// Of the beams that do not report zero, before the converter's steps: above which a share of them
+/// reports less.
+ADASPLATS_HD inline float textured(const IntensityRules& rules, float level, double share) {
   const NodePlace row = place_in(rules.levels, rules.level_count, level);
   constexpr auto kNodes = static_cast<std::uint32_t>(kTextureNodes);
   float nodes[kTextureNodes];  // NOLINT: filled here
   for (std::uint32_t k = 0; k < kNodes; ++k) nodes[k] = texture_node(k);
-  const NodePlace column = place_in(nodes, kNodes, static_cast<float>(texture));
+  const NodePlace column = place_in(nodes, kNodes, static_cast<float>(share));
   const float* const low = rules.reported + static_cast<std::size_t>(row.below) * kNodes;
   const float* const high = rules.level_count > 1 ? low + kNodes : low;
   const std::uint32_t k = column.below;
@@ -80,22 +96,16 @@ ADASPLATS_HD inline float textured(const IntensityRules& rules, float level, dou
   return at_low + row.share * (at_high - at_low);
 }
 
-/// The texture field of a beam of a ring.
-ADASPLATS_HD inline double texture_of(const IntensityRules& rules, std::uint32_t ring,
-                                      const BeamFieldParts& fields) {
-  const double amplitude =
-      ring < rules.ring_texture_count ? static_cast<double>(rules.ring_texture[ring]) : 1.0;
-  return texture_value(fields, rules.texture, rules.unevenness, amplitude);
-}
-
-/// What a unit reports where a model expects `expected`.
+/// What a unit reports where a model expects `expected`, and a share of all such beams reports
+/// less.
 ADASPLATS_HD inline float unit_intensity(const IntensityRules& rules, std::uint32_t ring,
-                                         float expected, const BeamFieldParts& fields) {
+                                         float expected, double share) {
   const float level = level_of(rules, ring, expected);
   const GainTable zeros{rules.levels, rules.zero_share, rules.level_count};
-  const double zero = field_value(fields, BeamField::zero, rules.zero);
-  if (normal_share(zero) < static_cast<double>(gain_of(zeros, level))) return 0;
-  const float value = converted(rules, textured(rules, level, texture_of(rules, ring, fields)));
+  const auto zero = static_cast<double>(gain_of(zeros, level));
+  if (share < zero) return 0;
+  const double of_others = zero < 1 ? (share - zero) / (1 - zero) : 1.0;
+  const float value = converted(rules, textured(rules, level, of_others));
   return value > rules.step ? value : rules.step;
 }
 

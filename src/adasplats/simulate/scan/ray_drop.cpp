@@ -144,8 +144,9 @@ DropRules RayDropModel::rules() const {
   rules.on = true;
   rules.usual_reflectance = usual_reflectance;
   std::copy_n(weights.begin(), kFeatures, rules.weights);
-  rules.has_field = field.has_value();
-  if (field) rules.field = field_weights(*field);
+  rules.edges.on = !edge_runs.empty();
+  std::copy_n(edge_runs.begin(), std::min<std::size_t>(edge_runs.size(), kMostEdgeRun),
+              rules.edges.shares);
   return rules;
 }
 

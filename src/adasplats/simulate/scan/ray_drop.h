@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,8 +40,9 @@ struct RayDropModel {
   std::array<double, kFeatures> weights = {};
   /// Stands for the reflectance where it is not known.
   double usual_reflectance = 0.3;
-  /// Which echoes are lost where many may be: in patches (beam_field.h). Empty: each by itself.
-  std::optional<FieldShares> field;
+  /// Of range edges (edge_runs.h), the share at which k + 1 beams one after the other are lost;
+  /// `weights` are of the other beams then. Empty: edges are as other places.
+  std::vector<double> edge_runs;
   std::string fitted_to;  ///< sensor, recording: for the reader of the file
   /// By elevation, then azimuth.
   std::vector<BlockedSector> blocked;

@@ -23,7 +23,7 @@ namespace {
 
 const std::vector<std::string>& known_keys() {
   static const std::vector<std::string> keys = {"fitted_to", "usual_reflectance", "weights",
-                                                "field", "blocked"};
+                                                "edge_runs", "blocked"};
   return keys;
 }
 
@@ -97,7 +97,7 @@ class DropFile {
     const toml::array& list = array_of(*weights, "weights", RayDropModel::kFeatures);
     for (std::size_t k = 0; k < list.size(); ++k)
       model.weights[k] = number_of(list[k], "weights", -1e9, 1e9);
-    if (const toml::node* node = table_.get("field")) model.field = field_of(*node);
+    if (const toml::node* node = table_.get("edge_runs")) model.edge_runs = runs_of(*node);
     if (const toml::node* node = table_.get("blocked")) model.blocked = sectors_of(*node);
     return model;
   }
@@ -139,15 +139,18 @@ class DropFile {
     return *list;
   }
 
-  FieldShares field_of(const toml::node& node) const {
-    FieldShares shares{};
-    const toml::array& list = array_of(node, "field", kFieldOctaves);
+  std::vector<double> runs_of(const toml::node& node) const {
+    std::vector<double> shares;
     double sum = 0;
-    for (std::size_t k = 0; k < kFieldOctaves; ++k) {
-      shares[k] = number_of(list[k], "field", 0, 1);
-      sum += shares[k];
+    for (const toml::node& element : array_of(node, "edge_runs", 0)) {
+      shares.push_back(number_of(element, "edge_runs", 0, 1));
+      sum += shares.back();
     }
-    if (sum > 1) throw error_at(node.source(), "field has shares of more than 1 together");
+    if (shares.size() > kMostEdgeRun)
+      throw error_at(node.source(), "edge_runs has " + std::to_string(shares.size()) +
+                                        " shares, expected at most " +
+                                        std::to_string(kMostEdgeRun));
+    if (sum > 1) throw error_at(node.source(), "edge_runs has shares of more than 1 together");
     return shares;
   }
 
@@ -191,11 +194,11 @@ void save_ray_drop(const std::filesystem::path& path, const RayDropModel& model)
   text += "fitted_to = " + quoted(model.fitted_to) + "\n";
   text += "usual_reflectance = " + exact_text(model.usual_reflectance) + "\n";
   text += "weights = " + list_text(model.weights) + "\n";
-  if (model.field)
+  if (!model.edge_runs.empty())
     text +=
-        "# Shares of octaves in the field that decides where echoes are lost, fine to coarse.\n"
-        "field = " +
-        list_text(*model.field) + "\n";
+        "# Of edges of 0.5 m and more between neighbouring beams: the shares at which 1, 2, ... "
+        "beams are\n# lost. The weights are of the other beams.\nedge_runs = " +
+        list_text(model.edge_runs) + "\n";
   write_file(path, text + blocked_text(model.blocked));
 }
 

@@ -226,7 +226,7 @@ TEST_F(RayDropFile, RoundTrip) {
   RayDropModel model = some_model();
   model.usual_reflectance = 0.1;
   model.fitted_to = "a \"sensor\" \\ place\n";
-  model.field = FieldShares{0.25, 0, 0.125, 0.5};
+  model.edge_runs = {0.25, 0, 0.125};
   model.blocked = sectors_where([](std::uint32_t, double elevation, double azimuth) {
     return (azimuth > 10 && azimuth < 30) || (elevation < -20.2 && azimuth < -160);
   });
@@ -235,7 +235,7 @@ TEST_F(RayDropFile, RoundTrip) {
   const RayDropModel read = load_ray_drop(path);
   EXPECT_EQ(read.weights, model.weights);
   EXPECT_EQ(read.usual_reflectance, 0.1);
-  EXPECT_EQ(read.field, model.field);
+  EXPECT_EQ(read.edge_runs, model.edge_runs);
   EXPECT_EQ(read.fitted_to, "a \"sensor\" \\ place ");
   ASSERT_EQ(read.blocked.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -256,9 +256,9 @@ TEST_F(RayDropFile, ErrorsNameTheLine) {
   EXPECT_NE(error_of(weights + "usual_reflectance = 'x'").find(":2: "), std::string::npos);
   EXPECT_NE(error_of(weights + "fitted_to = 1").find(":2: "), std::string::npos);
   EXPECT_NE(error_of(weights + "blocked = [1]").find(":2: "), std::string::npos);
-  EXPECT_NE(error_of(weights + "field = [1]").find(":2: field is not a list of 4"),
+  EXPECT_NE(error_of(weights + "edge_runs = [0, 0, 0, 0, 0, 0, 0]").find(":2: edge_runs has 7"),
             std::string::npos);
-  EXPECT_NE(error_of(weights + "field = [0.5, 0.5, 0.1, 0]").find("more than 1 together"),
+  EXPECT_NE(error_of(weights + "edge_runs = [0.5, 0.5, 0.1]").find("more than 1 together"),
             std::string::npos);
   EXPECT_NE(error_of(weights + "[[blocked]]\nelevation_deg = 1").find(":2: "), std::string::npos);
   EXPECT_NE(error_of(weights + "[[blocked]]\nelevation_deg = 1\nazimuths_deg = [[1]]").find(":4: "),

@@ -24,22 +24,21 @@ ScanReporter::ScanReporter(const ScanRules& rules, const Executor& executor)
 
 template <int kMost>
 void ScanReporter::report_each(const ScanState& state, std::size_t begin, std::size_t end,
-                               const Hit* hits, Chunk& chunk) const {
-  const std::size_t hits_a_firing = view_.beam.hits_per_firing();
+                               const ScanHits& hits, Chunk& chunk) const {
   // What primitives carry is all over the memory: it is asked for before it is needed.
   constexpr std::size_t kAhead = 24;
   const auto prefetch = [&](const Hit& hit) {
     if (hit.primitive < view_.primitive_count) __builtin_prefetch(view_.primitives + hit.primitive);
   };
   for (std::size_t i = begin; i < std::min(end, begin + kAhead); ++i)
-    prefetch(hits[(i - begin) * hits_a_firing]);
+    prefetch(hits.of(static_cast<std::uint32_t>(i)));
   ReportedReturn* const returns = chunk.returns.data();
   std::uint32_t* const firings = chunk.firings.data();
   std::size_t filled = 0;
   std::array<ReportedReturn, kMost + 1> found{};
-  for (std::size_t i = begin; i < end; ++i, hits += hits_a_firing) {
-    if (i + kAhead < end) prefetch(hits[kAhead * hits_a_firing]);
+  for (std::size_t i = begin; i < end; ++i) {
     const auto firing = static_cast<std::uint32_t>(i);
+    if (i + kAhead < end) prefetch(hits.of(firing + kAhead));
     const int count = report_firing<kMost>(view_, state, firing, hits, found.data());
     for (int k = 0; k < count; ++k) {
       returns[filled] = found[static_cast<std::size_t>(k)];
@@ -50,7 +49,7 @@ void ScanReporter::report_each(const ScanState& state, std::size_t begin, std::s
 }
 
 void ScanReporter::report_firings(const ScanState& state, std::size_t begin, std::size_t end,
-                                  const Hit* hits, Chunk& chunk) const {
+                                  const ScanHits& hits, Chunk& chunk) const {
   const std::size_t most = (end - begin) * static_cast<std::size_t>(view_.beam.returns);
   if (chunk.returns.size() < most) {
     chunk.returns.resize(most);
@@ -72,9 +71,15 @@ void ScanReporter::report(const ScanMotion& motion, const ScanPoses& poses,
   report_chunks(
       motion, state,
       [&](std::size_t begin, std::size_t end, Chunk& chunk) {
-        std::vector<Hit> hits((end - begin) * hits_a_firing);
-        hits_of(begin, end, hits);
-        report_firings(state, begin, end, hits.data(), chunk);
+        const std::size_t beside = view_.drop.edges.on ? kMostEdgeRun : 0;
+        const std::size_t first = begin - std::min(begin, beside);
+        const std::size_t last = std::min(end + beside, rules_.firings().size());
+        std::vector<Hit> hits((last - first) * hits_a_firing);
+        hits_of(first, last, hits);
+        report_firings(state, begin, end,
+                       {hits.data(), hits_a_firing, static_cast<std::uint32_t>(first),
+                        static_cast<std::uint32_t>(last)},
+                       chunk);
       },
       scan);
 }
@@ -85,10 +90,12 @@ void ScanReporter::report(const ScanMotion& motion, const ScanPoses& poses,
   if (hits.size() != rules_.firings().size() * hits_a_firing)
     throw std::logic_error("a scan needs the hits of every firing's rays");
   const ScanState state = poses.state(scan_index);
+  const ScanHits all = {hits.data(), hits_a_firing, 0,
+                        static_cast<std::uint32_t>(rules_.firings().size())};
   report_chunks(
       motion, state,
       [&](std::size_t begin, std::size_t end, Chunk& chunk) {
-        report_firings(state, begin, end, hits.data() + begin * hits_a_firing, chunk);
+        report_firings(state, begin, end, all, chunk);
       },
       scan);
 }

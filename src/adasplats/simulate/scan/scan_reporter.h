@@ -16,7 +16,7 @@ namespace adasplats {
 class ScanReporter {
  public:
   /// Puts the hits of the rays of firings [begin, end) into `hits`, hits_per_firing() each. Called
-  /// for consecutive firings, from several threads.
+  /// for consecutive firings, some of them twice, from several threads.
   using HitsOf = FunctionRef<void(std::size_t begin, std::size_t end, std::span<Hit> hits)>;
 
   /// Both must outlive it.
@@ -41,10 +41,10 @@ class ScanReporter {
   using ReportChunk = FunctionRef<void(std::size_t begin, std::size_t end, Chunk& chunk)>;
 
   template <int kMost>
-  void report_each(const ScanState& state, std::size_t begin, std::size_t end, const Hit* hits,
+  void report_each(const ScanState& state, std::size_t begin, std::size_t end, const ScanHits& hits,
                    Chunk& chunk) const;
-  void report_firings(const ScanState& state, std::size_t begin, std::size_t end, const Hit* hits,
-                      Chunk& chunk) const;
+  void report_firings(const ScanState& state, std::size_t begin, std::size_t end,
+                      const ScanHits& hits, Chunk& chunk) const;
   void report_chunks(const ScanMotion& motion, const ScanState& state, ReportChunk report_chunk,
                      Scan& scan);
   void resize(Scan& scan, std::size_t returns) const;

@@ -30,28 +30,6 @@ GainTable gain_table(std::span<const float> nodes, std::span<const float> gains)
   return {nodes.data(), gains.data(), static_cast<std::uint32_t>(gains.size())};
 }
 
-IntensityRules intensity_rules(const UnitIntensity& unit) {
-  IntensityRules rules;
-  rules.on = true;
-  rules.step = static_cast<float>(unit.step);
-  rules.highest = static_cast<float>(unit.highest);
-  rules.ring_nodes = static_cast<std::uint32_t>(unit.ring_nodes);
-  if (unit.ring_nodes > 0)
-    rules.rings = static_cast<std::uint32_t>(unit.ring_expected.size() / unit.ring_nodes);
-  rules.ring_expected = unit.ring_expected.data();
-  rules.ring_level = unit.ring_level.data();
-  rules.levels = unit.levels.data();
-  rules.level_count = static_cast<std::uint32_t>(unit.levels.size());
-  rules.zero_share = unit.zero_share.data();
-  rules.reported = unit.reported.data();
-  rules.ring_texture = unit.ring_texture.data();
-  rules.ring_texture_count = static_cast<std::uint32_t>(unit.ring_texture.size());
-  rules.zero = field_weights(unit.zero_field);
-  rules.texture = field_weights(unit.texture_field);
-  rules.unevenness = unit.texture_unevenness;
-  return rules;
-}
-
 }  // namespace
 
 PrimitiveTable primitive_table(const PrimitiveAttributes& attributes, const Executor& executor) {
@@ -114,6 +92,14 @@ const UnitIntensity* ScanRules::intensity() const {
                                                                         : nullptr;
 }
 
+const UnitFields* ScanRules::unit_fields() const {
+  const bool asks = ray_drop_ || intensity() != nullptr || (options_.noise && has_field_noise());
+  return asks && sensor_.fields ? &*sensor_.fields : nullptr;
+}
+
+/// Not where the user set the noise of ranges: ring_noise_m is empty then.
+bool ScanRules::has_field_noise() const { return sensor_.fields && !sensor_.ring_noise_m.empty(); }
+
 ScanFields ScanRules::fields() const {
   ScanFields fields = options_.fields;
   fields.classes = fields.classes && table_->has_classes;
@@ -139,6 +125,10 @@ FiringRules ScanRules::view() const {
   rules.ring_noise_m = ring_noise_m().data();
   rules.ring_noise_count = static_cast<std::uint32_t>(ring_noise_m().size());
   if (intensity() != nullptr) rules.intensity = intensity_rules(*intensity());
+  if (const UnitFields* fields = unit_fields()) {
+    rules.fields = {fields->bytes.data(), fields->turns, fields->rings, fields->columns};
+    rules.field_noise = options_.noise && has_field_noise();
+  }
   rules.beam = options_.beam;
   rules.weights = weights_.data();
   if (ray_drop_) rules.drop = ray_drop_->rules();

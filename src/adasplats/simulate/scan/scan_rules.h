@@ -50,6 +50,8 @@ class ScanRules {
   std::span<const double> ring_noise_m() const;
   /// Null where intensities are reported as the scene has them.
   const UnitIntensity* intensity() const;
+  /// Null where beams are drawn one by one.
+  const UnitFields* unit_fields() const;
   /// What scans have of what is wanted.
   ScanFields fields() const;
   bool deskews() const { return options_.frame == PointFrame::deskewed; }
@@ -62,6 +64,8 @@ class ScanRules {
   std::shared_ptr<const int> identity() const { return identity_; }
 
  private:
+  bool has_field_noise() const;
+
   LidarModel sensor_;
   SimulateOptions options_;
   std::optional<RayDropModel> ray_drop_;

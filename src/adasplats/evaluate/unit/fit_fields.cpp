@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Turns of a unit as it measured them, in what its parameters leave open.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "adasplats/evaluate/unit/fit_unit.h"
+
+namespace adasplats {
+namespace {
+
+constexpr float kUntold = std::numeric_limits<float>::quiet_NaN();
+constexpr std::size_t kMostTurns = 2;  // 0.8 MB of an HDL-64E
+
+/// [begin, end) of the beams of each scan.
+std::vector<std::pair<std::size_t, std::size_t>> spans_of_scans(std::span<const UnitBeam> beams) {
+  std::vector<std::pair<std::size_t, std::size_t>> spans;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (i == 0 || beams[i].scan != beams[i - 1].scan) spans.emplace_back(i, i);
+    spans.back().second = i + 1;
+  }
+  return spans;
+}
+
+/// Numbers of the beams of a ring, a column each; gaps of what is not told are filled with what
+/// stands beside them, mirrored, half from either side. `otherwise`: where nothing is told.
+void fill_untold(std::span<float> ring, float otherwise) {
+  std::vector<std::size_t> told;
+  for (std::size_t c = 0; c < ring.size(); ++c)
+    if (ring[c] == ring[c]) told.push_back(c);
+  if (told.empty()) {
+    std::ranges::fill(ring, otherwise);
+    return;
+  }
+  const std::vector<float> measured(ring.begin(), ring.end());
+  // Number k of those told, counted on around the turn.
+  const auto around = [&](std::ptrdiff_t k) {
+    const auto count = static_cast<std::ptrdiff_t>(told.size());
+    return measured[told[static_cast<std::size_t>((k % count + count) % count)]];
+  };
+  for (std::size_t next = 0; next <= told.size(); ++next) {
+    const std::size_t begin = next == 0 ? 0 : told[next - 1] + 1;
+    const std::size_t end = next == told.size() ? ring.size() : told[next];
+    for (std::size_t c = begin; c < end; ++c) {
+      const auto from_left = static_cast<std::ptrdiff_t>(c - begin);
+      const auto from_right = static_cast<std::ptrdiff_t>(end - 1 - c);
+      const auto at = static_cast<std::ptrdiff_t>(next);
+      ring[c] = from_left < from_right ? around(at - 1 - from_left) : around(at + from_right);
+    }
+  }
+}
+
+/// Makes the noise of a ring as large as it is by neighbouring returns on smooth surfaces: on
+/// others the model's errors are in it.
+void scale_noise(std::span<float> ring, double noise_m) {
+  std::vector<float> second;
+  for (std::size_t c = 0; c + 2 < ring.size(); ++c)
+    second.push_back(std::fabs(ring[c] - 2 * ring[c + 1] + ring[c + 2]));
+  const double found_m = noise_of_second_differences(second);
+  const auto factor = static_cast<float>(found_m > 0 ? noise_m / found_m : 0.0);
+  for (float& value : ring) value *= factor;
+}
+
+std::uint8_t byte_of(double value) {
+  return static_cast<std::uint8_t>(std::clamp(std::floor(value), 0.0, 255.0));
+}
+
+/// The inverse of beam_fields().
+std::uint8_t coded(UnitField field, float value) {
+  const auto v = static_cast<double>(value);
+  if (field == UnitField::drop) return byte_of(256 * std::sqrt(v));
+  if (field == UnitField::intensity) return byte_of(256 * v);
+  const double root = 127 * std::sqrt(std::fabs(v) / kMostFieldNoise_m);
+  return byte_of(128.5 + (v < 0 ? -root : root));
+}
+
+/// What the range of a beam has beside the model's; not told where they mean other surfaces.
+float noise_m_of(const UnitBeam& beam) {
+  const float noise_m = beam.range_m - beam.expected_m;
+  const bool told = beam.hit && std::fabs(noise_m) < static_cast<float>(kMostFieldNoise_m);
+  return told ? noise_m : kUntold;
+}
+
+}  // namespace
+
+UnitFields fit_unit_fields(std::span<const UnitBeam> beams, const UnitPattern& pattern,
+                           std::span<const double> ring_noise_m, const BeamShares& shares) {
+  const auto spans = spans_of_scans(beams);
+  const std::size_t turns = std::min(kMostTurns, spans.size());
+  const std::size_t rings = pattern.rings, columns = pattern.columns;
+  UnitFields fields;
+  fields.turns = static_cast<std::uint32_t>(turns);
+  fields.rings = static_cast<std::uint32_t>(rings);
+  fields.columns = static_cast<std::uint32_t>(columns);
+  fields.bytes.resize(turns * rings * columns * kUnitFields);
+  std::vector<float> numbers(rings * columns);
+  for (std::size_t turn = 0; turn < turns; ++turn) {
+    const auto [begin, end] = spans[turn * spans.size() / turns];
+    for (const UnitField field : {UnitField::drop, UnitField::intensity, UnitField::noise}) {
+      std::ranges::fill(numbers, kUntold);
+      for (std::size_t i = begin; i < end; ++i) {
+        const UnitBeam& beam = beams[i];
+        if (beam.ring >= rings || beam.column >= columns) continue;
+        const auto share = [&](std::span<const float> all) {
+          return all.empty() ? kUntold : all[i];
+        };
+        numbers[beam.ring * columns + beam.column] = field == UnitField::drop ? share(shares.drop)
+                                                     : field == UnitField::intensity
+                                                         ? share(shares.intensity)
+                                                         : noise_m_of(beam);
+      }
+      for (std::size_t ring = 0; ring < rings; ++ring) {
+        const std::span<float> of_ring = std::span(numbers).subspan(ring * columns, columns);
+        fill_untold(of_ring, field == UnitField::noise ? 0.0F : 0.5F);
+        if (field == UnitField::noise)
+          scale_noise(of_ring, ring < ring_noise_m.size() ? ring_noise_m[ring] : 0.0);
+      }
+      for (std::size_t k = 0; k < numbers.size(); ++k)
+        fields.bytes[(turn * rings * columns + k) * kUnitFields + static_cast<std::size_t>(field)] =
+            coded(field, numbers[k]);
+    }
+  }
+  return fields;
+}
+
+}  // namespace adasplats

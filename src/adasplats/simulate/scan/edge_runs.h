@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "adasplats/core/maths/random.h"
+#include "adasplats/core/maths/ray.h"
+#include "adasplats/sensors/lidar_model.h"
+
+namespace adasplats {
+
+/// Where neighbouring beams of a ring meet surfaces farther apart than this, there is an edge.
+inline constexpr float kRangeEdge_m = 0.5F;
+/// Beams lost at one edge, at most.
+inline constexpr std::uint32_t kMostEdgeRun = 6;
+
+/// Beams that are lost at range edges, for CPU and GPU: a footprint that is cut in two gives two
+/// weak echoes. shares[k]: of the edges, those at which k + 1 beams one after the other are lost.
+struct EdgeRunRules {
+  bool on = false;
+  double shares[kMostEdgeRun] = {};
+};
+
+/// What edges look at: the hits of a scan's firings, of which [first, end) are there.
+struct ScanHits {
+  const Hit* hits = nullptr;  ///< of firing `first`
+  std::size_t a_firing = 1;   ///< how many each has; the first one counts
+  std::uint32_t first = 0, end = 0;
+
+  ADASPLATS_HD const Hit& of(std::uint32_t firing) const {
+    return hits[(firing - first) * a_firing];
+  }
+};
+
+/// Whether firings i and i + 1 are neighbours of one ring and meet surfaces far apart.
+ADASPLATS_HD inline bool is_edge(const Firing* firings, const ScanHits& hits, std::uint32_t i) {
+  const Hit& a = hits.of(i);
+  const Hit& b = hits.of(i + 1);
+  if (!(std::fabs(b.t - a.t) > kRangeEdge_m) || !a.valid() || !b.valid()) return false;
+  return firings[i].ring == firings[i + 1].ring && firings[i].column + 1 == firings[i + 1].column;
+}
+
+/// Whether a firing is one of those that are lost at an edge beside it. Edges one above the other
+/// in four rings lose the same beams.
+ADASPLATS_HD inline bool lost_at_edge(const EdgeRunRules& rules, const Firing* firings,
+                                      const ScanHits& hits, std::uint64_t seed,
+                                      std::uint64_t scan_index, std::uint32_t firing) {
+  constexpr std::uint32_t kRingsAlike = 4;
+  const std::uint32_t first =
+      firing >= hits.first + kMostEdgeRun ? firing - kMostEdgeRun : hits.first;
+  for (std::uint32_t i = first; i < firing + kMostEdgeRun && i + 1 < hits.end; ++i) {
+    if (!is_edge(firings, hits, i)) continue;
+    Random random(seed ^ 0x6564676573ULL, scan_index,
+                  std::uint64_t{firings[i].ring / kRingsAlike} << 32 | firings[i].column);
+    double drawn = random.uniform();
+    for (std::uint32_t k = 0; k < kMostEdgeRun; ++k) {
+      drawn -= rules.shares[k];
+      if (drawn >= 0) continue;
+      // k + 1 beams, of which `before` are on this side of the edge.
+      const auto before = static_cast<std::uint32_t>(random.uniform() * (k + 2));
+      if (firing <= i ? i - firing < before : firing - i <= k + 1 - before) return true;
+      break;
+    }
+  }
+  return false;
+}
+
+}  // namespace adasplats
