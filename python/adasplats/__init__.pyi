@@ -312,6 +312,22 @@ def compare(
     seed: int = 1,
     progress: Progress | None = None,
 ) -> dict[str, Any]: ...
+def fit_sensor(
+    model: Path,
+    scans: Path,
+    output: Path,
+    *,
+    drop: Path | None = None,
+    first_scan: int = 0,
+    scan_count: int | None = None,
+    scan_stride: int = 1,
+    motion: Path | None = None,
+    trajectory: Path | None = None,
+    device: Literal["auto", "cpu", "cuda", "optix"] = "auto",
+    gpus: Sequence[int] | None = None,
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> dict[str, Any]: ...
 def simkitti32(
     sequence: Path,
     output: Path,

@@ -7,6 +7,7 @@
 #include "adasplats/recipes/export.h"
 #include "adasplats/recipes/make_mesh.h"
 #include "adasplats/recipes/simkitti32.h"
+#include "adasplats/recipes/unit_files.h"
 #include "bindings.h"
 #include "clouds.h"
 #include "json.h"
@@ -45,6 +46,18 @@ constexpr const char* kExportDoc =
     "color: 'class', 'intensity' or 'height'; else the first of these there is. Gives a dict: "
     "what\n"
     "was written and how much. Raises ValueError, OSError.";
+
+constexpr const char* kFitSensorDoc =
+    "Learn from measured scans what one unit of a sensor makes of what its beams meet.\n\n"
+    "model: path of a splat model of the place. scans: a sequence, or a folder of files, one a "
+    "scan "
+    "(then\n"
+    "trajectory, too). output: the sensor to write, TOML, for Sensor(). drop: a drop model to "
+    "write, "
+    "TOML,\n"
+    "for ray_drop=. motion: how the sensor moved during raw scans. Gives the report as a dict. "
+    "Raises\n"
+    "ValueError (DataError where the scans are of another place), OSError.";
 
 constexpr const char* kSimKitti32Doc =
     "Make a labelled data set of another LiDAR from a SemanticKITTI sequence (paper section\n"
@@ -216,6 +229,34 @@ py::object simkitti32(py::handle sequence, py::handle output, const py::kwargs& 
   return python_of(report);
 }
 
+struct FitSensorCall {
+  UnitFilesJob job;
+  WorkOptions work;
+
+  void take(Keywords& keywords) {
+    keywords.take("drop", job.drop);
+    take_scan_range(keywords, job.fit.scans);
+    keywords.take("motion", job.fit.motion);
+    keywords.take("trajectory", job.fit.trajectory);
+    work.take(keywords);
+  }
+};
+
+py::object fit_one_sensor(py::handle model, py::handle scans, py::handle output,
+                          const py::kwargs& kwargs) {
+  Keywords keywords("fit_sensor", kwargs);
+  FitSensorCall call;
+  call.take(keywords);
+  keywords.finish();
+  call.job.fit.model = path_of(model, "model");
+  call.job.fit.scans_of = path_of(scans, "scans");
+  call.job.output = path_of(output, "output");
+  Work work(call.work);
+  const nlohmann::ordered_json report =
+      work.run([&](Session& session) { return to_json(run_fit_sensor(call.job, session)); });
+  return python_of(report);
+}
+
 struct CompareCall {
   CompareJob job;
   py::object methods = py::none(), meshes = py::none();
@@ -302,6 +343,8 @@ void bind_recipes(py::module_& module) {
              doc_of<ExportCall>("export", "input, output", kExportDoc).c_str());
   module.def("compare", &compare, py::arg("data"), py::arg("output"),
              doc_of<CompareCall>("compare", "data, output", kCompareDoc).c_str());
+  module.def("fit_sensor", &fit_one_sensor, py::arg("model"), py::arg("scans"), py::arg("output"),
+             doc_of<FitSensorCall>("fit_sensor", "model, scans, output", kFitSensorDoc).c_str());
   module.def("simkitti32", &simkitti32, py::arg("sequence"), py::arg("output"),
              doc_of<SimKitti32Call>("simkitti32", "sequence, output", kSimKitti32Doc).c_str());
 }

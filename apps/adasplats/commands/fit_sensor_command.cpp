@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/evaluate/fit_sensor.h"
-#include "adasplats/pipeline/output/output_folder.h"
+#include "adasplats/recipes/unit_files.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/terminal.h"
@@ -28,32 +25,24 @@ class FitSensorCommand final : public Command {
       : Command(program, "fit-sensor", "Learn from real scans what one unit of a sensor measures",
                 kFitSensorExamples) {
     OptionSet& app = options();
-    require(add_path(app, "MODEL", job_.model, "Splat model of the place"));
-    require(add_path(app, "SCANS", job_.scans_of,
+    require(add_path(app, "MODEL", job_.fit.model, "Splat model of the place"));
+    require(add_path(app, "SCANS", job_.fit.scans_of,
                      "Measured scans in that place: a sequence, or a folder of files, one a scan"));
-    require(writes(add_path(app, "-o,--output", output_, "Sensor to write, TOML"), {".toml"}));
-    writes(add_path(app, "--drop", drop_, "Drop model to write, TOML, for simulate --ray-drop"),
+    require(writes(add_path(app, "-o,--output", job_.output, "Sensor to write, TOML"), {".toml"}));
+    writes(add_path(app, "--drop", job_.drop, "Drop model to write, TOML, for simulate --ray-drop"),
            {".toml"});
-    add_path(app, "--motion", job_.motion,
+    add_path(app, "--motion", job_.fit.motion,
              "Pose file or sequence that tells how the sensor moved during raw scans; the default "
              "is SCANS itself, whose poses may be far apart");
-    add_path(app, "--trajectory", job_.trajectory,
+    add_path(app, "--trajectory", job_.fit.trajectory,
              "Poses of a folder of files without a poses.csv in it");
-    add_scan_range(app, "--scans", job_.scans, "Which scans, to keep others for a test");
+    add_scan_range(app, "--scans", job_.fit.scans, "Which scans, to keep others for a test");
     add_device_options();
   }
 
   void run(Session& session) override {
     const Stopwatch watch;
-    check_output_file(output_);
-    if (!drop_.empty()) check_output_file(drop_);
-    if (!drop_.empty() && drop_ == output_)
-      throw Error(ErrorKind::usage, "--drop and --output name the same file");
-    const FitSensorResult result = fit_sensor(job_, session);
-    if (!drop_.empty() && !result.drop)
-      throw Error(ErrorKind::data, "no drop model to write; " + result.not_told.back());
-    write_file(output_, result.sensor_toml);
-    if (!drop_.empty()) save_ray_drop(drop_, *result.drop);
+    const FitSensorResult result = run_fit_sensor(job_, session);
     session.report.update(to_json(result));
     session.report["seconds"]["total"] = watch.seconds();
     print(text_of(result));
@@ -89,14 +78,13 @@ class FitSensorCommand final : public Command {
       table.add_row({"turns that tell what is alike", grouped(result.fields->turns)});
     std::string text = table.text();
     for (const std::string& reason : result.not_told) text += "not told: " + reason + "\n";
-    text += "\n" + output_.string() + ": simulate --sensor " + output_.string();
+    text += "\n" + job_.output.string() + ": simulate --sensor " + job_.output.string();
     if (result.has_offsets) text += " --unit-offsets";
-    if (!drop_.empty()) text += " --ray-drop " + drop_.string();
+    if (!job_.drop.empty()) text += " --ray-drop " + job_.drop.string();
     return text + "; judge it by scans that it was not fitted to\n";
   }
 
-  FitSensorJob job_;
-  std::filesystem::path output_, drop_;
+  UnitFilesJob job_;
 };
 
 }  // namespace
