@@ -81,6 +81,16 @@ struct Program {
     commands.push_back(make_compare_command(app));
     commands.push_back(make_demo_command(app));
     for (const auto& command : commands) command->add_common_options();  // last in the help
+    // These tell of the program and compute nothing: no threads, seed or report.
+    commands.push_back(make_help_command(app));
+    commands.push_back(make_version_command(app));
+    commands.push_back(make_completion_command(app));
+    commands.push_back(make_man_command(app));
+  }
+
+  /// For what is told of the commands; a parser that knew it would ask too early.
+  void mark_required() {
+    for (const auto& command : commands) command->mark_required();
   }
 
   /// A subcommand that only has subcommands.
@@ -163,7 +173,7 @@ int run(int argc, char** argv) {
   try {
     program.app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    for (const auto& command : program.commands) command->mark_required();
+    program.mark_required();
     print(help_text(chosen_app(program.app)));
     return 0;
   } catch (const CLI::CallForVersion& version) {
@@ -172,6 +182,7 @@ int run(int argc, char** argv) {
   }
   CLI::App& chosen = chosen_app(program.app);
   check_extras(program.app, chosen);
+  program.mark_required();
   run_command(program, find_command(program, chosen));
   return 0;
 }

@@ -41,6 +41,8 @@ SUBCOMMANDS = [
     ["export"],
     ["demo"],
 ]
+# What tells of the program and computes nothing.
+ABOUT = [["help"], ["version"], ["completion"], ["man"]]
 ROAD, BUILDING, POLE = 40, 50, 80
 
 SENSOR = """\

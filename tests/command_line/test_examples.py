@@ -7,7 +7,7 @@ import shlex
 import unittest
 from pathlib import Path
 
-from support import SUBCOMMANDS, ProgramTest
+from support import ABOUT, SUBCOMMANDS, ProgramTest
 
 ROOT = Path(__file__).resolve().parents[2]
 # docs/compare/ are records of runs, not examples.
@@ -82,13 +82,14 @@ class Examples(ProgramTest):
 
     def check_command(self, command, where):
         words = shlex.split(command, comments=True)[1:]
-        words = words[:words.index(">")] if ">" in words else words
+        for end in [word for word in (">", "|") if word in words]:
+            words = words[:words.index(end)]
         if not words or words[0].startswith("-"):
             return
         subcommand = subcommand_of(words)
         if words[0] in GROUPS and (len(words) == 1 or words[1].startswith("-")):
             return  # a sentence about all of them
-        self.assertIn(subcommand, SUBCOMMANDS, f"{where}: {command}")
+        self.assertIn(subcommand, SUBCOMMANDS + ABOUT, f"{where}: {command}")
         options = self.options_of(subcommand)
         rest = words[len(subcommand):]
         for word, value in zip(rest, rest[1:] + [""]):
@@ -108,7 +109,7 @@ class Examples(ProgramTest):
 
     def test_of_every_help_text(self):
         checked = 0
-        for subcommand in SUBCOMMANDS:
+        for subcommand in SUBCOMMANDS + ABOUT:
             text = self.run_good(*subcommand, "--help").stdout
             for command in commands_of_help(text):
                 self.check_command(command, " ".join(subcommand) + " --help")

@@ -7,30 +7,11 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/pipeline/output/output_check.h"
+#include "cli/option_traits.h"
 
 namespace adasplats::app {
-namespace {
 
 namespace fs = std::filesystem;
-
-/// Whether values of an option may name files: PATH, NAME|FILE, NAME=FILE, SCHEME.
-bool names_files(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
-  return type.find("PATH") != std::string::npos || type.find("FILE") != std::string::npos ||
-         type.find("SCHEME") != std::string::npos;
-}
-
-/// Options of a subcommand and of its groups.
-std::vector<const CLI::Option*> options_of(const CLI::App& app) {
-  std::vector<const CLI::Option*> options;
-  for (const CLI::Option* option : app.get_options()) options.push_back(option);
-  const auto is_group = [](const CLI::App* part) { return part->get_name().empty(); };
-  for (const CLI::App* group : app.get_subcommands(is_group))
-    for (const CLI::Option* option : options_of(*group)) options.push_back(option);
-  return options;
-}
-
-}  // namespace
 
 Command::Command(CLI::App& parent, const std::string& name, const std::string& description,
                  const std::string& examples)

@@ -34,5 +34,9 @@ std::unique_ptr<Command> make_compare_command(CLI::App& program);
 std::unique_ptr<Command> make_view_command(CLI::App& program);
 std::unique_ptr<Command> make_export_command(CLI::App& program);
 std::unique_ptr<Command> make_demo_command(CLI::App& program);
+std::unique_ptr<Command> make_help_command(CLI::App& program);
+std::unique_ptr<Command> make_version_command(CLI::App& program);
+std::unique_ptr<Command> make_completion_command(CLI::App& program);
+std::unique_ptr<Command> make_man_command(CLI::App& program);
 
 }  // namespace adasplats::app

@@ -4,20 +4,13 @@
 
 #include <sstream>
 
+#include "cli/option_traits.h"
+
 namespace adasplats::app {
 namespace {
 
 constexpr std::size_t kColumns = 96;
 constexpr std::size_t kIndent = 30;
-
-std::string names_of(const CLI::Option& option, bool is_positional) {
-  if (is_positional) return option.get_name(true);
-  std::string names;
-  const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
-  for (const std::string& name : option.get_snames()) add("-" + name);
-  for (const std::string& name : option.get_lnames()) add("--" + name);
-  return names;
-}
 
 /// " TYPE [DEFAULT] REQUIRED" as far as there is something to say.
 std::string traits_of(const CLI::Option& option) {
@@ -55,19 +48,18 @@ void append_wrapped(std::string& text, std::size_t column, const std::string& de
 
 }  // namespace
 
-std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positional) const {
-  std::string text = "  " + names_of(*option, is_positional) + traits_of(*option);
+std::string HelpFormatter::make_option(const CLI::Option* option, bool /*is_positional*/) const {
+  std::string text = "  " + joined(names_of(*option), ", ") + traits_of(*option);
   append_wrapped(text, text.size(), option->get_description());
   return text + "\n";
 }
 
 std::string help_text(const CLI::App& app) {
-  std::string above;
-  for (const CLI::App* parent = app.get_parent(); parent != nullptr;
-       parent = parent->get_parent()) {
-    above = parent->get_name() + (above.empty() ? "" : " ") + above;
-  }
-  std::string text = app.help(above, CLI::AppFormatMode::Normal);
+  std::string name = app.get_name();
+  for (const CLI::App* above = app.get_parent(); above != nullptr; above = above->get_parent())
+    name = above->get_name() + " " + name;
+  // Not app.help(): that gives the help of a subcommand which the command line has.
+  std::string text = app.get_formatter()->make_help(&app, name, CLI::AppFormatMode::Normal);
   // CLI11 leaves two blank lines between groups.
   for (std::size_t at = 0; (at = text.find("\n\n\n", at)) != std::string::npos;) text.erase(at, 1);
   text.erase(text.find_last_not_of('\n') + 1);
