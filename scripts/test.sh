@@ -129,6 +129,12 @@ build_example() {
   diff <(sed -n '/^```cpp$/,/^```$/{//!p}' README.md) <(sed 1,3d examples/find_package/cloud_to_scan.cpp)
   rm -rf build/install build/example
   cmake --install build/release --prefix build/install >/dev/null
+  local file
+  for file in man/man1/adasplats.1 man/man1/adasplats-evaluate-c2c.1 doc/adasplats/LICENSE \
+    doc/adasplats/CHANGELOG.md bash-completion/completions/adasplats \
+    zsh/site-functions/_adasplats fish/vendor_completions.d/adasplats.fish; do
+    [[ -s build/install/share/$file ]]
+  done
   cmake -S examples/find_package -B build/example -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DCMAKE_PREFIX_PATH="$root/build/install"
   cmake --build build/example
