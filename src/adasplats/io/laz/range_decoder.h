@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace adasplats {
+
+class RangeDecoder;
+
+/// How probable 0 is as the value of a bit, learned from the bits so far.
+class BitModel {
+ public:
+  unsigned decode(RangeDecoder& decoder);
+
+ private:
+  void update();
+
+  std::uint32_t zero_probability_ = 1U << 12;  // of 2^13
+  std::uint32_t zeros_ = 1;
+  std::uint32_t bits_ = 2;
+  std::uint32_t cycle_ = 4;  // bits from one update to the next
+  std::uint32_t until_update_ = 4;
+};
+
+/// How probable each symbol of an alphabet is, learned from the symbols so far. Takes memory when
+/// it is first used: most models of a chunk never are.
+class SymbolModel {
+ public:
+  /// `symbols`: 2 to 1024.
+  explicit SymbolModel(std::uint32_t symbols) : symbols_(symbols) {}
+
+  /// The next symbol, below the model's number of symbols, whatever the data are.
+  std::uint32_t decode(RangeDecoder& decoder);
+
+ private:
+  void start();
+  void update();
+  /// The last symbol whose share begins at or before `place`.
+  std::uint32_t find(std::uint32_t place) const;
+  std::uint16_t* begins() { return values_.data(); }
+  std::uint16_t* counts() { return values_.data() + symbols_; }
+  std::uint16_t* table() { return values_.data() + std::size_t{2} * symbols_; }
+  const std::uint16_t* begins() const { return values_.data(); }
+  const std::uint16_t* table() const { return values_.data() + std::size_t{2} * symbols_; }
+
+  std::uint32_t symbols_;
+  std::uint32_t table_size_ = 0;
+  std::uint32_t table_shift_ = 0;
+  std::uint32_t total_ = 0;
+  std::uint32_t cycle_ = 0;
+  std::uint32_t until_update_ = 0;
+  // Where the share of each symbol begins (of 2^15), how often each came, and for parts of the
+  // range the first symbol that can lie there.
+  std::vector<std::uint16_t> values_;
+};
+
+/// Unpacks numbers from the bytes of an arithmetic coder (A. Said, "Introduction to Arithmetic
+/// Coding - Theory and Practice", HP Labs report HPL-2004-76, 2004, as LASzip
+/// uses it). Whatever the bytes are, it ends: data that go on after the last byte are
+/// zeros, and set `is_broken`.
+class RangeDecoder {
+ public:
+  /// Reads nothing.
+  RangeDecoder() = default;
+  /// `bytes` and `is_broken` have to outlive this.
+  RangeDecoder(std::span<const std::byte> bytes, bool& is_broken);
+
+  /// A number of `count` bits (1 to 32) that were packed as they are.
+  std::uint32_t bits(unsigned count);
+  std::uint64_t bits64() {
+    const std::uint64_t low = bits(32);
+    return low | (std::uint64_t{bits(32)} << 32);
+  }
+  /// The next byte that will be read.
+  const std::byte* place() const { return next_; }
+
+ private:
+  friend class BitModel;
+  friend class SymbolModel;
+
+  static constexpr std::uint32_t kLeastLength = 1U << 24;
+
+  std::uint32_t next_byte() {
+    if (next_ != end_) return std::to_integer<std::uint32_t>(*next_++);
+    fail();
+    return 0;
+  }
+  void renormalise() {
+    while (length_ < kLeastLength) {
+      value_ = (value_ << 8) | next_byte();
+      length_ <<= 8;
+    }
+  }
+  void fail() {
+    if (is_broken_ != nullptr) *is_broken_ = true;
+  }
+  std::uint32_t short_bits(unsigned count);
+
+  // value_ < length_ at all times.
+  std::uint32_t value_ = 0;
+  std::uint32_t length_ = ~0U;
+  const std::byte* next_ = nullptr;
+  const std::byte* end_ = nullptr;
+  bool* is_broken_ = nullptr;
+};
+
+inline unsigned BitModel::decode(RangeDecoder& decoder) {
+  const std::uint32_t split = zero_probability_ * (decoder.length_ >> 13);
+  const unsigned bit = decoder.value_ >= split ? 1 : 0;
+  if (bit == 0) {
+    decoder.length_ = split;
+    ++zeros_;
+  } else {
+    decoder.value_ -= split;
+    decoder.length_ -= split;
+  }
+  decoder.renormalise();
+  if (--until_update_ == 0) update();
+  return bit;
+}
+
+inline std::uint32_t SymbolModel::find(std::uint32_t place) const {
+  std::uint32_t symbol = 0;
+  std::uint32_t end = symbols_;
+  if (table_size_ > 0) {
+    const std::uint16_t* const part = table() + (place >> table_shift_);
+    symbol = part[0];
+    end = part[1] + 1U;
+  }
+  while (end > symbol + 1) {
+    const std::uint32_t middle = (symbol + end) >> 1;
+    (begins()[middle] > place ? end : symbol) = middle;
+  }
+  return symbol;
+}
+
+inline std::uint32_t SymbolModel::decode(RangeDecoder& decoder) {
+  if (values_.empty()) start();
+  const std::uint32_t whole = decoder.length_;
+  const std::uint32_t unit = whole >> 15;
+  // What 2^15 units leave of the length belongs to the last symbol.
+  constexpr std::uint32_t kLastPlace = (1U << 15) - 1;
+  const std::uint32_t quotient = decoder.value_ / unit;
+  const std::uint32_t symbol = find(quotient < kLastPlace ? quotient : kLastPlace);
+  const std::uint32_t begin = begins()[symbol] * unit;
+  const std::uint32_t end = symbol + 1 == symbols_ ? whole : begins()[symbol + 1] * unit;
+  decoder.value_ -= begin;
+  decoder.length_ = end - begin;
+  decoder.renormalise();
+  ++counts()[symbol];
+  if (--until_update_ == 0) update();
+  return symbol;
+}
+
+}  // namespace adasplats
