@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "adasplats/io/laz/range_decoder.h"
+
+namespace adasplats {
+
+using Rgb = std::array<std::uint16_t, 3>;
+
+/// Unpacks colours by the differences of their bytes from the last colour; green and blue are
+/// expected to change as red does.
+class RgbModels {
+ public:
+  Rgb decode(RangeDecoder& decoder, const Rgb& last);
+
+ private:
+  /// Of a byte that changed: its new value, `expected` plus what was packed.
+  std::uint16_t byte(RangeDecoder& decoder, std::size_t model, int expected);
+
+  SymbolModel changed_{128};
+  std::array<SymbolModel, 6> differences_ = {SymbolModel(256), SymbolModel(256), SymbolModel(256),
+                                             SymbolModel(256), SymbolModel(256), SymbolModel(256)};
+};
+
+/// Unpacks the near infrared by the differences of its bytes from the last.
+class InfraredModels {
+ public:
+  std::uint16_t decode(RangeDecoder& decoder, std::uint16_t last);
+
+ private:
+  SymbolModel changed_{4};
+  std::array<SymbolModel, 2> differences_ = {SymbolModel(256), SymbolModel(256)};
+};
+
+}  // namespace adasplats

@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/io/laz/gps_times.h"
+
+#include "adasplats/io/laz/pointwise_item.h"
+#include "adasplats/io/laz/record_values.h"
+
+namespace adasplats {
+namespace {
+
+// Symbols 0 to 500 are multiples of the step, the next ten -1 to -10.
+constexpr std::uint32_t kMostMultiple = 500;
+constexpr std::uint32_t kFewestMultiple = 10;
+constexpr std::uint32_t kMultiples = kMostMultiple + kFewestMultiple + 1;
+constexpr int kExtremesForNewStep = 3;
+
+std::int32_t times(std::int32_t step, std::int32_t multiple) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(step) *
+                                   static_cast<std::uint32_t>(multiple));
+}
+
+/// The sum of the bits of a time and a difference with its sign.
+std::uint64_t later(std::uint64_t time, std::int32_t difference) {
+  return time + static_cast<std::uint64_t>(std::int64_t{difference});
+}
+
+}  // namespace
+
+GpsTimes::GpsTimes(Symbols symbols, std::uint64_t first)
+    : unchanged_(symbols == Symbols::with_unchanged ? 1 : 0),
+      multiples_(kMultiples + unchanged_ + 4),
+      without_step_(5 + unchanged_) {
+  sequences_[0].time = first;
+}
+
+std::uint64_t GpsTimes::decode(RangeDecoder& decoder) {
+  // Encoders switch the sequence once at most; broken data could switch for ever.
+  for (int k = 0; k < 4; ++k)
+    if (decode_in_sequence(decoder)) break;
+  return sequences_[current_].time;
+}
+
+bool GpsTimes::decode_in_sequence(RangeDecoder& decoder) {
+  return sequences_[current_].step == 0 ? decode_without_step(decoder) : decode_with_step(decoder);
+}
+
+bool GpsTimes::decode_without_step(RangeDecoder& decoder) {
+  const std::uint32_t symbol = without_step_.decode(decoder);
+  if (symbol < unchanged_) return true;
+  const std::uint32_t kind = symbol - unchanged_;
+  if (kind == 0) {
+    Sequence& sequence = sequences_[current_];
+    sequence.step = integers_.decode_signed(decoder, 0, 0);
+    sequence.time = later(sequence.time, sequence.step);
+    sequence.extremes = 0;
+  } else if (kind == 1) {
+    begin_sequence(decoder);
+  } else {
+    switch_sequence(kind - 1);
+    return false;
+  }
+  return true;
+}
+
+bool GpsTimes::decode_with_step(RangeDecoder& decoder) {
+  const std::uint32_t symbol = multiples_.decode(decoder);
+  if (symbol < kMultiples) {
+    decode_multiple(decoder, symbol);
+    return true;
+  }
+  if (symbol < kMultiples + unchanged_) return true;
+  const std::uint32_t kind = symbol - kMultiples - unchanged_;
+  if (kind > 0) {
+    switch_sequence(kind);
+    return false;
+  }
+  begin_sequence(decoder);
+  return true;
+}
+
+void GpsTimes::decode_multiple(RangeDecoder& decoder, std::uint32_t symbol) {
+  Sequence& sequence = sequences_[current_];
+  const auto multiple = static_cast<std::int32_t>(symbol);
+  const auto difference = [&](std::int32_t of_step, unsigned context) {
+    return integers_.decode_signed(decoder, times(sequence.step, of_step), context);
+  };
+  const auto take_extreme = [&sequence](std::int32_t found) {
+    if (++sequence.extremes > kExtremesForNewStep) {
+      sequence.step = found;
+      sequence.extremes = 0;
+    }
+    return found;
+  };
+  std::int32_t found = 0;
+  if (symbol == 1) {
+    found = difference(1, 1);
+    sequence.extremes = 0;
+  } else if (symbol == 0) {
+    found = take_extreme(difference(0, 7));
+  } else if (symbol < kMostMultiple) {
+    found = difference(multiple, symbol < 10 ? 2 : 3);
+  } else if (symbol == kMostMultiple) {
+    found = take_extreme(difference(multiple, 4));
+  } else if (symbol < kMultiples - 1) {
+    found = difference(static_cast<std::int32_t>(kMostMultiple) - multiple, 5);
+  } else {
+    found = take_extreme(difference(-static_cast<std::int32_t>(kFewestMultiple), 6));
+  }
+  sequence.time = later(sequence.time, found);
+}
+
+void GpsTimes::begin_sequence(RangeDecoder& decoder) {
+  const auto upper = static_cast<std::uint32_t>(sequences_[current_].time >> 32);
+  newest_ = (newest_ + 1) % 4;
+  const std::uint64_t high = integers_.decode(decoder, upper, 8);
+  sequences_[newest_] = {.time = (high << 32) | decoder.bits(32)};
+  current_ = newest_;
+}
+
+namespace {
+
+/// As LASzip packs since version 2.0.
+class GpsTime11V2 final : public PointwiseItem {
+ public:
+  void start(const std::byte* first) override {
+    times_ = GpsTimes(GpsTimes::Symbols::with_unchanged, load_value<std::uint64_t>(first));
+  }
+  void decode(RangeDecoder& decoder, std::byte* item) override {
+    store_value(item, times_.decode(decoder));
+  }
+
+ private:
+  GpsTimes times_{GpsTimes::Symbols::with_unchanged, 0};
+};
+
+/// As LASzip packed before version 2.0: one sequence.
+class GpsTime11V1 final : public PointwiseItem {
+ public:
+  void start(const std::byte* first) override { time_ = load_value<std::uint64_t>(first); }
+
+  void decode(RangeDecoder& decoder, std::byte* item) override {
+    if (step_ == 0)
+      decode_without_step(decoder);
+    else
+      decode_with_step(decoder);
+    store_value(item, time_);
+  }
+
+ private:
+  static constexpr std::uint32_t kSymbols = 512;  // the last two: a whole time, the same time
+
+  void decode_without_step(RangeDecoder& decoder) {
+    const std::uint32_t symbol = without_step_.decode(decoder);
+    if (symbol == 1) {
+      step_ = integers_.decode_signed(decoder, 0, 0);
+      time_ = later(time_, step_);
+    } else if (symbol == 2) {
+      time_ = decoder.bits64();
+    }
+  }
+
+  void decode_with_step(RangeDecoder& decoder) {
+    const std::uint32_t symbol = multiples_.decode(decoder);
+    if (symbol < kSymbols - 2)
+      time_ = later(time_, decode_multiple(decoder, symbol));
+    else if (symbol == kSymbols - 2)
+      time_ = decoder.bits64();
+  }
+
+  std::int32_t decode_multiple(RangeDecoder& decoder, std::uint32_t symbol) {
+    if (symbol == 1) {
+      step_ = integers_.decode_signed(decoder, step_, 1);
+      extremes_ = 0;
+      return step_;
+    }
+    const bool is_extreme = symbol == 0 || symbol == kSymbols - 3;
+    const unsigned context = symbol == 0 ? 2 : symbol < 10 ? 3 : symbol < 50 ? 4 : 5;
+    const std::int32_t prediction =
+        symbol == 0 ? step_ / 4 : times(step_, static_cast<std::int32_t>(symbol));
+    const std::int32_t found = integers_.decode_signed(decoder, prediction, context);
+    if (is_extreme && ++extremes_ > kExtremesForNewStep) {
+      step_ = found;
+      extremes_ = 0;
+    }
+    return found;
+  }
+
+  std::uint64_t time_ = 0;
+  std::int32_t step_ = 0;
+  int extremes_ = 0;
+  SymbolModel multiples_{kSymbols};
+  SymbolModel without_step_{3};
+  IntegerDecoder integers_{32, 6};
+};
+
+}  // namespace
+
+std::unique_ptr<PointwiseItem> make_gps_time11_v1() { return std::make_unique<GpsTime11V1>(); }
+std::unique_ptr<PointwiseItem> make_gps_time11_v2() { return std::make_unique<GpsTime11V2>(); }
+
+}  // namespace adasplats

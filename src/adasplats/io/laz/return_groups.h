@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+namespace adasplats {
+
+// Returns of a beam that behave alike share their models and predictions. What number a return has
+// and how many its beam had decide which (LASzip, laszip_common_v2.hpp and _v3.hpp, have the
+// tables as facts of the format; files exist in which either count is 0 or both are swapped).
+
+/// Of counts below 8: one of 16 groups.
+inline std::size_t group_of_return(unsigned returns, unsigned number) {
+  constexpr std::array<std::string_view, 8> kGroups = {"fedcba98", "e0136aa9", "d1247bba",
+                                                       "c3458ccb", "b6789ddc", "aabcdeed",
+                                                       "9abcdefe", "89abcdef"};
+  const char digit = kGroups[returns][number];
+  return static_cast<std::size_t>(digit <= '9' ? digit - '0' : digit - 'a' + 10);
+}
+
+/// Of counts below 16: one of 6 groups.
+inline std::size_t coarse_group_of_return(unsigned returns, unsigned number) {
+  constexpr std::array<std::string_view, 16> kGroups = {
+      "0123453445555555", "1013333333333333", "2124444444433333", "3345444444444444",
+      "4344544444444444", "5344454444444444", "3344445444444444", "4344444544444444",
+      "4344444454444444", "5344444445444444", "5344444444544444", "5334444444455444",
+      "5334444444455544", "5334444444445554", "5334444444444555", "5334444444444455"};
+  return static_cast<std::size_t>(kGroups[returns][number] - '0');
+}
+
+/// How many returns follow, 0 to 7: points as deep as one another lie about as high.
+inline std::size_t depth_of_return(unsigned returns, unsigned number) {
+  const unsigned depth = returns > number ? returns - number : number - returns;
+  return depth < 7 ? depth : 7;
+}
+
+}  // namespace adasplats
