@@ -7,13 +7,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(PNG REQUIRED)
 
-# LAZ: LASzip is not in Debian 12; where it is missing the reader says what to install.
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
-find_package(LASzip QUIET)
-if(LASzip_FOUND)
-  set(ADASPLATS_LASZIP_TARGET LASzip::LASzip)
-  set(ADASPLATS_LASZIP_DEFINE ADASPLATS_HAVE_LASZIP)
-endif()
 
 # Networks that tell classes apart (stage segment): products of matrices.
 find_package(OpenBLAS QUIET MODULE)
@@ -55,12 +49,6 @@ if(NOT embree_FOUND)
 endif()
 
 # What these are for is named where one of them is missing.
-set(missing "")
-if(NOT LASzip_FOUND)
-  set(missing "no LASzip (liblaszip-dev)")
-endif()
-adasplats_part(- "LAZ files" "${missing}" "LASzip" ADASPLATS_LAZ)
-
 set(missing "")
 if(NOT OpenBLAS_FOUND)
   set(missing "no OpenBLAS (libopenblas-dev)")

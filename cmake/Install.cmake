@@ -18,7 +18,6 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/adasplatsConfigVersion.cmak
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/adasplatsConfig.cmake
               ${CMAKE_BINARY_DIR}/adasplatsConfigVersion.cmake
-              ${CMAKE_CURRENT_LIST_DIR}/FindLASzip.cmake
               ${CMAKE_CURRENT_LIST_DIR}/FindOpenBLAS.cmake
               ${CMAKE_CURRENT_LIST_DIR}/FindOpenVDB.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adasplats)

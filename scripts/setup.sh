@@ -12,8 +12,8 @@ set -euo pipefail
 readonly kCmakeLeast=3.24
 
 # One line a package: when, package, command that may serve instead (- for none), what it is for.
-# "maybe" packages are taken where the distribution has them (liblaszip-dev is not in Debian 12,
-# clang-tidy-14 not in Debian 13), those of "maybe-test" for tests alone. What skips itself without
+# "maybe" packages are taken where the distribution has them (clang-tidy-14 is not in Debian 13),
+# those of "maybe-test" for tests alone. What skips itself without
 # one of them is listed in tests/allowed_skips.tsv.
 packages() {
   cat <<'LIST'
@@ -28,7 +28,6 @@ demo  libtomlplusplus-dev  -             sensor, label and configuration files
 demo  libpng-dev           -             images
 demo  libboost-dev         -             the viewer's server (headers)
 maybe ccache               ccache        compiles nothing twice
-maybe liblaszip-dev        -             LAZ files
 maybe libopenblas-dev      -             segmentation by networks
 maybe nodejs               node          the viewer's page
 maybe npm                  npm           likewise

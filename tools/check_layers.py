@@ -26,7 +26,7 @@ import re
 import sys
 import tempfile
 
-HEAVY = ("nlohmann/", "toml++/", "CLI/", "tbb/", "oneapi/", "embree", "Eigen/", "png.h", "laszip/",
+HEAVY = ("nlohmann/", "toml++/", "CLI/", "tbb/", "oneapi/", "embree", "Eigen/", "png.h",
          "nanoflann", "gtest/", "benchmark/", "cuda", "cub/", "thrust/", "boost/")
 LIGHT = ("nlohmann/json_fwd.hpp",)  # declarations alone
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)

@@ -99,7 +99,7 @@ FileFacts cloud_facts(const fs::path& input, const std::optional<LabelScheme>& s
   FileFacts facts;
   facts.kind = "point cloud";
   if (fs::is_regular_file(input)) {
-    const std::string fields = fields_of(read_points(input, {options.salvage}));
+    const std::string fields = fields_of(read_points(input, {options.salvage, &session.executor}));
     facts.rows.emplace_back("fields", fields);
     facts.json["fields"] = fields;
   }

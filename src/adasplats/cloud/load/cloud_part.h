@@ -78,9 +78,9 @@ CloudPart read_sequence_part(const KittiSequence& sequence, const LoadOptions& o
 KittiSequence open_sequence(const std::filesystem::path& folder, const LoadOptions& options,
                             const Executor& executor);
 
-/// Reads a file of points.
+/// Reads a file of points, on the threads of `executor` where one is given.
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
-                         ProgressSink& progress);
+                         ProgressSink& progress, const Executor* executor = nullptr);
 
 /// One cloud of all; `scan_poses` are of their scans. Inputs with and without an attribute together
 /// lose it, with a warning; sensor positions stay (load_cloud).

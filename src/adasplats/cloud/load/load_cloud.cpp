@@ -129,7 +129,7 @@ std::vector<CloudPart> read_parts(std::span<const Source> sources, const LoadOpt
           source.drive ? *source.drive : open_sequence(path, options, executor);
       parts.push_back(read_sequence_part(sequence, options, scans, executor, progress));
     } else {
-      parts.push_back(read_file_part(path, options, progress));
+      parts.push_back(read_file_part(path, options, progress, &executor));
     }
     if (source.input.is_sequence) scans += static_cast<std::uint32_t>(parts.back().runs.size());
     points += parts.back().size();

@@ -190,8 +190,7 @@ std::vector<Vec3d> read_sensor_positions(const PointFile& file, const LoadOption
 
 /// What a reader says beside the columns.
 void take_comment(const PointFile& file, const std::string& comment, ProgressSink& progress) {
-  constexpr std::string_view kNotRead = "not read: ", kNotMetres = "not metres: ",
-                             kWithheld = "withheld: ";
+  constexpr std::string_view kNotMetres = "not metres: ", kWithheld = "withheld: ";
   if (comment.starts_with(kWithheld))
     progress.warn(file.path.string() + ": " + comment.substr(kWithheld.size()) +
                   " are flagged as withheld (deleted), left out");
@@ -208,13 +207,6 @@ void take_comment(const PointFile& file, const std::string& comment, ProgressSin
                     "); bring them to a system that is, heights included (UTM zone 18 and NAVD88, "
                     "say, with 'pdal translate IN OUT reprojection "
                     "--filters.reprojection.out_srs=EPSG:32618+5703')");
-  if (!comment.starts_with(kNotRead)) return;
-  const std::string name = lower_case(comment.substr(kNotRead.size()));
-  const auto is_class = [&](std::string_view known) { return known == name; };
-  if (std::ranges::any_of(kClassNames, is_class))
-    progress.warn(file.path.string() + ": its attribute '" + comment.substr(kNotRead.size()) +
-                  "' is not read from LAZ, the classes are those of the column "
-                  "'classification'; convert it to LAS to have it");
 }
 
 /// LAS alone says what its times are: seconds of the week, where no comment says otherwise.
@@ -230,9 +222,9 @@ SaidClock said_clock_of(const PointFile& file) {
 }  // namespace
 
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
-                         ProgressSink& progress) {
+                         ProgressSink& progress, const Executor* executor) {
   require_points(path);
-  const Table table = read_points(path, {.salvage = options.salvage});
+  const Table table = read_points(path, {.salvage = options.salvage, .executor = executor});
   const PointFile file{path, table};
   for (const std::string& comment : table.comments) take_comment(file, comment, progress);
 

@@ -8,6 +8,8 @@
 
 namespace adasplats {
 
+class Executor;
+
 /// PCD 0.5-0.7: ascii, binary, binary_compressed. COUNT > 1 gives columns name_0, name_1, ...;
 /// padding fields `_` are skipped. NaN points are kept (the caller drops and counts them). The
 /// comments hold the `#` lines and "VIEWPOINT ...". Memory: 1x the unpacked size; packed twice
@@ -18,18 +20,19 @@ struct LasReadOptions {
   /// Read the whole records of a truncated file instead of failing; the table's comments say
   /// "salvaged N of M records".
   bool salvage = false;
+  /// Unpacks the chunks of LAZ on these threads, else on the caller's.
+  const Executor* executor = nullptr;
 };
 
-/// LAS 1.0-1.4, point formats 0-10, with scale and offset applied: x, y, z (f64), intensity (u16),
-/// classification (u8), return_number, number_of_returns (u8), and where the format has them
-/// gps_time (f64), red, green, blue (u16), point_source_id (u16), user_data (u8), and of LAS (not
-/// LAZ) the attributes in extra bytes that the file describes, in their types (scaled ones f64).
+/// LAS and LAZ 1.0-1.4, point formats 0-10, with scale and offset applied: x, y, z (f64), intensity
+/// (u16), classification (u8), return_number, number_of_returns (u8), and where the format has them
+/// gps_time (f64), red, green, blue (u16), point_source_id (u16), user_data (u8), and the
+/// attributes in extra bytes that the file describes, in their types (scaled ones f64).
 /// Comments: "geographic: WHAT SAYS SO" where x and y are longitude and latitude, "not metres: X IN
-/// UNIT, WHAT SAYS SO" where coordinates are in feet, say, "not read: NAME" of an attribute of LAZ,
-/// "withheld: N of M points": points that are flagged as withheld are deleted, and left out. LAZ
-/// through LASzip where it was found at build time, else an error that says what to install.
-/// Memory: at most 2x the file's size (LAS), what the points take (LAZ). Errors: no_input, io,
-/// data.
+/// UNIT, WHAT SAYS SO" where coordinates are in feet, say, "withheld: N of M points": points that
+/// are flagged as withheld are deleted, and left out. LAZ is what LASzip 1.0 to 3.5 writes; COPC
+/// reads as the LAZ that it is. Memory: at most 2x the file's size (LAS), what the points take
+/// (LAZ; one that has no chunks its size, too) and 10 MB a thread. Errors: no_input, io, data.
 Table read_las(const std::filesystem::path& path, const LasReadOptions& options = {});
 
 /// Text: XYZ, PTS (a line with a count of points alone), CSV (comma, semicolon, tab or blank; a

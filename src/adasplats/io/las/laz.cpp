@@ -2,69 +2,182 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/io/las/laz.h"
 
-#ifdef ADASPLATS_HAVE_LASZIP
-
 #include <algorithm>
+#include <deque>
+#include <memory>
 #include <string>
-#include <utility>
+#include <vector>
 
-#include "adasplats/core/error.h"
-#include "adasplats/io/las/las_records.h"
-#include "adasplats/io/las/las_vlrs.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/io/las/las_table.h"
 #include "adasplats/io/las/laz_layout.h"
-#include "adasplats/io/las/laz_process.h"
+#include "adasplats/io/laz/packed_chunk.h"
+#include "adasplats/io/laz/record_values.h"
 
 namespace adasplats {
 namespace {
 
-/// Whether the point lies in the header's box, with a hundredth of it and ten steps to spare:
-/// broken data decode to anything, writers round. A box of zeros was never filled in.
-bool is_plausible(const LasHeader& header, Vec3d position) {
-  if (header.box_min == Vec3d{} && header.box_max == Vec3d{}) return true;
-  const Vec3d slack = 0.01 * (header.box_max - header.box_min) + 10.0 * header.scale;
-  const Vec3d low = header.box_min - slack;
-  const Vec3d high = header.box_max + slack;
-  return position.x >= low.x && position.y >= low.y && position.z >= low.z &&
-         position.x <= high.x && position.y <= high.y && position.z <= high.z;
-}
+// Records that one chunk has unpacked at once: all of an ordinary chunk (50,000 points).
+constexpr std::size_t kUnpackedBytes = std::size_t{4} << 20;
+
+/// How many records from the first lie in the header's box, with a hundredth of it and ten steps to
+/// spare: broken data decode to anything, writers round. A box of zeros was never filled in.
+class PlausibleRecords {
+ public:
+  explicit PlausibleRecords(const LasHeader& header)
+      : header_(header), has_box_(!(header.box_min == Vec3d{} && header.box_max == Vec3d{})) {
+    const Vec3d slack = 0.01 * (header.box_max - header.box_min) + 10.0 * header.scale;
+    low_ = header.box_min - slack;
+    high_ = header.box_max + slack;
+  }
+
+  std::size_t count(const std::byte* records, std::size_t limit) const {
+    if (!has_box_) return limit;
+    for (std::size_t row = 0; row < limit; ++row)
+      if (!contains(records + row * header_.record_bytes)) return row;
+    return limit;
+  }
+
+ private:
+  bool contains(const std::byte* record) const {
+    const Vec3d at =
+        header_.position(load_value<std::int32_t>(record), load_value<std::int32_t>(record + 4),
+                         load_value<std::int32_t>(record + 8));
+    return at.x >= low_.x && at.y >= low_.y && at.z >= low_.z && at.x <= high_.x &&
+           at.y <= high_.y && at.z <= high_.z;
+  }
+
+  const LasHeader& header_;
+  bool has_box_;
+  Vec3d low_, high_;
+};
+
+/// A chunk that is being unpacked.
+struct OpenChunk {
+  LazChunk place;
+  std::vector<std::byte> packed;
+  std::unique_ptr<PackedChunk> decoder;
+  std::uint64_t left = 0;             // points that are still packed
+  std::vector<std::byte> records;     // the next of them, unpacked
+  std::size_t wanted = 0, sound = 0;  // how many those should be, and are from the first
+  bool is_cut_short = false;          // the packed bytes end too early
+};
+
+/// Gives the file's records in their order; unpacks some chunks at a time, in parallel.
+class LazReader {
+ public:
+  LazReader(const std::filesystem::path& path, const LazLayout& layout, const Executor* executor)
+      : layout_(layout),
+        executor_(executor),
+        file_(path),
+        plausible_(layout.header),
+        rows_at_once_(std::max<std::size_t>(1, kUnpackedBytes / layout.header.record_bytes)),
+        unread_(layout.header.points),
+        next_offset_(layout.first_chunk_bytes) {
+    if (layout.has_table && executor != nullptr)
+      most_open_ = 2 * static_cast<std::size_t>(executor->threads());
+  }
+
+  /// Hands all records to `table`, until there is a fault.
+  void read(LasTable& table) {
+    while (fault_.empty() && (unread_ > 0 || !open_.empty())) {
+      while (unread_ > 0 && open_.size() < most_open_) open_next();
+      unpack();
+      while (!open_.empty() && open_.front().wanted > 0 && fault_.empty()) hand_over(table);
+    }
+  }
+
+  /// What ended the records before their number in the header; empty: nothing.
+  const std::string& fault() const { return fault_; }
+
+ private:
+  LazChunk next_place() const {
+    if (layout_.has_table) return layout_.chunks[next_chunk_];
+    LazChunk place{next_offset_, file_.size_bytes() - next_offset_,
+                   std::min<std::uint64_t>(unread_, layout_.packing.chunk_points)};
+    if (layout_.packing.chunk_points == kVariableChunks) place.points = unread_;
+    // Packed points are hardly ever larger than unpacked ones.
+    const std::uint64_t largest =
+        (std::uint64_t{1} << 16) + 2 * place.points * layout_.packing.record_bytes;
+    if (place.points < (std::uint64_t{1} << 32)) place.bytes = std::min(place.bytes, largest);
+    return place;
+  }
+
+  void open_next() {
+    OpenChunk& chunk = open_.emplace_back();
+    chunk.place = next_place();
+    ++next_chunk_;
+    file_.skip(chunk.place.offset_bytes - file_.offset());
+    const auto bytes = static_cast<std::size_t>(chunk.place.bytes);
+    const std::span<const std::byte> packed = file_.peek(bytes).first(bytes);
+    chunk.packed.assign(packed.begin(), packed.end());
+    chunk.decoder = make_packed_chunk(layout_.packing, chunk.packed);
+    chunk.left = chunk.place.points;
+    unread_ -= chunk.left;
+  }
+
+  /// Unpacks records of the open chunks that have none.
+  void unpack() {
+    const auto unpack_one = [this](std::size_t k, std::size_t) {
+      OpenChunk& chunk = open_[k];
+      if (chunk.wanted > 0) return;
+      chunk.wanted = static_cast<std::size_t>(std::min<std::uint64_t>(chunk.left, rows_at_once_));
+      chunk.records.resize(chunk.wanted * layout_.packing.record_bytes);
+      const std::size_t whole = chunk.decoder->decode(chunk.records.data(), chunk.wanted);
+      chunk.sound = plausible_.count(chunk.records.data(), whole);
+      chunk.left -= chunk.wanted;
+      if (chunk.sound < chunk.wanted) chunk.is_cut_short = whole < chunk.wanted;
+    };
+    if (executor_ != nullptr)
+      executor_->for_chunks(open_.size(), 1, unpack_one);
+    else
+      for (std::size_t k = 0; k < open_.size(); ++k) unpack_one(k, k + 1);
+  }
+
+  void hand_over(LasTable& table) {
+    OpenChunk& chunk = open_.front();
+    table.take(chunk.records.data(), chunk.sound);
+    if (chunk.sound < chunk.wanted) {
+      fault_ = "the chunk at byte " + std::to_string(chunk.place.offset_bytes) +
+               (chunk.is_cut_short ? " ends within a point"
+                                   : " has a point far outside the header's box");
+    }
+    chunk.wanted = 0;
+    if (chunk.left > 0) return;
+    next_offset_ = chunk.place.offset_bytes + chunk.decoder->bytes();
+    open_.pop_front();
+  }
+
+  const LazLayout& layout_;
+  const Executor* executor_;
+  InputFile file_;
+  PlausibleRecords plausible_;
+  std::size_t rows_at_once_;
+  std::size_t most_open_ = 1;
+  std::deque<OpenChunk> open_;
+  std::uint64_t unread_;  // points of chunks that are not open yet
+  std::size_t next_chunk_ = 0;
+  std::uint64_t next_offset_;  // of the next chunk, where no table says so
+  std::string fault_;
+};
 
 }  // namespace
 
 Table read_laz(const std::filesystem::path& path, const LasReadOptions& options) {
-  const LasHeader header = read_laz_layout(path);
-  LazProcess process(path, header);
-  // The count is not to be believed before the points are there: the columns grow with them.
-  LasColumns columns(las_format(header.format), 0);
-  std::string fault;
-  while (columns.size() < header.points && fault.empty()) {
-    const std::vector<LasPoint> points = process.next_points();
-    if (points.empty()) fault = process.fault();
-    for (const LasPoint& point : points) {
-      if (!is_plausible(header, point.position)) {
-        fault = "a point far outside the header's box";
-        break;
-      }
-      columns.push(point);
-    }
+  const LazLayout layout = read_laz_layout(path, options.salvage);
+  const std::uint64_t points = layout.header.points;
+  // The count is not to be believed before the points are there; a point of a sensor takes two
+  // bytes or more.
+  InputFile file(path);
+  LasTable table(path, layout.header,
+                 static_cast<std::size_t>(std::min(points, file.size_bytes() / 2)));
+  LazReader reader(path, layout, options.executor);
+  reader.read(table);
+  if (!reader.fault().empty() && !options.salvage) {
+    throw data_error({path, {}, {}}, "broken LAZ at point " + std::to_string(table.rows()) +
+                                         " of " + std::to_string(points) + ": " + reader.fault());
   }
-  const std::size_t rows = columns.size();
-  if (!fault.empty() && !options.salvage) {
-    throw data_error({path, {}, {}}, "broken LAZ at point " + std::to_string(rows) + " of " +
-                                         std::to_string(header.points) + ": " + fault);
-  }
-  Table table = columns.take();
-  columns.drop_withheld(table);
-  const LasDescription description = read_las_description(path, header);
-  for (std::string& comment : description.comments()) table.comments.push_back(std::move(comment));
-  for (const LasExtraField& field : description.extra_fields)
-    table.comments.push_back("not read: " + field.name);
-  if (rows < header.points) {
-    table.comments.push_back("salvaged " + std::to_string(rows) + " of " +
-                             std::to_string(header.points) + " records");
-  }
-  return table;
+  return table.finish();
 }
 
 }  // namespace adasplats
-
-#endif

@@ -8,7 +8,7 @@
 
 namespace adasplats {
 
-/// Reads a LAZ file through LASzip; without LASzip an error that says what to install.
+/// Reads a LAZ file as read_las() describes.
 Table read_laz(const std::filesystem::path& path, const LasReadOptions& options);
 
 }  // namespace adasplats

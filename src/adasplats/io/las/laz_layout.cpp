@@ -2,142 +2,144 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/io/las/laz_layout.h"
 
-#ifdef ADASPLATS_HAVE_LASZIP
-
-#include <cstring>
-#include <optional>
+#include <algorithm>
 #include <string>
-#include <string_view>
-#include <vector>
+
+#include "adasplats/io/las/laz_packing.h"
+#include "adasplats/io/laz/chunk_table.h"
+#include "adasplats/io/laz/packed_chunk.h"
+#include "adasplats/io/laz/record_values.h"
 
 namespace adasplats {
 namespace {
-
-// LASzip's record: 34 bytes, the last two the number of items, then 6 bytes an item.
-constexpr std::size_t kLaszipBytes = 34;
-constexpr std::size_t kItemBytes = 6;
-constexpr std::uint16_t kLaszipRecordId = 22204;
-
-template <class T>
-T value_at(std::span<const std::byte> bytes, std::size_t offset) {
-  T value;
-  std::memcpy(&value, bytes.subspan(offset, sizeof(T)).data(), sizeof(T));
-  return value;
-}
 
 template <class T>
 T value_in_file(const std::filesystem::path& path, std::uint64_t offset) {
   InputFile file(path);
   file.skip(offset);
-  return value_at<T>(file.peek(sizeof(T)), 0);
+  return load_value<T>(file.peek(sizeof(T)).data());
 }
 
-/// One part of a point as LASzip packs it (laszip.hpp, LASitem).
-struct Item {
-  std::uint16_t type;
-  std::size_t bytes;
-};
-
-/// The items of a point format in their order; what is left of the record are extra bytes.
-std::vector<Item> expected_items(const LasHeader& header) {
-  const std::size_t format = header.format;
-  std::vector<Item> items;
-  if (format < 6) {
-    items.push_back({6, 20});
-    if (format == 1 || format >= 3) items.push_back({7, 8});
-    if (format == 2 || format == 3 || format == 5) items.push_back({8, 6});
-    if (format == 4 || format == 5) items.push_back({9, 29});
-  } else {
-    items.push_back({10, 30});
-    if (format == 7) items.push_back({11, 6});
-    if (format == 8 || format == 10) items.push_back({12, 8});
-    if (format >= 9) items.push_back({13, 29});
-  }
-  std::size_t bytes = 0;
-  for (const Item& item : items) bytes += item.bytes;
-  constexpr std::uint16_t kExtraBytes = 0;
-  constexpr std::uint16_t kExtraBytesLayered = 14;
-  if (header.record_bytes > bytes)
-    items.push_back({format < 6 ? kExtraBytes : kExtraBytesLayered, header.record_bytes - bytes});
-  return items;
-}
-
-/// Checks LASzip's record: LASzip reads beyond its buffers where the items are not those of the
-/// point format. Gives whether the points come in chunks.
-bool check_items(const InputFile& file, std::span<const std::byte> record, std::size_t bytes,
-                 const LasHeader& header) {
-  const std::vector<Item> expected = expected_items(header);
-  const bool is_layered = header.format >= 6;
-  bool matches = bytes == kLaszipBytes + expected.size() * kItemBytes &&
-                 value_at<std::uint16_t>(record, 32) == expected.size();
-  for (std::size_t k = 0; matches && k < expected.size(); ++k) {
-    const std::size_t place = kLaszipBytes + k * kItemBytes;
-    const auto version = value_at<std::uint16_t>(record, place + 4);
-    matches = value_at<std::uint16_t>(record, place) == expected[k].type &&
-              value_at<std::uint16_t>(record, place + 2) == expected[k].bytes &&
-              (is_layered ? version >= 3 && version <= 4 : version >= 1 && version <= 2);
-  }
-  // 1: one stream, 2: chunks, 3: chunks of layers, which only formats 6 to 10 have.
-  const int compressor = bytes < kLaszipBytes ? 0 : int{value_at<std::uint16_t>(record, 0)};
-  if (!matches || (is_layered ? compressor != 3 : compressor != 1 && compressor != 2)) {
-    throw file.error_here("LAZ: the record 'laszip encoded' is broken or not of point format " +
-                          std::to_string(header.format) + " with " +
-                          std::to_string(header.record_bytes) + " bytes");
-  }
-  return compressor != 1;
-}
-
-/// Walks the variable length records; gives whether the points come in chunks.
-bool check_records(InputFile& file, const LasHeader& header) {
-  file.skip(header.header_bytes);
-  std::optional<bool> is_chunked;
-  for (std::uint64_t k = 0; k < header.vlr_count; ++k) {
-    const std::uint64_t room = header.points_offset_bytes - file.offset();
-    const std::span<const std::byte> record = file.peek(kVlrHeaderBytes);
-    const std::size_t bytes = value_at<std::uint16_t>(record, 20);
-    if (room < kVlrHeaderBytes + bytes) {
-      throw file.error_here("LAZ: variable length record " + std::to_string(k) + " of " +
-                            std::to_string(bytes) + " bytes reaches into the points");
-    }
-    const std::string_view user(reinterpret_cast<const char*>(record.data()) + 2, 16);
-    const bool is_laszip = user.starts_with("laszip encoded") &&
-                           value_at<std::uint16_t>(record, 18) == kLaszipRecordId;
-    file.skip(kVlrHeaderBytes);
-    if (is_laszip && is_chunked) throw file.error_here("LAZ: a second record 'laszip encoded'");
-    if (is_laszip) is_chunked = check_items(file, file.peek(bytes), bytes, header);
-    file.skip(bytes);
-  }
-  if (!is_chunked) throw file.error_here("marked as LAZ, but no record 'laszip encoded'");
-  return *is_chunked;
-}
-
-void check_chunk_table(const InputFile& file, const LasHeader& header) {
-  const std::uint64_t first_chunk = header.points_offset_bytes + 8;
-  auto table = value_in_file<std::uint64_t>(file.path(), header.points_offset_bytes);
+/// Where the table of chunks begins; 0: its writer was interrupted before it wrote one.
+std::uint64_t place_of_table(const InputFile& file, const LazLayout& layout) {
+  const std::uint64_t points_at = layout.header.points_offset_bytes;
+  auto table = value_in_file<std::uint64_t>(file.path(), points_at);
+  if (table == points_at) return 0;
   // A writer that could not go back leaves -1 there and the place at the file's end.
   if (table == ~std::uint64_t{0})
     table = value_in_file<std::uint64_t>(file.path(), file.size_bytes() - 8);
-  if (table < first_chunk || table > file.size_bytes() - 8) {
+  if (table < layout.first_chunk_bytes || table > file.size_bytes() - 8) {
     throw file.error_here("LAZ: the table of chunks is said to begin at byte " +
                           std::to_string(table) + ", outside the file or before the points");
   }
-  const auto chunks = value_in_file<std::uint32_t>(file.path(), table + 4);
-  if (chunks > table - first_chunk) {
-    throw file.error_here("LAZ: found " + std::to_string(chunks) + " chunks in " +
-                          std::to_string(table - first_chunk) + " bytes");
+  return table;
+}
+
+/// Reads the entries of the table, and checks that the chunks lie between the header and it.
+class TableReader {
+ public:
+  TableReader(InputFile& file, const LazLayout& layout)
+      : file_(file), layout_(layout), table_at_(file.offset()) {}
+
+  std::vector<LazChunk> read() {
+    const auto version = load_value<std::uint32_t>(file_.peek(8).data());
+    if (version != 0) {
+      throw file_.error_here("LAZ: found version " + std::to_string(version) +
+                             " of the table of chunks, expected 0");
+    }
+    const std::uint64_t count = load_value<std::uint32_t>(file_.peek(8).data() + 4);
+    const std::uint64_t room = table_at_ - layout_.first_chunk_bytes;
+    if (count > room) {
+      throw file_.error_here("LAZ: found " + std::to_string(count) + " chunks in " +
+                             std::to_string(room) + " bytes");
+    }
+    file_.skip(8);
+    return read_entries(count);
   }
+
+ private:
+  std::vector<LazChunk> read_entries(std::uint64_t count) {
+    // An entry takes two numbers of at most 46 bits and a little.
+    const auto bytes =
+        static_cast<std::size_t>(std::min<std::uint64_t>(file_.remaining(), 64 + 16 * count));
+    const std::uint32_t of_all = layout_.packing.chunk_points;
+    ChunkTable table(file_.peek(bytes).first(bytes), of_all == kVariableChunks);
+    std::vector<LazChunk> chunks;
+    std::uint64_t left = layout_.header.points;
+    LazChunk chunk{layout_.first_chunk_bytes, 0, 0};
+    for (std::uint64_t k = 0; k < count && left > 0; ++k) {
+      chunk.offset_bytes += chunk.bytes;
+      const ChunkTable::Entry entry = table.next();
+      if (table.is_broken()) throw file_.error_here("LAZ: the table of chunks is broken");
+      chunk.bytes = entry.bytes;
+      chunk.points =
+          of_all == kVariableChunks ? entry.points : std::min<std::uint64_t>(of_all, left);
+      check(chunk, k, left);
+      left -= chunk.points;
+      if (chunk.points > 0) chunks.push_back(chunk);
+    }
+    if (left > 0) {
+      throw file_.error_here("LAZ: the table has chunks of " +
+                             std::to_string(layout_.header.points - left) +
+                             " points, the header says " + std::to_string(layout_.header.points));
+    }
+    return chunks;
+  }
+
+  void check(const LazChunk& chunk, std::uint64_t number, std::uint64_t left) const {
+    const std::string name = "LAZ: chunk " + std::to_string(number);
+    if (chunk.bytes > table_at_ - chunk.offset_bytes) {
+      throw file_.error_here(name + " of " + std::to_string(chunk.bytes) + " bytes at byte " +
+                             std::to_string(chunk.offset_bytes) +
+                             " reaches into the table of chunks");
+    }
+    if (chunk.points > left || chunk.points > kMostPointsPerByte * chunk.bytes) {
+      throw file_.error_here(name + " is said to have " + std::to_string(chunk.points) +
+                             " points in " + std::to_string(chunk.bytes) + " bytes, " +
+                             std::to_string(left) + " are left of the header's");
+    }
+  }
+
+  InputFile& file_;
+  const LazLayout& layout_;
+  std::uint64_t table_at_;
+};
+
+/// Takes the chunks from the table where there is one.
+void read_table(const std::filesystem::path& path, LazLayout& layout) {
+  InputFile file(path);
+  file.skip(layout.header.points_offset_bytes);
+  const std::uint64_t table = place_of_table(file, layout);
+  if (table == 0 && layout.packing.chunk_points != kVariableChunks) return;
+  if (table == 0)
+    throw file.error_here("LAZ: there is no table of chunks, and their sizes are not fixed");
+  file.skip(table - file.offset());
+  layout.chunks = TableReader(file, layout).read();
+  layout.has_table = true;
 }
 
 }  // namespace
 
-LasHeader read_laz_layout(const std::filesystem::path& path) {
+LazLayout read_laz_layout(const std::filesystem::path& path, bool salvage) {
   InputFile file(path);
-  const LasHeader header = read_las_header(file);
-  const bool is_chunked = check_records(file, header);
-  if (is_chunked && header.points > 0) check_chunk_table(file, header);
-  return header;
+  LazLayout layout;
+  layout.header = read_las_header(file);
+  layout.packing = read_laz_packing(file, layout.header);
+  layout.first_chunk_bytes = layout.header.points_offset_bytes;
+  if (layout.packing.compressor == LazCompressor::one_stream) {
+    layout.packing.chunk_points = kVariableChunks;
+    return layout;
+  }
+  if (layout.header.points == 0) return layout;
+  layout.first_chunk_bytes += 8;  // behind where the table is
+  try {
+    read_table(path, layout);
+  } catch (const Error& error) {
+    const bool is_fixed = layout.packing.chunk_points != kVariableChunks;
+    if (!salvage || !is_fixed || error.kind() != ErrorKind::data) throw;
+    layout.chunks.clear();
+  }
+  return layout;
 }
 
 }  // namespace adasplats
-
-#endif

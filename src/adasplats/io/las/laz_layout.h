@@ -2,15 +2,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "adasplats/io/las/las_header.h"
+#include "adasplats/io/laz/laz_item.h"
 
 namespace adasplats {
 
-/// The header of a LAZ file whose parts that LASzip takes on trust have been checked: the variable
-/// length records follow each other up to the points, LASzip's own record describes point records
-/// of the header's size, and the table of chunks lies in the file. Errors: data.
-LasHeader read_laz_layout(const std::filesystem::path& path);
+/// Where a chunk of packed points is, and how many it has.
+struct LazChunk {
+  std::uint64_t offset_bytes = 0;  ///< in the file
+  std::uint64_t bytes = 0;
+  std::uint64_t points = 0;
+};
+
+/// What a LAZ file says of itself, checked as far as that goes without unpacking points.
+struct LazLayout {
+  LasHeader header;
+  LazPacking packing;
+  std::uint64_t first_chunk_bytes = 0;  ///< its offset in the file
+  /// False: where a chunk begins is known once the one before has been unpacked.
+  bool has_table = false;
+  std::vector<LazChunk> chunks;  ///< of a file that has a table
+};
+
+/// Reads the header, LASzip's record and the table of chunks. With `salvage` a broken table of
+/// chunks of a fixed number of points is as none. Errors: data.
+LazLayout read_laz_layout(const std::filesystem::path& path, bool salvage);
 
 }  // namespace adasplats

@@ -146,7 +146,7 @@ std::vector<std::uint16_t> read_point_classes(const fs::path& file, Session& ses
       classes.push_back(static_cast<std::uint16_t>(label & 0xffff));
     return classes;
   }
-  CloudPart part = read_file_part(file, {}, session.progress);
+  CloudPart part = read_file_part(file, {}, session.progress, &session.executor);
   if (part.cloud.classes.empty() && part.size() > 0)
     throw Error(ErrorKind::data, file.string() + ": has no labels (a column label or class)");
   return std::move(part.cloud.classes);
