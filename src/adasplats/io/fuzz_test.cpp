@@ -12,6 +12,7 @@
 #include "adasplats/io/base/mutator_test.h"
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/io/base/test_files.h"
+#include "adasplats/io/laz/laz_samples_test.h"
 #include "adasplats/io/ply/ply.h"
 
 // Broken files of every format, the same in each run: nothing but adasplats::Error may escape, no
@@ -67,22 +68,26 @@ std::vector<Seed> small_seeds() {
                               "\x09"
                               "0123456789",
                               11);
-  return {{"a.ply", "ply\nformat ascii 1.0\n" + ascii_mesh},
-          {"a.ply", "ply\nformat binary_little_endian 1.0\n" + binary_mesh},
-          {"a.ply", "ply\nformat binary_big_endian 1.0\n" + binary_mesh},
-          {"a.pcd", pcd + "DATA ascii\n1.5 1 2 3 4 5\nnan 1 2 3 4 5\n"},
-          {"a.pcd", pcd + "DATA binary\n" + std::string(22, 'b')},
-          {"a.pcd", pcd + "DATA binary_compressed\n" +
-                        bytes_of(static_cast<std::uint32_t>(lzf.size())) + bytes_of(22U) + lzf},
-          {"a.las", las_seed(2, 3, 34)},
-          {"a.las", las_seed(4, 7, 40)},
-          {"a.xyz", "# x y z\n1 2 3\n4 5.5 -6e3\n"},
-          {"a.pts", "2\n1 2 3 4 5 6 7\n1 2 3 4 5 6 7\n"},
-          {"a.csv", "x,y,z,\"t\"\n1,2,3,\n4,5,6,7\n"},
-          {"a.ptx",
-           "1\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n9 9 9 1\n"
-           "1 2 3 0.5\n0 0 0 0.5\n"},
-          {"a.bin", std::string(64, '?')}};
+  std::vector<Seed> seeds = {
+      {"a.ply", "ply\nformat ascii 1.0\n" + ascii_mesh},
+      {"a.ply", "ply\nformat binary_little_endian 1.0\n" + binary_mesh},
+      {"a.ply", "ply\nformat binary_big_endian 1.0\n" + binary_mesh},
+      {"a.pcd", pcd + "DATA ascii\n1.5 1 2 3 4 5\nnan 1 2 3 4 5\n"},
+      {"a.pcd", pcd + "DATA binary\n" + std::string(22, 'b')},
+      {"a.pcd", pcd + "DATA binary_compressed\n" +
+                    bytes_of(static_cast<std::uint32_t>(lzf.size())) + bytes_of(22U) + lzf},
+      {"a.las", las_seed(2, 3, 34)},
+      {"a.las", las_seed(4, 7, 40)},
+      {"a.xyz", "# x y z\n1 2 3\n4 5.5 -6e3\n"},
+      {"a.pts", "2\n1 2 3 4 5 6 7\n1 2 3 4 5 6 7\n"},
+      {"a.csv", "x,y,z,\"t\"\n1,2,3,\n4,5,6,7\n"},
+      {"a.ptx",
+       "1\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n9 9 9 1\n"
+       "1 2 3 0.5\n0 0 0 0.5\n"},
+      {"a.bin", std::string(64, '?')}};
+  for (const laz_test::LazSample& sample : laz_test::kLazSamples)
+    seeds.push_back({"a.laz", laz_file(sample)});
+  return seeds;
 }
 
 std::vector<Seed> real_seeds(const std::filesystem::path& folder) {

@@ -30,9 +30,10 @@ struct LasReadOptions {
 /// attributes in extra bytes that the file describes, in their types (scaled ones f64).
 /// Comments: "geographic: WHAT SAYS SO" where x and y are longitude and latitude, "not metres: X IN
 /// UNIT, WHAT SAYS SO" where coordinates are in feet, say, "withheld: N of M points": points that
-/// are flagged as withheld are deleted, and left out. LAZ is what LASzip 1.0 to 3.5 writes; COPC
-/// reads as the LAZ that it is. Memory: at most 2x the file's size (LAS), what the points take
-/// (LAZ; one that has no chunks its size, too) and 10 MB a thread. Errors: no_input, io, data.
+/// are flagged as withheld are deleted, and left out. LAZ: items of versions 1 to 4 (LASzip 1.0
+/// to 3.5); COPC reads as the LAZ that it is. Memory: at most 2x the file's size (LAS), what the
+/// points take (LAZ; one that has no chunks twice its size, too) and 10 MB a thread. Errors:
+/// no_input, io, data.
 Table read_las(const std::filesystem::path& path, const LasReadOptions& options = {});
 
 /// Text: XYZ, PTS (a line with a count of points alone), CSV (comma, semicolon, tab or blank; a

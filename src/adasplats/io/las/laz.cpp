@@ -19,6 +19,9 @@ namespace {
 
 // Records that one chunk has unpacked at once: all of an ordinary chunk (50,000 points).
 constexpr std::size_t kUnpackedBytes = std::size_t{4} << 20;
+// Of all chunks that are unpacked at a time; a byte of a record has a model of its own at most.
+constexpr std::size_t kModelBytes = std::size_t{256} << 20;
+constexpr std::size_t kBytesPerModel = 2560;
 
 /// How many records from the first lie in the header's box, with a hundredth of it and ten steps to
 /// spare: broken data decode to anything, writers round. A box of zeros was never filled in.
@@ -74,8 +77,10 @@ class LazReader {
         rows_at_once_(std::max<std::size_t>(1, kUnpackedBytes / layout.header.record_bytes)),
         unread_(layout.header.points),
         next_offset_(layout.first_chunk_bytes) {
-    if (layout.has_table && executor != nullptr)
-      most_open_ = 2 * static_cast<std::size_t>(executor->threads());
+    if (!layout.has_table || executor == nullptr) return;
+    const std::size_t affordable = kModelBytes / (kBytesPerModel * layout.header.record_bytes);
+    most_open_ = std::clamp<std::size_t>(2 * static_cast<std::size_t>(executor->threads()), 1,
+                                         std::max<std::size_t>(1, affordable));
   }
 
   /// Hands all records to `table`, until there is a fault.

@@ -59,7 +59,7 @@ class TableReader {
 
  private:
   std::vector<LazChunk> read_entries(std::uint64_t count) {
-    // An entry takes two numbers of at most 46 bits and a little.
+    // An entry takes two numbers of at most 54 bits: two symbols of 15 and 24 bits as they are.
     const auto bytes =
         static_cast<std::size_t>(std::min<std::uint64_t>(file_.remaining(), 64 + 16 * count));
     const std::uint32_t of_all = layout_.packing.chunk_points;

@@ -48,14 +48,12 @@ void BitModel::update() {
 }
 
 void SymbolModel::start() {
-  // Small alphabets are searched without a table.
-  if (symbols_ > 16) {
-    std::uint32_t bits = 3;
-    while (symbols_ > (1U << (bits + 2))) ++bits;
-    table_size_ = 1U << bits;
-    table_shift_ = 15 - bits;
-  }
-  values_.resize(std::size_t{2} * symbols_ + (table_size_ > 0 ? table_size_ + 1 : 0));
+  // Two parts a symbol leave a step or two of searching; what they take in a cache costs less.
+  std::uint32_t bits = 2;
+  while (2 * symbols_ > (1U << bits)) ++bits;
+  table_size_ = 1U << bits;
+  table_shift_ = 15 - bits;
+  values_.resize(std::size_t{2} * symbols_ + table_size_ + 1);
   std::fill_n(counts(), symbols_, std::uint16_t{1});
   total_ = 0;
   cycle_ = symbols_;
@@ -80,14 +78,11 @@ void SymbolModel::update() {
   for (std::uint32_t k = 0; k < symbols_; ++k) {
     begins()[k] = static_cast<std::uint16_t>((scale * sum) >> 16);
     sum += counts()[k];
-    if (table_size_ == 0) continue;
     const std::uint32_t part = begins()[k] >> table_shift_;
     while (filled < part) table()[++filled] = static_cast<std::uint16_t>(k - 1);
   }
-  if (table_size_ > 0) {
-    table()[0] = 0;
-    while (filled < table_size_) table()[++filled] = static_cast<std::uint16_t>(symbols_ - 1);
-  }
+  table()[0] = 0;
+  while (filled < table_size_) table()[++filled] = static_cast<std::uint16_t>(symbols_ - 1);
   cycle_ = std::min((5 * cycle_) >> 2, (symbols_ + 6) << 3);
   until_update_ = cycle_;
 }

@@ -124,13 +124,9 @@ inline unsigned BitModel::decode(RangeDecoder& decoder) {
 }
 
 inline std::uint32_t SymbolModel::find(std::uint32_t place) const {
-  std::uint32_t symbol = 0;
-  std::uint32_t end = symbols_;
-  if (table_size_ > 0) {
-    const std::uint16_t* const part = table() + (place >> table_shift_);
-    symbol = part[0];
-    end = part[1] + 1U;
-  }
+  const std::uint16_t* const part = table() + (place >> table_shift_);
+  std::uint32_t symbol = part[0];
+  std::uint32_t end = part[1] + 1U;
   while (end > symbol + 1) {
     const std::uint32_t middle = (symbol + end) >> 1;
     (begins()[middle] > place ? end : symbol) = middle;

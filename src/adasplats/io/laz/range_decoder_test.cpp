@@ -25,6 +25,7 @@ TEST(RangeDecoder, GivesTheSymbolsThatWerePacked) {
     SCOPED_TRACE(symbols);
     // Evenly spread, then rare ones but the first and the last.
     std::vector<std::uint32_t> sent;
+    sent.reserve(60000);
     for (int k = 0; k < 20000; ++k) sent.push_back(static_cast<std::uint32_t>(random() % symbols));
     for (int k = 0; k < 40000; ++k)
       sent.push_back(static_cast<std::uint32_t>(
