@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "adasplats/io/base/records.h"
+#include "adasplats/io/base/wkt_units.h"
 #include "adasplats/io/las/las_records.h"
-#include "adasplats/io/las/wkt_units.h"
 
 namespace adasplats {
 namespace {
@@ -106,24 +106,13 @@ std::optional<std::string> foreign_units_of_directory(std::string_view record) {
   return std::nullopt;
 }
 
-/// Whether a coordinate system in words is one of angles: a projected one names its base, too.
-bool is_geographic_text(std::string_view text) {
-  const auto has = [text](std::string_view word) {
-    return text.find(word) != std::string_view::npos;
-  };
-  if (has("PROJCS") || has("PROJCRS") || has("PROJECTEDCRS") || has("GEOCCS") || has("Cartesian"))
-    return false;
-  return has("GEOGCS[") || has("GEOGCRS[") || has("GEOGRAPHICCRS[") || has("GEODCRS[");
-}
-
 void take_projection(std::uint16_t number, std::string_view record, LasDescription& description) {
   if (number == kGeoKeysRecord) {
     if (is_geographic_directory(record)) description.geographic = "GTModelType 2, geographic";
     if (const auto units = foreign_units_of_directory(record)) description.not_metres = units;
   }
   if (number == kWktRecord) {
-    if (is_geographic_text(record))
-      description.geographic = std::string(record.substr(0, record.find(',')));
+    if (const auto system = geographic_system_of_wkt(record)) description.geographic = system;
     if (const auto units = foreign_units_of_wkt(record)) description.not_metres = units;
   }
 }

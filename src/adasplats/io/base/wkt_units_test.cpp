@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/io/las/wkt_units.h"
+#include "adasplats/io/base/wkt_units.h"
 
 #include <gtest/gtest.h>
 
@@ -46,6 +46,13 @@ TEST(WktUnits, BrokenTextsSayNothing) {
   for (const char* text : {"", "]", "][", "UNIT[\"foot\",0.3048]", "PROJCS[", "PROJCS[UNIT[]]",
                            "PROJCS[UNIT[\"foot\"]]", "PROJCS[UNIT[\"foot\",x]]", "PROJCS[\""})
     EXPECT_EQ(foreign_units_of_wkt(text), std::nullopt) << text;
+}
+
+TEST(WktUnits, OfSystemsOfAngles) {
+  EXPECT_EQ(geographic_system_of_wkt(kGeographic), "GEOGCS[\"NAD83\"");
+  EXPECT_EQ(geographic_system_of_wkt(projected(R"(UNIT["metre",1])")), std::nullopt);
+  EXPECT_EQ(geographic_system_of_wkt(R"(GEOCCS["WGS 84"])"), std::nullopt);
+  EXPECT_EQ(geographic_system_of_wkt(""), std::nullopt);
 }
 
 }  // namespace

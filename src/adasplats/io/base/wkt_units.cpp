@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/io/las/wkt_units.h"
+#include "adasplats/io/base/wkt_units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -83,6 +83,17 @@ std::optional<std::string> foreign_units_of_wkt(std::string_view text) {
       word += c == '\n' || c == '\r' ? ' ' : c;
     }
   }
+  return std::nullopt;
+}
+
+std::optional<std::string> geographic_system_of_wkt(std::string_view text) {
+  const auto has = [text](std::string_view word) {
+    return text.find(word) != std::string_view::npos;
+  };
+  if (has("PROJCS") || has("PROJCRS") || has("PROJECTEDCRS") || has("GEOCCS") || has("Cartesian"))
+    return std::nullopt;
+  if (has("GEOGCS[") || has("GEOGCRS[") || has("GEOGRAPHICCRS[") || has("GEODCRS["))
+    return std::string(text.substr(0, text.find(',')));
   return std::nullopt;
 }
 

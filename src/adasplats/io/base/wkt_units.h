@@ -14,4 +14,9 @@ namespace adasplats {
 /// are not those of coordinates.
 std::optional<std::string> foreign_units_of_wkt(std::string_view text);
 
+/// How the text begins, up to its first comma, where it is a system of longitudes and latitudes;
+/// nothing where it is a projected one (which names its base, too), one of Cartesian coordinates
+/// about the earth's centre, or something else.
+std::optional<std::string> geographic_system_of_wkt(std::string_view text);
+
 }  // namespace adasplats
