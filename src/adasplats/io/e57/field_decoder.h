@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "adasplats/io/e57/e57_content.h"
+
+namespace adasplats {
+
+/// The values of one field, from the bytes of its stream, which come in pieces: a value may begin
+/// in one and end in the next.
+class FieldDecoder {
+ public:
+  /// The caller has checked `rows` against the size of the scan's section. A field without bits has
+  /// all its values at once.
+  FieldDecoder(const E57Field& field, std::size_t rows);
+
+  /// The stream's next bytes; those behind the last value are padding.
+  void take(std::span<const std::byte> bytes);
+
+  bool is_complete() const { return values_.size() == rows_; }
+  const std::vector<double>& values() const { return values_; }
+  std::vector<double> take_values() { return std::move(values_); }
+
+ private:
+  std::uint64_t stored_at(std::size_t bit) const;
+  double value_of(std::uint64_t stored) const;
+
+  E57Field field_;
+  std::size_t rows_;
+  std::vector<double> values_;
+  std::vector<std::byte> bytes_;  ///< what is not decoded yet, and room to load whole words
+  std::size_t first_bit_ = 0;     ///< of the next value, in bytes_
+};
+
+}  // namespace adasplats

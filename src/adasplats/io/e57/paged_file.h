@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/input_file.h"
+
+namespace adasplats {
+
+/// An E57 file as its bytes without the checksums (ASTM E2807-11, section 6, "binary file layout"):
+/// pages, each with a CRC-32C in its last four bytes. Offsets without them are "logical", those of
+/// the file "physical". Every page whose bytes are read is checked.
+class PagedFile {
+ public:
+  /// Reads the header. Errors: no_input; data (no E57 file, another version, truncated).
+  explicit PagedFile(std::filesystem::path path);
+
+  const std::filesystem::path& path() const { return path_; }
+  std::uint64_t size_bytes() const { return pages_ * payload_bytes(); }  ///< logical
+  std::uint64_t xml_offset() const { return xml_offset_; }               ///< logical
+  std::uint64_t xml_bytes() const { return xml_bytes_; }
+
+  /// Where a physical offset lies; `what` is for messages. Errors: data (behind the file's end, or
+  /// in a checksum).
+  std::uint64_t logical_offset(std::uint64_t physical, std::string_view what) const;
+
+  /// Fills `to` with the logical bytes from `offset` on. Errors: data (beyond the file's end, a
+  /// page with a wrong checksum), io.
+  void read(std::uint64_t offset, std::span<std::byte> to);
+
+  /// A data error at a logical offset.
+  Error error_at(std::uint64_t offset, const std::string& message) const;
+
+ private:
+  std::uint64_t payload_bytes() const { return page_bytes_ - 4; }
+  void read_header();
+  void read_physical(std::uint64_t offset, std::span<std::byte> to) const;
+  const std::byte* checked_page(std::uint64_t page, std::uint64_t wanted_pages);
+  void check_page(std::uint64_t page, std::span<const std::byte> bytes) const;
+
+  std::filesystem::path path_;
+  InputDescriptor file_;
+  std::uint64_t page_bytes_ = 0;
+  std::uint64_t pages_ = 0;
+  std::uint64_t xml_offset_ = 0;
+  std::uint64_t xml_bytes_ = 0;
+  std::vector<std::byte> buffer_;    ///< checked pages, one behind the other
+  std::uint64_t buffered_from_ = 0;  ///< the first of them
+};
+
+}  // namespace adasplats
