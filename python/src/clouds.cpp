@@ -26,9 +26,9 @@ namespace {
 
 constexpr const char* kReadDoc =
     "Read point files and SemanticKITTI sequence folders into one PointCloud.\n\n"
-    "paths: a path or a list of them (PLY, PCD, LAS/LAZ, KITTI bin, text, npy, a sequence folder, "
-    "a\n"
-    "folder of point files). Keywords are those of 'adasplats model' for loading: first_scan,\n"
+    "paths: a path or a list of them (PLY, PCD, LAS/LAZ, E57, KITTI bin, text, npy, a sequence "
+    "folder,\n"
+    "a folder of point files). Keywords are those of 'adasplats model' for loading: first_scan,\n"
     "scan_count (None: all) and scan_stride choose scans of a sequence; viewpoint (3,) or\n"
     "trajectory (a path) tell where the sensor was; label_field names the column of classes.\n"
     "Points that are not finite or far are dropped with a warning; above the share max_dropped\n"

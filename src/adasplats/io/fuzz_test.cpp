@@ -12,6 +12,7 @@
 #include "adasplats/io/base/mutator_test.h"
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/io/base/test_files.h"
+#include "adasplats/io/e57/e57_file_test.h"
 #include "adasplats/io/laz/laz_samples_test.h"
 #include "adasplats/io/ply/ply.h"
 
@@ -45,6 +46,22 @@ std::string las_seed(int minor, int format, std::size_t record_bytes) {
   put(content, 107, std::uint32_t{5});
   for (std::size_t axis = 0; axis < 3; ++axis) put(content, 131 + 8 * axis, 0.01);
   return content;
+}
+
+/// Scans of floats and of packed integers, with poses.
+std::string e57_seed() {
+  io_test::E57Composer composer;
+  const std::string reals = io_test::stream_of<double>({1, 2, 3});
+  composer.add_scan(3, io_test::xyz_fields(), {reals, reals, reals},
+                    io_test::pose_element({"1", "0", "0", "0", "1", "2", "3"}), 10);
+  const std::string fields = io_test::integer_field("sphericalRange", 1, 1000, "scale=\"0.01\"") +
+                             io_test::float_field("sphericalAzimuth", true) +
+                             io_test::integer_field("sphericalElevation", 0, 2) +
+                             io_test::integer_field("intensity", 5, 5) +
+                             io_test::integer_field("sphericalInvalidState", 0, 2);
+  composer.add_scan(4, fields, {"abcde", io_test::stream_of<float>({0, 1, 2, 3}), "a", "", "b"},
+                    "<name><![CDATA[b]]></name>", 3);
+  return composer.file();
 }
 
 std::vector<Seed> small_seeds() {
@@ -84,6 +101,7 @@ std::vector<Seed> small_seeds() {
       {"a.ptx",
        "1\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n9 9 9 1\n"
        "1 2 3 0.5\n0 0 0 0.5\n"},
+      {"a.e57", e57_seed()},
       {"a.bin", std::string(64, '?')}};
   for (const laz_test::LazSample& sample : laz_test::kLazSamples)
     seeds.push_back({"a.laz", laz_file(sample)});
@@ -139,7 +157,9 @@ void fuzz(const std::vector<Seed>& seeds, int rounds, std::uint64_t random_seed)
     for (std::size_t k = 0; k < seeds.size(); ++k) {
       const std::string& other =
           seeds[(k + static_cast<std::size_t>(round)) % seeds.size()].content;
-      const std::string content = mutator.mutate(seeds[k].content, other);
+      std::string content = mutator.mutate(seeds[k].content, other);
+      // Its checksums tell all that is broken; what lies behind them must stand it, too.
+      if (seeds[k].name == "a.e57" && round % 4 != 0) content = io_test::sealed_e57(content);
       ASSERT_NO_THROW(was_read +=
                       reads_or_throws_error(folder.path() / seeds[k].name, content) ? 1 : 0)
           << seeds[k].name << ", seed " << k << ", round " << round;

@@ -43,7 +43,7 @@ constexpr PointFormat kFormats[] = {
     {.name = "E57",
      .extensions = kE57,
      .beginnings = kE57Starts,
-     .cure = "convert the file to LAS or PLY, with CloudCompare or 'pdal translate', say"},
+     .read = [](const Path& path, const Options&) { return read_e57(path); }},
     {.name = "KITTI bin",
      .extensions = kBin,
      .remark = " (KITTI; *.pcd.bin: nuScenes)",
@@ -67,11 +67,10 @@ const PointFormat* format_of_first_bytes(const Path& path) {
   return nullptr;
 }
 
-/// ".ply, .pcd and .ptx", of the formats that can be read.
+/// ".ply, .pcd and .ptx".
 std::string understood_extensions() {
   std::vector<std::string> words;
   for (const PointFormat& format : kFormats) {
-    if (format.read == nullptr) continue;
     for (const std::string_view extension : format.extensions) words.emplace_back(extension);
     words.back() += format.remark;
   }
@@ -108,17 +107,13 @@ const PointFormat& format_of_file(const Path& path) {
 std::string point_format_names() {
   std::string text;
   for (const PointFormat& format : kFormats) {
-    if (format.read == nullptr) continue;
     text += (text.empty() ? "" : ", ") + std::string(format.name);
   }
   return text;
 }
 
 Table read_points(const Path& path, const LasReadOptions& options) {
-  const PointFormat& format = format_of_file(path);
-  if (format.read != nullptr) return format.read(path, options);
-  throw data_error({path, {}, {}},
-                   std::string(format.name) + " is not supported: " + std::string(format.cure));
+  return format_of_file(path).read(path, options);
 }
 
 }  // namespace adasplats

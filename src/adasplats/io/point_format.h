@@ -27,8 +27,7 @@ struct PointFormat {
   std::span<const std::string_view> beginnings;  ///< first bytes, any of them; none: not known
   ExtensionMeans means = ExtensionMeans::points;
   std::string_view remark;  ///< behind the last extension in messages
-  Table (*read)(const std::filesystem::path& path, const LasReadOptions& options) = nullptr;
-  std::string_view cure;  ///< where `read` is null: what to do with such a file
+  Table (*read)(const std::filesystem::path& path, const LasReadOptions& options);
 };
 
 std::span<const PointFormat> point_formats();
@@ -40,7 +39,7 @@ const PointFormat* format_of_extension(const std::filesystem::path& path);
 /// do; an unknown format, with those that are understood), those of opening the file.
 const PointFormat& format_of_file(const std::filesystem::path& path);
 
-/// "PLY, PCD, LAS or LAZ, KITTI bin, text, PTX", for help.
+/// "PLY, PCD, LAS or LAZ, E57, KITTI bin, text, PTX", for help.
 std::string point_format_names();
 
 }  // namespace adasplats

@@ -49,14 +49,14 @@ TEST(ReadPoints, ExtensionAndFirstBytesMustAgree) {
                [&] { read_points(folder.file("a.bin", "LASF" + std::string(28, 'x'))); });
   expect_error(ErrorKind::data, {"'1 2 3'", "'ply'"},
                [&] { read_points(folder.file("a.ply", "1 2 3\n")); });
-  expect_error(ErrorKind::data, {"E57 is not supported"},
-               [&] { read_points(folder.file("a.e57", "ASTM-E57")); });
+  expect_error(ErrorKind::data, {"begins like E57", "says PLY"},
+               [&] { read_points(folder.file("a.ply", "ASTM-E57")); });
 }
 
 TEST(ReadPoints, WhatIsNoFileOrEmpty) {
   const TemporaryFolder folder;
   for (const std::string name :
-       {"a.ply", "a.pcd", "a.las", "a.laz", "a.bin", "a.xyz", "a.ptx", "a"}) {
+       {"a.ply", "a.pcd", "a.las", "a.laz", "a.e57", "a.bin", "a.xyz", "a.ptx", "a"}) {
     expect_error(ErrorKind::no_input, {name}, [&] { read_points(folder.path() / name); });
     expect_error(ErrorKind::data, {"empty"}, [&] { read_points(folder.file(name, "")); });
     std::filesystem::remove(folder.path() / name);

@@ -142,7 +142,7 @@ TEST(CloudInputs, ProseBesideTilesAndSequencesDoesNotCount) {
   require_points(folder.path() / "tiles/readme.txt");
 }
 
-// E57 is not read: it must not be left out without a word.
+// Beside files of another format it must not be left out without a word.
 TEST(CloudInputs, E57Counts) {
   const TemporaryFolder folder;
   folder.write("a.e57", "ASTM-E57");

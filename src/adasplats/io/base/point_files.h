@@ -36,6 +36,19 @@ struct LasReadOptions {
 /// no_input, io, data.
 Table read_las(const std::filesystem::path& path, const LasReadOptions& options = {});
 
+/// E57 1.x (ASTM E2807): the points of all its scans in world coordinates (each through its pose):
+/// x, y, z, where all scans have them red, green, blue, row, column, return_number (from 1),
+/// number_of_returns, timestamp (s; of GPS, since 1980-01-06, where all scans say when they began,
+/// else since then) and what extensions have, by the name without its prefix ("classification");
+/// intensity where any scan has it, as stored (NaN in scans without and where it is invalid), and
+/// where a scan has a pose or ranges sensor_x, sensor_y, sensor_z, the scanner's position in the
+/// world (NaN for the points of others). All f64. Points whose position is invalid and those in the
+/// scanner itself are left out and counted in a comment, "N points without a return". Comments,
+/// too: "left out: WHAT" of columns that only some scans have and of images, "geographic: ..." and
+/// "not metres: ..." as read_las(). Memory: at most 64 times the file for the values of one scan,
+/// once more for the table, and 3 columns. Errors: no_input, io, data.
+Table read_e57(const std::filesystem::path& path);
+
 /// Text: XYZ, PTS (a line with a count of points alone), CSV (comma, semicolon, tab or blank; a
 /// header line of names is understood, also as a comment; names are in lower case; an empty cell is
 /// NaN; `#` and `//` start comments). Without names: x y z; a 4th of 4 or 5 columns is intensity; 7

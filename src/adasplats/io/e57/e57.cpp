@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/base/wkt_units.h"
+#include "adasplats/io/e57/e57_content.h"
+#include "adasplats/io/e57/e57_points.h"
+#include "adasplats/io/e57/e57_section.h"
+
+namespace adasplats {
+namespace {
+
+/// The columns beside coordinates of several scans.
+struct SharedColumns {
+  std::vector<std::string> names;              ///< in the order of the first scan that has them
+  std::map<std::string, std::size_t> dropped;  ///< and how many of the scans have them
+};
+
+/// A column is of all points or of none, but for the intensity, which may be not known. That also
+/// bounds the table: scans with a column each would make one of scans x points.
+SharedColumns shared_columns(const std::vector<E57Scan>& scans) {
+  std::map<std::string, std::size_t> scans_with;
+  std::vector<std::string> order;
+  for (const E57Scan& scan : scans)
+    for (const E57Field& field : scan.fields)
+      if (!field.column.empty() && ++scans_with[field.column] == 1) order.push_back(field.column);
+  SharedColumns columns;
+  for (std::string& name : order) {
+    const std::size_t count = scans_with[name];
+    if (count == scans.size() || name == "intensity")
+      columns.names.push_back(std::move(name));
+    else
+      columns.dropped[name] = count;
+  }
+  return columns;
+}
+
+/// Sections that share bytes would be read again and again.
+std::vector<E57Section> sections_of(PagedFile& file, const std::vector<E57Scan>& scans) {
+  std::vector<E57Section> sections;
+  sections.reserve(scans.size());
+  for (const E57Scan& scan : scans) sections.push_back(read_e57_section(file, scan));
+  std::vector<std::size_t> order(scans.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::ranges::sort(order, {}, [&](std::size_t k) { return sections[k].begin; });
+  for (std::size_t k = 1; k < order.size(); ++k)
+    if (sections[order[k]].begin < sections[order[k - 1]].end)
+      throw file.error_at(
+          sections[order[k]].begin,
+          scans[order[k]].name + ": its points lie within those of " + scans[order[k - 1]].name);
+  return sections;
+}
+
+void append(std::vector<double>& to, std::vector<double>&& from) {
+  if (to.empty())
+    to = std::move(from);
+  else
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+/// The table, as scans come.
+class E57Table {
+ public:
+  explicit E57Table(SharedColumns columns)
+      : columns_(std::move(columns)), values_(6 + columns_.names.size()) {}
+
+  void add(const E57Scan& scan, E57Points&& points) {
+    const std::size_t count = points.x.size();
+    append(values_[0], std::move(points.x));
+    append(values_[1], std::move(points.y));
+    append(values_[2], std::move(points.z));
+    for (std::size_t k = 0; k < points.columns.size(); ++k)
+      append(values_[3 + k], std::move(points.columns[k]));
+    has_scanners_ = has_scanners_ || scan.has_scanner;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double position = scan.has_scanner
+                                  ? scan.world_from_scanner.translation[static_cast<int>(axis)]
+                                  : std::numeric_limits<double>::quiet_NaN();
+      auto& values = values_[values_.size() - 3 + axis];
+      values.insert(values.end(), count, position);
+    }
+    without_return_ += points.without_return;
+  }
+
+  Table take(std::size_t scans) {
+    std::vector<std::string> names = {"x", "y", "z"};
+    names.insert(names.end(), columns_.names.begin(), columns_.names.end());
+    if (has_scanners_) names.insert(names.end(), {"sensor_x", "sensor_y", "sensor_z"});
+    Table table;
+    table.rows = values_.front().size();
+    for (std::size_t k = 0; k < names.size(); ++k)
+      table.columns.push_back(Column{names[k], std::move(values_[k])});
+    if (without_return_ > 0)
+      table.comments.push_back(std::to_string(without_return_) + " points without a return");
+    for (const auto& [name, count] : columns_.dropped)
+      table.comments.push_back("left out: column '" + name + "', which " + std::to_string(count) +
+                               " of " + std::to_string(scans) + " scans have");
+    return table;
+  }
+
+ private:
+  SharedColumns columns_;
+  std::vector<std::vector<double>> values_;  ///< x, y, z, columns, position of the scanner
+  bool has_scanners_ = false;
+  std::uint64_t without_return_ = 0;
+};
+
+/// Times of points count from their scan's start: with it they are of one clock.
+void add_starts(const E57Scan& scan, const std::vector<std::string>& columns, E57Points& points) {
+  const auto found = std::ranges::find(columns, "timestamp");
+  if (found == columns.end()) return;
+  for (double& time_s : points.columns[static_cast<std::size_t>(found - columns.begin())])
+    time_s += *scan.start_gps_s;
+}
+
+void add_comments(const E57Content& content, Table& table) {
+  if (content.images > 0)
+    table.comments.push_back("left out: " + std::to_string(content.images) + " images");
+  if (const auto system = geographic_system_of_wkt(content.coordinate_system))
+    table.comments.push_back("geographic: " + *system);
+  if (const auto units = foreign_units_of_wkt(content.coordinate_system))
+    table.comments.push_back("not metres: " + *units);
+}
+
+}  // namespace
+
+Table read_e57(const std::filesystem::path& path) {
+  PagedFile file(path);
+  E57Content content = read_e57_content(file);
+  if (content.scans.empty()) throw data_error({path, {}, {}}, "the file has no scans");
+  std::vector<E57Scan> scans = std::move(content.scans);
+  std::erase_if(scans, [](const E57Scan& scan) { return scan.points == 0; });
+  const std::vector<E57Section> sections = sections_of(file, scans);
+  SharedColumns columns = shared_columns(scans);
+  const std::vector<std::string> names = columns.names;
+  const bool have_starts =
+      std::ranges::all_of(scans, [](const E57Scan& scan) { return scan.start_gps_s.has_value(); });
+  E57Table gathered(std::move(columns));
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    E57Points points = read_e57_points(file, scans[k], sections[k], names);
+    if (have_starts) add_starts(scans[k], names, points);
+    gathered.add(scans[k], std::move(points));
+  }
+  Table table = gathered.take(scans.size());
+  add_comments(content, table);
+  return table;
+}
+
+}  // namespace adasplats
