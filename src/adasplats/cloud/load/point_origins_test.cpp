@@ -7,10 +7,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "adasplats/cloud/origins/path_check.h"
 #include "adasplats/cloud/origins/station_check.h"
 #include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/io/e57/e57_file_test.h"
 
 namespace adasplats {
 namespace {
@@ -93,6 +95,31 @@ TEST(PointOrigins, OnesThatAreNotFiniteAreNotKnownAndLoseNoPoint) {
   LoadOptions options;
   options.viewpoint = Vec3d{0, 0, 1};
   EXPECT_EQ(load({file}, options).first.origin_kinds, (std::vector<OriginKind>{measured, stated}));
+}
+
+// One scan with a pose, one cloud without; the colours of one are said to be left out.
+TEST(PointOrigins, ScansOfE57AreMeasuredFromTheirPoses) {
+  const TemporaryFolder folder;
+  io_test::E57Composer composer;
+  const std::string reals = io_test::stream_of<double>({3});
+  composer.add_scan(1, io_test::xyz_fields() + io_test::integer_field("colorRed", 0, 255),
+                    {reals, reals, reals, "r"},
+                    io_test::pose_element({"1", "0", "0", "0", "500", "5000", "7"}));
+  composer.add_scan(1, io_test::xyz_fields(), {reals, reals, reals},
+                    "<name type=\"String\">cloud</name>");
+  const auto file = folder.write("a.e57", composer.file());
+  class Warnings : public ProgressSink {
+   public:
+    void warn(std::string_view message) override { text += message; }
+    std::string text;
+  } warnings;
+  const PointCloud cloud = load_cloud(std::span(&file, 1), {}, Executor(2), warnings).first;
+  EXPECT_EQ(cloud.origin_kinds, (std::vector<OriginKind>{measured, none}));
+  EXPECT_TRUE(cloud.origin + vec_cast<double>(cloud.sensor_positions.at(0)) ==
+              (Vec3d{500, 5000, 7}));
+  EXPECT_NE(warnings.text.find("a.e57: left out: column 'red', which 1 of 2 scans have"),
+            std::string::npos)
+      << warnings.text;
 }
 
 TEST(PointOrigins, KindsSurviveSavingAndAreCheckedWhenRead) {

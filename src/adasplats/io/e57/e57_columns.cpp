@@ -3,7 +3,10 @@
 #include "adasplats/io/e57/e57_columns.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
+#include <string>
+#include <string_view>
 
 namespace adasplats {
 namespace {

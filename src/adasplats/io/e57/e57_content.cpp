@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "adasplats/io/base/number_text.h"
@@ -43,7 +44,7 @@ class ScanReader {
     take_pose(scan);
     if (const XmlElement* const start = element_.child("acquisitionStart"))
       if (const XmlElement* const value = start->child("dateTimeValue"))
-        scan.start_gps_s = number_of<double>(*value);
+        scan.start_gps_s = parsed<double>("dateTimeValue of acquisitionStart", value->text);
     return scan;
   }
 
@@ -59,11 +60,6 @@ class ScanReader {
     const std::optional<T> number = parse_number<T>(text);
     if (number && std::isfinite(static_cast<double>(*number))) return *number;
     throw error(what + " is " + shown(text) + ", expected a number");
-  }
-
-  template <class T>
-  T number_of(const XmlElement& element) const {
-    return parsed<T>(element.name, element.text);
   }
 
   template <class T>
@@ -164,7 +160,7 @@ class ScanReader {
   double part_of(const XmlElement& element, const std::string& name) const {
     const XmlElement* const part = element.child(name);
     if (part == nullptr) throw error("the " + element.name + " of its pose has no " + name);
-    return number_of<double>(*part);
+    return parsed<double>(name + " of its pose's " + element.name, part->text);
   }
 
   const std::filesystem::path& path_;

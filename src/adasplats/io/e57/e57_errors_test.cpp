@@ -132,9 +132,12 @@ TEST(E57Errors, Poses) {
   };
   refused({"0", "0", "0", "0", "0", "0", "0"}, "quaternion is 0, expected 1");
   refused({"1", "0.1", "0", "0", "0", "0", "0"}, "expected 1");
-  refused({"nan", "0", "0", "0", "0", "0", "0"}, "w is 'nan', expected a number");
-  refused({"1", "0", "0", "0", "inf", "0", "0"}, "x is 'inf', expected a number");
-  refused({"1", "0", "0", "0", "0", "a", "0"}, "y is 'a', expected a number");
+  refused({"nan", "0", "0", "0", "0", "0", "0"},
+          "w of its pose's rotation is 'nan', expected a number");
+  refused({"1", "0", "0", "0", "inf", "0", "0"},
+          "x of its pose's translation is 'inf', expected a number");
+  refused({"1", "0", "0", "0", "0", "a", "0"},
+          "y of its pose's translation is 'a', expected a number");
   expect_refused(one_point(xyz_fields(), "<pose><rotation><w>1</w></rotation></pose>").file(),
                  {"has no x"});
 }

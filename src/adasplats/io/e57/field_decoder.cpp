@@ -3,6 +3,7 @@
 #include "adasplats/io/e57/field_decoder.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 
