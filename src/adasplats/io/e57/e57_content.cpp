@@ -133,19 +133,18 @@ class ScanReader {
 
   void take_pose(E57Scan& scan) const {
     const XmlElement* const pose = element_.child("pose");
-    if (pose != nullptr) {
-      if (const XmlElement* const rotation = pose->child("rotation"))
-        scan.world_from_scanner.rotation = rotation_of(*rotation);
-      if (const XmlElement* const translation = pose->child("translation"))
-        for (int axis = 0; axis < 3; ++axis)
-          scan.world_from_scanner.translation[axis] =
-              part_of(*translation, std::string(1, "xyz"[axis]));
-    }
-    const XmlElement* const sources = element_.child("originalGuids");
-    const bool is_merged = sources != nullptr && sources->children.size() > 1;
+    const XmlElement* const rotation = pose == nullptr ? nullptr : pose->child("rotation");
+    const XmlElement* const translation = pose == nullptr ? nullptr : pose->child("translation");
+    if (rotation != nullptr) scan.world_from_scanner.rotation = rotation_of(*rotation);
+    for (int axis = 0; translation != nullptr && axis < 3; ++axis)
+      scan.world_from_scanner.translation[axis] =
+          part_of(*translation, std::string(1, "xyz"[axis]));
+    const bool has_pose = rotation != nullptr || translation != nullptr;
     const bool has_ranges =
         scan.field("sphericalRange") != nullptr && scan.field("cartesianX") == nullptr;
-    scan.has_scanner = (pose != nullptr || has_ranges) && !is_merged;
+    const XmlElement* const sources = element_.child("originalGuids");
+    const bool is_merged = sources != nullptr && sources->children.size() > 1;
+    scan.has_scanner = (has_pose || has_ranges) && !is_merged;
   }
 
   Mat3d rotation_of(const XmlElement& element) const {

@@ -47,7 +47,7 @@ std::vector<std::string> three_points() {
 
 TEST(E57, PointsWithoutAPoseHaveNoSensor) {
   E57Composer composer;
-  composer.add_scan(3, xyz_fields(), three_points());
+  composer.add_scan(3, xyz_fields(), three_points(), "<pose type=\"Structure\"/>");
   const Table table = read_composed(composer.file());
   EXPECT_EQ(names_of_columns(table), (std::vector<std::string>{"x", "y", "z"}));
   EXPECT_EQ(values_of(table, "x"), (Doubles{1, 2, 3}));
