@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <locale>
+#include <memory>
 #include <span>
 #include <sstream>
 #include <string>
@@ -102,8 +103,13 @@ toml::table parse_table(std::string_view text, const std::filesystem::path& path
 class SensorTable {
  public:
   SensorTable(toml::table table, const std::filesystem::path& path, const Keys& known)
+      : SensorTable(std::make_shared<const toml::table>(std::move(table)), path, known) {}
+
+  /// Copies of a table do not know their lines.
+  SensorTable(std::shared_ptr<const toml::table> table, const std::filesystem::path& path,
+              const Keys& known)
       : path_(path), table_(std::move(table)) {
-    for (const auto& [key, value] : table_) {
+    for (const auto& [key, value] : *table_) {
       const std::string name(key.str());
       if (std::ranges::find(known, name) != known.end()) continue;
       const auto nearest = nearest_word(name, known);
@@ -112,10 +118,10 @@ class SensorTable {
     }
   }
 
-  bool has(std::string_view key) const { return table_.contains(key); }
+  bool has(std::string_view key) const { return table_->contains(key); }
 
   Error error(std::string_view key, const std::string& message) const {
-    const toml::node* node = table_.get(key);
+    const toml::node* node = table_->get(key);
     if (node == nullptr)
       return Error(ErrorKind::config, path_.string() + ": " + std::string(key) + " " + message);
     return error_at(node->source(), std::string(key) + " " + message);
@@ -123,31 +129,31 @@ class SensorTable {
 
   /// The table under a key, which is there.
   SensorTable table(std::string_view key, const Keys& known) const {
-    const toml::table* inner = table_.get(key)->as_table();
+    const toml::table* inner = table_->get(key)->as_table();
     if (inner == nullptr) throw error(key, "is not a table");
-    return {*inner, path_, known};
+    return {std::shared_ptr<const toml::table>(table_, inner), path_, known};
   }
 
   double number(std::string_view key, double otherwise, double low, double high) const {
-    const toml::node* node = table_.get(key);
+    const toml::node* node = table_->get(key);
     return node == nullptr ? otherwise : number_of(*node, key, low, high);
   }
 
   std::int64_t whole_number(std::string_view key, std::int64_t low, std::int64_t high) const {
-    const toml::node* node = table_.get(key);
+    const toml::node* node = table_->get(key);
     if (node == nullptr) throw error(key, "is missing");
     return whole_number_of(*node, key, low, high);
   }
 
   bool flag(std::string_view key, bool otherwise) const {
-    const toml::node* node = table_.get(key);
+    const toml::node* node = table_->get(key);
     if (node == nullptr) return otherwise;
     if (!node->is_boolean()) throw error(key, "is neither true nor false");
     return node->value_or(otherwise);
   }
 
   std::string text(std::string_view key, const std::string& otherwise) const {
-    const toml::node* node = table_.get(key);
+    const toml::node* node = table_->get(key);
     if (node == nullptr) return otherwise;
     if (!node->is_string()) throw error(key, "is not a string");
     return node->value_or(otherwise);
@@ -213,7 +219,7 @@ class SensorTable {
  private:
   /// Of a list, which may not be empty.
   std::vector<const toml::node*> elements(std::string_view key) const {
-    const toml::node* node = table_.get(key);
+    const toml::node* node = table_->get(key);
     if (node == nullptr) return {};
     if (!node->is_array() || node->as_array()->empty())
       throw error(key, "is not a list of numbers");
@@ -255,7 +261,7 @@ class SensorTable {
   }
 
   std::filesystem::path path_;
-  toml::table table_;
+  std::shared_ptr<const toml::table> table_;
 };
 
 bool has_fan(const SensorTable& table) {

@@ -143,7 +143,8 @@ TEST(UnitSensor, ErrorsOfFieldsSayWhatIsWrong) {
   };
   error_is("columns = 1\nbytes = 'AAAAAAAA'\n", "turns is missing");
   error_is("turns = 0\ncolumns = 1\nbytes = 'AAAAAAAA'\n", "turns");
-  error_is("turns = 1\ncolumns = 2\nbytes = 'AAAAAAAA'\n", "has 6 bytes, expected 12");
+  error_is("turns = 1\ncolumns = 2\nbytes = 'AAAAAAAA'\n",
+           "bad.toml:6: bytes has 6 bytes, expected 12");
   error_is("turns = 1\ncolumns = 1\nbytes = 'AAAA*AAA'\n", "is not base64");
   error_is("turns = 1\ncolumns = 1\nbyte = 'AAAAAAAA'\n", "did you mean 'bytes'");
 }
