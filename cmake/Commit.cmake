@@ -3,7 +3,7 @@
 
 # The commit that reports name. Every build asks git (some milliseconds); the source is written, and
 # the programs are linked again, only where the answer changed. Outside of a clone the environment
-# variable or cache entry ADASPLATS_COMMIT tells the commit.
+# variable or cache entry ADASPLATS_COMMIT tells the commit, or a file COMMIT beside the sources.
 #
 # Included by the project it adds the source to the stage "pipeline"; as a script (cmake -D... -P) it
 # writes the source.
@@ -40,6 +40,9 @@ endfunction()
 set(commit "$ENV{ADASPLATS_COMMIT}")
 if(NOT commit)
   set(commit "${GIVEN}")
+endif()
+if(NOT commit AND EXISTS ${SOURCE}/COMMIT)  # sources that tools/packaging/make_sdist.py packed
+  file(STRINGS ${SOURCE}/COMMIT commit LIMIT_COUNT 1)
 endif()
 set(state unknown)
 git(top rev-parse --show-toplevel)

@@ -1,0 +1,169 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Makes packages of the commit that is checked out, in dist/: a .deb of the program, a wheel of the
+# Python package that holds the libraries it needs, and the sources.
+# usage: scripts/package.sh [deb] [wheel] [sdist] [--cuda] [--test]     (default: all three)
+#   --cuda   use NVIDIA GPUs; needs nvcc, the packages run without a driver, too
+#   --test   install each into a bare system (debootstrap; needs root) and use it there
+# The .deb is for the release of Debian or Ubuntu that this runs on, the wheel for its Python and any
+# Linux whose glibc is not older. The same commit and libraries give the same bytes, in any folder.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root"
+readonly dist=$root/dist
+readonly python=${PYTHON:-/usr/bin/python3} # the distribution's: it has pybind11
+
+say() { echo "package: $*"; }
+fail() {
+  echo "package: error: $*" >&2
+  exit 1
+}
+
+kinds=()
+cuda=OFF
+test=false
+while (($#)); do
+  case $1 in
+    deb | wheel | sdist) kinds+=("$1") ;;
+    --cuda) cuda=ON ;;
+    --test) test=true ;;
+    -h | --help)
+      sed -n '5,12s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+      exit 0
+      ;;
+    *) fail "unknown argument '$1' (--help shows what there is)" ;;
+  esac
+  shift
+done
+((${#kinds[@]})) || kinds=(deb wheel sdist)
+
+# The date of what is packed, for every time that a package holds (reproducible-builds.org).
+if [[ -z ${SOURCE_DATE_EPOCH:-} ]]; then
+  SOURCE_DATE_EPOCH=$(git log -1 --format=%ct) || fail "no clone: set SOURCE_DATE_EPOCH"
+fi
+export SOURCE_DATE_EPOCH
+umask 022
+mkdir -p "$dist"
+
+make_deb() {
+  cmake --preset package -DADASPLATS_USE_CUDA=$cuda
+  cmake --build build/package --target adasplats_program
+  rm -f "$dist"/adasplats_*.deb
+  cpack --config build/package/CPackConfig.cmake -B build/package/packed
+  mv build/package/packed/adasplats_*.deb "$dist/"
+}
+
+make_wheel() {
+  rm -rf build/wheel "$dist"/adasplats-*.whl
+  mkdir -p build/wheel
+  CMAKE_ARGS="-DADASPLATS_USE_CUDA=$cuda -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 ${CMAKE_ARGS:-}" \
+    PYTHONHASHSEED=0 "$python" -m pip wheel . --no-deps --no-build-isolation -w build/wheel
+  "$python" tools/packaging/vendor_wheel.py build/wheel/adasplats-*.whl "$dist"
+}
+
+make_sdist() {
+  rm -f "$dist"/adasplats-*.tar.gz
+  "$python" tools/packaging/make_sdist.py "$dist"
+}
+
+# The release that this system is of.
+codename() { sed -n 's/^VERSION_CODENAME=//p' /etc/os-release; }
+
+# Where this system has its packages from: the first address in /etc/apt.
+mirror() {
+  local -a lists=()
+  mapfile -t lists < <(find /etc/apt/sources.list.d /etc/apt/sources.list -name '*.sources' -o -name '*.list')
+  awk '$1 == "URIs:" && !found {found = $2}
+       $1 == "deb" && !found {for (i = 2; i <= NF && !found; i++) if ($i ~ /:\//) found = $i}
+       END {print found}' "${lists[@]}"
+}
+
+# bare_system FOLDER: a minimal system of this release.
+bare_system() {
+  local mirror kept
+  mirror=$(mirror 2>/dev/null)
+  [[ -n $mirror ]] || fail "no mirror in /etc/apt"
+  kept=$root/build/bare-$(codename).tar
+  if [[ ! -s $kept ]]; then
+    command -v debootstrap >/dev/null || fail "debootstrap is not installed"
+    say "making a bare $(codename)"
+    rm -rf build/bare-new
+    debootstrap --variant=minbase "$(codename)" build/bare-new "$mirror" >build/debootstrap.log ||
+      fail "debootstrap failed, see build/debootstrap.log"
+    tar -C build/bare-new -cf "$kept.new" .
+    mv "$kept.new" "$kept"
+    rm -rf build/bare-new
+  fi
+  rm -rf "$1"
+  mkdir -p "$1"
+  tar -C "$1" -xf "$kept"
+  # How packages are fetched is for this system to say, not for this script.
+  rm -f "$1/etc/apt/sources.list"
+  cp -a /etc/apt/sources.list* /etc/apt/apt.conf.d /etc/apt/auth.conf.d /etc/apt/trusted.gpg.d "$1/etc/apt/" 2>/dev/null || true
+  cp /etc/resolv.conf "$1/etc/"
+  cp -a /usr/share/keyrings/. "$1/usr/share/keyrings/"
+}
+
+# inside FOLDER COMMAND...: in the bare system, with nothing of this one's environment.
+inside() {
+  local folder=$1
+  shift
+  chroot "$folder" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp LC_ALL=C.UTF-8 \
+    DEBIAN_FRONTEND=noninteractive "$@"
+}
+
+size_of() { stat -c %s -- "$1"; }
+
+# Installs a file into a bare system with one command and uses it there.
+test_package() {
+  local kind=$1 file=$2 bare=$root/build/bare begin
+  if [[ $kind == sdist ]]; then
+    say "sdist: has $(tar -tzf "$file" | wc -l) names"
+    return
+  fi
+  bare_system "$bare"
+  cp "$file" "$bare/tmp/"
+  inside "$bare" apt-get -qq update
+  begin=$SECONDS
+  case $kind in
+    deb)
+      inside "$bare" apt-get -qq -y --no-install-recommends install "/tmp/${file##*/}" >build/install.log
+      say "deb: installed in $((SECONDS - begin)) s"
+      begin=$SECONDS
+      inside "$bare" adasplats demo -o /tmp/demo
+      say "deb: demo ran in $((SECONDS - begin)) s"
+      inside "$bare" test -s /tmp/demo/consistent-street.png
+      inside "$bare" test -s /usr/share/bash-completion/completions/adasplats
+      inside "$bare" apt-get -qq -y remove adasplats >>build/install.log
+      ! inside "$bare" test -e /usr/bin/adasplats || fail "adasplats is still there when removed"
+      ;;
+    wheel)
+      # NumPy of the distribution, so that this needs no index of packages.
+      inside "$bare" apt-get -qq -y --no-install-recommends install python3-venv python3-numpy \
+        >build/install.log
+      inside "$bare" python3 -m venv --system-site-packages /tmp/venv
+      begin=$SECONDS
+      inside "$bare" /tmp/venv/bin/pip install --quiet --no-index "/tmp/${file##*/}"
+      say "wheel: installed in $((SECONDS - begin)) s"
+      begin=$SECONDS
+      inside "$bare" /tmp/venv/bin/python - <tools/packaging/try_wheel.py
+      say "wheel: tried in $((SECONDS - begin)) s"
+      ;;
+  esac
+}
+
+for kind in "${kinds[@]}"; do
+  begin=$SECONDS
+  "make_$kind"
+  case $kind in
+    deb) file=$(echo "$dist"/adasplats_*.deb) ;;
+    wheel) file=$(echo "$dist"/adasplats-*.whl) ;;
+    sdist) file=$(echo "$dist"/adasplats-*.tar.gz) ;;
+  esac
+  say "$kind: ${file#"$root/"}, $(size_of "$file") bytes, made in $((SECONDS - begin)) s"
+  if $test; then test_package "$kind" "$file"; fi
+done
+(cd "$dist" && sha256sum -- adasplats* | tee SHA256SUMS)
