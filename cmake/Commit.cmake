@@ -41,7 +41,7 @@ set(commit "$ENV{ADASPLATS_COMMIT}")
 if(NOT commit)
   set(commit "${GIVEN}")
 endif()
-if(NOT commit AND EXISTS ${SOURCE}/COMMIT)  # sources that tools/packaging/make_sdist.py packed
+if(NOT commit AND EXISTS ${SOURCE}/COMMIT)  # sources that packaging/make_sdist.py packed
   file(STRINGS ${SOURCE}/COMMIT commit LIMIT_COUNT 1)
 endif()
 set(state unknown)

@@ -61,12 +61,12 @@ make_wheel() {
   mkdir -p build/wheel
   CMAKE_ARGS="-DADASPLATS_USE_CUDA=$cuda -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 ${CMAKE_ARGS:-}" \
     PYTHONHASHSEED=0 "$python" -m pip wheel . --no-deps --no-build-isolation -w build/wheel
-  "$python" tools/packaging/vendor_wheel.py build/wheel/adasplats-*.whl "$dist"
+  "$python" packaging/vendor_wheel.py build/wheel/adasplats-*.whl "$dist"
 }
 
 make_sdist() {
   rm -f "$dist"/adasplats-*.tar.gz
-  "$python" tools/packaging/make_sdist.py "$dist"
+  "$python" packaging/make_sdist.py "$dist"
 }
 
 # The release that this system is of.
@@ -149,7 +149,7 @@ test_package() {
       inside "$bare" /tmp/venv/bin/pip install --quiet --no-index "/tmp/${file##*/}"
       say "wheel: installed in $((SECONDS - begin)) s"
       begin=$SECONDS
-      inside "$bare" /tmp/venv/bin/python - <tools/packaging/try_wheel.py
+      inside "$bare" /tmp/venv/bin/python - <packaging/try_wheel.py
       say "wheel: tried in $((SECONDS - begin)) s"
       ;;
   esac

@@ -5,7 +5,7 @@
 
 Everything that a build needs is in git, so the archive is git's, with PKG-INFO of setuptools and
 with the commit's name in a file COMMIT, since the sources are no clone then. Times are
-SOURCE_DATE_EPOCH. usage: tools/packaging/make_sdist.py FOLDER
+SOURCE_DATE_EPOCH. usage: packaging/make_sdist.py FOLDER
 """
 
 import gzip
@@ -17,7 +17,7 @@ import sys
 import tarfile
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def metadata():

@@ -8,7 +8,7 @@ same process stay apart, and are found beside the module (RUNPATH). What every L
 C++ libraries of PEP 600) stays outside; the tag names the glibc of this system, for which it is all
 built. Times are SOURCE_DATE_EPOCH, names are sorted: the same input gives the same bytes.
 
-Needs patchelf and ldd. usage: tools/packaging/vendor_wheel.py WHEEL FOLDER
+Needs patchelf and ldd. usage: packaging/vendor_wheel.py WHEEL FOLDER
 """
 
 import base64
