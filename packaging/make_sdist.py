@@ -8,6 +8,7 @@ with the commit's name in a file COMMIT, since the sources are no clone then. Ti
 SOURCE_DATE_EPOCH. usage: packaging/make_sdist.py FOLDER
 """
 
+import contextlib
 import gzip
 import io
 import os
@@ -23,11 +24,9 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 def metadata():
     """What setuptools makes of pyproject.toml."""
     from setuptools import build_meta
-    with tempfile.TemporaryDirectory() as name:
-        said = os.dup(1)
-        os.dup2(2, 1)  # setuptools tells what it does
+    # It tells what it does.
+    with tempfile.TemporaryDirectory() as name, contextlib.redirect_stdout(sys.stderr):
         folder = build_meta.prepare_metadata_for_build_wheel(name)
-        os.dup2(said, 1)
         return (pathlib.Path(name) / folder / "METADATA").read_bytes()
 
 

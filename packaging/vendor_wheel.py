@@ -8,7 +8,7 @@ same process stay apart, and are found beside the module (RUNPATH). What every L
 C++ libraries of PEP 600) stays outside; the tag names the glibc of this system, for which it is all
 built. Times are SOURCE_DATE_EPOCH, names are sorted: the same input gives the same bytes.
 
-Needs patchelf and ldd. usage: packaging/vendor_wheel.py WHEEL FOLDER
+Needs patchelf, ldd and dpkg. usage: packaging/vendor_wheel.py WHEEL FOLDER
 """
 
 import base64
@@ -85,6 +85,18 @@ def check(tree):
             raise SystemExit(f"vendor_wheel: {path.name} does not look beside itself")
 
 
+def copy_licence(path, folder):
+    """Puts the licence of a library's Debian package into the wheel, which redistributes it."""
+    for known in (path, pathlib.Path(str(path).removeprefix("/usr"))):  # as before /lib was a link
+        result = subprocess.run(["dpkg-query", "--search", known], stdout=subprocess.PIPE,
+                                stderr=subprocess.DEVNULL, text=True, check=False)
+        if result.returncode == 0:
+            package = result.stdout.split(":")[0]
+            shutil.copyfile(f"/usr/share/doc/{package}/copyright", folder / f"LICENSE.{package}")
+            return
+    raise SystemExit(f"vendor_wheel: {path} is of no package, so its licence is not known")
+
+
 def vendor(tree):
     """Copies the libraries into an unpacked wheel. Their number, and bytes."""
     modules = sorted(tree.glob("adasplats/*.so"))
@@ -93,6 +105,7 @@ def vendor(tree):
     folder.mkdir()
     for path, name in libraries.values():
         shutil.copyfile(path, folder / name)
+        copy_licence(path, next(tree.glob("*.dist-info")))
         said("strip", "--strip-unneeded", folder / name)
         said("patchelf", "--set-soname", name, folder / name)
         rename(folder / name, libraries, "$ORIGIN")
