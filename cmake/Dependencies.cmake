@@ -16,6 +16,24 @@ if(OpenBLAS_FOUND)
   set(ADASPLATS_OPENBLAS_DEFINE ADASPLATS_OPENBLAS)
 endif()
 
+# Recordings of robots (stage io): how their chunks are packed, and the files of ROS 2 bags.
+find_package(ZSTD QUIET MODULE)
+find_package(LZ4 QUIET MODULE)
+find_package(BZip2 QUIET MODULE)
+find_package(SQLite3 QUIET MODULE)
+set(ADASPLATS_RECORDING_TARGETS "")
+set(ADASPLATS_RECORDING_DEFINES "")
+set(recording_libraries "")
+foreach(library ZSTD LZ4 BZip2 SQLite3)
+  if(${library}_FOUND)
+    string(REPLACE "SQLite3::" "SQLite::" target ${library}::${library})
+    string(TOUPPER ADASPLATS_HAVE_${library} define)
+    list(APPEND ADASPLATS_RECORDING_TARGETS ${target})
+    list(APPEND ADASPLATS_RECORDING_DEFINES ${define})
+    list(APPEND recording_libraries ${library})
+  endif()
+endforeach()
+
 # Meshes of the comparison. OpenVDB: grid and surface of IMLS. Open3D: screened Poisson, only in a
 # program of its own (apps/poisson), as it brings hundreds of libraries.
 find_package(OpenVDB 9 QUIET MODULE)
@@ -54,6 +72,13 @@ if(NOT OpenBLAS_FOUND)
   set(missing "no OpenBLAS (libopenblas-dev)")
 endif()
 adasplats_part(- "segmentation" "${missing}" "OpenBLAS ${OpenBLAS_VERSION}" ADASPLATS_SEGMENTATION)
+
+set(missing "")
+if(NOT recording_libraries)
+  set(missing "no zstd, lz4, bzip2, SQLite (libzstd-dev, liblz4-dev, libbz2-dev, libsqlite3-dev)")
+endif()
+string(REPLACE ";" ", " recording_libraries "${recording_libraries}")
+adasplats_part(- "packed recordings" "${missing}" "${recording_libraries}" ADASPLATS_RECORDINGS)
 
 set(missing "")
 if(NOT OpenVDB_FOUND)

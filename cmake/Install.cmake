@@ -18,8 +18,10 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/adasplatsConfigVersion.cmak
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/adasplatsConfig.cmake
               ${CMAKE_BINARY_DIR}/adasplatsConfigVersion.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/FindLZ4.cmake
               ${CMAKE_CURRENT_LIST_DIR}/FindOpenBLAS.cmake
               ${CMAKE_CURRENT_LIST_DIR}/FindOpenVDB.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/FindZSTD.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adasplats)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)

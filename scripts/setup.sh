@@ -29,6 +29,10 @@ demo  libpng-dev           -             images
 demo  libboost-dev         -             the viewer's server (headers)
 maybe ccache               ccache        compiles nothing twice
 maybe libopenblas-dev      -             segmentation by networks
+maybe libzstd-dev          -             packed recordings (MCAP, ROS 2 bags)
+maybe liblz4-dev           -             likewise (MCAP, ROS 1 bags)
+maybe libbz2-dev           -             likewise (ROS 1 bags)
+maybe libsqlite3-dev       -             ROS 2 bags of SQLite
 maybe nodejs               node          the viewer's page
 maybe npm                  npm           likewise
 test  git                  git           lists the files to check

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adasplats/core/function_ref.h"
+
+namespace adasplats {
+
+/// How the messages of a topic are serialized.
+enum class MessageEncoding : std::uint8_t { ros1, cdr, other };
+
+/// What the messages of one topic are.
+struct RecordedTopic {
+  std::string name;
+  std::string type;  ///< as ROS 1 writes it: "sensor_msgs/PointCloud2", without "msg/"
+  MessageEncoding encoding = MessageEncoding::other;
+};
+
+/// Where a message lies in a recording.
+struct MessagePlace {
+  static constexpr std::uint64_t kNoChunk = ~std::uint64_t{0};
+  std::uint32_t file = 0;
+  std::uint64_t chunk = kNoChunk;  ///< byte of the file where the chunk's record begins
+  std::uint64_t offset = 0;        ///< in the unpacked chunk, else in the file; of db3 the row
+  std::uint64_t size = 0;
+};
+
+struct RecordedMessage {
+  const RecordedTopic& topic;
+  std::uint64_t time_ns;  ///< when it was recorded
+  MessagePlace place;
+  std::string_view bytes;  ///< while the visitor runs
+};
+
+using MessageVisitor = FunctionRef<void(const RecordedMessage&)>;
+
+/// One file of a recording.
+class RecordingFile {
+ public:
+  virtual ~RecordingFile() = default;
+  /// All messages in the order of the file. Errors: data (damaged, not closed), io, unavailable.
+  virtual void for_each_message(MessageVisitor visit) const = 0;
+  /// One of them again. Several threads may call it at once. Errors: as above.
+  virtual std::string message(const MessagePlace& place) const = 0;
+};
+
+/// Messages by topics, as robots record them: MCAP (Foxglove's specification, version 0), ROS 1
+/// bags (format 2.0), and ROS 2 bags: a folder with metadata.yaml and files of MCAP or SQLite, or
+/// one such file. It is read from front to back; a chunk is in memory at a time, and of message()
+/// the last four (kMostChunkBytes each at most).
+class Recording {
+ public:
+  /// Errors: no_input, data (none of these formats; a folder whose files are not all there).
+  explicit Recording(const std::filesystem::path& path);
+
+  const std::filesystem::path& path() const { return path_; }
+  void for_each_message(MessageVisitor visit) const;
+  std::string message(const MessagePlace& place) const;
+
+ private:
+  std::filesystem::path path_;
+  std::vector<std::unique_ptr<RecordingFile>> files_;
+};
+
+/// Whether a path is a recording by its name: .mcap, .bag, .db3, a folder with metadata.yaml.
+bool is_recording(const std::filesystem::path& path);
+
+/// "sensor_msgs/PointCloud2" of "sensor_msgs/msg/PointCloud2".
+std::string short_type_name(std::string_view type);
+
+// One each of the formats (recording.cpp chooses).
+std::unique_ptr<RecordingFile> open_mcap(const std::filesystem::path& path);
+
+}  // namespace adasplats

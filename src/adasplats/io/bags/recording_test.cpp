@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/io/bags/recording.h"
+
+#include <gtest/gtest.h>
+
+#include "adasplats/io/bags/recording_files_test.h"
+#include "adasplats/io/bags/unpack.h"
+#include "adasplats/io/mcap/mcap_file.h"
+
+namespace adasplats {
+namespace {
+
+using bags_test::mcap_chunk;
+using bags_test::mcap_file;
+using bags_test::mcap_of;
+using bags_test::mcap_records;
+using bags_test::Said;
+using io_test::expect_error;
+using io_test::TemporaryFolder;
+
+const std::vector<Said> kSaid = {{"/a", "pkg/msg/One", 5, "first"},
+                                 {"/b", "pkg/msg/Two", 7, std::string(3000, 'x')},
+                                 {"/a", "pkg/msg/One", 9, ""}};
+
+/// What a recording gives, read again by place, with types as they were said.
+std::vector<Said> contents_of(const std::filesystem::path& path) {
+  const Recording recording(path);
+  std::vector<Said> said;
+  std::vector<MessagePlace> places;
+  recording.for_each_message([&](const RecordedMessage& message) {
+    said.push_back(
+        {message.topic.name, message.topic.type, message.time_ns, std::string(message.bytes)});
+    places.push_back(message.place);
+  });
+  for (std::size_t k = places.size(); k-- > 0;)
+    EXPECT_EQ(recording.message(places[k]), said[k].bytes) << k;
+  return said;
+}
+
+void expect_said(const std::filesystem::path& path, const std::vector<Said>& expected = kSaid) {
+  const std::vector<Said> found = contents_of(path);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_EQ(found[k].topic, expected[k].topic);
+    EXPECT_EQ(found[k].type, short_type_name(expected[k].type));
+    EXPECT_EQ(found[k].time_ns, expected[k].time_ns);
+    EXPECT_EQ(found[k].bytes, expected[k].bytes);
+  }
+}
+
+// Oracle: files put together by the letter of the specification.
+TEST(McapRecording, ChunksAndLooseRecordsGiveTheirMessages) {
+  const TemporaryFolder folder;
+  expect_said(folder.file("chunk.mcap", mcap_of(kSaid)));
+  std::vector<std::string> topics;
+  expect_said(folder.file("loose.mcap", mcap_file(mcap_records(kSaid, topics))));
+  topics.clear();
+  const std::string first = mcap_records({kSaid[0]}, topics);
+  const std::string rest = mcap_records({kSaid[1], kSaid[2]}, topics);
+  expect_said(folder.file("two.mcap", mcap_file(mcap_chunk("", first, first.size()) +
+                                                mcap_chunk("", rest, rest.size()))));
+  EXPECT_TRUE(contents_of(folder.file("none.mcap", mcap_file(""))).empty());
+}
+
+// Oracle: the writer, whose files are tested against the specification (io/mcap).
+TEST(McapRecording, ReadsWhatIsWritten) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "a.mcap";
+  std::vector<Said> said;
+  {
+    McapFile file(path, "ros2");
+    const auto channel = file.add_channel({"/c", "cdr", "pkg/msg/C", "ros2msg", "d"});
+    for (std::uint64_t k = 0; k < 7; ++k) {  // more than a chunk
+      said.push_back({"/c", "pkg/C", k, std::string(1'000'000, static_cast<char>('a' + k))});
+      file.add_message(channel, k, said.back().bytes);
+    }
+    file.finish();
+  }
+  expect_said(path, said);
+}
+
+TEST(McapRecording, DamageIsAnError) {
+  const TemporaryFolder folder;
+  const std::string whole = mcap_of(kSaid);
+  const auto read = [&](const std::string& content) {
+    const auto path = folder.file("a.mcap", content);
+    return [path] { contents_of(path); };
+  };
+  expect_error(ErrorKind::data, {"a.mcap", "begin"}, read("no recording at all"));
+  // Wherever a recording is cut off.
+  for (std::size_t size = 8; size < whole.size(); size += 37)
+    expect_error(ErrorKind::data, {"a.mcap"}, read(whole.substr(0, size)));
+  std::vector<std::string> topics;
+  const std::string records = mcap_records(kSaid, topics);
+  expect_error(ErrorKind::data, {"checksum"},
+               read(mcap_file(mcap_chunk("", records, records.size(), 12345))));
+  expect_error(ErrorKind::data, {"says"},
+               read(mcap_file(mcap_chunk("", records, records.size() + 1))));
+  expect_error(ErrorKind::data, {"'snappy'", "zstd"},
+               read(mcap_file(mcap_chunk("snappy", records, records.size()))));
+  expect_error(ErrorKind::data, {"more than"},
+               read(mcap_file(mcap_chunk("zstd", records, std::uint64_t{1} << 40))));
+  const std::string orphan = bags_test::mcap_record(5, std::string(22, '\3'));
+  expect_error(ErrorKind::data, {"channel 771"}, read(mcap_file(orphan)));
+}
+
+// Oracle: what the packers of zstd, lz4 and bzip2 made of 1000 zeros.
+struct PackedZeros {
+  const char* packing;
+  std::string bytes;
+};
+const PackedZeros kPackedZeros[] = {
+    {"zstd",
+     std::string("\x28\xb5\x2f\xfd\x64\xe8\x02\x4d\x00\x00\x10\x00\x00\x01\x00\xe3\x2b\x80\x05\x5a"
+                 "\x07\x44\x79",
+                 23)},
+    {"lz4",
+     std::string("\x04\x22\x4d\x18\x68\x40\xe8\x03\x00\x00\x00\x00\x00\x00\xf1\x0e\x00\x00\x00\x1f"
+                 "\x00\x01\x00\xff\xff\xff\xd2\x50\x00\x00\x00\x00\x00\x00\x00\x00\x00",
+                 37)},
+    {"bz2",
+     std::string("\x42\x5a\x68\x39\x31\x41\x59\x26\x53\x59\x01\xe8\xd0\x60\x00\x00\x01\xc0\x01\xc0"
+                 "\x00\x00\x80\x00\x08\x20\x00\x20\xaa\x6d\x41\x98\xba\x83\xc5\xdc\x91\x4e\x14\x24"
+                 "\x00\x7a\x34\x18\x00",
+                 45)},
+};
+
+TEST(Unpack, GivesWhatOthersPacked) {
+  for (const PackedZeros& packed : kPackedZeros) {
+    std::string found;
+    try {
+      found = unpack(packed.packing, packed.bytes, 1000, "x");
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::unavailable) continue;  // built without that library
+      throw;
+    }
+    EXPECT_EQ(found, std::string(1000, '\0')) << packed.packing;
+    for (const std::uint64_t size : {std::uint64_t{999}, std::uint64_t{1001}, std::uint64_t{0},
+                                     kMostChunkBytes, kMostChunkBytes + 1})
+      expect_error(ErrorKind::data, {"x"},
+                   [&] { unpack(packed.packing, packed.bytes, size, "x"); });
+    for (std::size_t size = 0; size + 4 < packed.bytes.size(); ++size)
+      expect_error(ErrorKind::data, {"x"},
+                   [&] { unpack(packed.packing, packed.bytes.substr(0, size), 1000, "x"); });
+  }
+}
+
+}  // namespace
+}  // namespace adasplats
