@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/io/bags/ros_values.h"
+
+#include <array>
+#include <cstddef>
+
+#include "adasplats/io/bags/ros_reader.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/records.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::int64_t kNanosecondsOfSecond = 1'000'000'000;
+
+RosHeader read_header(RosReader& reader) {
+  if (reader.is_ros1()) reader.number<std::uint32_t>();  // seq
+  // ROS 1 has them without a sign, which tells only from 2038 on.
+  const std::int64_t seconds = reader.is_ros1()
+                                   ? static_cast<std::int64_t>(reader.number<std::uint32_t>())
+                                   : static_cast<std::int64_t>(reader.number<std::int32_t>());
+  const auto nanoseconds = reader.number<std::uint32_t>();
+  if (nanoseconds >= kNanosecondsOfSecond)
+    throw reader.error("has a time of " + std::to_string(nanoseconds) +
+                       " ns within a second, expected below 1000000000");
+  RosHeader header{seconds * kNanosecondsOfSecond + nanoseconds, reader.text()};
+  if (header.frame.starts_with('/')) header.frame.erase(0, 1);
+  return header;
+}
+
+void read_pose(RosReader& reader, RosPose& pose) {
+  for (int axis = 0; axis < 3; ++axis) pose.position[axis] = reader.number<double>();
+  for (double* value : {&pose.qx, &pose.qy, &pose.qz, &pose.qw}) *value = reader.number<double>();
+}
+
+RosPose read_transform(RosReader& reader) {
+  RosPose pose;
+  pose.header = read_header(reader);
+  pose.child_frame = reader.text();
+  if (pose.child_frame.starts_with('/')) pose.child_frame.erase(0, 1);
+  read_pose(reader, pose);
+  return pose;
+}
+
+/// The types of sensor_msgs/PointField by their numbers, from 1.
+constexpr std::array kPointFieldTypes = {ColumnType::i8,  ColumnType::u8,  ColumnType::i16,
+                                         ColumnType::u16, ColumnType::i32, ColumnType::u32,
+                                         ColumnType::f32, ColumnType::f64};
+
+std::vector<RecordField> read_point_fields(RosReader& reader) {
+  constexpr std::size_t kLeastBytes = 4 + 4 + 1 + 4;
+  constexpr std::size_t kMostValues = 4096;  // of one point, so that lying counts take no memory
+  std::vector<RecordField> fields;
+  const std::uint32_t count = reader.count(kLeastBytes);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const std::string name = reader.text();
+    const auto offset = reader.number<std::uint32_t>();
+    const auto type = reader.number<std::uint8_t>();
+    // As the Point Cloud Library has it, 0 is one, too.
+    const std::uint32_t values = std::max(std::uint32_t{1}, reader.number<std::uint32_t>());
+    if (type == 0 || type > kPointFieldTypes.size())
+      throw reader.error("has a field " + shown(name) + " of datatype " + std::to_string(type) +
+                         ", expected 1 (INT8) to 8 (FLOAT64)");
+    if (values > kMostValues - fields.size())
+      throw reader.error("has a field " + shown(name) + " of " + std::to_string(values) +
+                         " values, at most 4096 a point are taken");
+    const ColumnType column = kPointFieldTypes[type - 1];
+    for (std::uint32_t v = 0; v < values; ++v)
+      fields.push_back({values == 1 ? name : name + "_" + std::to_string(v), column,
+                        std::size_t{offset} + v * type_bytes(column)});
+  }
+  return fields;
+}
+
+/// Whether all fields lie in a point, and overlap no more than is sensible.
+void require_fields_within(const RosReader& reader, const std::vector<RecordField>& fields,
+                           std::size_t step) {
+  std::size_t bytes = 0;
+  for (const RecordField& field : fields) {
+    const std::size_t end = field.offset_bytes + type_bytes(field.type);
+    if (end > step)
+      throw reader.error("has a field " + shown(field.name) + " up to byte " + std::to_string(end) +
+                         " of points of " + std::to_string(step) + " bytes (point_step)");
+    bytes += type_bytes(field.type);
+  }
+  if (bytes > 2 * step)
+    throw reader.error("has fields of " + std::to_string(bytes) + " bytes in points of " +
+                       std::to_string(step) + " (point_step)");
+}
+
+}  // namespace
+
+bool holds_poses(std::string_view type) {
+  return type == kRosTransforms || type == kOldRosTransforms || type == kRosOdometry ||
+         type == kRosPose || type == kRosTransform;
+}
+
+RosCloudHead ros_cloud_head(std::string_view bytes, MessageEncoding encoding,
+                            const std::string& what) {
+  RosReader reader(bytes, encoding, what);
+  RosCloudHead head{read_header(reader), 0};
+  const auto height = reader.number<std::uint32_t>(), width = reader.number<std::uint32_t>();
+  head.points = std::uint64_t{height} * width;
+  return head;
+}
+
+std::vector<RosPose> ros_poses(std::string_view bytes, std::string_view type,
+                               MessageEncoding encoding, const std::string& what) {
+  RosReader reader(bytes, encoding, what);
+  if (type == kRosTransform) return {read_transform(reader)};
+  if (type == kRosTransforms || type == kOldRosTransforms) {
+    constexpr std::size_t kLeastBytes = 7 * 8;
+    std::vector<RosPose> poses(reader.count(kLeastBytes));
+    for (RosPose& pose : poses) pose = read_transform(reader);
+    return poses;
+  }
+  RosPose pose;
+  pose.header = read_header(reader);
+  if (type == kRosOdometry) {
+    pose.child_frame = reader.text();
+    if (pose.child_frame.starts_with('/')) pose.child_frame.erase(0, 1);
+  }
+  read_pose(reader, pose);
+  return {pose};
+}
+
+Table ros_points(std::string_view bytes, MessageEncoding encoding, const std::string& what) {
+  RosReader reader(bytes, encoding, what);
+  read_header(reader);
+  const auto height = reader.number<std::uint32_t>(), width = reader.number<std::uint32_t>();
+  const std::vector<RecordField> fields = read_point_fields(reader);
+  const bool is_big_endian = reader.number<std::uint8_t>() != 0;
+  const std::size_t step = reader.number<std::uint32_t>();
+  const std::size_t row_step = reader.number<std::uint32_t>();
+  const std::string_view data = reader.bytes();
+  Table table;
+  if (height == 0 || width == 0) {
+    for (const RecordField& field : fields)
+      table.columns.push_back(make_column(field.name, field.type, 0));
+    return table;
+  }
+  require_fields_within(reader, fields, step);
+  const std::uint64_t row_bytes = std::uint64_t{width} * step;
+  if (step == 0 || (height > 1 && row_step < row_bytes) || row_bytes > data.size() ||
+      (data.size() - row_bytes) / std::max<std::uint64_t>(row_step, 1) < height - 1)
+    throw reader.error("has " + std::to_string(data.size()) + " bytes of points, expected " +
+                       std::to_string(height) + " rows (height) of " + std::to_string(row_step) +
+                       " bytes (row_step), each " + std::to_string(width) + " points (width) of " +
+                       std::to_string(step) + " bytes (point_step)");
+  table.rows = std::size_t{height} * width;
+  const auto* from = reinterpret_cast<const std::byte*>(data.data());
+  for (const RecordField& field : fields) {
+    Column& column = table.columns.emplace_back(make_column(field.name, field.type, table.rows));
+    const std::size_t value_bytes = type_bytes(field.type);
+    for (std::uint32_t row = 0; row < height; ++row)
+      gather_values(from + row * row_step + field.offset_bytes, step, value_bytes, is_big_endian,
+                    width, column_bytes(column) + std::size_t{row} * width * value_bytes);
+  }
+  return table;
+}
+
+}  // namespace adasplats
