@@ -119,7 +119,9 @@ class InfoCommand final : public Command {
  private:
   /// Models and meshes are described as they are; of a sequence, scans can be chosen.
   void refuse_what_does_not_fit(const std::set<std::string>& kinds) {
-    if (kinds.empty() || kinds.contains("point cloud") || kinds.contains("folder of scans")) return;
+    if (kinds.empty() || kinds.contains("point cloud") || kinds.contains("folder of scans") ||
+        kinds.contains("recording"))
+      return;
     const std::string why = "on a " + *kinds.begin();
     refuse(
         {"--label-field", "--sensor-fields", "--viewpoint", "--trajectory", "--mount",

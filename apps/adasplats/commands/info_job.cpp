@@ -10,9 +10,11 @@
 #include <unordered_set>
 
 #include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/recording_drive.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
+#include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/pipeline/model/make_model.h"
 #include "adasplats/pipeline/session/inputs.h"
@@ -268,10 +270,45 @@ FileFacts sequence_facts(const KittiSequence& sequence, const char* kind,
   return facts;
 }
 
+/// The topics of a recording, and what is understood of it as a drive.
+FileFacts recording_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
+                          const LoadOptions& options, Session& session) {
+  const RecordingSurvey survey = survey_recording(input, session.progress);
+  FileFacts facts;
+  try {
+    facts = sequence_facts(
+        open_recording_drive(drive_of(input, options), survey, session.executor, session.progress),
+        "recording", scheme, options, session);
+  } catch (const Error& error) {
+    // Which topics there are is what the user needs to mend that.
+    facts = {};
+    facts.kind = "recording";
+    facts.rows.emplace_back("no drive", error.what());
+    facts.json["no_drive"] = error.what();
+  }
+  facts.json["topics"] = nlohmann::ordered_json::array();
+  for (const auto& [name, topic] : survey.topics) {
+    constexpr double kNanoseconds = 1e9;
+    const double seconds = static_cast<double>(topic.last_ns - topic.first_ns) / kNanoseconds;
+    facts.rows.emplace_back("topic " + name,
+                            topic.topic.type + ", " + grouped(topic.messages) + " messages in " +
+                                fixed(seconds, 3) + " s" +
+                                (topic.frame.empty() ? "" : ", frame '" + topic.frame + "'"));
+    facts.json["topics"].push_back({{"name", name},
+                                    {"type", topic.topic.type},
+                                    {"messages", topic.messages},
+                                    {"seconds", seconds},
+                                    {"frame", topic.frame}});
+  }
+  return facts;
+}
+
 }  // namespace
 
 FileFacts run_info(const fs::path& input, const std::string& labels, const LoadOptions& options,
                    Session& session) {
+  if (is_recording(input))
+    return recording_facts(input, label_scheme_for(labels, {}), options, session);
   if (!options.trajectory.empty()) {
     const auto drive =
         open_frame_drive(drive_of(input, options), session.executor, session.progress);

@@ -82,6 +82,10 @@ KittiSequence open_sequence(const std::filesystem::path& folder, const LoadOptio
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
                          ProgressSink& progress, const Executor* executor = nullptr);
 
+/// The same of columns that are in memory; `path` is for messages.
+CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
+                        const LoadOptions& options, ProgressSink& progress);
+
 /// One cloud of all; `scan_poses` are of their scans. Inputs with and without an attribute together
 /// lose it, with a warning; sensor positions stay (load_cloud).
 PointCloud joined(std::vector<PointCloud>&& clouds, Vec3d origin, Trajectory scan_poses,

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -55,6 +56,8 @@ struct DriveSettings {
   PointsIn points_in = PointsIn::found;
   SweepPoints sweep_points = SweepPoints::found;
   std::filesystem::path scan_times;  ///< read_scan_times(); empty: none
+  /// Of a recording: whose clouds are the scans, and what topic says the poses; empty: found.
+  std::string topic, poses_topic;
   /// Beams start at their poses even where they are seen to start beside them (ScanBeams).
   bool beams_from_poses = false;
 
@@ -107,6 +110,18 @@ void visit_scan_settings(DriveSettings& drive, const char* group, Visit&& visit)
                 .value = "FILE",
                 .group = group},
         drive.scan_times);
+  visit(Setting{.name = "topic",
+                .help = "Of a recording (MCAP, ROS bag): the topic of points to take (default: the "
+                        "only one)",
+                .value = "NAME",
+                .group = group},
+        drive.topic);
+  visit(Setting{.name = "poses_topic",
+                .help = "Of a recording: the topic of its poses, tf, odometry or poses (default: "
+                        "tf, else the only one)",
+                .value = "NAME",
+                .group = group},
+        drive.poses_topic);
 }
 
 }  // namespace adasplats

@@ -26,9 +26,9 @@ TimeSpan FileScan::time_span() const {
   return span.first <= span.last ? span : TimeSpan{};
 }
 
-FileScan read_file_scan(const std::filesystem::path& file) {
-  ProgressSink silent;
-  CloudPart part = read_file_part(file, {}, silent);
+namespace {
+
+FileScan scan_of_part(CloudPart&& part) {
   FileScan scan;
   scan.positions = std::move(part.world_positions);
   scan.times = std::move(part.times_s);
@@ -37,6 +37,25 @@ FileScan read_file_scan(const std::filesystem::path& file) {
   scan.instances = std::move(part.cloud.instances);
   return scan;
 }
+
+class FileSource final : public ScanSource {
+ public:
+  FileScan read(const std::filesystem::path& scan) const override { return read_file_scan(scan); }
+};
+
+}  // namespace
+
+FileScan read_file_scan(const std::filesystem::path& file) {
+  ProgressSink silent;
+  return scan_of_part(read_file_part(file, {}, silent));
+}
+
+FileScan scan_of_table(const std::filesystem::path& name, const Table& table) {
+  ProgressSink silent;
+  return scan_of_part(part_of_table(name, table, {}, silent));
+}
+
+std::shared_ptr<const ScanSource> scans_in_files() { return std::make_shared<FileSource>(); }
 
 PointTimes meaning_of_times(TimeSpan first, TimeSpan last, const TimeSpan* track_s,
                             double time_offset_s) {

@@ -5,11 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "adasplats/cloud/origins/clocks.h"
 #include "adasplats/core/maths/vec3.h"
+#include "adasplats/io/base/table.h"
 
 namespace adasplats {
 
@@ -29,6 +31,18 @@ struct FileScan {
 
 /// Errors: those of read_file_part.
 FileScan read_file_scan(const std::filesystem::path& file);
+/// Of columns with the names that files have (read_file_part). `name` is for messages.
+FileScan scan_of_table(const std::filesystem::path& name, const Table& table);
+
+/// Where the scans of a drive are: in files, or in something else that has names for them.
+class ScanSource {
+ public:
+  virtual ~ScanSource() = default;
+  /// Several threads may call it at once.
+  virtual FileScan read(const std::filesystem::path& scan) const = 0;
+};
+/// Scans are files (read_file_scan()).
+std::shared_ptr<const ScanSource> scans_in_files();
 
 /// What times in the files of a drive's scans mean.
 struct PointTimes {

@@ -15,7 +15,9 @@
 #include "adasplats/cloud/load/file_scan.h"
 #include "adasplats/cloud/load/frame_evidence.h"
 #include "adasplats/cloud/load/moving_boxes.h"
+#include "adasplats/cloud/load/recording_drive.h"
 #include "adasplats/cloud/load/scan_stamps.h"
+#include "adasplats/cloud/load/sensor_drive.h"
 #include "adasplats/cloud/load/sensor_frames.h"
 #include "adasplats/cloud/origins/sweep_evidence.h"
 #include "adasplats/cloud/origins/track.h"
@@ -292,24 +294,6 @@ std::optional<KittiSequence> open_world_frames(const FrameDrive& drive,
   return sequence;
 }
 
-/// The first and last times of all files, s.
-std::vector<TimeSpan> spans_of(const std::vector<std::filesystem::path>& files,
-                               const PointTimes& times, const Executor& executor,
-                               ProgressSink& progress) {
-  std::vector<TimeSpan> spans_s(files.size());
-  progress.begin_step("times of scans", files.size());
-  std::mutex mutex;
-  std::size_t done = 0;
-  executor.for_chunks(files.size(), 1, [&](std::size_t k, std::size_t) {
-    const TimeSpan span = read_file_scan(files[k]).time_span();
-    spans_s[k] = {times.time_s(span.first, 0), times.time_s(span.last, 0)};
-    const std::lock_guard lock(mutex);
-    progress.advance(++done);
-  });
-  progress.end_step();
-  return spans_s;
-}
-
 /// Throws data where a file was measured when there are no poses.
 void require_track_of(const SensorFrames& frames, const Track& track,
                       const std::filesystem::path& trajectory) {
@@ -361,7 +345,7 @@ std::optional<SensorFrames> sensor_frames_of(const FrameDrive& drive,
   if (poses) frames.poses = std::move(*poses);
   const RigidTransform mount = drive.mount.value_or(MountSettings{}).transform();
   if (is_absolute && track) {
-    frames.spans_s = spans_of(frames.files, frames.times, executor, progress);
+    frames.spans_s = spans_of_scans(frames, executor, progress);
     require_track_of(frames, *track, drive.trajectory);
     if (frames.poses.of_scans.empty() || !are_of_the_points(frames, pose_distance_s(given))) {
       frames.poses_are_matched = false;
@@ -377,75 +361,6 @@ std::optional<SensorFrames> sensor_frames_of(const FrameDrive& drive,
   return frames;
 }
 
-std::string beams_text(const SweepFinding& finding) {
-  const Vec3d at = finding.sensor->vehicle_from_sensor.translation;
-  constexpr double kDegrees = 57.29577951308232;
-  std::array<char, 256> text{};
-  std::snprintf(text.data(), text.size(),
-                "%s found at (%.3f, %.3f, %.3f) m of the points' frame, beams %.3f deg from its "
-                "cones%s",
-                finding.sensor->cones.sensor.c_str(), at.x, at.y, at.z,
-                finding.sensor->residual_rad * kDegrees,
-                finding.way == SweepPoints::found ? "" : ", each point at its own time");
-  return text.data();
-}
-
-void tell(const KittiSequence& sequence, ProgressSink& progress) {
-  const DriveFacts& facts = sequence.facts;
-  progress.warn(sequence.folder.string() + ": points in the " + facts.points_in + "; poses " +
-                facts.poses + "; beams from " + sequence.beams.description() +
-                "; motion within a sweep: " + facts.motion +
-                (facts.clock.empty() ? "" : "; " + facts.clock));
-}
-
-/// Points in the frame of the sensor.
-KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& frames,
-                                 const std::string& because, const Executor& executor,
-                                 ProgressSink& progress) {
-  KittiSequence sequence;
-  sequence.folder = drive.folder;
-  sequence.scans = frames.files;
-  sequence.trajectory = frames.poses.of_scans;
-  sequence.reader = raw_reader();
-  sequence.facts.points_in = "sensor's frame (" + because + ")";
-  sequence.facts.poses = frames.poses.by + (drive.mount ? ", with the stated mount"
-                                                        : ", taken as those of the points' frame");
-  sequence.facts.unchecked = require_poses_that_fit(sequence, executor);
-  MovingBoxes boxes;
-  if (!drive.boxes.empty()) boxes = MovingBoxes(drive.boxes);
-  const bool has_point_times = frames.times.kind != PointTimes::Kind::none;
-  if (has_point_times && !frames.times.fits)
-    throw Error(ErrorKind::data,
-                drive.folder.string() +
-                    ": the times of its points are neither offsets within a sweep (5 ms to 1 s) "
-                    "in s, ms, us or ns nor of the clock of " +
-                    drive.trajectory.string() + "; `time_offset` states what they lack to it");
-  SweepFinding finding;
-  finding.scan_poses = frames.poses.of_scans;
-  progress.begin_step("recognise the sensor", 0);
-  if (!drive.beams_from_poses && !has_point_times && drive.sweep_points == SweepPoints::found)
-    sequence.beams = recognize_beams(sequence, executor);
-  if (drive.beams_from_poses) {
-    sequence.facts.motion = "not looked for: beams from the poses";
-  } else if (sequence.beams.from_hdl64) {
-    sequence.facts.motion = sequence.beams.sweeps_m.empty()
-                                ? "in the points, as measured"
-                                : "taken out of the points, by the cones of its beams";
-  } else {
-    finding = look_at_sweeps(frames, drive.sweep_points, executor);
-    sequence.facts.motion = finding.motion;
-    sequence.trajectory = finding.scan_poses;
-    if (finding.sensor) {
-      sequence.beams.sensor = finding.sensor->cones.sensor;
-      sequence.beams.recognised = beams_text(finding);
-    }
-  }
-  progress.end_step();
-  sequence.reader = sweep_reader(frames, std::move(finding), std::move(boxes), drive.with_classes);
-  tell(sequence, progress);
-  return sequence;
-}
-
 }  // namespace
 
 FrameDrive drive_of(const std::filesystem::path& folder, const DriveSettings& settings) {
@@ -457,6 +372,8 @@ FrameDrive drive_of(const std::filesystem::path& folder, const DriveSettings& se
           .points_in = settings.points_in,
           .sweep_points = settings.sweep_points,
           .scan_times = settings.scan_times,
+          .topic = settings.topic,
+          .poses_topic = settings.poses_topic,
           .beams_from_poses = settings.beams_from_poses};
 }
 
@@ -472,6 +389,9 @@ bool has_timed_frames(const std::filesystem::path& folder) {
 
 std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Executor& executor,
                                               ProgressSink& progress) {
+  if (is_recording(drive.folder))
+    return open_recording_drive(drive, survey_recording(drive.folder, progress), executor,
+                                progress);
   const std::vector<std::filesystem::path> files = scan_files(drive.folder);
   const auto open_as_world = [&]() -> std::optional<KittiSequence> {
     // Where the mount is stated nothing is to be recognised.
@@ -484,7 +404,7 @@ std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Exe
     auto sequence = open_as_world();
     if (sequence) {
       sequence->facts.points_in = "world (as stated)";
-      tell(*sequence, progress);
+      tell_of_drive(*sequence, progress);
     }
     return sequence;
   }
@@ -516,7 +436,7 @@ std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Exe
   auto sequence = open_as_world();
   if (sequence) {
     sequence->facts.points_in = "world (" + verdict.because + ")";
-    tell(*sequence, progress);
+    tell_of_drive(*sequence, progress);
   }
   return sequence;
 }

@@ -17,7 +17,8 @@ namespace adasplats {
 
 /// A drive whose scans are files of points, and the trajectory of the vehicle or of the sensor.
 struct FrameDrive {
-  std::filesystem::path folder;         ///< of the files, one a scan (scan_files())
+  /// Of the files, one a scan (scan_files()), or a recording (is_recording()).
+  std::filesystem::path folder;
   std::filesystem::path trajectory;     ///< as read_trajectory takes it
   std::filesystem::path boxes;          ///< of moving objects (MovingBoxes); empty: none
   bool with_classes = true;             ///< as the files have them
@@ -26,6 +27,7 @@ struct FrameDrive {
   PointsIn points_in = PointsIn::found;
   SweepPoints sweep_points = SweepPoints::found;
   std::filesystem::path scan_times;  ///< read_scan_times(); empty: none
+  std::string topic, poses_topic;    ///< of a recording (open_recording_drive()); empty: found
   bool beams_from_poses = false;     ///< of points in the sensor's frame: recognise nothing
 };
 

@@ -46,7 +46,7 @@ Looks look_at(const SensorFrames& frames) {
   const std::size_t count = std::min(kFilesOfFrames, frames.files.size());
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t index = (2 * k + 1) * frames.files.size() / (2 * count);
-    const FileScan scan = read_file_scan(frames.files[index]);
+    const FileScan scan = frames.source->read(frames.files[index]);
     const TimedPose& pose = frames.poses.of_scans[index];
     const bool timed = frames.times.kind != PointTimes::Kind::none && frames.poses.has_times &&
                        !frames.poses.track.empty() && scan.times.size() == scan.size();
@@ -81,7 +81,7 @@ FrameVerdict by_pairs(const SensorFrames& frames, const Executor& executor) {
   sequence.folder = frames.files.front().parent_path();
   sequence.scans = frames.files;
   sequence.trajectory = frames.poses.of_scans;
-  sequence.reader = raw_reader();
+  sequence.reader = raw_reader(frames.source);
   const PoseEvidence evidence = weigh_poses(sequence, executor);
   constexpr std::size_t kUnmoved = 1;  // of PoseEvidence::met
   const std::string figures = with_figures(

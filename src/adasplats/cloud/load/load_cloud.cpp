@@ -24,6 +24,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/large_vector.h"
 #include "adasplats/core/stopwatch.h"
+#include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
@@ -58,7 +59,7 @@ std::vector<Source> open_sources(std::span<const std::filesystem::path> paths,
   std::vector<Source> sources;
   for (const std::filesystem::path& path : paths) {
     std::optional<KittiSequence> drive;
-    if (!options.trajectory.empty())
+    if (!options.trajectory.empty() || is_recording(path))
       drive = open_frame_drive(drive_of(path, options), executor, progress);
     if (drive)
       sources.push_back({{path, true}, std::move(drive)});
@@ -112,6 +113,10 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Source
     throw usage(
         "`points_in`, `sweep_points` and `scan_times` are for a folder of scans, one a file, with "
         "a `trajectory`; no input is one in the frame of its sensor");
+  const bool any_recording = std::ranges::any_of(
+      sources, [](const Source& source) { return is_recording(source.input.path); });
+  if ((!options.topic.empty() || !options.poses_topic.empty()) && !any_recording)
+    throw usage("`topic` and `poses_topic` are for a recording (MCAP, ROS bag); no input is one");
   const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
   if (states_origins && !any_file)
     throw usage("a sensor position is given, but every input has its own");

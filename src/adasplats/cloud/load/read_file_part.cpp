@@ -225,7 +225,12 @@ SaidClock said_clock_of(const PointFile& file) {
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
                          ProgressSink& progress, const Executor* executor) {
   require_points(path);
-  const Table table = read_points(path, {.salvage = options.salvage, .executor = executor});
+  return part_of_table(path, read_points(path, {.salvage = options.salvage, .executor = executor}),
+                       options, progress);
+}
+
+CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
+                        const LoadOptions& options, ProgressSink& progress) {
   const PointFile file{path, table};
   for (const std::string& comment : table.comments) take_comment(file, comment, progress);
 

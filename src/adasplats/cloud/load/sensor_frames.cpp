@@ -45,16 +45,21 @@ KittiScan scan_of(FileScan&& file) {
 
 class RawReader final : public ScanReader {
  public:
+  explicit RawReader(std::shared_ptr<const ScanSource> source) : source_(std::move(source)) {}
   KittiScan read(const std::filesystem::path& file) const override {
-    return scan_of(read_file_scan(file));
+    return scan_of(source_->read(file));
   }
+
+ private:
+  std::shared_ptr<const ScanSource> source_;
 };
 
 class SweepReader final : public ScanReader {
  public:
   SweepReader(const SensorFrames& frames, SweepFinding finding, MovingBoxes boxes,
               bool with_classes)
-      : with_classes_(with_classes),
+      : source_(frames.source),
+        with_classes_(with_classes),
         track_(frames.poses.track),
         times_(frames.times),
         finding_(std::move(finding)),
@@ -64,7 +69,7 @@ class SweepReader final : public ScanReader {
   }
 
   KittiScan read(const std::filesystem::path& file) const override {
-    FileScan points = read_file_scan(file);
+    FileScan points = source_->read(file);
     const std::vector<double> times = std::move(points.times);
     const std::vector<Vec3d> given = points.positions;
     KittiScan scan = scan_of(std::move(points));
@@ -125,6 +130,7 @@ class SweepReader final : public ScanReader {
                                     : kNoLaser);
   }
 
+  std::shared_ptr<const ScanSource> source_;
   bool with_classes_;
   std::map<std::string, TimedPose> poses_;
   Trajectory track_;
@@ -174,7 +180,7 @@ class Sample {
     const std::size_t count = std::min(kLookedAt, frames.files.size());
     for (std::size_t k = 0; k < count; ++k) {
       indices_.push_back((2 * k + 1) * frames.files.size() / (2 * count));
-      scans_.push_back(read_file_scan(frames.files[indices_.back()]));
+      scans_.push_back(frames.source->read(frames.files[indices_.back()]));
     }
   }
 
@@ -269,7 +275,9 @@ std::string motion_text(const Way& way, double moved_m) {
 
 }  // namespace
 
-std::shared_ptr<const ScanReader> raw_reader() { return std::make_shared<RawReader>(); }
+std::shared_ptr<const ScanReader> raw_reader(std::shared_ptr<const ScanSource> source) {
+  return std::make_shared<RawReader>(std::move(source));
+}
 
 std::shared_ptr<const ScanReader> sweep_reader(const SensorFrames& frames, SweepFinding finding,
                                                MovingBoxes boxes, bool with_classes) {

@@ -22,7 +22,8 @@ namespace adasplats {
 /// poses.
 struct SensorFrames {
   std::vector<std::filesystem::path> files;
-  ScanPoses poses;  ///< of the frame of the points
+  std::shared_ptr<const ScanSource> source = scans_in_files();  ///< which reads them
+  ScanPoses poses;                                              ///< of the frame of the points
   PointTimes times;
   /// Of absolute times, first and last of each file, s in the clock of the poses.
   std::vector<TimeSpan> spans_s;
@@ -45,7 +46,7 @@ SweepFinding look_at_sweeps(const SensorFrames& frames, SweepPoints stated,
                             const Executor& executor);
 
 /// Reads the scans as they stand.
-std::shared_ptr<const ScanReader> raw_reader();
+std::shared_ptr<const ScanReader> raw_reader(std::shared_ptr<const ScanSource> source);
 /// Reads them brought to the frames of their poses, each beam from where the sensor was.
 /// Points in `boxes` at their own times (or that of their scan) are marked.
 std::shared_ptr<const ScanReader> sweep_reader(const SensorFrames& frames, SweepFinding finding,

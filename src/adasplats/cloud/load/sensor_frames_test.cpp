@@ -12,6 +12,7 @@
 #include <string>
 
 #include "adasplats/cloud/beams/empty_beams.h"
+#include "adasplats/cloud/load/court_test.h"
 #include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/constants.h"
@@ -21,19 +22,6 @@
 
 namespace adasplats {
 namespace {
-
-/// Where a ray ends in a court of 44 x 24 m with walls of 3 m; nothing in the sky.
-std::optional<double> range_in_court(Vec3d origin, Vec3d way) {
-  const Vec3d low = {-20, -12, 0}, high = {24, 12, 100};
-  double range_m = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (way[axis] == 0) continue;
-    const double wall = way[axis] > 0 ? high[axis] : low[axis];
-    range_m = std::min(range_m, (wall - origin[axis]) / way[axis]);
-  }
-  if (!((origin + range_m * way).z < 3)) return std::nullopt;
-  return range_m;
-}
 
 struct Box {
   Vec3d low, high;
@@ -51,12 +39,6 @@ std::optional<double> range_to(const Box& box, Vec3d origin, Vec3d way) {
   }
   if (enters_m > leaves_m) return std::nullopt;
   return enters_m;
-}
-
-/// A curve at a speed that changes: an even drive would not tell one clock from another.
-RigidTransform sensor_at(double time_s) {
-  return {rotation_from_yaw_pitch_roll(0.6 * time_s, 0, 0),
-          {-6 + 6 * time_s + 4 * time_s * time_s, 2 * time_s, 1.9}};
 }
 
 /// Between poses the path is taken for straight: at 8 m/s^2 with a pose each 12.5 ms it is off by

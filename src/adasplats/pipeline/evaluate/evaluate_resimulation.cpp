@@ -10,6 +10,7 @@
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/register_scans.h"
+#include "adasplats/io/bags/recording.h"
 #include "adasplats/pipeline/provenance/metrics_json.h"
 #include "adasplats/pipeline/session/inputs.h"
 
@@ -57,17 +58,20 @@ KittiSequence open_frames(const HeldOutScans& scans, Session& session) {
 }  // namespace
 
 KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
-  if (scans.trajectory.empty() && !scans.boxes.empty())
+  const bool is_drive = !scans.trajectory.empty() || is_recording(scans.sequence);
+  if (!is_drive && (!scans.topic.empty() || !scans.poses_topic.empty()))
+    throw Error(ErrorKind::usage, "`topic` and `poses_topic` are for a recording (MCAP, ROS bag)");
+  if (!is_drive && !scans.boxes.empty())
     throw Error(ErrorKind::usage, "`boxes` are for scans with times and a `trajectory`");
   const bool states_frames = scans.mount || scans.time_offset_s || !scans.scan_times.empty() ||
                              !(scans.mount_rotation_deg == Vec3d{}) ||
                              scans.points_in != PointsIn::found ||
                              scans.sweep_points != SweepPoints::found;
-  if (scans.trajectory.empty() && states_frames)
+  if (!is_drive && states_frames)
     throw Error(ErrorKind::usage,
                 "`mount`, `mount_rotation`, `time_offset`, `points_in`, `sweep_points` and "
                 "`scan_times` are for a folder of scans with a `trajectory`");
-  if (!scans.trajectory.empty()) return with_scans(open_frames(scans, session), scans.scans);
+  if (is_drive) return with_scans(open_frames(scans, session), scans.scans);
   KittiSequence all = open_kitti_sequence(resolve_cloud_input(scans.sequence));
   all.facts.unchecked = require_poses_that_fit(all, session.executor);
   if (!scans.beams_from_poses) all.beams = recognize_beams(all, session.executor);

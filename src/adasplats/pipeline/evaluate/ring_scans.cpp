@@ -10,6 +10,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/realism/features.h"
 #include "adasplats/evaluate/realism/ring_scan.h"
+#include "adasplats/io/bags/recording.h"
 #include "adasplats/pipeline/session/inputs.h"
 
 namespace adasplats {
@@ -27,6 +28,11 @@ bool needs_trajectory(const std::filesystem::path& given) {
 KittiSequence open_ring_scans(const std::filesystem::path& given,
                               const std::filesystem::path& trajectory, Session& session) {
   require_input(given);
+  if (is_recording(given)) {
+    FrameDrive drive{.folder = given, .trajectory = trajectory};
+    drive.with_classes = false;
+    return open_frame_drive(drive, session.executor, session.progress).value();
+  }
   if (!std::filesystem::is_directory(given))
     throw Error(ErrorKind::usage, given.string() + ": is a file; scans are a sequence or a folder");
   const std::filesystem::path folder = resolve_cloud_input(given);

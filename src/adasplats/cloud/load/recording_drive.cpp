@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/recording_drive.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "adasplats/cloud/load/file_scan.h"
+#include "adasplats/cloud/load/frame_evidence.h"
+#include "adasplats/cloud/load/recording_poses.h"
+#include "adasplats/cloud/load/sensor_drive.h"
+#include "adasplats/cloud/origins/track.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/bags/ros_values.h"
+
+namespace adasplats {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Reads scans that are messages by names that are made up for them.
+class RecordedScans final : public ScanSource {
+ public:
+  RecordedScans(std::shared_ptr<const Recording> recording, MessageEncoding encoding,
+                std::map<fs::path, MessagePlace> places)
+      : recording_(std::move(recording)), encoding_(encoding), places_(std::move(places)) {}
+  FileScan read(const fs::path& scan) const override {
+    return scan_of_table(scan, ros_points(recording_->message(places_.at(scan)), encoding_,
+                                          scan.string() + ": the message"));
+  }
+
+ private:
+  std::shared_ptr<const Recording> recording_;
+  MessageEncoding encoding_;
+  std::map<fs::path, MessagePlace> places_;
+};
+
+/// "drive.mcap/000012": by its number among the clouds of the topic.
+fs::path scan_name(const fs::path& recording, std::size_t number) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%06zu", number);
+  return recording / text.data();
+}
+
+/// A scan with times of its points, which tell what those of all mean.
+struct TimedScan {
+  TimeSpan times;
+  double stamp_s = 0;
+};
+
+constexpr double kMostFromStamp_s = 1;  // a sweep is at most that long
+
+/// What the times of points are, by two scans: offsets from the stamp, or near it in its clock, in
+/// the one unit in which a sweep takes 5 ms to a second. Errors: data where they are neither.
+PointTimes meaning_by_stamps(const TimedScan& first, const TimedScan& last, double offset_s,
+                             const fs::path& recording) {
+  constexpr double kShortest_s = 0.005, kLongest_s = 1;
+  const double length =
+      std::max(first.times.last - first.times.first, last.times.last - last.times.first);
+  PointTimes times;
+  if (!(length > 0)) return times;  // none, or one a scan, which says nothing more than the stamp
+  for (const double unit_s : {1.0, 1e-3, 1e-6, 1e-9}) {
+    if (unit_s * length < kShortest_s || unit_s * length > kLongest_s) continue;
+    times.unit_s = unit_s;
+    const auto near_to = [&](const auto& target_of) {
+      return std::ranges::all_of(std::array{first, last}, [&](const TimedScan& scan) {
+        return std::fabs(unit_s * scan.times.first - target_of(scan)) <= kMostFromStamp_s &&
+               std::fabs(unit_s * scan.times.last - target_of(scan)) <= kMostFromStamp_s;
+      });
+    };
+    if (near_to([](const TimedScan&) { return 0.0; })) {
+      times.kind = PointTimes::Kind::offsets;
+      return times;
+    }
+    if (near_to([](const TimedScan& scan) { return scan.stamp_s; })) {
+      times.kind = PointTimes::Kind::absolute;
+      times.shift_s = offset_s;
+      return times;
+    }
+  }
+  std::array<char, 256> text{};
+  std::snprintf(text.data(), text.size(),
+                ": the times of its points, %.9g to %.9g in the cloud of %.3f s, are neither "
+                "offsets within a sweep (5 ms to 1 s) nor near that time, in s, ms, us or ns",
+                first.times.first, first.times.last, first.stamp_s);
+  throw Error(ErrorKind::data, recording.string() + text.data());
+}
+
+/// Scans with points, and what of them is known.
+struct RecordedDrive {
+  SensorFrames frames;
+  std::vector<double> stamps_s;  ///< in the recording's clock
+};
+
+RecordedDrive scans_of(const RecordingSurvey& survey, const TopicSurvey& topic,
+                       ProgressSink& progress) {
+  const fs::path& path = survey.recording->path();
+  RecordedDrive scans;
+  std::map<fs::path, MessagePlace> places;
+  for (std::size_t k = 0; k < topic.clouds.size(); ++k) {
+    const CloudMessage& cloud = topic.clouds[k];
+    if (cloud.points == 0) continue;
+    if (!scans.stamps_s.empty() && !(cloud.stamp_s > scans.stamps_s.back()))
+      throw Error(ErrorKind::data, path.string() + ": two clouds of " + topic.topic.name +
+                                       " have the same time in their headers, " +
+                                       std::to_string(cloud.stamp_s) +
+                                       " s; expected one of its own each");
+    const fs::path name = scan_name(path, k);
+    places.emplace(name, cloud.place);
+    scans.frames.files.push_back(name);
+    scans.stamps_s.push_back(cloud.stamp_s);
+  }
+  const std::size_t empty = topic.clouds.size() - scans.stamps_s.size();
+  if (scans.stamps_s.empty())
+    throw Error(ErrorKind::data,
+                path.string() + ": the clouds of " + topic.topic.name + " have no points");
+  if (empty > 0)
+    progress.warn(path.string() + ": " + std::to_string(empty) + " clouds of " + topic.topic.name +
+                  " have no points, left out");
+  scans.frames.source =
+      std::make_shared<RecordedScans>(survey.recording, topic.topic.encoding, std::move(places));
+  return scans;
+}
+
+/// Leaves out the scans of which not all times have poses. `within_s`: when points of a scan were
+/// measured, from its stamp.
+void leave_out_uncovered(RecordedDrive& scans, const Track& track, TimeSpan within_s,
+                         const fs::path& path, ProgressSink& progress) {
+  const TimeSpan covered = track.covered_s();
+  const auto is_known = [&](double stamp_s) {
+    const double begin_s = stamp_s + within_s.first, end_s = stamp_s + within_s.last;
+    return begin_s >= covered.first && end_s <= covered.last &&
+           std::ranges::none_of(
+               track.gaps, [&](TimeSpan gap) { return end_s > gap.first && begin_s < gap.last; });
+  };
+  const std::size_t all = scans.stamps_s.size();
+  const double first_s = scans.stamps_s.front(), last_s = scans.stamps_s.back();
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < all; ++k) {
+    if (!is_known(scans.stamps_s[k])) continue;
+    scans.stamps_s[kept] = scans.stamps_s[k];
+    scans.frames.files[kept++] = scans.frames.files[k];
+  }
+  if (kept == all) return;
+  std::array<char, 320> text{};
+  std::snprintf(text.data(), text.size(),
+                ": %zu of %zu clouds (%.3f to %.3f s) were made when there are no poses (these are "
+                "of %.3f to %.3f s, with %zu gaps); nothing is extrapolated",
+                all - kept, all, first_s, last_s, track.measured_s.first, track.measured_s.last,
+                track.gaps.size());
+  if (2 * kept < all)
+    throw Error(ErrorKind::data, path.string() + text.data() +
+                                     ": the clocks differ (`time_offset` states by how much), or "
+                                     "the poses are of another drive");
+  scans.stamps_s.resize(kept);
+  scans.frames.files.resize(kept);
+  progress.warn(path.string() + text.data() + ", so they are left out");
+}
+
+/// Sets what the times of the points mean; gives when points of a scan were measured, from its
+/// stamp.
+TimeSpan understand_times(RecordedDrive& scans, double offset_s, const fs::path& path) {
+  const auto look_at = [&](std::size_t k) {
+    return TimedScan{scans.frames.source->read(scans.frames.files[k]).time_span(),
+                     scans.stamps_s[k]};
+  };
+  const TimedScan first = look_at(0), last = look_at(scans.stamps_s.size() - 1);
+  PointTimes& times = scans.frames.times;
+  times = meaning_by_stamps(first, last, offset_s, path);
+  if (times.kind == PointTimes::Kind::none) return {0, 0};
+  const auto from_stamp = [&](const TimedScan& scan, double time) {
+    const bool is_absolute = times.kind == PointTimes::Kind::absolute;
+    return times.unit_s * time - (is_absolute ? scan.stamp_s : 0);
+  };
+  return {std::min(from_stamp(first, first.times.first), from_stamp(last, last.times.first)),
+          std::max(from_stamp(first, first.times.last), from_stamp(last, last.times.last))};
+}
+
+void require_options_of_recordings(const FrameDrive& drive) {
+  if (!drive.scan_times.empty())
+    throw Error(ErrorKind::usage,
+                drive.folder.string() +
+                    ": the clouds of a recording have times in their headers; `scan_times` is for "
+                    "folders of files");
+  if (drive.points_in == PointsIn::world)
+    throw Error(ErrorKind::usage,
+                drive.folder.string() +
+                    ": clouds of a recording are taken in the frame of their sensor; `points_in` "
+                    "world is for folders of files");
+  if (!drive.trajectory.empty() && !drive.poses_topic.empty())
+    throw Error(ErrorKind::usage,
+                drive.folder.string() + ": `trajectory` and `poses_topic` both give the poses");
+}
+
+}  // namespace
+
+KittiSequence open_recording_drive(const FrameDrive& given, const RecordingSurvey& survey,
+                                   const Executor& executor, ProgressSink& progress) {
+  FrameDrive drive = given;
+  require_options_of_recordings(drive);
+  const TopicSurvey& topic = topic_of_clouds(survey, drive.topic);
+  RecordedDrive scans = scans_of(survey, topic, progress);
+  const RecordedPoses found = poses_of_clouds(drive, survey, topic, scans.stamps_s);
+  const double offset_s = drive.time_offset_s.value_or(0);
+  const TimeSpan within_s = understand_times(scans, offset_s, drive.folder);
+  for (double& stamp_s : scans.stamps_s) stamp_s += offset_s;
+  const Track track = track_of(found.poses);
+  leave_out_uncovered(scans, track, within_s, drive.folder, progress);
+  SensorFrames& frames = scans.frames;
+  frames.poses = {{}, track.poses, found.by, true};
+  for (const double stamp_s : scans.stamps_s)
+    frames.poses.of_scans.push_back({stamp_s, interpolate(track.poses, stamp_s)});
+  if (frames.times.kind == PointTimes::Kind::absolute)
+    frames.spans_s = spans_of_scans(frames, executor, progress);
+  std::string because = found.because;
+  if (drive.points_in == PointsIn::sensor) because = "as stated";
+  if (because.empty()) {
+    progress.begin_step("frame of the points", 0);
+    const FrameVerdict verdict = find_frame(frames, executor);
+    progress.end_step();
+    because = verdict.because;
+    if (verdict.points_in != PointsIn::sensor)
+      throw Error(ErrorKind::data,
+                  drive.folder.string() + ": that the points of " + topic.topic.name + " (frame '" +
+                      topic.frame + "') are in the frame of the sensor " +
+                      (verdict.points_in == PointsIn::world ? "is wrong" : "is not clear") + " (" +
+                      because + "); `points_in` states it");
+  }
+  if (drive.trajectory.empty()) drive.trajectory = drive.folder;  // for messages about clocks
+  KittiSequence sequence = open_sensor_frames(drive, frames, because, executor, progress);
+  return sequence;
+}
+
+}  // namespace adasplats

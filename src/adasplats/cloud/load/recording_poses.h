@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/recording_survey.h"
+
+namespace adasplats {
+
+/// The topic whose clouds are the scans: the stated one, else the only one. Errors: usage with a
+/// list of those that there are.
+const TopicSurvey& topic_of_clouds(const RecordingSurvey& survey, const std::string& stated);
+
+/// Poses over time of what carries the clouds' frame.
+struct RecordedPoses {
+  Trajectory poses;     ///< of the frame of the clouds
+  std::string by;       ///< how they were found, for messages
+  std::string because;  ///< what says that the clouds are in a frame that moves; empty: nothing
+};
+
+/// As open_recording_drive() chooses them; `stamps_s` are the times of the clouds, which poses of a
+/// trajectory without times get. Errors: usage, data.
+RecordedPoses poses_of_clouds(const FrameDrive& drive, const RecordingSurvey& survey,
+                              const TopicSurvey& clouds, const std::vector<double>& stamps_s);
+
+}  // namespace adasplats
