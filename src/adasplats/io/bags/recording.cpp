@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/io/bags/recording.h"
 
+#include <algorithm>
+#include <optional>
+
 #include "adasplats/core/error.h"
+#include "adasplats/io/base/input_file.h"
+#include "adasplats/io/base/line_reader.h"
 #include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
@@ -10,17 +15,83 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::unique_ptr<RecordingFile> open_recording_file(const fs::path& path) {
+constexpr const char* kMetadataName = "metadata.yaml";
+constexpr std::string_view kMetadataKey = "rosbag2_bagfile_information";
+
+/// The way to open each kind, by the extension.
+struct RecordingKind {
+  std::string_view extension;
+  std::unique_ptr<RecordingFile> (*open)(const fs::path& path);
+};
+constexpr RecordingKind kRecordingKinds[] = {
+    {".mcap", &open_mcap}, {".bag", &open_rosbag}, {".db3", &open_sqlite}};
+
+const RecordingKind* kind_of_recording(const fs::path& path) {
   const std::string extension = lower_case(path.extension().string());
-  if (extension == ".mcap") return open_mcap(path);
-  throw data_error({path, {}, {}},
-                   "unknown kind of recording " + shown(extension) + ", understood are .mcap");
+  for (const RecordingKind& kind : kRecordingKinds)
+    if (kind.extension == extension) return &kind;
+  return nullptr;
+}
+
+std::unique_ptr<RecordingFile> open_recording_file(const fs::path& path) {
+  if (const RecordingKind* const kind = kind_of_recording(path)) return kind->open(path);
+  throw data_error({path, {}, {}}, "unknown kind of recording " + shown(path.extension().string()) +
+                                       ", understood are .mcap, .bag and .db3");
+}
+
+/// "value" of "  key: value", also in quotes; nothing of lines of other keys.
+std::optional<std::string> yaml_value(std::string_view line, std::string_view key) {
+  line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+  if (!line.starts_with(key)) return std::nullopt;
+  line.remove_prefix(key.size());
+  const std::size_t begin = line.find_first_not_of(" \"'");
+  if (begin == std::string_view::npos) return std::string();
+  const std::size_t end = line.find_last_not_of(" \"'\r");
+  return std::string(line.substr(begin, end + 1 - begin));
 }
 
 }  // namespace
 
+std::vector<fs::path> files_of_ros2_bag(const fs::path& folder) {
+  const fs::path metadata = folder / kMetadataName;
+  InputFile input(metadata);
+  LineReader reader(input);
+  std::vector<fs::path> files;
+  bool in_list = false;
+  while (const auto line = reader.next_filled()) {
+    const auto packed = yaml_value(*line, "compression_mode:");
+    if (packed && !packed->empty() && lower_case(*packed) != "none")
+      throw data_error({metadata, {}, reader.line()},
+                       "the bag is packed (" + *packed +
+                           "), which is not read: unpack it with `ros2 bag convert`");
+    const auto file = in_list ? yaml_value(*line, "- ") : std::nullopt;
+    if (file) {
+      const fs::path name = *file;
+      // Up to version 3 of the format the name of the folder is before that of the file; beyond its
+      // folder a bag has no business.
+      const fs::path above = name.parent_path();
+      if (!name.has_filename() || name.filename() == ".." ||
+          !(above.empty() || above == fs::absolute(folder / "").parent_path().filename()))
+        throw data_error({metadata, {}, reader.line()},
+                         "expected the name of a file beside it, found " + shown(*file));
+      files.push_back(folder / name.filename());
+    }
+    in_list = file || yaml_value(*line, "relative_file_paths:");
+  }
+  if (files.empty())
+    throw Error(
+        ErrorKind::data,
+        metadata.string() + ": lists no files (relative_file_paths), expected .mcap or .db3");
+  return files;
+}
+
 Recording::Recording(const fs::path& path) : path_(path) {
-  files_.push_back(open_recording_file(path));
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) {
+    files_.push_back(open_recording_file(path));
+    return;
+  }
+  for (const fs::path& file : files_of_ros2_bag(path)) files_.push_back(open_recording_file(file));
 }
 
 void Recording::for_each_message(MessageVisitor visit) const {
@@ -36,7 +107,17 @@ std::string Recording::message(const MessagePlace& place) const {
   return files_.at(place.file)->message(place);
 }
 
-bool is_recording(const fs::path& path) { return lower_case(path.extension().string()) == ".mcap"; }
+bool is_recording(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) return kind_of_recording(path) != nullptr;
+  const fs::path metadata = path / kMetadataName;
+  if (!fs::is_regular_file(metadata, ignored) || fs::is_empty(metadata, ignored)) return false;
+  InputFile file(metadata);
+  const auto size =
+      static_cast<std::size_t>(std::min<std::uint64_t>(file.size_bytes(), kMetadataKey.size()));
+  const auto bytes = file.peek(size);
+  return std::string_view(reinterpret_cast<const char*>(bytes.data()), size) == kMetadataKey;
+}
 
 std::string short_type_name(std::string_view type) {
   constexpr std::string_view kMiddle = "/msg/";

@@ -70,7 +70,8 @@ class Recording {
   std::vector<std::unique_ptr<RecordingFile>> files_;
 };
 
-/// Whether a path is a recording by its name: .mcap, .bag, .db3, a folder with metadata.yaml.
+/// Whether a path is a recording by its name: .mcap, .bag, .db3, a folder with the metadata.yaml of
+/// a ROS 2 bag.
 bool is_recording(const std::filesystem::path& path);
 
 /// "sensor_msgs/PointCloud2" of "sensor_msgs/msg/PointCloud2".
@@ -78,5 +79,11 @@ std::string short_type_name(std::string_view type);
 
 // One each of the formats (recording.cpp chooses).
 std::unique_ptr<RecordingFile> open_mcap(const std::filesystem::path& path);
+std::unique_ptr<RecordingFile> open_rosbag(const std::filesystem::path& path);
+std::unique_ptr<RecordingFile> open_sqlite(const std::filesystem::path& path);
+
+/// The files of a ROS 2 bag by its metadata.yaml, in their order. Errors: data (no such list, a
+/// file that is missing, files that are packed as a whole or message by message).
+std::vector<std::filesystem::path> files_of_ros2_bag(const std::filesystem::path& folder);
 
 }  // namespace adasplats

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/io/base/base64.h"
 #include "adasplats/io/base/test_files.h"
 
 namespace adasplats::bags_test {
@@ -167,6 +168,83 @@ inline std::string mcap_of(const std::vector<Said>& messages) {
   std::vector<std::string> topics;
   const std::string records = mcap_records(messages, topics);
   return mcap_file(mcap_chunk("", records, records.size()));
+}
+
+/// A record of a ROS 1 bag: fields of its header, and its data.
+inline std::string bag_record(const std::vector<std::pair<std::string, std::string>>& fields,
+                              const std::string& data) {
+  std::string header;
+  for (const auto& [name, value] : fields) header += mcap_text(name + "=" + value);
+  return mcap_text(header) + mcap_text(data);
+}
+
+/// Records of connections and messages, each topic once.
+inline std::string bag_records(const std::vector<Said>& messages,
+                               std::vector<std::string>& topics) {
+  std::string records;
+  for (const Said& said : messages) {
+    std::uint32_t id = 0;
+    while (id < topics.size() && topics[id] != said.topic) ++id;
+    if (id == topics.size()) {
+      topics.push_back(said.topic);
+      const std::string described = mcap_text("topic=" + said.topic) +
+                                    mcap_text("type=" + said.type) + mcap_text("md5sum=*") +
+                                    mcap_text("message_definition=d");
+      records +=
+          bag_record({{"op", "\7"}, {"conn", bytes_of(id)}, {"topic", said.topic}}, described);
+    }
+    const std::string time = bytes_of(static_cast<std::uint32_t>(said.time_ns / 1'000'000'000)) +
+                             bytes_of(static_cast<std::uint32_t>(said.time_ns % 1'000'000'000));
+    records += bag_record({{"op", "\2"}, {"conn", bytes_of(id)}, {"time", time}}, said.bytes);
+  }
+  return records;
+}
+
+inline std::string bag_chunk(const std::string& packing, const std::string& packed,
+                             std::uint32_t size) {
+  return bag_record({{"op", "\5"}, {"compression", packing}, {"size", bytes_of(size)}}, packed);
+}
+
+/// A bag around records, with one chunk or none; `index_pos` 0: it was not closed.
+inline std::string bag_file(const std::string& records, std::uint64_t index_pos = 1) {
+  const std::uint32_t chunks = records.find("compression=") == std::string::npos ? 0 : 1;
+  const std::string head = bag_record({{"op", "\3"},
+                                       {"index_pos", bytes_of(index_pos)},
+                                       {"conn_count", bytes_of(std::uint32_t{0})},
+                                       {"chunk_count", bytes_of(chunks)}},
+                                      std::string(100, ' '));
+  return "#ROSBAG V2.0\n" + head + records;
+}
+
+/// Messages in one chunk that is not packed.
+inline std::string bag_of(const std::vector<Said>& messages) {
+  std::vector<std::string> topics;
+  const std::string records = bag_records(messages, topics);
+  return bag_file(bag_chunk("none", records, static_cast<std::uint32_t>(records.size())));
+}
+
+/// As SQLite 3 made it, in pages of 512 bytes: the messages (5 ns, /a, "first"), (7, /b, 30 times
+/// 'x'), (9, /a, ""), of pkg/msg/One and pkg/msg/Two.
+inline std::string small_db3() {
+  const auto base64 = [] {
+    std::string text;
+    text += "U1FMaXRlIGZvcm1hdCAzAAIAAQEAQCAgAAAAAwAAAAMAAAAAAAAAAAAAAAIAAAAEAAAAAAAAAAAAAAAB";
+    text.append(47, 'A');
+    text += "DAC5jAQ0AAAACANsAAXAA2w";
+    text.append(142, 'A');
+    text +=
+        "gRICBxcdHQGBd3RhYmxlbWVzc2FnZXNtZXNzYWdlcwNDUkVBVEUgVEFCTEUgbWVzc2FnZXMoaWQgSU5URUdFUiBQ"
+        "UklNQVJZIEtFWSx0b3BpY19pZCBJTlRFR0VSIE5PVCBOVUxMLHRpbWVzdGFtcCBJTlRFR0VSIE5PVCBOVUxMLGRh"
+        "dGEgQkxPQiBOT1QgTlVMTCmBDQEHFxkZAYF1dGFibGV0b3BpY3N0b3BpY3MCQ1JFQVRFIFRBQkxFIHRvcGljcyhp"
+        "ZCBJTlRFR0VSIFBSSU1BUlkgS0VZLG5hbWUgVEVYVCBOT1QgTlVMTCx0eXBlIFRFWFQgTk9UIE5VTEwsc2VyaWFs"
+        "aXphdGlvbl9mb3JtYXQgVEVYVCBOT1QgTlVMTCkNAAAAAgHSAAHpAdI";
+    text.append(605, 'A');
+    text += "FQIFABEjEy9icGtnL21zZy9Ud29jZHIVAQUAESMTL2Fwa2cvbXNnL09uZWNkcg0AAAADAcQAAfMBzAHE";
+    text.append(584, 'A');
+    text += "BgMFAAkBDAklAgUAAQFIAgd4eHh4eHh4eHh4eHh4eHh4eHh4eHh4eHh4eHh4eHgLAQUACQEWBWZpcnN0";
+    return text;
+  };
+  return from_base64(base64()).value();
 }
 
 }  // namespace adasplats::bags_test

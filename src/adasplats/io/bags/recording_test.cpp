@@ -6,6 +6,7 @@
 
 #include "adasplats/io/bags/recording_files_test.h"
 #include "adasplats/io/bags/unpack.h"
+#include "adasplats/io/base/mutator_test.h"
 #include "adasplats/io/mcap/mcap_file.h"
 
 namespace adasplats {
@@ -48,6 +49,27 @@ void expect_said(const std::filesystem::path& path, const std::vector<Said>& exp
     EXPECT_EQ(found[k].bytes, expected[k].bytes);
   }
 }
+
+// Oracle: what the packers of zstd, lz4 and bzip2 made of 1000 zeros.
+struct PackedZeros {
+  const char* packing;
+  std::string bytes;
+};
+const PackedZeros kPackedZeros[] = {
+    {"zstd",
+     std::string("\x28\xb5\x2f\xfd\x64\xe8\x02\x4d\x00\x00\x10\x00\x00\x01\x00\xe3\x2b\x80\x05\x5a"
+                 "\x07\x44\x79",
+                 23)},
+    {"lz4",
+     std::string("\x04\x22\x4d\x18\x68\x40\xe8\x03\x00\x00\x00\x00\x00\x00\xf1\x0e\x00\x00\x00\x1f"
+                 "\x00\x01\x00\xff\xff\xff\xd2\x50\x00\x00\x00\x00\x00\x00\x00\x00\x00",
+                 37)},
+    {"bz2",
+     std::string("\x42\x5a\x68\x39\x31\x41\x59\x26\x53\x59\x01\xe8\xd0\x60\x00\x00\x01\xc0\x01\xc0"
+                 "\x00\x00\x80\x00\x08\x20\x00\x20\xaa\x6d\x41\x98\xba\x83\xc5\xdc\x91\x4e\x14\x24"
+                 "\x00\x7a\x34\x18\x00",
+                 45)},
+};
 
 // Oracle: files put together by the letter of the specification.
 TEST(McapRecording, ChunksAndLooseRecordsGiveTheirMessages) {
@@ -105,26 +127,131 @@ TEST(McapRecording, DamageIsAnError) {
   expect_error(ErrorKind::data, {"channel 771"}, read(mcap_file(orphan)));
 }
 
-// Oracle: what the packers of zstd, lz4 and bzip2 made of 1000 zeros.
-struct PackedZeros {
-  const char* packing;
-  std::string bytes;
-};
-const PackedZeros kPackedZeros[] = {
-    {"zstd",
-     std::string("\x28\xb5\x2f\xfd\x64\xe8\x02\x4d\x00\x00\x10\x00\x00\x01\x00\xe3\x2b\x80\x05\x5a"
-                 "\x07\x44\x79",
-                 23)},
-    {"lz4",
-     std::string("\x04\x22\x4d\x18\x68\x40\xe8\x03\x00\x00\x00\x00\x00\x00\xf1\x0e\x00\x00\x00\x1f"
-                 "\x00\x01\x00\xff\xff\xff\xd2\x50\x00\x00\x00\x00\x00\x00\x00\x00\x00",
-                 37)},
-    {"bz2",
-     std::string("\x42\x5a\x68\x39\x31\x41\x59\x26\x53\x59\x01\xe8\xd0\x60\x00\x00\x01\xc0\x01\xc0"
-                 "\x00\x00\x80\x00\x08\x20\x00\x20\xaa\x6d\x41\x98\xba\x83\xc5\xdc\x91\x4e\x14\x24"
-                 "\x00\x7a\x34\x18\x00",
-                 45)},
-};
+// Oracle: bags put together by the letter of the specification.
+TEST(RosbagRecording, ChunksAndLooseRecordsGiveTheirMessages) {
+  const TemporaryFolder folder;
+  expect_said(folder.file("chunk.bag", bags_test::bag_of(kSaid)));
+  std::vector<std::string> topics;
+  expect_said(folder.file("loose.bag", bags_test::bag_file(bags_test::bag_records(kSaid, topics))));
+  EXPECT_TRUE(contents_of(folder.file("none.bag", bags_test::bag_file(""))).empty());
+}
+
+TEST(RosbagRecording, DamageIsAnError) {
+  const TemporaryFolder folder;
+  const std::string whole = bags_test::bag_of(kSaid);
+  const auto read = [&](const std::string& content) {
+    const auto path = folder.file("a.bag", content);
+    return [path] { contents_of(path); };
+  };
+  expect_error(ErrorKind::data, {"a.bag", "2.0"}, read("#ROSBAG V1.2\n"));
+  expect_error(ErrorKind::data, {"a.bag", "no bag header"}, read("#ROSBAG V2.0\n"));
+  for (std::size_t size = 13; size < whole.size(); size += 37)
+    expect_error(ErrorKind::data, {"a.bag"}, read(whole.substr(0, size)));
+  const std::size_t head = bags_test::bag_record({}, "").size() + bags_test::bag_file("").size();
+  expect_error(ErrorKind::data, {"number of chunks"},
+               read(whole.substr(0, head - bags_test::bag_record({}, "").size())));
+  expect_error(ErrorKind::data, {"not closed"}, read(bags_test::bag_file("", 0)));
+  std::vector<std::string> topics;
+  const std::string records = bags_test::bag_records(kSaid, topics);
+  expect_error(ErrorKind::data, {"says"},
+               read(bags_test::bag_file(bags_test::bag_chunk("none", records, 5))));
+  const auto none = [](const char* op, const std::string& name) {
+    return bags_test::bag_file(bags_test::bag_record({{"op", op}, {name, "12345678"}}, ""));
+  };
+  expect_error(ErrorKind::data, {"'conn'"}, read(none("\2", "time")));
+  expect_error(ErrorKind::data, {"'conn'", "8 bytes, expected 4"}, read(none("\2", "conn")));
+  expect_error(ErrorKind::data, {"'op'"}, read(bags_test::bag_file(bags_test::bag_record({}, ""))));
+}
+
+/// Runs what needs SQLite; where the program was built without, expects that to be said.
+template <class F>
+void with_sqlite(F&& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::unavailable) throw;
+    EXPECT_NE(std::string(error.what()).find("libsqlite3-dev"), std::string::npos);
+  }
+}
+
+const std::vector<Said> kSaidInDb3 = {{"/a", "pkg/msg/One", 5, "first"},
+                                      {"/b", "pkg/msg/Two", 7, std::string(30, 'x')},
+                                      {"/a", "pkg/msg/One", 9, ""}};
+
+// Oracle: what was put into the database with SQLite's own program.
+TEST(SqliteRecording, GivesItsMessages) {
+  const TemporaryFolder folder;
+  with_sqlite([&] { expect_said(folder.file("a.db3", bags_test::small_db3()), kSaidInDb3); });
+  const std::filesystem::path text = folder.file("b.db3", "this is no database, but some text");
+  const Error error = io_test::error_of([&] { contents_of(text); });
+  EXPECT_TRUE(error.kind() == ErrorKind::data || error.kind() == ErrorKind::unavailable);
+  EXPECT_NE(std::string(error.what()).find("b.db3"), std::string::npos) << error.what();
+}
+
+TEST(Ros2Bag, AFolderIsItsFilesInTheirOrder) {
+  const TemporaryFolder folder;
+  const std::filesystem::path bag = folder.path() / "drive";
+  std::filesystem::create_directories(bag);
+  const auto describe = [&](const std::string& files, const std::string& more = "") {
+    io_test::write_bytes(bag / "metadata.yaml",
+                         "rosbag2_bagfile_information:\n  version: 5\n"
+                         "  relative_file_paths:\n" +
+                             files + "  duration:\n    - 7\n" + more);
+  };
+  io_test::write_bytes(bag / "drive_0.mcap", mcap_of({kSaid[0]}));
+  io_test::write_bytes(bag / "drive_1.mcap", mcap_of({kSaid[1], kSaid[2]}));
+  EXPECT_FALSE(is_recording(bag));
+  describe("    - drive_0.mcap\n    - \"drive_1.mcap\"\n", "  compression_mode: \"\"\n");
+  EXPECT_TRUE(is_recording(bag));
+  expect_said(bag);
+  describe("    - drive/drive_0.mcap\n    - drive/drive_1.mcap\n");  // version 3
+  expect_said(bag);
+  describe("  - drive_1.mcap\n");
+  EXPECT_EQ(contents_of(bag).size(), 2U);
+  const auto read = [&] { contents_of(bag); };
+  describe("    - absent.mcap\n");
+  expect_error(ErrorKind::no_input, {"absent.mcap"}, read);
+  describe("    - drive_0.txt\n");
+  expect_error(ErrorKind::data, {".mcap, .bag and .db3"}, read);
+  describe("    - ../other/drive_0.mcap\n");
+  expect_error(ErrorKind::data, {"metadata.yaml:4", "../other"}, read);
+  describe("");
+  expect_error(ErrorKind::data, {"relative_file_paths"}, read);
+  describe("    - drive_0.mcap\n", "  compression_mode: FILE\n");
+  expect_error(ErrorKind::data, {"FILE", "ros2 bag convert"}, read);
+}
+
+// Nothing broken escapes but as an Error, and every message that a file gives can be read again.
+TEST(Recording, BrokenFilesAreErrors) {
+  const TemporaryFolder folder;
+  std::vector<std::string> topics;
+  const std::string records = mcap_records(kSaid, topics);
+  const std::pair<std::string, std::string> seeds[] = {
+      {"a.mcap", mcap_of(kSaid)},
+      {"a.mcap", mcap_file(records)},
+      {"a.mcap", mcap_file(mcap_chunk("zstd", kPackedZeros[0].bytes, 1000))},
+      {"a.mcap", mcap_file(mcap_chunk("lz4", kPackedZeros[1].bytes, 1000))},
+      {"a.bag", bags_test::bag_of(kSaid)},
+      {"a.bag", bags_test::bag_file(bags_test::bag_chunk("bz2", kPackedZeros[2].bytes, 1000))},
+      {"a.bag", bags_test::bag_file(bags_test::bag_chunk("lz4", kPackedZeros[1].bytes, 1000))},
+      {"a.db3", bags_test::small_db3()}};
+  io_test::Mutator mutator(20240711);
+  std::size_t read = 0, refused = 0;
+  for (int round = 0; round < 400; ++round) {
+    for (const auto& [name, content] : seeds) {
+      const auto path = folder.file(name, mutator.mutate(content, seeds[0].second));
+      try {
+        contents_of(path);
+        ++read;
+      } catch (const Error& error) {
+        ++refused;
+        EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+      }
+    }
+  }
+  EXPECT_GT(read, 100U);
+  EXPECT_GT(refused, 1000U);
+}
 
 TEST(Unpack, GivesWhatOthersPacked) {
   for (const PackedZeros& packed : kPackedZeros) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "adasplats/io/bags/recording_files_test.h"
+#include "adasplats/io/base/mutator_test.h"
 
 namespace adasplats {
 namespace {
@@ -132,6 +133,33 @@ TEST(RosPoses, OfTransformsOdometryAndPoses) {
   expect_error(ErrorKind::data, {"encapsulation"}, [] {
     ros_poses(std::string("\0\3\0\0\0\0\0\0", 8), kRosTransforms, MessageEncoding::cdr, "m");
   });
+}
+
+// Nothing broken escapes but as an Error, and no more rows than bytes.
+TEST(RosValues, BrokenMessagesAreErrors) {
+  const std::string points = cloud_message(words_of_all_types(false));
+  const std::string poses = bags_test::transforms_message(5, "map", "car", {1, 2, 3, 0, 0, 0, 1});
+  io_test::Mutator mutator(20240712);
+  std::size_t read = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const std::string broken = mutator.mutate(round % 2 == 0 ? points : poses, points);
+    const auto encoding = round % 3 == 0 ? MessageEncoding::ros1 : MessageEncoding::cdr;
+    try {
+      const Table table = ros_points(broken, encoding, "m");
+      EXPECT_LE(table.rows, broken.size());
+      for (const Column& column : table.columns) ASSERT_EQ(column.size(), table.rows);
+      ++read;
+    } catch (const Error&) {
+    }
+    for (const std::string_view type : {kRosTransforms, kRosOdometry, kRosPose, kRosTransform}) {
+      try {
+        EXPECT_LE(ros_poses(broken, type, encoding, "m").size(), broken.size());
+        ++read;
+      } catch (const Error&) {
+      }
+    }
+  }
+  EXPECT_GT(read, 100U);
 }
 
 }  // namespace
