@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/cloud/poses/pose_columns.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/input_file.h"
@@ -82,12 +83,6 @@ std::vector<std::string> words_of(std::string_view line) {
   return words;
 }
 
-bool names_a_quaternion(const std::vector<std::string>& words) {
-  return std::ranges::all_of(std::array{"qw", "qx", "qy", "qz"}, [&](const char* name) {
-    return std::ranges::find(words, name) != words.end();
-  });
-}
-
 std::vector<double> numbers_of(const std::vector<std::string>& words) {
   std::vector<double> numbers;
   for (const std::string& word : words) {
@@ -134,9 +129,8 @@ bool has_a_point(const std::vector<std::string>& lines) {
 /// Whether the line before the first numbers, or a comment there (as in TUM's), names a quaternion.
 bool has_pose_names(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) {
-    const std::vector<std::string> words = words_of(line);
-    if (names_a_quaternion(words)) return true;
-    if (!is_comment(line) && !numbers_of(words).empty()) return false;
+    if (pose_heading_of(line).columns) return true;
+    if (!is_comment(line) && !numbers_of(words_of(line)).empty()) return false;
   }
   return false;
 }

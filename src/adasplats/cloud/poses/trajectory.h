@@ -25,13 +25,15 @@ using Trajectory = std::vector<TimedPose>;
 ///   world_from_velodyne = inv(Tr) * pose * Tr. Without a calib.txt they are world_from_sensor,
 ///   unless a folder `velodyne` is beside them: a sequence must say which frame its poses are in
 ///   (the identity as Tr: the LiDAR's). Times from `times.txt` beside it, else 0.1 s apart.
-/// - CSV with a first line time,x,y,z,qw,qx,qy,qz, or TUM: values between blanks, and before them a
-///   line '# timestamp tx ty tz qx qy qz qw'. The names (of either) say the order; other columns
-///   are skipped. Without them it is an error: the order of a quaternion cannot be guessed.
-/// Lines that begin with '#' are comments.
+/// - Text whose columns a line names (pose_heading_of(): time, position, quaternion in any order,
+///   between commas, semicolons or blanks), such as CSV with time,x,y,z,qw,qx,qy,qz, or TUM with
+///   '# timestamp tx ty tz qx qy qz qw'; of TUM by its name (`*.tum`) that order without a line of
+///   names. Elsewhere without names it is an error: the order of a quaternion cannot be guessed.
+/// Lines that begin with '#' or '%' are comments.
 /// Errors (ErrorKind::data with the line): a sequence without Tr, wrong number of values, columns
-/// that are not named, not finite, rotation not orthonormal to 1e-3, quaternion norm off by more
-/// than 1e-3, time that does not ascend.
+/// that are not named, or not clearly, not finite, rotation not orthonormal to 1e-3, quaternion
+/// norm off by more than 1e-3 or in another order than is named (objection_to_quaternion_order()),
+/// time that does not ascend or is none in seconds.
 Trajectory read_trajectory(const std::filesystem::path& path);
 
 /// Whether a pose file, or the times.txt beside KITTI's rows, says when its poses were. Errors:

@@ -11,6 +11,8 @@
 #include <string>
 
 #include "adasplats/cloud/poses/kitti_poses.h"
+#include "adasplats/cloud/poses/pose_columns.h"
+#include "adasplats/cloud/poses/quaternion_order.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/error.h"
@@ -47,16 +49,6 @@ std::vector<NumberedLine> filled_lines(const std::filesystem::path& path) {
   while (const auto line = reader.next_filled())
     lines.push_back({reader.line(), std::string(*line)});
   return lines;
-}
-
-std::vector<std::string_view> split_commas(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t end = line.find(',');
-    fields.push_back(BlankTokens(line.substr(0, end)).rest());
-    if (end == std::string_view::npos) return fields;
-    line.remove_prefix(end + 1);
-  }
 }
 
 std::string short_text(double value) {
@@ -179,44 +171,7 @@ Trajectory read_kitti_poses(const std::filesystem::path& path,
   return trajectory;
 }
 
-/// Where a line of a timed pose has time, x, y, z, qw, qx, qy and qz.
-struct PoseColumns {
-  std::array<std::size_t, 8> of{};
-  std::size_t count = 0;  ///< all columns of the line
-};
-
-std::vector<std::string_view> split_fields(std::string_view line) {
-  return line.find(',') != std::string_view::npos ? split_commas(line) : split_blanks(line);
-}
-
-bool is_comment(std::string_view line) { return line.starts_with('#'); }
-
-/// The columns that a line names, as our CSV and the TUM format call them; nothing where one is
-/// missing.
-std::optional<PoseColumns> columns_named_by(std::string_view line) {
-  constexpr std::array<std::array<std::string_view, 2>, 8> kNames = {{{"time", "timestamp"},
-                                                                      {"x", "tx"},
-                                                                      {"y", "ty"},
-                                                                      {"z", "tz"},
-                                                                      {"qw", "qw"},
-                                                                      {"qx", "qx"},
-                                                                      {"qy", "qy"},
-                                                                      {"qz", "qz"}}};
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
-  while (is_comment(line)) line.remove_prefix(1);
-  const std::vector<std::string_view> fields = split_fields(line);
-  PoseColumns columns;
-  columns.count = fields.size();
-  for (std::size_t k = 0; k < kNames.size(); ++k) {
-    const auto found = std::ranges::find_if(fields, [&](std::string_view field) {
-      return std::ranges::find(kNames[k], lower_case(field)) != kNames[k].end();
-    });
-    if (found == fields.end()) return std::nullopt;
-    columns.of[k] = static_cast<std::size_t>(found - fields.begin());
-  }
-  return columns;
-}
+bool is_comment(std::string_view line) { return line.starts_with('#') || line.starts_with('%'); }
 
 /// What a file says of itself before its poses.
 struct Heading {
@@ -224,34 +179,73 @@ struct Heading {
   std::size_t lines = 0;  ///< comments and the line of names
 };
 
-Heading heading_of(const std::vector<NumberedLine>& lines) {
+bool is_tum(const std::filesystem::path& path) {
+  return lower_case(path.extension().string()) == ".tum";
+}
+
+/// Errors: data where names are not clear.
+Heading heading_of(const std::filesystem::path& path, const std::vector<NumberedLine>& lines) {
   Heading heading;
   for (; heading.lines < lines.size(); ++heading.lines) {
-    const std::string& text = lines[heading.lines].text;
-    const auto columns = columns_named_by(text);
-    if (columns) heading.columns = columns;
-    if (!columns && !is_comment(text)) break;
+    const NumberedLine& line = lines[heading.lines];
+    // What begins with a number is a pose; its fields are none of names.
+    const std::vector<std::string_view> fields = split_pose_fields(line.text);
+    if (parse_number<double>(fields.front())) break;
+    const PoseHeading named = pose_heading_of(line.text);
+    if (named.columns) heading.columns = named.columns;
+    if (named.columns || is_comment(line.text)) continue;
+    if (named.problem.empty()) break;
+    throw data_error({path, {}, line.number}, named.problem);
   }
+  // The format has one order, and often no line of names.
+  if (!heading.columns && is_tum(path)) heading.columns = PoseColumns::tum();
   return heading;
+}
+
+/// Seconds; no others have so many digits. Errors: data.
+void require_seconds(const FilePlace& place, double time_s, double unit_s) {
+  constexpr double kMostSeconds = 1e11;  // the year 5138
+  if (std::fabs(time_s) <= kMostSeconds) return;
+  throw data_error(place, "a time of " + short_text(time_s / unit_s) +
+                              (unit_s == 1 ? " s is none since any epoch; a name says another unit "
+                                             "(timestamp_ns, timestamp_us, timestamp_ms)"
+                                           : " in the unit of its name is none since any epoch"));
+}
+
+double time_of_line(const FilePlace& place, const PoseColumns& columns,
+                    const std::vector<std::string_view>& fields) {
+  constexpr double kNanosecond_s = 1e-9;
+  const double time_s = columns.time_unit_s * finite_number(place, fields, columns.of[0]);
+  require_seconds(place, time_s, columns.time_unit_s);
+  if (!columns.nanoseconds) return time_s;
+  const double nanoseconds = finite_number(place, fields, *columns.nanoseconds);
+  if (!(nanoseconds >= 0 && nanoseconds < 1e9))
+    throw data_error(place, short_text(nanoseconds) + " ns within a second, expected 0 to 1e9");
+  return time_s + kNanosecond_s * nanoseconds;
 }
 
 Trajectory read_timed_poses(const std::filesystem::path& path, const PoseColumns& columns,
                             const std::vector<NumberedLine>& lines) {
   Trajectory trajectory;
+  std::vector<PlacedQuaternion> placed;
   for (const NumberedLine& line : lines) {
     const FilePlace place{path, {}, line.number};
-    const std::vector<std::string_view> fields = split_fields(line.text);
+    const std::vector<std::string_view> fields = split_pose_fields(line.text);
     require_count(place, fields, columns.count);
     std::array<double, 8> v;
-    for (std::size_t k = 0; k < v.size(); ++k) v[k] = finite_number(place, fields, columns.of[k]);
+    v[0] = time_of_line(place, columns, fields);
+    for (std::size_t k = 1; k < v.size(); ++k) v[k] = finite_number(place, fields, columns.of[k]);
     const double norm = std::sqrt(v[4] * v[4] + v[5] * v[5] + v[6] * v[6] + v[7] * v[7]);
     if (!(std::fabs(norm - 1) <= kTolerance))
       throw data_error(place, "the quaternion's norm is " + short_text(norm) + ", expected 1");
     if (!trajectory.empty()) require_ascending(path, line.number, trajectory.back().time_s, v[0]);
-    const Mat3d rotation =
-        rotation_from_quaternion(v[4] / norm, v[5] / norm, v[6] / norm, v[7] / norm);
-    trajectory.push_back({v[0], {rotation, {v[1], v[2], v[3]}}});
+    const Quaternion q{v[4] / norm, v[5] / norm, v[6] / norm, v[7] / norm};
+    placed.push_back({{v[1], v[2], v[3]}, q});
+    trajectory.push_back(
+        {v[0], {rotation_from_quaternion(q.w, q.x, q.y, q.z), placed.back().place}});
   }
+  const std::string objection = objection_to_quaternion_order(placed);
+  if (!objection.empty()) throw Error(ErrorKind::data, path.string() + ": " + objection);
   return trajectory;
 }
 
@@ -259,13 +253,13 @@ Trajectory read_timed_poses(const std::filesystem::path& path, const PoseColumns
 /// differ, and nothing in the numbers distinguishes them.
 void require_rows_of_matrices(const std::filesystem::path& path, const NumberedLine& first) {
   constexpr std::size_t kTimedPose = 8;
-  const bool has_commas = first.text.find(',') != std::string::npos;
-  if (!has_commas && split_blanks(first.text).size() != kTimedPose) return;
+  const bool has_separators = first.text.find_first_of(",;") != std::string::npos;
+  if (!has_separators && split_blanks(first.text).size() != kTimedPose) return;
   throw data_error({path, {}, first.number},
                    "no line before it names the columns; expected a first line '" +
                        std::string(kCsvHeader) +
-                       "' (CSV), '# timestamp tx ty tz qx qy qz qw' (TUM) or another order of "
-                       "these names, or KITTI's rows of 12 numbers");
+                       "' (CSV), '# timestamp tx ty tz qx qy qz qw' (TUM, or name the file "
+                       "*.tum) or another order of these names, or KITTI's rows of 12 numbers");
 }
 
 void append_fixed(std::string& text, double value) {
@@ -279,7 +273,7 @@ void append_fixed(std::string& text, double value) {
 
 Trajectory read_trajectory(const std::filesystem::path& path) {
   std::vector<NumberedLine> lines = filled_lines(path);
-  const Heading heading = heading_of(lines);
+  const Heading heading = heading_of(path, lines);
   lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(heading.lines));
   std::erase_if(lines, [](const NumberedLine& line) { return is_comment(line.text); });
   if (lines.empty()) throw Error(ErrorKind::data, path.string() + ": holds no poses");
@@ -289,13 +283,13 @@ Trajectory read_trajectory(const std::filesystem::path& path) {
 }
 
 bool has_times(const std::filesystem::path& trajectory) {
-  return heading_of(filled_lines(trajectory)).columns.has_value() ||
+  return heading_of(trajectory, filled_lines(trajectory)).columns.has_value() ||
          is_there(trajectory.parent_path() / kTimesName);
 }
 
 std::vector<std::filesystem::path> trajectory_files(const std::filesystem::path& path) {
   std::vector<std::filesystem::path> files = {path};
-  if (heading_of(filled_lines(path)).columns) return files;
+  if (heading_of(path, filled_lines(path)).columns) return files;
   for (const char* name : {kCalibrationName, kTimesName})
     if (const auto file = path.parent_path() / name; is_there(file)) files.push_back(file);
   return files;
