@@ -3,6 +3,7 @@
 #include "adasplats/cloud/load/frame_tree.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <utility>
@@ -12,6 +13,8 @@
 
 namespace adasplats {
 namespace {
+
+constexpr std::size_t kMostFrames = 100;  // of a chain, and in a message; robots have ten
 
 std::string quoted_frame(const std::string& frame) { return "'" + frame + "'"; }
 
@@ -31,8 +34,8 @@ class EdgeAtTimes {
     if (edge_.is_static) return poses.front().world_from_sensor;
     if (time_s < poses.front().time_s || time_s > poses.back().time_s) return std::nullopt;
     // The poses at either end of a gap are known, as is what is at most one distance within it.
-    for (const TimeSpan gap : gaps_)
-      if (time_s > gap.first && time_s < gap.last) return std::nullopt;
+    const auto behind = std::ranges::lower_bound(gaps_, time_s, {}, &TimeSpan::first);
+    if (behind != gaps_.begin() && time_s < std::prev(behind)->last) return std::nullopt;
     return interpolate(poses, time_s);
   }
 
@@ -67,7 +70,11 @@ std::string FrameTree::frame_names() const {
     names.insert(edge.parent);
   }
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + quoted_frame(name);
+  std::size_t count = 0;
+  for (const std::string& name : names) {
+    if (++count > kMostFrames) return text + " and more";
+    text += (text.empty() ? "" : ", ") + quoted_frame(name);
+  }
   return text.empty() ? "none" : text;
 }
 
@@ -76,6 +83,9 @@ std::vector<const FrameEdge*> FrameTree::way_up(const std::string& frame) const 
   for (auto edge = edges_.find(frame); edge != edges_.end();
        edge = edges_.find(edge->second.parent)) {
     way.push_back(&edge->second);
+    if (way.size() > kMostFrames && edges_.size() > kMostFrames)
+      throw Error(ErrorKind::data, "frame " + quoted_frame(frame) + " is more than " +
+                                       std::to_string(kMostFrames) + " transforms below its root");
     if (way.size() > edges_.size())
       throw Error(ErrorKind::data, "the transforms of frame " + quoted_frame(frame) +
                                        " go round in a ring (frames: " + frame_names() + ")");

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -134,9 +135,10 @@ void leave_out_uncovered(RecordedDrive& scans, const Track& track, TimeSpan with
   const TimeSpan covered = track.covered_s();
   const auto is_known = [&](double stamp_s) {
     const double begin_s = stamp_s + within_s.first, end_s = stamp_s + within_s.last;
-    return begin_s >= covered.first && end_s <= covered.last &&
-           std::ranges::none_of(
-               track.gaps, [&](TimeSpan gap) { return end_s > gap.first && begin_s < gap.last; });
+    // The last gap that begins before the scan ends.
+    const auto behind = std::ranges::lower_bound(track.gaps, end_s, {}, &TimeSpan::first);
+    const bool in_gap = behind != track.gaps.begin() && begin_s < std::prev(behind)->last;
+    return begin_s >= covered.first && end_s <= covered.last && !in_gap;
   };
   const std::size_t all = scans.stamps_s.size();
   const double first_s = scans.stamps_s.front(), last_s = scans.stamps_s.back();

@@ -248,5 +248,69 @@ TEST(RecordingDrive, WhatIsNotClearIsAnErrorThatNamesIt) {
                [&] { load_cloud(std::span(&text, 1), options, Executor(1), quiet); });
 }
 
+/// Clouds of two points at 0.5, 1.5, ... s, and poses each 0.1 s but between 2.05 and 4.05 s.
+std::vector<Said> clouds_with_a_gap_of_poses() {
+  std::vector<Said> said;
+  for (int k = 0; k <= 60; ++k)
+    if (k <= 20 || k >= 41)
+      said.push_back({"/tf", kTransformsType, 0,
+                      bags_test::transforms_message(stamp_of(0.1 * k), "map", "lidar",
+                                                    {0.1 * k, 0, 0, 0, 0, 0, 1})});
+  for (int k = 0; k < 6; ++k) {
+    CloudWords cloud{.stamp_ns = stamp_of(k + 0.5)};
+    cloud.fields = {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}};
+    cloud.width = 2;
+    cloud.step = 12;
+    cloud.row_step = 24;
+    for (const float value : {1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F}) cloud.points += bytes_of(value);
+    said.push_back({"/points", kCloudType, 0, bags_test::cloud_message(cloud)});
+  }
+  return said;
+}
+
+std::pair<PointCloud, LoadReport> load_said(const TemporaryFolder& folder,
+                                            const std::vector<Said>& said) {
+  const std::filesystem::path path = folder.write("drive.mcap", bags_test::mcap_of(said));
+  LoadOptions options;
+  options.own_body_m = 0;
+  options.driven_path_m = 0;
+  ProgressSink quiet;
+  return load_cloud(std::span(&path, 1), options, Executor(1), quiet);
+}
+
+// Oracle: where the poses, which move by 1 m/s along x, have the points.
+TEST(RecordingDrive, ScansInGapsOfPosesAreLeftOut) {
+  const TemporaryFolder folder;
+  const auto [cloud, report] = load_said(folder, clouds_with_a_gap_of_poses());
+  ASSERT_EQ(cloud.size(), 8U);  // not those at 2.5 and 3.5 s
+  const double at_s[] = {0.5, 1.5, 4.5, 5.5};
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_LT(length(cloud.world(2 * k) - Vec3d{1 + at_s[k], 2, 3}), 1e-5) << k;
+    EXPECT_LT(length(cloud.world(2 * k + 1) - Vec3d{4 + at_s[k], 5, 6}), 1e-5) << k;
+  }
+}
+
+TEST(RecordingDrive, CloudsOfSeveralFramesOrOneTimeAreErrors) {
+  const TemporaryFolder folder;
+  const auto refuse = [&](const std::vector<std::string>& parts, CloudWords cloud) {
+    std::vector<Said> said = clouds_with_a_gap_of_poses();
+    cloud.fields = {{"x", 0, 7}};
+    cloud.width = 1;
+    cloud.step = cloud.row_step = 4;
+    cloud.points = "1234";
+    said.push_back({"/points", kCloudType, 0, bags_test::cloud_message(cloud)});
+    expect_error(ErrorKind::data, parts, [&] { load_said(folder, said); });
+  };
+  refuse({"message 7", "'rear'", "'lidar'"}, {.stamp_ns = stamp_of(5.6), .frame = "rear"});
+  refuse({"the same time"}, {.stamp_ns = stamp_of(4.5)});
+  refuse({"000006", "no columns x, y and z"}, {.stamp_ns = stamp_of(5.8)});
+  // A rotation that is none, of a transform that is needed.
+  std::vector<Said> said = clouds_with_a_gap_of_poses();
+  said.push_back(
+      {"/tf", kTransformsType, 0,
+       bags_test::transforms_message(stamp_of(7), "map", "lidar", {0, 0, 0, 0, 0, 0, 0})});
+  expect_error(ErrorKind::data, {"/tf", "norm is 0"}, [&] { load_said(folder, said); });
+}
+
 }  // namespace
 }  // namespace adasplats

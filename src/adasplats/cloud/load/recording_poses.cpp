@@ -34,7 +34,7 @@ FrameTree tree_of(const RecordingSurvey& survey) {
   FrameTree tree;
   for (const auto& [name, topic] : survey.topics) {
     if (!topic.is_transforms()) continue;
-    for (const FrameEdge& edge : topic.edges) {
+    for (const auto& [frames, edge] : topic.edges) {
       try {
         tree.add(edge);
       } catch (const Error& error) {
@@ -69,7 +69,7 @@ RecordedPoses poses_of_topic(const FrameDrive& drive, const FrameTree& tree,
   if (topic.edges.size() != 1)
     throw Error(ErrorKind::data, name + " has poses of " + std::to_string(topic.edges.size()) +
                                      " pairs of frames, expected one");
-  const FrameEdge& edge = topic.edges.front();
+  const FrameEdge& edge = topic.edges.begin()->second;
   if (!edge.fault.empty()) throw Error(ErrorKind::data, edge.fault);
   RecordedPoses found;
   found.by = "of '" + edge.child + "' in '" + edge.parent + "' by " + name;

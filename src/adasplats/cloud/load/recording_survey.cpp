@@ -34,26 +34,20 @@ void add_cloud(const RecordedMessage& message, const std::string& what, TopicSur
 }
 
 void add_pose(const RosPose& pose, bool is_static, const std::string& what, TopicSurvey& topic) {
-  const auto same = [&](const FrameEdge& edge) {
-    return edge.parent == pose.header.frame && edge.child == pose.child_frame;
-  };
-  // Mostly one or a few; who has hundreds has them in the same order in each message.
-  auto edge = std::ranges::find_if(topic.edges, same);
-  if (edge == topic.edges.end()) {
-    topic.edges.push_back({pose.header.frame, pose.child_frame, is_static, {}, {}});
-    edge = topic.edges.end() - 1;
-  }
+  const auto [found, is_new] = topic.edges.try_emplace({pose.header.frame, pose.child_frame});
+  FrameEdge& edge = found->second;
+  if (is_new) edge = {pose.header.frame, pose.child_frame, is_static, {}, {}};
   const double norm =
       std::sqrt(pose.qw * pose.qw + pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz);
   if (!(std::fabs(norm - 1) <= kUnitTolerance) || !is_finite(pose.position)) {
-    if (edge->fault.empty())
-      edge->fault = what + ": where '" + pose.child_frame + "' is in '" + pose.header.frame +
-                    "' is no pose: its quaternion's norm is " + std::to_string(norm) +
-                    ", expected 1, and its position finite";
+    if (edge.fault.empty())
+      edge.fault = what + ": where '" + pose.child_frame + "' is in '" + pose.header.frame +
+                   "' is no pose: its quaternion's norm is " + std::to_string(norm) +
+                   ", expected 1, and its position finite";
     return;
   }
-  if (is_static) edge->parent_from_child.clear();  // the last one holds
-  edge->parent_from_child.push_back(
+  if (is_static) edge.parent_from_child.clear();  // the last one holds
+  edge.parent_from_child.push_back(
       {seconds_of(pose.header.stamp_ns),
        {rotation_from_quaternion(pose.qw / norm, pose.qx / norm, pose.qy / norm, pose.qz / norm),
         pose.position}});
@@ -102,7 +96,7 @@ RecordingSurvey survey_recording(const std::filesystem::path& path, ProgressSink
   progress.end_step();
   for (auto& [name, topic] : survey.topics) {
     std::ranges::stable_sort(topic.clouds, {}, &CloudMessage::stamp_s);
-    for (FrameEdge& edge : topic.edges) put_in_order(edge);
+    for (auto& [frames, edge] : topic.edges) put_in_order(edge);
   }
   return survey;
 }

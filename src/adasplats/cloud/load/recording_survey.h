@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "adasplats/cloud/load/frame_tree.h"
@@ -30,7 +31,8 @@ struct TopicSurvey {
   std::vector<CloudMessage> clouds;         ///< of topics of points
   std::string frame;                        ///< of these
   std::string fault;                        ///< why its clouds cannot be used; empty: they can
-  std::vector<FrameEdge> edges;             ///< of topics of poses; an empty child: not said
+  /// Of topics of poses, by parent and child; an empty child: not said.
+  std::map<std::pair<std::string, std::string>, FrameEdge> edges;
   bool holds_clouds() const;
   bool is_transforms() const;
 };
