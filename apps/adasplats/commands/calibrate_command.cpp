@@ -34,7 +34,7 @@ class CalibrateCommand final : public Command {
                      job_.inputs.assign(names.begin(), names.end());
                    },
                    "SemanticKITTI sequence folders, and folders of scans with times (" +
-                       point_format_names() + ") with --trajectory")
+                       point_format_names() + ") with --trajectory, and recordings")
                 ->type_name("PATH"));
     require(writes_folder(add_path(app, "-o,--output", job_.output,
                                    "Folder to create: trajectory.csv, poses.txt, lasers.csv, "

@@ -81,7 +81,7 @@ class InfoCommand final : public Command {
            [this](const std::vector<std::string>& names) {
              inputs_.assign(names.begin(), names.end());
            },
-           "Files and sequence folders; without any: as --devices")
+           "Files, sequence folders and recordings; without any: as --devices")
         ->type_name("PATH");
     app.add_flag("--devices", devices_, "List the GPUs of this machine, or why there are none");
     app.add_option("--labels", labels_,

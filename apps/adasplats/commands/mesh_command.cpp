@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "adasplats/io/bags/recording.h"
 #include "adasplats/io/point_format.h"
 #include "adasplats/recipes/make_mesh.h"
 #include "cli/commands.h"
@@ -31,7 +32,9 @@ class MeshCommand final : public Command {
                    [this](const std::vector<std::string>& names) {
                      job_.inputs.assign(names.begin(), names.end());
                    },
-                   "Point files (" + point_format_names() + ") and SemanticKITTI sequence folders")
+                   "Point files (" + point_format_names() +
+                       "), SemanticKITTI sequence folders and recordings (" +
+                       recording_format_names() + ")")
                 ->type_name("PATH"));
     require(writes(add_path(app, "-o,--output", output_, "Mesh to write, PLY"), {".ply"}));
     app.add_option("--labels", job_.labels,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "adasplats/io/bags/recording.h"
 #include "adasplats/io/point_format.h"
 #include "adasplats/pipeline/model/unused_settings.h"
 #include "adasplats/recipes/model_file.h"
@@ -60,7 +61,9 @@ class ModelCommand final : public Command {
                    [this](const std::vector<std::string>& names) {
                      job_.inputs.assign(names.begin(), names.end());
                    },
-                   "Point files (" + point_format_names() + ") and SemanticKITTI sequence folders")
+                   "Point files (" + point_format_names() +
+                       "), SemanticKITTI sequence folders and recordings (" +
+                       recording_format_names() + ")")
                 ->type_name("PATH"));
     require(writes(add_path(app, "-o,--output", job_.output, "Model to write, PLY"), {".ply"}));
     app.add_option("--labels", job_.labels,

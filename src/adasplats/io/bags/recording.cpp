@@ -20,11 +20,12 @@ constexpr std::string_view kMetadataKey = "rosbag2_bagfile_information";
 
 /// The way to open each kind, by the extension.
 struct RecordingKind {
-  std::string_view extension;
+  std::string_view name, extension;
   std::unique_ptr<RecordingFile> (*open)(const fs::path& path);
 };
-constexpr RecordingKind kRecordingKinds[] = {
-    {".mcap", &open_mcap}, {".bag", &open_rosbag}, {".db3", &open_sqlite}};
+constexpr RecordingKind kRecordingKinds[] = {{"MCAP", ".mcap", &open_mcap},
+                                             {"ROS 1 bag", ".bag", &open_rosbag},
+                                             {"ROS 2 bag", ".db3", &open_sqlite}};
 
 const RecordingKind* kind_of_recording(const fs::path& path) {
   const std::string extension = lower_case(path.extension().string());
@@ -33,10 +34,18 @@ const RecordingKind* kind_of_recording(const fs::path& path) {
   return nullptr;
 }
 
+std::string list_of_kinds(std::string_view RecordingKind::*part) {
+  std::string list;
+  for (const RecordingKind& kind : kRecordingKinds)
+    list += (list.empty() ? "" : ", ") + std::string(kind.*part);
+  return list;
+}
+
 std::unique_ptr<RecordingFile> open_recording_file(const fs::path& path) {
   if (const RecordingKind* const kind = kind_of_recording(path)) return kind->open(path);
   throw data_error({path, {}, {}}, "unknown kind of recording " + shown(path.extension().string()) +
-                                       ", understood are .mcap, .bag and .db3");
+                                       ", understood are " +
+                                       list_of_kinds(&RecordingKind::extension));
 }
 
 /// "value" of "  key: value", also in quotes; nothing of lines of other keys.
@@ -118,6 +127,8 @@ bool is_recording(const fs::path& path) {
   const auto bytes = file.peek(size);
   return std::string_view(reinterpret_cast<const char*>(bytes.data()), size) == kMetadataKey;
 }
+
+std::string recording_format_names() { return list_of_kinds(&RecordingKind::name); }
 
 std::string short_type_name(std::string_view type) {
   constexpr std::string_view kMiddle = "/msg/";

@@ -74,6 +74,9 @@ class Recording {
 /// a ROS 2 bag.
 bool is_recording(const std::filesystem::path& path);
 
+/// "MCAP, ROS 1 bag, ROS 2 bag", for help.
+std::string recording_format_names();
+
 /// "sensor_msgs/PointCloud2" of "sensor_msgs/msg/PointCloud2".
 std::string short_type_name(std::string_view type);
 

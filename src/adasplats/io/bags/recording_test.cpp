@@ -212,7 +212,7 @@ TEST(Ros2Bag, AFolderIsItsFilesInTheirOrder) {
   describe("    - absent.mcap\n");
   expect_error(ErrorKind::no_input, {"absent.mcap"}, read);
   describe("    - drive_0.txt\n");
-  expect_error(ErrorKind::data, {".mcap, .bag and .db3"}, read);
+  expect_error(ErrorKind::data, {".mcap, .bag, .db3"}, read);
   describe("    - ../other/drive_0.mcap\n");
   expect_error(ErrorKind::data, {"metadata.yaml:4", "../other"}, read);
   describe("");
