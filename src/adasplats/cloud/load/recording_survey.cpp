@@ -56,8 +56,11 @@ void add_pose(const RosPose& pose, bool is_static, const std::string& what, Topi
 /// By time, each time once: publishers repeat what did not change.
 void put_in_order(FrameEdge& edge) {
   std::ranges::stable_sort(edge.parent_from_child, {}, &TimedPose::time_s);
-  const auto repeated = std::ranges::unique(edge.parent_from_child, {}, &TimedPose::time_s);
-  edge.parent_from_child.erase(repeated.begin(), repeated.end());
+  const auto same_time = [](const TimedPose& a, const TimedPose& b) {
+    return a.time_s == b.time_s;
+  };
+  Trajectory& poses = edge.parent_from_child;
+  poses.erase(std::unique(poses.begin(), poses.end(), same_time), poses.end());
 }
 
 }  // namespace

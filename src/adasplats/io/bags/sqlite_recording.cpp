@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "adasplats/io/base/input_file.h"
@@ -79,7 +80,14 @@ class SqliteRecording final : public RecordingFile {
     const std::lock_guard lock(mutex_);
     Query messages(path_, database_.get(),
                    "SELECT id, topic_id, timestamp, data FROM messages ORDER BY id");
+    std::optional<std::int64_t> before;
     while (messages.next()) {
+      // Broken pages give rows twice or out of order, and would give others when asked by number.
+      if (before && messages.number(0) <= *before)
+        throw Error(ErrorKind::data, path_.string() + ": as an SQLite database it is broken: row " +
+                                         std::to_string(messages.number(0)) +
+                                         " of messages behind " + std::to_string(*before));
+      before = messages.number(0);
       const auto topic = topics_.find(messages.number(1));
       if (topic == topics_.end())
         throw Error(ErrorKind::data, path_.string() + ": message " +
@@ -102,7 +110,13 @@ class SqliteRecording final : public RecordingFile {
     if (!query.next())
       throw Error(ErrorKind::io, path_.string() + ": message " + std::to_string(place.offset) +
                                      " is gone: the file changed while it was read");
-    return std::string(query.bytes(0));
+    const std::string_view bytes = query.bytes(0);
+    if (bytes.size() != place.size)
+      throw Error(ErrorKind::data,
+                  path_.string() + ": as an SQLite database it is broken: message " +
+                      std::to_string(place.offset) + " has " + std::to_string(bytes.size()) +
+                      " bytes, and had " + std::to_string(place.size));
+    return std::string(bytes);
   }
 
  private:
