@@ -772,7 +772,8 @@ class Scans:
         folder: Path,
         *,
         format: Literal[
-            "semantickitti", "ply", "npy", "npz", "pcd", "las", "range-image", "mcap"
+            "semantickitti", "ply", "npy", "npz", "pcd", "las", "range-image", "mcap",
+            "kitti-raw",
         ] = "semantickitti",
         point_order: Literal["kitti", "firing"] = "kitti",
     ) -> None: ...

@@ -55,8 +55,8 @@ constexpr const char* kScanDoc =
 constexpr const char* kSaveDoc =
     "Write the scans into a folder, which is made where it is not there.\n\n"
     "format: 'semantickitti' (FOLDER/sequences/00), 'ply', 'npy', 'npz', 'pcd', 'las',\n"
-    "'range-image' or 'mcap' (FOLDER/scans.mcap): docs/formats.md.\n"
-    "point_order, of 'semantickitti': 'kitti', as KITTI's own files, or 'firing', as here.\n"
+    "'range-image', 'mcap' (FOLDER/scans.mcap) or 'kitti-raw': docs/formats.md.\n"
+    "point_order, of KITTI's formats: 'kitti', as KITTI's own files, or 'firing', as here.\n"
     "Raises OSError, ValueError.";
 
 /// An attribute of every scan, or one that a scan may lack.
@@ -129,6 +129,7 @@ void save_scans(const ScanList& list, py::handle folder, const py::kwargs& kwarg
   std::filesystem::create_directories(path);
   writing.image_size = list.image_size;
   writing.labels = list.labels.get();
+  writing.drive = {list.scans.size(), [&](std::size_t i) { return list.scans[i]->time_s; }};
   const auto writer = make_scan_writer(path, format, writing);
   const Executor executor;
   ParallelWriteOptions parallel;

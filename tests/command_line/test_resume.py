@@ -10,7 +10,8 @@ import unittest
 
 from support import PROGRAM, ProgramTest, tree_digest
 
-FORMATS = ["semantickitti", "ply", "npy", "npz", "pcd", "las", "range-image", "mcap"]
+FORMATS = ["semantickitti", "ply", "npy", "npz", "pcd", "las", "range-image", "mcap",
+           "kitti-raw"]
 SCANS = 161  # of three poses, 0.2 s apart in all, at 800 Hz
 
 

@@ -148,7 +148,8 @@ std::string npy_labels(const ScanView& scan) {
 
 ScanFields fields_of(ScanFormat format) {
   ScanFields fields;
-  if (format == ScanFormat::semantickitti) fields.ranges = fields.columns = fields.times = false;
+  if (format == ScanFormat::semantickitti || format == ScanFormat::kitti_raw)
+    fields.ranges = fields.columns = fields.times = false;
   return fields;
 }
 
@@ -157,6 +158,7 @@ ScanBytes scan_bytes(ScanFormat format) {
   constexpr double kLeast = 12 + 2 + 4 + 4 + 4, kMost = kLeast + 4 + 2 + 2 + 1;
   switch (format) {
     case ScanFormat::semantickitti: return {16, 20, 0, 0};
+    case ScanFormat::kitti_raw: return {16, 16, 0, 0};
     case ScanFormat::npy: return {20, 20, 0, 0};
     case ScanFormat::ply:
     case ScanFormat::pcd:
@@ -208,7 +210,8 @@ std::vector<EncodedFile> encode_scan_files(ScanFormat format, const std::string&
       break;
     case ScanFormat::semantickitti:
     case ScanFormat::range_image:
-    case ScanFormat::mcap: throw std::logic_error("encode_scan_files: no format of points");
+    case ScanFormat::mcap:
+    case ScanFormat::kitti_raw: throw std::logic_error("encode_scan_files: no format of points");
   }
   return files;
 }

@@ -14,8 +14,18 @@
 
 namespace adasplats {
 
-/// What scans are written as: a sequence folder, files of one kind, pictures, or messages.
-enum class ScanFormat : std::uint8_t { semantickitti, ply, npy, npz, pcd, las, range_image, mcap };
+/// What scans are written as: the tree of a data set, files of one kind, pictures, or messages.
+enum class ScanFormat : std::uint8_t {
+  semantickitti,
+  ply,
+  npy,
+  npz,
+  pcd,
+  las,
+  range_image,
+  mcap,
+  kitti_raw
+};
 inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"semantickitti", ScanFormat::semantickitti},
     {"ply", ScanFormat::ply},
@@ -24,7 +34,8 @@ inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"pcd", ScanFormat::pcd},
     {"las", ScanFormat::las},
     {"range-image", ScanFormat::range_image},
-    {"mcap", ScanFormat::mcap}};
+    {"mcap", ScanFormat::mcap},
+    {"kitti-raw", ScanFormat::kitti_raw}};
 
 /// Bytes that scans become, but for headers and what all have in common.
 struct ScanBytes {

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/words.h"
+#include "adasplats/dataset/kitti_raw_writer.h"
 #include "adasplats/dataset/mcap_writer.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/semantickitti_writer.h"
+#include "adasplats/dataset/writer_with_poses.h"
 
 namespace adasplats {
 namespace {
@@ -42,20 +43,6 @@ class SequenceWriter final : public ScanWriter {
   std::string sequence_;
   PointOrder order_;
   SemanticKittiWriter writer_;
-};
-
-/// What stands beside the scans: poses.csv.
-class WriterWithPoses : public ScanWriter {
- public:
-  using ScanWriter::ScanWriter;
-  void append(std::size_t /*index*/, const EncodedScan& scan) override {
-    trajectory_.push_back(scan.pose);
-  }
-  void keep(std::size_t /*index*/, const TimedPose& pose) override { trajectory_.push_back(pose); }
-  void finish() override { write_trajectory_csv(folder() / "poses.csv", trajectory_); }
-
- private:
-  Trajectory trajectory_;
 };
 
 /// Files of their own for every scan.
@@ -131,6 +118,7 @@ std::unique_ptr<ScanWriter> make_sequence_writer(const std::filesystem::path& fo
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
                                              const ScanWriterOptions& options) {
   if (format == ScanFormat::semantickitti) return make_sequence_writer(folder, "00", options.order);
+  if (format == ScanFormat::kitti_raw) return make_kitti_raw_writer(folder, options);
   if (format == ScanFormat::mcap) return std::make_unique<MessageWriter>(folder);
   return std::make_unique<FileWriter>(folder, format, options);
 }

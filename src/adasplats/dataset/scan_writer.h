@@ -17,11 +17,27 @@
 
 namespace adasplats {
 
+/// What names of files need to know of a drive before its scans are there.
+struct DriveSpan {
+  double begin_s = 0;     ///< of the first scan, since 1970
+  double apart_s = 0;     ///< from the first scan to the second; 0: there is none
+  std::size_t scans = 0;  ///< of the whole drive
+
+  DriveSpan() = default;
+  /// Of `count` scans; time_of(i) is when scan i is. Two are asked for at most.
+  template <class TimeOf>
+  DriveSpan(std::size_t count, TimeOf&& time_of)
+      : begin_s(count == 0 ? 0 : time_of(0)),
+        apart_s(count < 2 ? 0 : time_of(1) - begin_s),
+        scans(count) {}
+};
+
 struct ScanWriterOptions {
   ImageSize image_size;                  ///< of range images (image_size_of)
   double full_intensity = 1.0;           ///< LAS: what becomes its largest intensity
   const LabelScheme* labels = nullptr;   ///< colours of range images; outlives the writer
-  PointOrder order = PointOrder::kitti;  ///< of points in semantickitti's files
+  PointOrder order = PointOrder::kitti;  ///< of points in KITTI's files
+  DriveSpan drive;                       ///< trees that name files by it
 };
 
 /// Makes scans of one drive files of a folder. What a scan becomes can be worked out and written by
@@ -59,9 +75,9 @@ class ScanWriter {
 
 /// A writer into `folder`, which exists. semantickitti: FOLDER/sequences/00 as SemanticKittiWriter
 /// and FOLDER/poses/00.txt, points in `options.order`; range_image: files of write_range_image();
-/// mcap: FOLDER/scans.mcap as McapWriter; else NNNNNN.EXT of scan_files.h. All but semantickitti
-/// have poses.csv beside them. Errors: cannot_create, io; mcap: data (times that ROS cannot
-/// express).
+/// mcap: FOLDER/scans.mcap as McapWriter; kitti_raw: as make_kitti_raw_writer(); else
+/// NNNNNN.EXT of scan_files.h. All but semantickitti have poses.csv beside them. Errors:
+/// cannot_create, io; mcap, kitti_raw: data (times that they cannot express).
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
                                              const ScanWriterOptions& options = {});
 

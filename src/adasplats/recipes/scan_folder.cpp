@@ -7,11 +7,12 @@
 #include <exception>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "adasplats/core/error.h"
 #include "adasplats/dataset/scan_files.h"
-#include "adasplats/dataset/scan_values.h"
+#include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
 namespace {
@@ -19,10 +20,11 @@ namespace {
 /// Of the rays that a scan has; with fewer returns a place is hardly worth a drive.
 constexpr double kLeastShareOfReturns = 0.1;
 
-/// The digits that a file's name begins with, which are the number of its scan; empty for others.
-std::string scan_of_file(const std::string& name) {
+/// The number that a file's name begins with, which is that of its scan, however many digits the
+/// data set gives it; nothing for others.
+std::optional<std::size_t> scan_of_file(const std::string& name) {
   const std::string file = std::filesystem::path(name).filename().string();
-  return file.substr(0, file.find_first_not_of("0123456789"));
+  return parse_number<std::size_t>(file.substr(0, file.find_first_not_of("0123456789")));
 }
 
 /// "1.25 GB".
@@ -38,13 +40,14 @@ std::string size_text(double bytes) {
 
 std::size_t keep_written_scans(ScanWriter& writer, const ResumableFolder& folder,
                                std::span<const ScanMotion> scans) {
-  std::map<std::string, std::vector<std::string>> files;
-  for (const auto& [name, digest] : folder.recorded()) files[scan_of_file(name)].push_back(name);
+  std::map<std::size_t, std::vector<std::string>> files;
+  for (const auto& [name, digest] : folder.recorded())
+    if (const auto scan = scan_of_file(name)) files[*scan].push_back(name);
   for (std::size_t i = 0; i < scans.size(); ++i) {
     // Files of a scan are noted in one go, the main one last: where it is noted, all are.
     const std::string main_file = writer.main_file(i);
     if (main_file.empty() || !folder.recorded().contains(main_file)) return i;
-    if (!folder.has(files[scan_name(i)])) return i;
+    if (!folder.has(files[i])) return i;
     writer.keep(i, scans[i].reference);
   }
   return scans.size();

@@ -39,8 +39,10 @@ void require_returns(const SimulateResult& result, const ModelScene& scene,
                    "are trajectory and model in one frame? offset and mount shift it");
 }
 
-ScanWriterOptions writing_options(const ScanSimulator& simulator, PointOrder order) {
+ScanWriterOptions writing_options(const ScanSimulator& simulator, PointOrder order,
+                                  std::span<const ScanMotion> scans) {
   ScanWriterOptions writing;
+  writing.drive = {scans.size(), [&](std::size_t i) { return scans[i].reference.time_s; }};
   writing.order = order;
   writing.image_size = image_size_of(simulator.firings());
   writing.labels = simulator.scene().labels();
@@ -54,8 +56,8 @@ ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> sc
   const ModelScene& scene = simulator.scene();
   // An attempt that was interrupted at its very end had been given the poses already.
   std::filesystem::remove(folder.path() / "sequences" / "00" / "poses.txt");
-  const auto writer =
-      make_scan_writer(folder.path(), job.format, writing_options(simulator, job.point_order));
+  const auto writer = make_scan_writer(folder.path(), job.format,
+                                       writing_options(simulator, job.point_order, scans));
   const std::size_t first = keep_written_scans(*writer, folder, scans);
   const LidarModel& sensor = simulator.settings().sensor;
   require_room(folder.path(), job.format, scans.size() - first, sensor.rays_per_scan(),

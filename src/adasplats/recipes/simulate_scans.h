@@ -23,7 +23,7 @@ struct SimulateJob {
   DriveOptions drive;
   std::filesystem::path output;
   ScanFormat format = ScanFormat::semantickitti;
-  PointOrder point_order = PointOrder::kitti;  ///< in semantickitti's files
+  PointOrder point_order = PointOrder::kitti;  ///< in KITTI's files
   bool overwrite = false;
 };
 

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/dataset/scan_writer.h"
+
+namespace adasplats {
+
+/// What stands beside the scans: poses.csv, world_from_sensor of every one.
+class WriterWithPoses : public ScanWriter {
+ public:
+  using ScanWriter::ScanWriter;
+  void append(std::size_t /*index*/, const EncodedScan& scan) override {
+    trajectory_.push_back(scan.pose);
+  }
+  void keep(std::size_t /*index*/, const TimedPose& pose) override { trajectory_.push_back(pose); }
+  void finish() override { write_trajectory_csv(folder() / "poses.csv", trajectory_); }
+
+ protected:
+  /// Of the scans so far, by their numbers.
+  const Trajectory& trajectory() const { return trajectory_; }
+
+ private:
+  Trajectory trajectory_;
+};
+
+}  // namespace adasplats
