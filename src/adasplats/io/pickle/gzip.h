@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace adasplats {
+
+/// A gzip member (RFC 1952) of `bytes`, without name and time: the same for the same bytes.
+std::string gzipped(std::string_view bytes);
+
+/// What the members of a gzip file hold. `file` is for messages. Memory: twice what they hold, at
+/// most `most_bytes`. Errors: data (no gzip, damaged or cut, more than `most_bytes`).
+std::string gunzipped(const std::filesystem::path& file, std::string_view bytes,
+                      std::size_t most_bytes);
+
+}  // namespace adasplats
