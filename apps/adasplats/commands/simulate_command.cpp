@@ -50,11 +50,11 @@ class SimulateCommand final : public Command {
     add_choice<ScanFormat>(
         app, "--format", job_.format, choices_of<ScanFormat>(kScanFormats),
         "Of the scans; semantickitti writes OUTPUT/sequences/00, mcap OUTPUT/scans.mcap, kitti-raw "
-        "the tree of that data set");
-    add_choice<PointOrder>(app, "--point-order", job_.point_order,
-                           choices_of<PointOrder>(kPointOrders),
-                           "Of KITTI's files: ring by ring and counter-clockwise from "
-                           "straight ahead as KITTI's own, or as fired");
+        "and pandaset the trees of those data sets");
+    add_choice<PointOrder>(
+        app, "--point-order", job_.point_order, choices_of<PointOrder>(kPointOrders),
+        "Of trees of data sets: as the data set's own files (KITTI's: ring by ring, "
+        "counter-clockwise from straight ahead), or as fired");
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     add_device_options(GpuCount::several);
   }
@@ -77,8 +77,8 @@ class SimulateCommand final : public Command {
   void check_options() const {
     if (!job_.scan.noise) refuse({"--range-noise"}, "with --no-noise");
     if (!job_.drive.rolling_shutter) refuse({"--points"}, "without --rolling-shutter");
-    if (job_.format != ScanFormat::semantickitti && job_.format != ScanFormat::kitti_raw)
-      refuse({"--point-order"}, "with formats other than semantickitti and kitti-raw");
+    if (!is_tree(job_.format))
+      refuse({"--point-order"}, "with formats that are no tree of a data set");
     const auto require_positive = [this](const char* name, double value) {
       if (is_given(name) && !(value > 0)) {
         throw Error(ErrorKind::usage, std::string(name) + " must be greater than 0");

@@ -13,9 +13,9 @@
 
 namespace adasplats {
 
-/// In which order a file of SemanticKITTI's kind has the points of a scan.
+/// In which order a file of a data set's tree has the points of a scan.
 enum class PointOrder : std::uint8_t {
-  kitti,   ///< as KITTI's own files: kitti_order()
+  kitti,   ///< as the data set's own files: kitti_order(), of others driver_order()
   firing,  ///< as the sensor model lists its firings (firings_of())
 };
 inline constexpr std::pair<std::string_view, PointOrder> kPointOrders[] = {

@@ -9,6 +9,7 @@
 #include "adasplats/dataset/kitti_order.h"
 #include "adasplats/dataset/oxts_records.h"
 #include "adasplats/dataset/scan_values.h"
+#include "adasplats/dataset/tree_names.h"
 #include "adasplats/dataset/writer_with_poses.h"
 #include "adasplats/io/base/atomic_file.h"
 
@@ -39,10 +40,7 @@ std::string camera_calibration() {
   return text;
 }
 
-std::string ten_digits(std::size_t index) {
-  const std::string digits = std::to_string(index);
-  return std::string(digits.size() < 10 ? 10 - digits.size() : 0, '0') + digits;
-}
+std::string ten_digits(std::size_t index) { return padded_number(index, 10); }
 
 class KittiRawWriter final : public WriterWithPoses {
  public:

@@ -106,27 +106,32 @@ Vec3d OxtsRecords::acceleration_at(std::size_t index) const {
   return (motion_at(behind).velocity_m_s - motion_at(before).velocity_m_s) / apart_s;
 }
 
+OxtsPlace OxtsRecords::place(std::size_t index) const {
+  const Vec3d at = imu_[index].world_from_sensor.translation;
+  const auto [latitude, longitude] = degrees_of(at - imu_.front().world_from_sensor.translation);
+  return {latitude, longitude, at.z, motion_at(index).velocity_m_s};
+}
+
 std::string OxtsRecords::line(std::size_t index) const {
   const RigidTransform& pose = imu_[index].world_from_sensor;
-  const auto [latitude, longitude] =
-      degrees_of(pose.translation - imu_.front().world_from_sensor.translation);
+  const OxtsPlace at = place(index);
   const Angles angles(pose.rotation);
   // The frame of the vehicle's heading on level ground: forward, left, up.
   const Mat3d level = rotation_from_yaw_pitch_roll(angles.yaw_rad, 0, 0).transposed();
   const Mat3d body = pose.rotation.transposed();
-  const Motion motion = motion_at(index);
+  const Vec3d turning = motion_at(index).rate_rad_s;
   const Vec3d felt = acceleration_at(index) + Vec3d{0, 0, kGravity_m_s2};
-  const Vec3d v = level * motion.velocity_m_s, a = body * felt, a_level = level * felt;
-  const Vec3d w = body * motion.rate_rad_s, w_level = level * motion.rate_rad_s;
+  const Vec3d v = level * at.velocity_m_s, a = body * felt, a_level = level * felt;
+  const Vec3d w = body * turning, w_level = level * turning;
   std::string line;
-  for (const double value : {latitude,
-                             longitude,
-                             pose.translation.z,
+  for (const double value : {at.latitude_deg,
+                             at.longitude_deg,
+                             at.altitude_m,
                              angles.roll_rad,
                              angles.pitch_rad,
                              angles.yaw_rad,
-                             motion.velocity_m_s.y,
-                             motion.velocity_m_s.x,
+                             at.velocity_m_s.y,
+                             at.velocity_m_s.x,
                              v.x,
                              v.y,
                              v.z,

@@ -10,6 +10,12 @@
 
 namespace adasplats {
 
+/// Where a record is, and how fast.
+struct OxtsPlace {
+  double latitude_deg, longitude_deg, altitude_m;
+  Vec3d velocity_m_s;  ///< east, north, up
+};
+
 /// Poses as records of KITTI's GPS/IMU unit (devkit of the raw data, dataformat.txt): what
 /// open_kitti_raw_drive() and the devkit's formulas read back. The first record is at latitude 49
 /// and longitude 8.4 degrees, where KITTI was recorded; altitudes are the z of the poses.
@@ -22,6 +28,7 @@ class OxtsRecords {
   /// gravity), angular rates by differences of neighbouring poses (0 where times do not ascend),
   /// accuracies and states of a unit with a fix.
   std::string line(std::size_t index) const;
+  OxtsPlace place(std::size_t index) const;
 
  private:
   struct Motion {

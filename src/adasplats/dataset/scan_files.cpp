@@ -150,6 +150,7 @@ ScanFields fields_of(ScanFormat format) {
   ScanFields fields;
   if (format == ScanFormat::semantickitti || format == ScanFormat::kitti_raw)
     fields.ranges = fields.columns = fields.times = false;
+  if (format == ScanFormat::pandaset) fields.ranges = false;
   return fields;
 }
 
@@ -159,6 +160,8 @@ ScanBytes scan_bytes(ScanFormat format) {
   switch (format) {
     case ScanFormat::semantickitti: return {16, 20, 0, 0};
     case ScanFormat::kitti_raw: return {16, 16, 0, 0};
+    // Half of what is packed at least: coordinates are noise in their last bits.
+    case ScanFormat::pandaset: return {20, 56, 0, 0};
     case ScanFormat::npy: return {20, 20, 0, 0};
     case ScanFormat::ply:
     case ScanFormat::pcd:
@@ -211,7 +214,8 @@ std::vector<EncodedFile> encode_scan_files(ScanFormat format, const std::string&
     case ScanFormat::semantickitti:
     case ScanFormat::range_image:
     case ScanFormat::mcap:
-    case ScanFormat::kitti_raw: throw std::logic_error("encode_scan_files: no format of points");
+    case ScanFormat::kitti_raw:
+    case ScanFormat::pandaset: throw std::logic_error("encode_scan_files: no format of points");
   }
   return files;
 }

@@ -24,7 +24,8 @@ enum class ScanFormat : std::uint8_t {
   las,
   range_image,
   mcap,
-  kitti_raw
+  kitti_raw,
+  pandaset
 };
 inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"semantickitti", ScanFormat::semantickitti},
@@ -35,7 +36,13 @@ inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"las", ScanFormat::las},
     {"range-image", ScanFormat::range_image},
     {"mcap", ScanFormat::mcap},
-    {"kitti-raw", ScanFormat::kitti_raw}};
+    {"kitti-raw", ScanFormat::kitti_raw},
+    {"pandaset", ScanFormat::pandaset}};
+
+/// Whether the format is the tree of a data set, with points in the order of its own files.
+constexpr bool is_tree(ScanFormat format) {
+  return format == ScanFormat::semantickitti || format >= ScanFormat::kitti_raw;
+}
 
 /// Bytes that scans become, but for headers and what all have in common.
 struct ScanBytes {

@@ -4,9 +4,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/dataset/encoded_scan.h"
@@ -14,6 +16,7 @@
 #include "adasplats/dataset/range_image.h"
 #include "adasplats/dataset/scan_files.h"
 #include "adasplats/simulate/scan/scan_view.h"
+#include "adasplats/simulate/world/world.h"
 
 namespace adasplats {
 
@@ -32,12 +35,16 @@ struct DriveSpan {
         scans(count) {}
 };
 
+/// The objects of a world in scan number `index` at `time_s`. Several threads may call it at once.
+using BoxesOfScan = std::function<std::vector<ObjectBox>(std::size_t index, double time_s)>;
+
 struct ScanWriterOptions {
   ImageSize image_size;                  ///< of range images (image_size_of)
   double full_intensity = 1.0;           ///< LAS: what becomes its largest intensity
-  const LabelScheme* labels = nullptr;   ///< colours of range images; outlives the writer
+  const LabelScheme* labels = nullptr;   ///< names and colours of classes; outlives the writer
   PointOrder order = PointOrder::kitti;  ///< of points in KITTI's files
   DriveSpan drive;                       ///< trees that name files by it
+  BoxesOfScan boxes;                     ///< trees that list objects; none: there is no world
 };
 
 /// Makes scans of one drive files of a folder. What a scan becomes can be worked out and written by
@@ -75,7 +82,8 @@ class ScanWriter {
 
 /// A writer into `folder`, which exists. semantickitti: FOLDER/sequences/00 as SemanticKittiWriter
 /// and FOLDER/poses/00.txt, points in `options.order`; range_image: files of write_range_image();
-/// mcap: FOLDER/scans.mcap as McapWriter; kitti_raw: as make_kitti_raw_writer(); else
+/// mcap: FOLDER/scans.mcap as McapWriter; kitti_raw and pandaset: as make_kitti_raw_writer()
+/// and make_pandaset_writer(); else
 /// NNNNNN.EXT of scan_files.h. All but semantickitti have poses.csv beside them. Errors:
 /// cannot_create, io; mcap, kitti_raw: data (times that they cannot express).
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,

@@ -46,6 +46,8 @@ ScanWriterOptions writing_options(const ScanSimulator& simulator, PointOrder ord
   writing.order = order;
   writing.image_size = image_size_of(simulator.firings());
   writing.labels = simulator.scene().labels();
+  if (const World* const world = simulator.scene().world())
+    writing.boxes = [world](std::size_t i, double time_s) { return world->boxes(i, time_s); };
   return writing;
 }
 

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace adasplats {
+
+/// Number `index` with at least so many digits, zeros before it.
+std::string padded_number(std::size_t index, std::size_t digits);
+
+/// 32 hexadecimal digits that stand for `name`, always the same, as nuScenes' tokens are: made of
+/// its SHA-256.
+std::string token_of(std::string_view name);
+
+/// The same with the dashes of a UUID.
+std::string uuid_of(std::string_view name);
+
+}  // namespace adasplats

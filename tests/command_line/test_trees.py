@@ -1,0 +1,100 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""Trees of data sets, read by what others read them with."""
+import csv
+import json
+import math
+import unittest
+
+from support import ProgramTest
+
+
+def turned(q, v):
+    """v turned by the quaternion (w, x, y, z)."""
+    w, x, y, z = q
+    rows = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+    return [sum(a * b for a, b in zip(row, v)) for row in rows]
+
+
+class Trees(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        lines = ["time,x,y,z,qw,qx,qy,qz"]
+        for i in range(6):
+            yaw = 0.05 * i
+            lines.append(f"{100 + 0.1 * i},{4 + 0.3 * i},{0.1 * i * i},{2 + 0.01 * i},"
+                         f"{math.cos(yaw / 2):.15f},0,0,{math.sin(yaw / 2):.15f}")
+        self.poses.write_text("\n".join(lines) + "\n")
+        self.place = self.model()
+
+    def tree(self, word, *arguments):
+        self.simulate(self.place, word, "--format", word, *arguments)
+        return self.folder / word
+
+    def simulated_poses(self):
+        """Rows of time, x, y, z, qw, qx, qy, qz."""
+        with open(self.poses, encoding="utf-8") as file:
+            return [[float(value) for value in row] for row in list(csv.reader(file))[1:]]
+
+    def test_kitti_raw_by_the_devkits_formulas(self):
+        """Poses of pykitti's and the devkit's convertOxtsToPose are those that were simulated."""
+        day = self.tree("kitti-raw") / "1970_01_01"
+        drive = day / "1970_01_01_drive_0001_sync"
+        poses = self.simulated_poses()
+        records = [[float(word) for word in path.read_text().split()]
+                   for path in sorted((drive / "oxts" / "data").iterdir())]
+        self.assertEqual([len(record) for record in records], [30] * 6)
+        scale, radius = math.cos(math.radians(records[0][0])), 6378137.0
+        lever = [-float(word) for word in
+                 (day / "calib_imu_to_velo.txt").read_text().split("T:")[1].split()[:3]]
+        places = []
+        for latitude, longitude, altitude, roll, pitch, yaw in (r[:6] for r in records):
+            self.assertAlmostEqual(roll, 0)
+            self.assertAlmostEqual(pitch, 0)
+            east = scale * radius * math.radians(longitude)
+            north = scale * radius * math.log(math.tan(math.radians(90 + latitude) / 2))
+            arm = turned((math.cos(yaw / 2), 0, 0, math.sin(yaw / 2)), lever)
+            places.append([a + b for a, b in zip((east, north, altitude), arm)])
+        for place, pose in zip(places, poses):
+            for axis in range(3):
+                self.assertAlmostEqual(place[axis] - places[0][axis],
+                                       pose[1 + axis] - poses[0][1 + axis], delta=1e-6)
+        points = drive / "velodyne_points" / "data" / "0000000005.bin"
+        self.assertEqual(points.stat().st_size % 16, 0)
+
+    def test_pandas_reads_pandaset(self):
+        try:
+            import pandas
+        except ImportError:
+            self.skipTest("pandas is not installed")
+        sequence = self.tree("pandaset") / "001"
+        frame = pandas.read_pickle(sequence / "lidar" / "03.pkl.gz")
+        self.assertEqual(list(frame.columns), ["x", "y", "z", "i", "t", "d"])
+        self.assertEqual([str(kind) for kind in frame.dtypes], ["float64"] * 5 + ["int64"])
+        pose = json.loads((sequence / "lidar" / "poses.json").read_text())[3]
+        turn = [pose["heading"][key] for key in "wxyz"]
+        back = [turn[0], -turn[1], -turn[2], -turn[3]]
+        for x, y, z in zip(frame["x"], frame["y"], frame["z"]):
+            point = [a - pose["position"][key] for a, key in zip((x, y, z), "xyz")]
+            right, forward, up = turned(back, point)
+            elevation = math.degrees(math.atan2(up, math.hypot(right, forward)))
+            beam = (10 - elevation) * 15 / 35  # 16 of them from 10 to -25 degrees
+            self.assertAlmostEqual(beam, round(beam), delta=1e-3)
+        classes = pandas.read_pickle(sequence / "annotations" / "semseg" / "03.pkl.gz")
+        self.assertEqual(len(classes), len(frame))
+        self.assertLess(set(classes["class"]), {0, 40, 50, 80})
+
+    def test_order_of_before_on_request(self):
+        fired = self.tree("kitti-raw", "--point-order", "firing")
+        before = self.simulate(self.place, "npy", "--format", "npy")
+        scan = next(fired.rglob("0000000002.bin")).read_bytes()
+        self.assertTrue((before / "000002.npy").read_bytes().endswith(scan))
+        self.run_bad(64, "simulate", self.place, "--trajectory", self.poses, "-o",
+                     self.folder / "x", "--format", "npy", "--point-order", "firing",
+                     says=["--point-order"])
+
+
+if __name__ == "__main__":
+    unittest.main()
