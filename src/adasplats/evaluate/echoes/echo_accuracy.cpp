@@ -12,6 +12,7 @@
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/echoes/beam_grid.h"
+#include "adasplats/evaluate/echoes/standpoints.h"
 #include "adasplats/evaluate/share.h"
 
 namespace adasplats {
@@ -88,7 +89,7 @@ BeamGrid grid_of(const KittiSequence& sequence, std::size_t index, const LidarMo
   }
 }
 
-void add_beams(BeamEchoes& beams, const EchoScene& scene, const BeamGrid& grid, std::size_t index,
+void add_beams(BeamEchoes& beams, const EchoScene& scene, const BeamGrid& grid, std::uint32_t place,
                const LidarModel& sensor, const ScanMotion& motion, const Executor& executor) {
   const std::vector<Ray> rays = scan_rays(sensor, grid.beams, motion, scene.origin, executor);
   std::vector<Hit> hits(rays.size());
@@ -100,7 +101,7 @@ void add_beams(BeamEchoes& beams, const EchoScene& scene, const BeamGrid& grid, 
     beams.echoes.push_back(echo);
     beams.hit.push_back(hit ? 1 : 0);
     beams.lost.push_back(grid.returned(i) ? 0 : 1);
-    beams.scans.push_back(static_cast<std::uint32_t>(index));
+    beams.places.push_back(place);
   }
 }
 
@@ -113,7 +114,7 @@ BeamEchoes kept(const BeamEchoes& beams, const Keep& keep) {
     result.echoes.push_back(beams.echoes[i]);
     result.hit.push_back(beams.hit[i]);
     result.lost.push_back(beams.lost[i]);
-    result.scans.push_back(beams.scans[i]);
+    result.places.push_back(beams.places[i]);
   }
   return result;
 }
@@ -178,10 +179,11 @@ BeamEchoes collect_beam_echoes(const EchoScene& scene, const KittiSequence& sequ
                                std::span<const ScanMotion> motions, const Executor& executor,
                                ProgressSink& progress) {
   BeamEchoes beams;
+  const std::vector<std::uint32_t> places = standpoints_of(sequence, indices);
   progress.begin_step("cast all beams", indices.size());
   for (std::size_t k = 0; k < indices.size(); ++k) {
     const BeamGrid grid = grid_of(sequence, indices[k], sensor);
-    add_beams(beams, scene, grid, indices[k], sensor, motions[indices[k]], executor);
+    add_beams(beams, scene, grid, places[k], sensor, motions[indices[k]], executor);
     progress.advance(k + 1);
   }
   progress.end_step();
@@ -191,7 +193,7 @@ BeamEchoes collect_beam_echoes(const EchoScene& scene, const KittiSequence& sequ
 RayDropModel fit_ray_drop(const BeamEchoes& beams) {
   const BeamEchoes hits = kept(beams, [&](std::size_t i) { return beams.hit[i] != 0; });
   RayDropModel blocked;
-  blocked.blocked = find_blocked_sectors(hits.echoes, hits.lost, hits.scans);
+  blocked.blocked = find_blocked_sectors(hits.echoes, hits.lost, hits.places);
   const BeamEchoes free =
       kept(hits, [&](std::size_t i) { return !blocked.blocks(hits.echoes[i].direction); });
   RayDropModel model = fit_ray_drop(free.echoes, free.lost);

@@ -52,7 +52,7 @@ struct BeamEchoes {
   std::vector<EchoConditions> echoes;  ///< where the model is hit; else the direction alone counts
   std::vector<std::uint8_t> hit;       ///< 1: the beam hits the model within the sensor's range
   std::vector<std::uint8_t> lost;      ///< 1: the real beam found nothing
-  std::vector<std::uint32_t> scans;    ///< number of the scan
+  std::vector<std::uint32_t> places;   ///< that it was fired from (standpoints_of())
 
   std::size_t size() const { return echoes.size(); }
 };

@@ -39,7 +39,7 @@ TEST(DropAccuracy, CountsByHand) {
     beams.echoes.push_back({10, 1, 0.3F});
     beams.hit.push_back(hit ? 1 : 0);
     beams.lost.push_back(lost ? 1 : 0);
-    beams.scans.push_back(0);
+    beams.places.push_back(0);
   };
   for (int i = 0; i < 3; ++i) add(false, true);  // right
   add(false, false);                             // said to be empty, but was not
@@ -130,7 +130,8 @@ class MeasuredGround : public testing::Test {
                static_cast<std::streamsize>(values.size() * sizeof(float)));
     TimedPose pose;
     pose.time_s = static_cast<double>(scan);
-    pose.world_from_sensor.translation = {105, 202, 3};
+    // Along the border of the two, so that all scans are alike.
+    pose.world_from_sensor.translation = {105 + 3 * static_cast<double>(scan), 202, 3};
     sequence.trajectory.push_back(pose);
   }
 
@@ -168,7 +169,7 @@ TEST_F(MeasuredGround, EveryBeamHasItsEcho) {
     EXPECT_EQ(beams.hit[i], 1);
     EXPECT_NEAR(beams.echoes[i].range_m, range_of(beam), 2e-3);
     EXPECT_NEAR(beams.echoes[i].cos_incidence, -std::sin(elevation_rad(beam)), 1e-4);
-    EXPECT_EQ(beams.scans[i], i / (kBeams * kFirings));
+    EXPECT_EQ(beams.places[i], i / (kBeams * kFirings));
     lost += beams.lost[i];
   }
   EXPECT_EQ(lost, lost_beams);
@@ -195,6 +196,12 @@ TEST_F(MeasuredGround, DropModelIsFoundAndForetellsOtherScans) {
   const DropAccuracy free = drop_accuracy(other, &model, false);
   EXPECT_EQ(free.predicted, 0U);
   EXPECT_EQ(free.beams, all.beams - all.predicted);
+}
+
+// What a standing vehicle does not see may as well be the place's.
+TEST_F(MeasuredGround, StandingVehicleTellsNoBlockedSectors) {
+  for (TimedPose& pose : sequence.trajectory) pose.world_from_sensor.translation = {105, 202, 3};
+  EXPECT_TRUE(fit_ray_drop(collect({0, 1, 2})).blocked.empty());
 }
 
 TEST_F(MeasuredGround, SameBeamsForAnyNumberOfThreads) {

@@ -82,12 +82,12 @@ std::optional<DropFit> fit_unit_drop(std::span<const UnitBeam> beams, double max
     all.echoes.push_back(conditions_of(beam));
     all.hit.push_back(1);
     all.lost.push_back(beam.returned() ? 0 : 1);
-    all.scans.push_back(beam.scan);
+    all.places.push_back(beam.place);
     numbers.push_back(i);
   }
   DropFit fit;
   fit.shares.assign(beams.size(), std::numeric_limits<float>::quiet_NaN());
-  fit.model.blocked = find_blocked_sectors(all.echoes, all.lost, all.scans);
+  fit.model.blocked = find_blocked_sectors(all.echoes, all.lost, all.places);
   fit.model.edge_runs = std::move(found.edge_runs);
   std::vector<EchoConditions> echoes;
   std::vector<std::uint8_t> lost;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "adasplats/core/constants.h"
@@ -22,6 +23,12 @@ constexpr double kMiddleHalf = 0.6933 * 2.449489742783178;
 bool modelled_as_one(const UnitBeam& a, const UnitBeam& b, const UnitBeam& c) {
   return a.hit && b.hit && c.hit && std::fabs(b.expected_m - a.expected_m) < kOneSurface_m &&
          std::fabs(c.expected_m - b.expected_m) < kOneSurface_m;
+}
+
+std::size_t places_of(std::span<const UnitBeam> beams) {
+  std::set<std::uint32_t> places;
+  for (const UnitBeam& beam : beams) places.insert(beam.place);
+  return places.size();
 }
 
 float second_difference(float a, float b, float c) { return std::fabs(a - 2 * b + c); }
@@ -92,6 +99,9 @@ UnitFit fit_unit(std::span<const UnitBeam> beams, const UnitPattern& pattern) {
         "intensities: fewer than 10,000 returns with an intensity meet the model where it has "
         "one, or all are alike");
   std::optional<DropFit> drop = fit_unit_drop(beams, fit.max_range_m.value_or(pattern.max_range_m));
+  if (places_of(beams) < kLeastBlockedPlaces)
+    fit.not_told.emplace_back(
+        "directions that the vehicle blocks: the scans are from fewer than three places 2 m apart");
   if (!drop)
     fit.not_told.emplace_back(
         "drop-outs: fewer than 100 beams that met the model did not return, or did");

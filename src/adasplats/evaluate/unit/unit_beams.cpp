@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "adasplats/evaluate/echoes/standpoints.h"
+
 namespace adasplats {
 namespace {
 
@@ -100,6 +102,7 @@ std::vector<UnitBeam> collect_unit_beams(const EchoScene& scene, const KittiSequ
                                          std::span<const double> heights_m, double step_rad,
                                          const Executor& executor, ProgressSink& progress) {
   std::vector<UnitBeam> all;
+  const std::vector<std::uint32_t> places = standpoints_of(sequence, indices);
   progress.begin_step("cast all beams", indices.size());
   for (std::size_t s = 0; s < indices.size(); ++s) {
     const std::vector<FiredBeam> fired =
@@ -118,6 +121,7 @@ std::vector<UnitBeam> collect_unit_beams(const EchoScene& scene, const KittiSequ
     for (std::size_t i = 0; i < fired.size(); ++i) {
       UnitBeam beam = unit_beam(scene, fired[i], rays[i], hits[i]);
       beam.scan = static_cast<std::uint32_t>(indices[s]);
+      beam.place = places[s];
       const bool goes_on = i > 0 && fired[i - 1].ring == fired[i].ring;
       beam.column = goes_on ? all.back().column + 1
                             : static_cast<std::uint32_t>(fired[i].azimuth_rad / step_rad);

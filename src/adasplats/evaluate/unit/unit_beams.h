@@ -18,6 +18,7 @@ namespace adasplats {
 /// A beam that a real sensor fired, with what a model of the place says of it.
 struct UnitBeam {
   std::uint32_t scan = 0;    ///< number in the sequence
+  std::uint32_t place = 0;   ///< that it was fired from (standpoints_of())
   std::uint32_t column = 0;  ///< azimuth step within its ring; the next beam's is one more
   std::uint16_t ring = 0;    ///< topmost 0
   bool hit = false;          ///< the model is there; else its three values mean nothing

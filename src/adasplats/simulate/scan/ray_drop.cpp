@@ -112,20 +112,19 @@ bool is_known(Vec3f direction) { return !(direction == Vec3f{}); }
 
 constexpr int kSectors = 360;
 
-/// What one scan says of one sector.
+/// What one place says of one sector.
 struct SectorCount {
   std::uint32_t echoes = 0;
   std::uint32_t dropped = 0;
 };
 
-/// The sectors of one elevation, scan by scan.
-using SectorScans = std::array<std::map<std::uint32_t, SectorCount>, kSectors>;
+/// The sectors of one elevation, place by place.
+using SectorPlaces = std::array<std::map<std::uint32_t, SectorCount>, kSectors>;
 
-bool is_blocked(const std::map<std::uint32_t, SectorCount>& scans) {
-  constexpr std::size_t kLeastScans = 3;
+bool is_blocked(const std::map<std::uint32_t, SectorCount>& places) {
   std::size_t blocked = 0;
-  for (const auto& [scan, count] : scans) blocked += 2 * count.dropped > count.echoes ? 1 : 0;
-  return blocked >= kLeastScans && 4 * blocked >= 3 * scans.size();
+  for (const auto& [place, count] : places) blocked += 2 * count.dropped > count.echoes ? 1 : 0;
+  return blocked >= kLeastBlockedPlaces && 4 * blocked >= 3 * places.size();
 }
 
 }  // namespace
@@ -216,17 +215,17 @@ RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
 
 std::vector<BlockedSector> find_blocked_sectors(std::span<const EchoConditions> echoes,
                                                 std::span<const std::uint8_t> dropped,
-                                                std::span<const std::uint32_t> scans) {
+                                                std::span<const std::uint32_t> places) {
   check_sizes(echoes.size(), dropped.size());
-  check_sizes(echoes.size(), scans.size());
-  std::map<std::int64_t, SectorScans> by_elevation;  // in hundredths of a degree
+  check_sizes(echoes.size(), places.size());
+  std::map<std::int64_t, SectorPlaces> by_elevation;  // in hundredths of a degree
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     const Vec3f direction = echoes[i].direction;
     if (!is_known(direction) || !is_finite(direction)) continue;
     const auto elevation = std::llround(elevation_rad(direction) / kDegree * 100);
     const double turn = azimuth_rad(direction) / (2 * std::numbers::pi) + 0.5;
     const auto sector = std::min(static_cast<int>(turn * kSectors), kSectors - 1);
-    SectorCount& count = by_elevation[elevation][static_cast<std::size_t>(sector)][scans[i]];
+    SectorCount& count = by_elevation[elevation][static_cast<std::size_t>(sector)][places[i]];
     ++count.echoes;
     count.dropped += dropped[i] != 0 ? 1 : 0;
   }

@@ -61,13 +61,17 @@ struct RayDropModel {
 RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
                           std::span<const std::uint8_t> dropped);
 
+/// Fewer places tell no blocked sectors.
+inline constexpr std::size_t kLeastBlockedPlaces = 3;
+
 /// Sectors of one degree of azimuth at each elevation (beams within 0.01 degrees are one) in which
-/// most echoes that a model foretells were dropped, in at least three quarters of the scans and in
-/// three of them: what stands still in the sensor's frame while the place goes by. scans[i]: the
-/// number of the scan of echoes[i]. Neighbours are joined. Error: std::logic_error (sizes differ).
+/// most echoes that a model foretells were dropped, from at least three quarters of the places and
+/// from kLeastBlockedPlaces of them: what stands still in the sensor's frame while the world goes
+/// by. places[i]: the number of the place that echo i was fired from. Neighbours are joined. Error:
+/// std::logic_error (sizes differ).
 std::vector<BlockedSector> find_blocked_sectors(std::span<const EchoConditions> echoes,
                                                 std::span<const std::uint8_t> dropped,
-                                                std::span<const std::uint32_t> scans);
+                                                std::span<const std::uint32_t> places);
 
 /// A TOML file: usual_reflectance, weights, fitted_to, and [[blocked]] with elevation_deg and
 /// azimuths_deg, a list of [begin, end]. Errors of reading: no_input, config with the line.
