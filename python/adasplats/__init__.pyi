@@ -773,7 +773,7 @@ class Scans:
         *,
         format: Literal[
             "semantickitti", "ply", "npy", "npz", "pcd", "las", "range-image", "mcap",
-            "kitti-raw", "pandaset",
+            "kitti-raw", "pandaset", "nuscenes",
         ] = "semantickitti",
         point_order: Literal["kitti", "firing"] = "kitti",
     ) -> None: ...

@@ -11,7 +11,7 @@ import unittest
 from support import PROGRAM, ProgramTest, tree_digest
 
 FORMATS = ["semantickitti", "ply", "npy", "npz", "pcd", "las", "range-image", "mcap",
-           "kitti-raw", "pandaset"]
+           "kitti-raw", "pandaset", "nuscenes"]
 SCANS = 161  # of three poses, 0.2 s apart in all, at 800 Hz
 
 

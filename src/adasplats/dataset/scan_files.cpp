@@ -151,6 +151,7 @@ ScanFields fields_of(ScanFormat format) {
   if (format == ScanFormat::semantickitti || format == ScanFormat::kitti_raw)
     fields.ranges = fields.columns = fields.times = false;
   if (format == ScanFormat::pandaset) fields.ranges = false;
+  if (format == ScanFormat::nuscenes) fields.ranges = fields.times = false;
   return fields;
 }
 
@@ -162,6 +163,7 @@ ScanBytes scan_bytes(ScanFormat format) {
     case ScanFormat::kitti_raw: return {16, 16, 0, 0};
     // Half of what is packed at least: coordinates are noise in their last bits.
     case ScanFormat::pandaset: return {20, 56, 0, 0};
+    case ScanFormat::nuscenes: return {20, 21, 0, 0};
     case ScanFormat::npy: return {20, 20, 0, 0};
     case ScanFormat::ply:
     case ScanFormat::pcd:
@@ -215,7 +217,8 @@ std::vector<EncodedFile> encode_scan_files(ScanFormat format, const std::string&
     case ScanFormat::range_image:
     case ScanFormat::mcap:
     case ScanFormat::kitti_raw:
-    case ScanFormat::pandaset: throw std::logic_error("encode_scan_files: no format of points");
+    case ScanFormat::pandaset:
+    case ScanFormat::nuscenes: throw std::logic_error("encode_scan_files: no format of points");
   }
   return files;
 }

@@ -25,7 +25,8 @@ enum class ScanFormat : std::uint8_t {
   range_image,
   mcap,
   kitti_raw,
-  pandaset
+  pandaset,
+  nuscenes
 };
 inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"semantickitti", ScanFormat::semantickitti},
@@ -37,7 +38,8 @@ inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"range-image", ScanFormat::range_image},
     {"mcap", ScanFormat::mcap},
     {"kitti-raw", ScanFormat::kitti_raw},
-    {"pandaset", ScanFormat::pandaset}};
+    {"pandaset", ScanFormat::pandaset},
+    {"nuscenes", ScanFormat::nuscenes}};
 
 /// Whether the format is the tree of a data set, with points in the order of its own files.
 constexpr bool is_tree(ScanFormat format) {

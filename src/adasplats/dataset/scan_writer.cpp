@@ -8,6 +8,7 @@
 #include "adasplats/core/words.h"
 #include "adasplats/dataset/kitti_raw_writer.h"
 #include "adasplats/dataset/mcap_writer.h"
+#include "adasplats/dataset/nuscenes_writer.h"
 #include "adasplats/dataset/pandaset_writer.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/semantickitti_writer.h"
@@ -121,6 +122,7 @@ std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder
   if (format == ScanFormat::semantickitti) return make_sequence_writer(folder, "00", options.order);
   if (format == ScanFormat::kitti_raw) return make_kitti_raw_writer(folder, options);
   if (format == ScanFormat::pandaset) return make_pandaset_writer(folder, options);
+  if (format == ScanFormat::nuscenes) return make_nuscenes_writer(folder, options);
   if (format == ScanFormat::mcap) return std::make_unique<MessageWriter>(folder);
   return std::make_unique<FileWriter>(folder, format, options);
 }

@@ -82,8 +82,8 @@ class ScanWriter {
 
 /// A writer into `folder`, which exists. semantickitti: FOLDER/sequences/00 as SemanticKittiWriter
 /// and FOLDER/poses/00.txt, points in `options.order`; range_image: files of write_range_image();
-/// mcap: FOLDER/scans.mcap as McapWriter; kitti_raw and pandaset: as make_kitti_raw_writer()
-/// and make_pandaset_writer(); else
+/// mcap: FOLDER/scans.mcap as McapWriter; kitti_raw, pandaset, nuscenes: as
+/// make_kitti_raw_writer(), make_pandaset_writer() and make_nuscenes_writer(); else
 /// NNNNNN.EXT of scan_files.h. All but semantickitti have poses.csv beside them. Errors:
 /// cannot_create, io; mcap, kitti_raw: data (times that they cannot express).
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
