@@ -183,6 +183,8 @@ else
     wanted install && check install build_example
   fi
   if wanted asan && check asan-build build_asan; then
+    check one-definition-self-test tools/check_one_definition.py --self-test
+    check one-definition tools/check_one_definition.py build/asan
     UBSAN_OPTIONS=print_stacktrace=1 run_tests asan build/asan
   fi
   check_skipped

@@ -24,6 +24,8 @@
 namespace adasplats {
 namespace {
 
+using namespace room;  // NOLINT(google-build-using-namespace)
+
 class ConsistentOnGpu : public testing::Test {
  protected:
   void SetUp() override {

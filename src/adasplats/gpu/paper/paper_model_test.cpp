@@ -34,6 +34,8 @@
 namespace adasplats::gpu {
 namespace {
 
+using namespace room;  // NOLINT(google-build-using-namespace)
+
 #define ADASPLATS_NEEDS_GPU() \
   if (find_gpus().devices.empty()) GTEST_SKIP() << find_gpus().reason
 

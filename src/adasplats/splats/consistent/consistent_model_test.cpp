@@ -25,6 +25,8 @@
 namespace adasplats {
 namespace {
 
+using namespace room;  // NOLINT(google-build-using-namespace)
+
 struct Warnings : ProgressSink {
   std::vector<std::string> texts;
   void warn(std::string_view text) override { texts.emplace_back(text); }

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// For tests only.
+// For tests only. In a namespace of its own: the library has a direction_of(), too, and the linker
+// would take either.
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,7 @@
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/maths/random.h"
 
-namespace adasplats {
+namespace adasplats::room {
 
 struct Box {
   Vec3d low, high;
@@ -115,4 +116,4 @@ inline PointCloud scanned_room() {
   return cloud;
 }
 
-}  // namespace adasplats
+}  // namespace adasplats::room
