@@ -327,7 +327,6 @@ def fit_sensor(
     scans: Path,
     output: Path,
     *,
-    drop: Path | None = None,
     first_scan: int = 0,
     scan_count: int | None = None,
     scan_stride: int = 1,

@@ -52,11 +52,9 @@ constexpr const char* kFitSensorDoc =
     "model: path of a splat model of the place. scans: a sequence, or a folder of files, one a "
     "scan "
     "(then\n"
-    "trajectory, too). output: the sensor to write, TOML, for Sensor(). drop: a drop model to "
-    "write, "
-    "TOML,\n"
-    "for ray_drop=. motion: how the sensor moved during raw scans. Gives the report as a dict. "
-    "Raises\n"
+    "trajectory, too). output: the sensor to write, TOML, for Sensor(), with all that is of the "
+    "unit.\n"
+    "motion: how the sensor moved during raw scans. Gives the report as a dict. Raises\n"
     "ValueError (DataError where the scans are of another place), OSError.";
 
 constexpr const char* kSimKitti32Doc =
@@ -234,7 +232,6 @@ struct FitSensorCall {
   WorkOptions work;
 
   void take(Keywords& keywords) {
-    keywords.take("drop", job.drop);
     take_scan_range(keywords, job.fit.scans);
     keywords.take("motion", job.fit.motion);
     keywords.take("trajectory", job.fit.trajectory);

@@ -89,15 +89,11 @@ def test_fit_sensor(street, tmp_path):
     poses = scene.poses_on_path([(0, 0), (8, 0)], spacing=1)
     scene.simulate("velodyne-hdl-64e-kitti", poses, seed=3).save(scans)
     expected = report_of(tmp_path, "fit-sensor", street.model, scans, "-o", tmp_path / "cli.toml",
-                         "--drop", tmp_path / "cli-drop.toml", "--scans", "0:4")
-    told = adasplats.fit_sensor(street.model, scans, tmp_path / "here.toml",
-                                drop=tmp_path / "here-drop.toml", scan_count=4)
+                         "--scans", "0:4")
+    told = adasplats.fit_sensor(street.model, scans, tmp_path / "here.toml", scan_count=4)
     assert told == without_times(expected)
-    for name in (".toml", "-drop.toml"):
-        assert (tmp_path / ("here" + name)).read_bytes() == (tmp_path / ("cli" + name)).read_bytes()
+    assert (tmp_path / "here.toml").read_bytes() == (tmp_path / "cli.toml").read_bytes()
     assert adasplats.Sensor(tmp_path / "here.toml").rings == 64
-    with pytest.raises(ValueError, match="same file"):
-        adasplats.fit_sensor(street.model, scans, tmp_path / "x.toml", drop=tmp_path / "x.toml")
 
 
 def test_simkitti32(street, tmp_path):

@@ -15,9 +15,9 @@ namespace {
 
 constexpr const char* kFitSensorExamples =
     "  adasplats fit-sensor place.ply sequences/01_raw --motion sequences/00 -o unit.toml \\\n"
-    "    --drop drop.toml --scans 0:80:2\n"
+    "    --scans 0:80:2\n"
     "  adasplats simulate place.ply --trajectory sequences/01_raw --sensor unit.toml \\\n"
-    "    --unit-offsets --ray-drop drop.toml -o scans\n";
+    "    --unit-offsets -o scans\n";
 
 class FitSensorCommand final : public Command {
  public:
@@ -29,8 +29,6 @@ class FitSensorCommand final : public Command {
     require(add_path(app, "SCANS", job_.fit.scans_of,
                      "Measured scans in that place: a sequence, or a folder of files, one a scan"));
     require(writes(add_path(app, "-o,--output", job_.output, "Sensor to write, TOML"), {".toml"}));
-    writes(add_path(app, "--drop", job_.drop, "Drop model to write, TOML, for simulate --ray-drop"),
-           {".toml"});
     add_path(app, "--motion", job_.fit.motion,
              "Pose file or sequence that tells how the sensor moved during raw scans; the default "
              "is SCANS itself, whose poses may be far apart");
@@ -74,13 +72,14 @@ class FitSensorCommand final : public Command {
       table.add_row({"range edges with lost beams", fixed(100 * lost, 1) + " %"});
       table.add_row({"blocked sectors", grouped(result.drop->blocked.size())});
     }
+    if (result.body)
+      table.add_row({"half degrees that end on the vehicle", grouped(result.body->cells.size())});
     if (result.fields)
       table.add_row({"turns that tell what is alike", grouped(result.fields->turns)});
     std::string text = table.text();
     for (const std::string& reason : result.not_told) text += "not told: " + reason + "\n";
     text += "\n" + job_.output.string() + ": simulate --sensor " + job_.output.string();
     if (result.has_offsets) text += " --unit-offsets";
-    if (!job_.drop.empty()) text += " --ray-drop " + job_.drop.string();
     return text + "; judge it by scans that it was not fitted to\n";
   }
 

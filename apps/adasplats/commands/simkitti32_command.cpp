@@ -43,8 +43,9 @@ class SimKitti32Command final : public Command {
              "This one instead of one that is made of the scans, with its classes; where it is "
              "calibrated, scans stand at the poses that it corrected")
         ->group("Static model");
-    add_path(app, "--ray-drop", job_.ray_drop,
-             "Beams that get lost as a real sensor's: a file of 'adasplats fit-drop'");
+    add_path(
+        app, "--ray-drop", job_.ray_drop,
+        "Beams that get lost as a real sensor's: a file of 'adasplats fit-drop'; 'none': no beam");
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     add_device_options(GpuCount::several);
   }

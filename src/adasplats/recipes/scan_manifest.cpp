@@ -109,6 +109,12 @@ std::string digest_of(const UnitFields& fields) {
   return hash.digest();
 }
 
+std::string digest_of(const std::string& text) {
+  Sha256 hash;
+  hash.add(text.data(), text.size());
+  return hash.digest();
+}
+
 Json sensor_content(const LidarModel& sensor) {
   Json json = {{"name", sensor.name},
                {"rings", sensor.rings()},
@@ -124,6 +130,8 @@ Json sensor_content(const LidarModel& sensor) {
   if (!sensor.ring_noise_m.empty()) json["ring_noise_m"] = sensor.ring_noise_m;
   if (sensor.intensity) json["intensity"] = digest_of(*sensor.intensity);
   if (sensor.fields) json["fields"] = digest_of(*sensor.fields);
+  if (sensor.drop) json["drop"] = digest_of(ray_drop_toml(*sensor.drop));
+  if (sensor.body) json["body"] = digest_of(vehicle_body_toml(*sensor.body));
   Sha256 hash;
   for (const Firing& firing : firings_of(sensor)) {
     const float numbers[] = {firing.direction.x, firing.direction.y, firing.direction.z,
@@ -154,7 +162,11 @@ Json simulate_content(const SimulateJob& job, const ScanSettings& settings,
                   {"point_order", word_of(job.point_order, kPointOrders)}};
   if (settings.unit_offsets) content["sensor"]["range_offsets_m"] = settings.sensor.range_offsets_m;
   if (const LabelScheme* labels = scene.labels()) content["labels"] = labels_content(*labels);
-  if (!job.scan.ray_drop.empty()) content["ray_drop"] = file_content(job.scan.ray_drop);
+  if (is_ray_drop_file(job.scan.ray_drop))
+    content["ray_drop"] = file_content(job.scan.ray_drop);
+  else if (!job.scan.ray_drop.empty())
+    content["ray_drop"] = job.scan.ray_drop.string();
+  content["vehicle_body"] = settings.vehicle_body;
   return content;
 }
 

@@ -205,7 +205,10 @@ Json content_of(const SimKitti32Job& job, const Source& source, const LidarModel
   for (const char* key : {"method", "model_every", "keep_model"})
     if (!job.model.empty()) content.erase(key);
   content["model"] = model_content(job, source);
-  if (!job.ray_drop.empty()) content["ray_drop"] = sha256_of_file(job.ray_drop);
+  if (is_ray_drop_file(job.ray_drop))
+    content["ray_drop"] = sha256_of_file(job.ray_drop);
+  else if (!job.ray_drop.empty())
+    content["ray_drop"] = job.ray_drop.string();
   content["inputs"] = input_hashes(source, session);
   return content;
 }
@@ -435,7 +438,7 @@ ScanSettings settings_of(const SimKitti32Job& job, std::uint64_t seed) {
   settings.sensor.range_noise_m = job.noise_m;
   settings.beam.depth = job.depth;
   settings.weather = job.weather;
-  if (!job.ray_drop.empty()) settings.ray_drop = load_ray_drop(job.ray_drop);
+  settings.ray_drop = chosen_ray_drop(job.ray_drop, settings.sensor);
   settings.seed = seed;
   check(settings);
   return settings;

@@ -40,7 +40,7 @@ struct SimKitti32Job {
   bool keep_model = false;        ///< as model.ply beside the sequences
   /// The static model; empty: it is made of the scans, by `method` and `model_every`.
   std::filesystem::path model;
-  std::filesystem::path ray_drop;  ///< fitted model; empty: every echo is reported
+  std::filesystem::path ray_drop;  ///< chosen_ray_drop()
   Weather weather;
   std::filesystem::path output;
   bool overwrite = false;

@@ -109,6 +109,8 @@ void LidarFile::clear_pattern() {
   model.ring_noise_m.clear();
   model.intensity.reset();
   model.fields.reset();
+  model.drop.reset();
+  model.body.reset();
   model.free_pattern.clear();
   model.rosette.reset();
   column_steps.clear();

@@ -9,8 +9,10 @@
 
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/sensors/divergence.h"
+#include "adasplats/sensors/ray_drop_model.h"
 #include "adasplats/sensors/unit_fields.h"
 #include "adasplats/sensors/unit_intensity.h"
+#include "adasplats/sensors/vehicle_body.h"
 
 namespace adasplats {
 
@@ -56,6 +58,10 @@ struct LidarModel {
   std::optional<UnitIntensity> intensity;
   /// How what this unit measures is alike in neighbouring beams; without: each beam by itself.
   std::optional<UnitFields> fields;
+  /// Which beams this unit loses; without: none.
+  std::optional<RayDropModel> drop;
+  /// Its returns from what carries it; without: none.
+  std::optional<VehicleBody> body;
   std::uint32_t columns = 0;     ///< azimuth steps a revolution
   double first_azimuth_rad = 0;  ///< of the head when a revolution begins
   double rotation_hz = 10.0;     ///< revolutions, or scans of a free pattern, a second

@@ -20,6 +20,7 @@
 #include "adasplats/core/words.h"
 #include "adasplats/io/base/base64.h"
 #include "adasplats/sensors/lidar_files.h"
+#include "adasplats/sensors/ray_drop_toml.h"
 
 namespace adasplats {
 
@@ -59,7 +60,9 @@ const Keys& sensor_keys() {
                             "range_offsets_m",
                             "ring_noise_m",
                             "intensity",
-                            "fields"};
+                            "fields",
+                            "drop",
+                            "body"};
   return keys;
 }
 
@@ -72,6 +75,11 @@ const Keys& rosette_keys() {
 const Keys& intensity_keys() {
   static const Keys keys = {"step",   "highest",    "ring_expected", "ring_level",
                             "levels", "zero_share", "reported"};
+  return keys;
+}
+
+const Keys& body_keys() {
+  static const Keys keys = {"cells"};
   return keys;
 }
 
@@ -129,10 +137,16 @@ class SensorTable {
 
   /// The table under a key, which is there.
   SensorTable table(std::string_view key, const Keys& known) const {
+    return {std::shared_ptr<const toml::table>(table_, &raw_table(key)), path_, known};
+  }
+
+  /// The same, for who reads it himself.
+  const toml::table& raw_table(std::string_view key) const {
     const toml::table* inner = table_->get(key)->as_table();
     if (inner == nullptr) throw error(key, "is not a table");
-    return {std::shared_ptr<const toml::table>(table_, inner), path_, known};
+    return *inner;
   }
+  const std::filesystem::path& path() const { return path_; }
 
   double number(std::string_view key, double otherwise, double low, double high) const {
     const toml::node* node = table_->get(key);
@@ -349,9 +363,39 @@ UnitFields read_fields(const SensorTable& sensor, std::size_t rings) {
   const std::size_t expected = std::size_t{fields.turns} * rings * fields.columns * kUnitFields;
   if (bytes->size() != expected)
     throw table.error("bytes", "has " + std::to_string(bytes->size()) + " bytes, expected " +
-                                   std::to_string(expected) + ", three of every beam");
+                                   std::to_string(expected) + ", four of every beam");
   fields.bytes.assign(bytes->begin(), bytes->end());
   return fields;
+}
+
+VehicleBody read_body(const SensorTable& sensor, std::size_t rings) {
+  constexpr std::size_t kMostCells = 65534;  // cells are numbered by 16 bits
+  constexpr double kFarthest_mm = 1e5;
+  const SensorTable table = sensor.table("body", body_keys());
+  std::size_t columns = 5;
+  const std::vector<float> rows = table.rows("cells", -1e9, kBright, columns);
+  VehicleBody body;
+  for (std::size_t i = 0; i < rows.size(); i += columns) {
+    const double ring = rows[i], share = rows[i + 2] / 100, range_mm = rows[i + 3];
+    const double column = (static_cast<double>(rows[i + 1]) + 180) * (kBodyColumns / 360.0);
+    const auto is_below = [](double value, double most) {
+      return value >= 0 && value < most && value == std::floor(value);
+    };
+    if (!is_below(ring, static_cast<double>(rings)) || !is_below(column, kBodyColumns) ||
+        !(share >= 0 && share <= 1) || !(range_mm > 0 && range_mm < kFarthest_mm))
+      throw table.error("cells", "has a row " + std::to_string(i / columns + 1) +
+                                     " that is not [ring, azimuth of half degrees, percent, "
+                                     "range in mm, intensity]");
+    body.cells.push_back({static_cast<std::uint16_t>(ring), static_cast<std::uint16_t>(column),
+                          static_cast<float>(share), static_cast<float>(range_mm / 1000),
+                          rows[i + 4]});
+  }
+  const auto by_place = [](const BodyCell& cell) { return std::pair(cell.ring, cell.column); };
+  std::ranges::sort(body.cells, {}, by_place);
+  if (std::ranges::adjacent_find(body.cells, {}, by_place) != body.cells.end())
+    throw table.error("cells", "has two rows of one ring and azimuth");
+  if (body.cells.size() > kMostCells) throw table.error("cells", "has more than 65534 rows");
+  return body;
 }
 
 void read_beams(const SensorTable& table, LidarFile& file) {
@@ -375,6 +419,8 @@ void read_beams(const SensorTable& table, LidarFile& file) {
                   model.ring_noise_m);
   if (table.has("intensity")) model.intensity = read_intensity(table, beams);
   if (table.has("fields")) model.fields = read_fields(table, beams);
+  if (table.has("drop")) model.drop = ray_drop_of_table(table.raw_table("drop"), table.path());
+  if (table.has("body")) model.body = read_body(table, beams);
   read_one_a_beam(table, "column_steps", beams, table.whole_numbers("column_steps", 1),
                   file.column_steps);
   read_one_a_beam(table, "column_phases", beams, table.whole_numbers("column_phases", 0),
@@ -473,9 +519,10 @@ void read_divergence(const SensorTable& table, LidarModel& model) {
 
 /// A rosette or a list of rays has no beams that turn.
 void check_untouched(const SensorTable& table, const LidarModel& model) {
-  for (const char* key : {"azimuth_offsets_deg", "beam_origins_m", "firing_times_us",
-                          "column_steps", "column_phases", "columns", "first_azimuth_deg",
-                          "clockwise", "range_offsets_m", "ring_noise_m", "intensity", "fields"})
+  for (const char* key :
+       {"azimuth_offsets_deg", "beam_origins_m", "firing_times_us", "column_steps", "column_phases",
+        "columns", "first_azimuth_deg", "clockwise", "range_offsets_m", "ring_noise_m", "intensity",
+        "fields", "drop", "body"})
     if (table.has(key))
       throw table.error(key, "does not fit a sensor that is a rosette or a list of rays");
   for (const Firing& firing : model.free_pattern)

@@ -9,8 +9,8 @@
 namespace adasplats {
 
 /// What the numbers of a beam in UnitFields are of.
-enum class UnitField : std::uint8_t { drop = 0, intensity = 1, noise = 2 };
-inline constexpr std::size_t kUnitFields = 3;
+enum class UnitField : std::uint8_t { drop = 0, intensity = 1, noise = 2, zero = 3 };
+inline constexpr std::size_t kUnitFields = 4;
 
 /// Some turns of one unit, as it measured them: of each beam where its echo, its intensity and its
 /// range lay among all that the model of the place would have allowed. What is alike in
@@ -23,8 +23,9 @@ struct UnitFields {
   /// Of turn t, ring r (topmost 0) and column c: kUnitFields from ((t * rings + r) * columns + c) *
   /// kUnitFields on.
   /// - drop: (b + 0.5)^2 / 2^16 of all echoes as likely to be lost are lost earlier than this
-  /// - intensity: (b + 0.5) / 256 of all intensities of such surfaces are lower
+  /// - intensity: (b + 0.5) / 256 of all intensities of such surfaces that are not zero are lower
   /// - noise: (b - 128) |b - 128| / 127^2 of kMostFieldNoise_m, on the range
+  /// - zero: (b + 0.5)^2 / 2^16 of all returns as likely to report zero report it earlier
   std::vector<std::uint8_t> bytes;
 };
 

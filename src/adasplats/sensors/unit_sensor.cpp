@@ -139,9 +139,10 @@ std::string intensity_text(const UnitIntensity& unit) {
 std::string fields_text(const UnitFields& fields) {
   const std::string_view bytes(reinterpret_cast<const char*>(fields.bytes.data()),
                                fields.bytes.size());
-  return "\n# Turns of this unit: of every beam three bytes, how early its echo is lost, how much "
+  return "\n# Turns of this unit: of every beam four bytes, how early its echo is lost, how much "
          "it\n"
-         "# reports among such surfaces, and the noise of its range (base64).\n[fields]\nturns = " +
+         "# reports among such surfaces, the noise of its range, and how early it reports zero\n"
+         "# (base64).\n[fields]\nturns = " +
          std::to_string(fields.turns) + "\ncolumns = " + std::to_string(fields.columns) +
          "\nbytes = \"" + to_base64(bytes) + "\"\n";
 }
@@ -207,6 +208,9 @@ std::string unit_sensor_toml(const std::string& library_name, const UnitOffsets&
     text += lines_of("ring_noise_m", text_of_numbers(noise_m));
   }
   if (traits.intensity != nullptr) text += intensity_text(*traits.intensity);
+  if (traits.drop != nullptr) text += "\n[drop]\n" + ray_drop_toml(*traits.drop, "drop.");
+  if (traits.body != nullptr && !traits.body->cells.empty())
+    text += "\n[body]\n" + vehicle_body_toml(*traits.body);
   if (traits.fields != nullptr) text += fields_text(*traits.fields);
   return text;
 }

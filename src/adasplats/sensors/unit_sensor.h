@@ -6,8 +6,10 @@
 #include <span>
 #include <string>
 
+#include "adasplats/sensors/ray_drop_model.h"
 #include "adasplats/sensors/unit_fields.h"
 #include "adasplats/sensors/unit_intensity.h"
+#include "adasplats/sensors/vehicle_body.h"
 
 namespace adasplats {
 
@@ -24,6 +26,8 @@ struct UnitTraits {
   std::optional<double> max_range_m;
   const UnitIntensity* intensity = nullptr;
   const UnitFields* fields = nullptr;
+  const RayDropModel* drop = nullptr;
+  const VehicleBody* body = nullptr;
   std::string fitted_to;  ///< for the reader of the file
 };
 

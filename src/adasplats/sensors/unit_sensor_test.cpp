@@ -99,6 +99,16 @@ TEST(UnitSensor, TraitsAreReadBack) {
   for (std::size_t i = 0; i < 2 * 16 * 5 * kUnitFields; ++i)
     fields.bytes.push_back(static_cast<std::uint8_t>(7 * i));
   traits.fields = &fields;
+  RayDropModel drop;
+  drop.weights = {-2, 0.5, 0, 0, 1, 0, 0.25, 0};
+  drop.usual_reflectance = 0.2;
+  drop.edge_runs = {0.2, 0.1};
+  drop.fitted_to = "here";
+  drop.blocked = {{-0.2F, -0.5F, 0.5F}, {0.1F, 1, 2}, {0.1F, 2.5F, 3}};
+  traits.drop = &drop;
+  const VehicleBody body = {
+      {{3, 0, 0.5F, 1.5F, 0.25F}, {3, 719, 1, 2.001F, 0}, {4, 5, 0.25F, 3, 1}}};
+  traits.body = &body;
   traits.fitted_to = "3 scans of here";
   const auto file = folder.write("unit.toml", unit_sensor_toml(name, {}, traits));
   const LidarModel unit = load_lidar_model(file.string());
@@ -122,6 +132,18 @@ TEST(UnitSensor, TraitsAreReadBack) {
   EXPECT_EQ(unit.fields->rings, 16U);
   EXPECT_EQ(unit.fields->columns, 5U);
   EXPECT_EQ(unit.fields->bytes, fields.bytes);
+  ASSERT_TRUE(unit.drop.has_value());
+  EXPECT_EQ(unit.drop->weights, drop.weights);
+  EXPECT_EQ(unit.drop->usual_reflectance, 0.2);
+  EXPECT_EQ(unit.drop->edge_runs, drop.edge_runs);
+  ASSERT_EQ(unit.drop->blocked.size(), 3U);
+  EXPECT_NEAR(unit.drop->blocked[2].azimuth_end_rad, 3, 1e-5);
+  ASSERT_TRUE(unit.body.has_value());
+  ASSERT_EQ(unit.body->cells.size(), 3U);
+  EXPECT_EQ(unit.body->cells[1].ring, 3);
+  EXPECT_EQ(unit.body->cells[1].column, 719);
+  EXPECT_EQ(unit.body->cells[1].range_m, 2.001F);
+  EXPECT_EQ(unit.body->cells[2].share, 0.25F);
   // A sensor that is like it has it, too; its own noise or beams replace it.
   const auto like = folder.write("like.toml", std::string("like = \"unit.toml\"\n"));
   EXPECT_EQ(load_lidar_model(like.string()).ring_noise_m, unit.ring_noise_m);
@@ -132,6 +154,7 @@ TEST(UnitSensor, TraitsAreReadBack) {
       folder.write("other.toml", std::string("like = \"unit.toml\"\nelevations_deg = [1, 2]\n"));
   EXPECT_FALSE(load_lidar_model(other.string()).intensity.has_value());
   EXPECT_FALSE(load_lidar_model(other.string()).fields.has_value());
+  EXPECT_FALSE(load_lidar_model(other.string()).drop || load_lidar_model(other.string()).body);
 }
 
 TEST(UnitSensor, ErrorsOfFieldsSayWhatIsWrong) {
@@ -144,9 +167,27 @@ TEST(UnitSensor, ErrorsOfFieldsSayWhatIsWrong) {
   error_is("columns = 1\nbytes = 'AAAAAAAA'\n", "turns is missing");
   error_is("turns = 0\ncolumns = 1\nbytes = 'AAAAAAAA'\n", "turns");
   error_is("turns = 1\ncolumns = 2\nbytes = 'AAAAAAAA'\n",
-           "bad.toml:6: bytes has 6 bytes, expected 12");
+           "bad.toml:6: bytes has 6 bytes, expected 16");
   error_is("turns = 1\ncolumns = 1\nbytes = 'AAAA*AAA'\n", "is not base64");
   error_is("turns = 1\ncolumns = 1\nbyte = 'AAAAAAAA'\n", "did you mean 'bytes'");
+}
+
+TEST(UnitSensor, ErrorsOfDropAndBodySayWhatIsWrong) {
+  const TemporaryFolder folder;
+  const auto error_is = [&](const std::string& lines, const std::string& says) {
+    const auto file = folder.write("bad.toml", "columns = 4\nelevations_deg = [-1, 2]\n" + lines);
+    expect_error(ErrorKind::config, {says}, [&] { load_lidar_model(file.string()); });
+  };
+  error_is("[drop]\nweight = [1]\n", "bad.toml:4: unknown key 'weight', did you mean 'weights'?");
+  error_is("[drop]\nweights = [1]\n", "bad.toml:4: weights is not a list of 8");
+  error_is("drop = 1\n", "drop is not a table");
+  error_is("[body]\ncells = [[0, 0, 50, 1000]]\n", "has a list of 4 numbers, expected 5");
+  error_is("[body]\ncells = [[2, 0, 50, 1000, 0]]\n", "bad.toml:4: cells has a row 1 that is not");
+  error_is("[body]\ncells = [[0, 0.25, 50, 1000, 0]]\n", "cells has a row 1");
+  error_is("[body]\ncells = [[0, 0, 101, 1000, 0]]\n", "cells has a row 1");
+  error_is("[body]\ncells = [[0, 0, 50, 0, 0]]\n", "cells has a row 1");
+  error_is("[body]\ncells = [[1, 0, 5, 9, 0], [0, 0, 5, 9, 0], [1, 0, 6, 9, 0]]\n",
+           "two rows of one ring and azimuth");
 }
 
 TEST(UnitSensor, ErrorsOfIntensitiesSayWhatIsWrong) {

@@ -97,6 +97,17 @@ ADASPLATS_HD inline double log_of(double x) {
   return k * kLn2High - ((half_square - (s * (half_square + z * sum) + k * kLn2Low)) - f);
 }
 
+/// At most log_of(x), and less by at most kLogFloorError, of normal positive x: the exponent, and
+/// the mantissa as a straight line.
+inline constexpr double kLogFloorError = 0.0597;
+ADASPLATS_HD inline double log_floor_of(double x) {
+  constexpr double kLn2 = 0.6931471805599453;
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  const auto exponent = static_cast<double>(static_cast<int>(bits >> 52) - 1024);
+  return kLn2 *
+         (exponent + std::bit_cast<double>((bits & 0x000fffffffffffffULL) | 0x3ff0000000000000ULL));
+}
+
 /// Cosine of `turns` full turns, 0 to 1 (Taylor within an eighth of a turn).
 ADASPLATS_HD inline double cos_of_turns(double turns) {
   const double quarter = std::floor(4.0 * turns + 0.5);

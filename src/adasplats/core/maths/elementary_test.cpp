@@ -51,6 +51,19 @@ TEST(Elementary, ShareOfNormalNumbers) {
   EXPECT_EQ(normal_share(40), 1);
 }
 
+// Oracle: the logarithm, which is concave: never above it, furthest where its slope is that of the
+// line.
+TEST(Elementary, FloorOfTheLogarithm) {
+  double most = 0;
+  for (double x = 1e-3; x < 1e3; x *= 1.0001) {
+    const double less = std::log(x) - log_floor_of(x);
+    ASSERT_GE(less, -1e-12) << x;
+    most = std::max(most, less);
+  }
+  EXPECT_LE(most, kLogFloorError);
+  EXPECT_GT(most, kLogFloorError - 1e-3);
+}
+
 TEST(Elementary, Borders) {
   EXPECT_EQ(exp_of(0), 1);
   EXPECT_EQ(exp_of(-1e9), 0);

@@ -212,7 +212,7 @@ DropAccuracy drop_accuracy(const BeamEchoes& beams, const RayDropModel* model, b
     if (!with_blocked && model != nullptr && model->blocks(echo.direction)) continue;
     const bool lost = beams.lost[i] != 0;
     const bool predicted =
-        beams.hit[i] == 0 || (model != nullptr && model->probability(echo) > 0.5);
+        beams.hit[i] == 0 || (model != nullptr && drop_probability(*model, echo) > 0.5);
     ++accuracy.beams;
     accuracy.empty += lost ? 1 : 0;
     accuracy.predicted += predicted ? 1 : 0;

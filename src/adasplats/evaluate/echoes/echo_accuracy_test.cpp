@@ -183,11 +183,11 @@ TEST_F(MeasuredGround, DropModelIsFoundAndForetellsOtherScans) {
     EXPECT_NEAR(sector.azimuth_begin_rad / kDegree, 100, 1.01);
     EXPECT_NEAR(sector.azimuth_end_rad / kDegree, 120, 1.01);
   }
-  EXPECT_NEAR(model.probability({static_cast<float>(range_of(0)),
-                                 static_cast<float>(-std::sin(elevation_rad(0))), 0.4F}),
+  EXPECT_NEAR(drop_probability(model, {static_cast<float>(range_of(0)),
+                                       static_cast<float>(-std::sin(elevation_rad(0))), 0.4F}),
               0.3, 0.05);
-  EXPECT_NEAR(model.probability({static_cast<float>(range_of(10)),
-                                 static_cast<float>(-std::sin(elevation_rad(10))), 0.4F}),
+  EXPECT_NEAR(drop_probability(model, {static_cast<float>(range_of(10)),
+                                       static_cast<float>(-std::sin(elevation_rad(10))), 0.4F}),
               0.05, 0.02);
   const BeamEchoes other = collect({3});
   const DropAccuracy all = drop_accuracy(other, &model);

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
-#include "adasplats/core/maths/random.h"
 #include "adasplats/evaluate/realism/scan_part.h"
+#include "adasplats/evaluate/unit/common_share.h"
 #include "adasplats/evaluate/unit/fit_unit.h"
 
 namespace adasplats {
@@ -56,18 +56,9 @@ EchoConditions conditions_of(const UnitBeam& beam) {
   return {beam.expected_m, beam.cos_incidence, beam.reflectance, beam.direction};
 }
 
-/// A number that beams of so many rings and columns have in common, 0 to 1.
-double common_share(const UnitBeam& beam, std::uint32_t rings, std::uint32_t columns,
-                    std::uint64_t stream) {
-  return Random(beam.scan, stream, std::uint64_t{beam.ring / rings} << 32 | beam.column / columns)
-      .uniform();
-}
-
-/// Lost ones are below their chance, others above; where within, nobody knows: what is drawn is
-/// alike in neighbours, so that runs stay runs where the chance is another one.
-double share_of_beam(const UnitBeam& beam, double chance) {
-  if (!beam.returned()) return chance * common_share(beam, 4, 2, 1);
-  return chance + (1 - chance) * common_share(beam, 4, 1, 2);
+float drop_share(const UnitBeam& beam, const DropRules& rules) {
+  const double chance = drop_chance(rules, beam.expected_m, beam.cos_incidence, beam.reflectance);
+  return static_cast<float>(share_by_chance(beam, chance, !beam.returned(), {4, 2}, {4, 1}, 1));
 }
 
 }  // namespace
@@ -76,6 +67,7 @@ std::optional<DropFit> fit_unit_drop(std::span<const UnitBeam> beams, double max
   BeamEnds found = ends_of(beams);
   BeamEchoes all;
   std::vector<std::size_t> numbers;
+  std::vector<std::uint16_t> rings;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const UnitBeam& beam = beams[i];
     if (!beam.hit || !(static_cast<double>(beam.expected_m) < max_range_m)) continue;
@@ -84,10 +76,11 @@ std::optional<DropFit> fit_unit_drop(std::span<const UnitBeam> beams, double max
     all.lost.push_back(beam.returned() ? 0 : 1);
     all.places.push_back(beam.place);
     numbers.push_back(i);
+    rings.push_back(beam.ring);
   }
   DropFit fit;
   fit.shares.assign(beams.size(), std::numeric_limits<float>::quiet_NaN());
-  fit.model.blocked = find_blocked_sectors(all.echoes, all.lost, all.places);
+  fit.model.blocked = find_blocked_sectors(all.echoes, all.lost, all.places, rings);
   fit.model.edge_runs = std::move(found.edge_runs);
   std::vector<EchoConditions> echoes;
   std::vector<std::uint8_t> lost;
@@ -111,12 +104,8 @@ std::optional<DropFit> fit_unit_drop(std::span<const UnitBeam> beams, double max
     if (error.kind() != ErrorKind::data) throw;
     return std::nullopt;
   }
-  const DropRules rules = fit.model.rules();
-  for (std::size_t k = 0; k < echoes.size(); ++k) {
-    const double chance =
-        drop_chance(rules, echoes[k].range_m, echoes[k].cos_incidence, echoes[k].reflectance);
-    fit.shares[of_echoes[k]] = static_cast<float>(share_of_beam(beams[of_echoes[k]], chance));
-  }
+  const DropRules rules = drop_rules(fit.model);
+  for (const std::size_t i : of_echoes) fit.shares[i] = drop_share(beams[i], rules);
   return fit;
 }
 

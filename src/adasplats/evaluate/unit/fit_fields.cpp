@@ -73,7 +73,7 @@ std::uint8_t byte_of(double value) {
 /// The inverse of beam_fields().
 std::uint8_t coded(UnitField field, float value) {
   const auto v = static_cast<double>(value);
-  if (field == UnitField::drop) return byte_of(256 * std::sqrt(v));
+  if (field == UnitField::drop || field == UnitField::zero) return byte_of(256 * std::sqrt(v));
   if (field == UnitField::intensity) return byte_of(256 * v);
   const double root = 127 * std::sqrt(std::fabs(v) / kMostFieldNoise_m);
   return byte_of(128.5 + (v < 0 ? -root : root));
@@ -84,6 +84,18 @@ float noise_m_of(const UnitBeam& beam) {
   const float noise_m = beam.range_m - beam.expected_m;
   const bool told = beam.hit && std::fabs(noise_m) < static_cast<float>(kMostFieldNoise_m);
   return told ? noise_m : kUntold;
+}
+
+/// What field a byte is of, of one beam; not told where `all` is empty.
+float number_of(UnitField field, const UnitBeam& beam, std::size_t i, const BeamShares& shares) {
+  const auto share = [&](std::span<const float> all) { return all.empty() ? kUntold : all[i]; };
+  switch (field) {
+    case UnitField::drop: return share(shares.drop);
+    case UnitField::intensity: return share(shares.intensity);
+    case UnitField::zero: return share(shares.zero);
+    case UnitField::noise: break;
+  }
+  return noise_m_of(beam);
 }
 
 }  // namespace
@@ -99,27 +111,22 @@ UnitFields fit_unit_fields(std::span<const UnitBeam> beams, const UnitPattern& p
   fields.columns = static_cast<std::uint32_t>(columns);
   fields.bytes.resize(turns * rings * columns * kUnitFields);
   std::vector<float> numbers(rings * columns);
+  const auto fill_ring = [&](UnitField field, std::size_t ring) {
+    const std::span<float> of_ring = std::span(numbers).subspan(ring * columns, columns);
+    fill_untold(of_ring, field == UnitField::noise ? 0.0F : 0.5F);
+    if (field == UnitField::noise)
+      scale_noise(of_ring, ring < ring_noise_m.size() ? ring_noise_m[ring] : 0.0);
+  };
   for (std::size_t turn = 0; turn < turns; ++turn) {
     const auto [begin, end] = spans[turn * spans.size() / turns];
-    for (const UnitField field : {UnitField::drop, UnitField::intensity, UnitField::noise}) {
+    for (const UnitField field :
+         {UnitField::drop, UnitField::intensity, UnitField::noise, UnitField::zero}) {
       std::ranges::fill(numbers, kUntold);
-      for (std::size_t i = begin; i < end; ++i) {
-        const UnitBeam& beam = beams[i];
-        if (beam.ring >= rings || beam.column >= columns) continue;
-        const auto share = [&](std::span<const float> all) {
-          return all.empty() ? kUntold : all[i];
-        };
-        numbers[beam.ring * columns + beam.column] = field == UnitField::drop ? share(shares.drop)
-                                                     : field == UnitField::intensity
-                                                         ? share(shares.intensity)
-                                                         : noise_m_of(beam);
-      }
-      for (std::size_t ring = 0; ring < rings; ++ring) {
-        const std::span<float> of_ring = std::span(numbers).subspan(ring * columns, columns);
-        fill_untold(of_ring, field == UnitField::noise ? 0.0F : 0.5F);
-        if (field == UnitField::noise)
-          scale_noise(of_ring, ring < ring_noise_m.size() ? ring_noise_m[ring] : 0.0);
-      }
+      for (std::size_t i = begin; i < end; ++i)
+        if (beams[i].ring < rings && beams[i].column < columns)
+          numbers[beams[i].ring * columns + beams[i].column] =
+              number_of(field, beams[i], i, shares);
+      for (std::size_t ring = 0; ring < rings; ++ring) fill_ring(field, ring);
       for (std::size_t k = 0; k < numbers.size(); ++k)
         fields.bytes[(turn * rings * columns + k) * kUnitFields + static_cast<std::size_t>(field)] =
             coded(field, numbers[k]);

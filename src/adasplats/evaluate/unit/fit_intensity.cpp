@@ -12,6 +12,8 @@
 #include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/evaluate/realism/scan_part.h"
+#include "adasplats/evaluate/unit/common_share.h"
+#include "adasplats/evaluate/unit/damp_shares.h"
 #include "adasplats/evaluate/unit/fit_unit.h"
 #include "adasplats/simulate/scan/intensity_rules.h"
 
@@ -187,19 +189,36 @@ void fit_reported(std::span<const KnownReturn> known, const LevelParts& parts,
   }
 }
 
-/// Of each beam the share of those of its level that report less; equal ones, as neighbours often
-/// are, in the order of the beams, side by side.
+/// Of each beam that does not report zero the share of such beams of its level that report less;
+/// equal ones, as neighbours often are, in the order of the beams, side by side.
 std::vector<float> shares_below(std::size_t beams, std::span<const KnownReturn> known,
                                 const LevelParts& parts) {
   std::vector<float> shares(beams, std::numeric_limits<float>::quiet_NaN());
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    std::vector<std::uint32_t> order(parts.part(k).begin(), parts.part(k).end());
+    std::vector<std::uint32_t> order;
+    for (const std::uint32_t i : parts.part(k))
+      if (known[i].measured > 0) order.push_back(i);
     std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
       return known[a].measured != known[b].measured ? known[a].measured < known[b].measured : a < b;
     });
     const auto count = static_cast<float>(order.size());
     for (std::size_t rank = 0; rank < order.size(); ++rank)
       shares[known[order[rank]].beam] = (static_cast<float>(rank) + 0.5F) / count;
+  }
+  return shares;
+}
+
+/// Of each beam the share of those of its level that report zero before it.
+std::vector<float> zero_shares(std::span<const UnitBeam> beams, std::span<const KnownReturn> known,
+                               const LevelParts& parts, const UnitIntensity& unit) {
+  constexpr SharePatch kPatch = {4, 16};
+  const GainTable zeros{unit.levels.data(), unit.zero_share.data(),
+                        static_cast<std::uint32_t>(unit.levels.size())};
+  std::vector<float> shares(beams.size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const auto chance = static_cast<double>(gain_of(zeros, parts.levels[i]));
+    shares[known[i].beam] = static_cast<float>(
+        share_by_chance(beams[known[i].beam], chance, known[i].measured <= 0, kPatch, kPatch, 3));
   }
   return shares;
 }
@@ -224,6 +243,8 @@ std::optional<IntensityFit> fit_unit_intensity(std::span<const UnitBeam> beams, 
   fit_zeros(known, parts, fit.unit);
   fit_reported(known, parts, fit.unit);
   fit.shares = shares_below(beams.size(), known, parts);
+  damp_shares(beams, fit.unit, fit.shares);
+  fit.zeros = zero_shares(beams, known, parts, fit.unit);
   return fit;
 }
 

@@ -101,7 +101,9 @@ UnitFit fit_unit(std::span<const UnitBeam> beams, const UnitPattern& pattern) {
   std::optional<DropFit> drop = fit_unit_drop(beams, fit.max_range_m.value_or(pattern.max_range_m));
   if (places_of(beams) < kLeastBlockedPlaces)
     fit.not_told.emplace_back(
-        "directions that the vehicle blocks: the scans are from fewer than three places 2 m apart");
+        "the vehicle's body, and directions that it blocks: the scans are from fewer than three "
+        "places 2 m apart");
+  fit.body = fit_vehicle_body(beams);
   if (!drop)
     fit.not_told.emplace_back(
         "drop-outs: fewer than 100 beams that met the model did not return, or did");
@@ -109,7 +111,8 @@ UnitFit fit_unit(std::span<const UnitBeam> beams, const UnitPattern& pattern) {
     fit.fields = fit_unit_fields(
         beams, pattern, fit.ring_noise_m,
         {drop ? std::span<const float>(drop->shares) : std::span<float>(),
-         intensity ? std::span<const float>(intensity->shares) : std::span<float>()});
+         intensity ? std::span<const float>(intensity->shares) : std::span<float>(),
+         intensity ? std::span<const float>(intensity->zeros) : std::span<float>()});
   if (intensity) fit.intensity = std::move(intensity->unit);
   if (drop) fit.drop = std::move(drop->model);
   return fit;

@@ -10,6 +10,7 @@
 #include "adasplats/evaluate/unit/unit_beams.h"
 #include "adasplats/sensors/unit_fields.h"
 #include "adasplats/sensors/unit_intensity.h"
+#include "adasplats/sensors/vehicle_body.h"
 #include "adasplats/simulate/scan/ray_drop.h"
 
 namespace adasplats {
@@ -27,6 +28,7 @@ struct UnitFit {
   std::optional<UnitIntensity> intensity;  ///< none: not told
   std::optional<RayDropModel> drop;        ///< likewise
   std::optional<UnitFields> fields;        ///< none: nothing of the above is told
+  std::optional<VehicleBody> body;         ///< none: not told; without cells: nothing is in the way
   std::optional<double> max_range_m;       ///< where returns end though there is more to hit
   std::vector<std::string> not_told;       ///< what is missing, and why
 };
@@ -36,11 +38,12 @@ struct UnitFit {
 /// have the median of the others. Empty where fewer than a quarter of the rings have as many.
 std::vector<double> fit_ring_noise_m(std::span<const UnitBeam> beams, std::size_t rings);
 
-/// Intensities of a unit, and of each beam the share of all that report less where the same is
-/// expected; NaN: not told.
+/// Intensities of a unit, and of each beam where it lies among all of which the same is expected
+/// (IntensityShares); NaN: not told.
 struct IntensityFit {
   UnitIntensity unit;
-  std::vector<float> shares;
+  std::vector<float> shares;  ///< of those that do not report zero: that report less
+  std::vector<float> zeros;   ///< that report zero before it
 };
 
 /// None where fewer than 10,000 returns with an intensity meet the model, or where all intensities
@@ -62,13 +65,19 @@ std::optional<DropFit> fit_unit_drop(std::span<const UnitBeam> beams, double max
 
 /// Shares of beams (IntensityFit, DropFit); empty: none is told.
 struct BeamShares {
-  std::span<const float> drop, intensity;
+  std::span<const float> drop, intensity, zero;
 };
 
 /// Up to two scans, evenly spread. Beams of which something is not told have what beams beside them
 /// have. `ring_noise_m`: of fit_ring_noise_m(), so large is the noise.
 UnitFields fit_unit_fields(std::span<const UnitBeam> beams, const UnitPattern& pattern,
                            std::span<const double> ring_noise_m, const BeamShares& shares);
+
+/// What is in the beams' way in the sensor's own frame: half degrees of a ring in which beams
+/// return from within 4 m, half a metre and more before the model or where it has nothing, from at
+/// least kLeastBlockedPlaces places, half of those that fired there, and from one range to 0.2 m.
+/// None where the beams are from fewer places.
+std::optional<VehicleBody> fit_vehicle_body(std::span<const UnitBeam> beams);
 
 /// The standard deviation of white noise by absolute second differences of it, which are sorted:
 /// by the mean of their middle half (see features.cpp). 0 of none.

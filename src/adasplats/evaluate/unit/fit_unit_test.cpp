@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
+#include "adasplats/evaluate/unit/damp_shares.h"
 #include "adasplats/simulate/scan/firing_report.h"
 
 namespace adasplats {
@@ -68,8 +70,9 @@ std::vector<UnitBeam> measured_by(const Truth& truth) {
         const bool at_edge = column > 0 && column % 50 == 0 && random.uniform() < kLostAtEdge;
         const bool lost = at_edge || patchy_share(scan, ring, column, 1) < kLostShare;
         beam.range_m = beam.expected_m + static_cast<float>(noise_m_of(ring) * random.normal());
-        beam.intensity = unit_intensity(truth.rules, ring, beam.expected_intensity,
-                                        patchy_share(scan, ring, column, 2));
+        beam.intensity = unit_intensity(
+            truth.rules, ring, beam.expected_intensity,
+            {patchy_share(scan, ring, column, 3), patchy_share(scan, ring, column, 2)});
         if (lost || beam.expected_m > 50) beam.range_m = beam.intensity = kNothing;
         beams.push_back(beam);
       }
@@ -119,12 +122,18 @@ TEST_F(FitUnit, FindsHowIntensitiesAreMade) {
   for (std::size_t i = 0; i < beams_.size(); ++i) {
     const UnitBeam& beam = beams_[i];
     if (!beam.returned()) continue;
-    ASSERT_EQ(fit->shares[i], fit->shares[i]);
-    const auto again = [&](double share) {
-      return unit_intensity(rules, beam.ring, beam.expected_intensity, share);
+    ASSERT_EQ(fit->zeros[i], fit->zeros[i]);
+    ASSERT_EQ(fit->shares[i] == fit->shares[i], beam.intensity > 0);
+    const auto again = [&](double zero, double below) {
+      return unit_intensity(rules, beam.ring, beam.expected_intensity, {zero, below});
     };
-    const float values[2] = {beam.intensity, again(Random(77, 0, i).uniform())};
-    errors += std::fabs(static_cast<double>(beam.intensity - again(fit->shares[i])));
+    Random random(77, 0, i);
+    const double zero = random.uniform();
+    const float values[2] = {beam.intensity, again(zero, random.uniform())};
+    const auto below = static_cast<double>(beam.intensity > 0 ? fit->shares[i] : 0.5F);
+    const float repeated = again(static_cast<double>(fit->zeros[i]), below);
+    EXPECT_EQ(repeated == 0, beam.intensity == 0);
+    errors += std::fabs(static_cast<double>(beam.intensity - repeated));
     ++count;
     for (const int side : {0, 1}) {
       const auto value = static_cast<double>(values[side]);
@@ -139,6 +148,31 @@ TEST_F(FitUnit, FindsHowIntensitiesAreMade) {
   EXPECT_LT(errors / count, 0.02);
 }
 
+// Oracle: beams whose expected intensities jump from one to the next, as models' do and measured
+// ones do not: their shares have the opposite jumps, and in another place both would be there.
+TEST_F(FitUnit, DrawsSharesTogetherWhereTheModelJumps) {
+  const std::vector<UnitBeam> smooth = beams_;
+  std::vector<float> shares = fit_unit_intensity(smooth, kRings)->shares;
+  const std::vector<float> as_fitted = shares;
+  EXPECT_GT(damp_shares(smooth, fit_unit_intensity(smooth, kRings)->unit, shares), 0.8);
+  for (std::size_t i = 0; i < beams_.size(); ++i)
+    beams_[i].expected_intensity += 0.15F * static_cast<float>(Random(5, 0, i).normal());
+  const auto fit = fit_unit_intensity(beams_, kRings);
+  const auto roughness = [](const std::vector<float>& of) {
+    double sum = 0, count = 0;
+    for (std::size_t i = 2; i < of.size(); ++i) {
+      const float second = of[i] - 2 * of[i - 1] + of[i - 2];
+      if (second != second) continue;
+      sum += std::fabs(static_cast<double>(second));
+      ++count;
+    }
+    return sum / count;
+  };
+  std::vector<float> again = fit->shares;
+  EXPECT_LT(damp_shares(beams_, fit->unit, again), 1);
+  EXPECT_LT(roughness(again), roughness(fit->shares));
+}
+
 // Oracle: the shares that were drawn. 0.04: five deviations of 2,400 edges.
 TEST_F(FitUnit, FindsWhereBeamsAreLost) {
   const auto drop = fit_unit_drop(beams_, 50);
@@ -146,12 +180,12 @@ TEST_F(FitUnit, FindsWhereBeamsAreLost) {
   // A tenth of the edges has lost its neighbours anyhow, and runs are longer there.
   ASSERT_EQ(drop->model.edge_runs.size(), kMostEdgeRun);
   EXPECT_NEAR(drop->model.edge_runs[0], kLostAtEdge * (1 - 2 * kLostShare), 0.04);
-  EXPECT_NEAR(drop->model.probability({20, 1, 0.5F, {}}), kLostShare, 0.03);
+  EXPECT_NEAR(drop_probability(drop->model, {20, 1, 0.5F, {}}), kLostShare, 0.03);
   for (std::size_t i = 0; i < beams_.size(); ++i) {
     const float share = drop->shares[i];
     if (share != share) continue;
-    const double chance = drop->model.probability(
-        {beams_[i].expected_m, 1, beams_[i].reflectance, beams_[i].direction});
+    const double chance = drop_probability(
+        drop->model, {beams_[i].expected_m, 1, beams_[i].reflectance, beams_[i].direction});
     ASSERT_EQ(static_cast<double>(share) < chance, !beams_[i].returned()) << i;
   }
 }
@@ -194,6 +228,43 @@ TEST_F(FitUnit, FindsWhereReturnsEnd) {
   EXPECT_LE(*limit_m, 30.2);
   for (UnitBeam& beam : beams_) beam.expected_m = std::min(beam.expected_m, 30.0F);
   EXPECT_FALSE(fit_max_range_m(beams_).has_value());
+}
+
+// Oracle: what was put there. A roof 1.5 m away in half a degree of one ring, from which two beams
+// in three return; a car behind for one scan; a wall that the model has.
+TEST_F(FitUnit, FindsTheBodyOfTheVehicle) {
+  const auto look = [](double azimuth_deg) {
+    const double azimuth = azimuth_deg * kDegree;
+    return Vec3f{static_cast<float>(std::cos(azimuth)), static_cast<float>(std::sin(azimuth)), 0};
+  };
+  std::size_t roofs = 0, of_roof = 0;
+  for (std::size_t i = 0; i < beams_.size(); ++i) {
+    UnitBeam& beam = beams_[i];
+    beam.direction = look(360.0 * (beam.column + 0.5) / kColumns - 180);
+    const bool on_roof = beam.ring == 3 && body_column(beam.direction) == 400;
+    if (on_roof) {
+      ++roofs;
+      if (i % 3 == 0) continue;
+      ++of_roof;
+      beam.range_m = 1.5F + 0.01F * static_cast<float>(i % 2);
+      beam.intensity = 0.25F;
+    }
+    if (beam.ring == 5 && body_column(beam.direction) == 100 && beam.scan == 1) beam.range_m = 3;
+    if (beam.ring == 6 && body_column(beam.direction) == 100) beam.range_m = beam.expected_m = 3;
+  }
+  ASSERT_GT(of_roof, 3U);
+  const std::optional<VehicleBody> body = fit_vehicle_body(beams_);
+  ASSERT_TRUE(body.has_value());
+  ASSERT_EQ(body->cells.size(), 1U);
+  const BodyCell& cell = body->cells[0];
+  EXPECT_EQ(cell.ring, 3);
+  EXPECT_EQ(cell.column, 400);
+  EXPECT_NEAR(cell.share, static_cast<double>(of_roof) / static_cast<double>(roofs), 1e-6);
+  EXPECT_NEAR(cell.range_m, 1.505, 0.006);
+  EXPECT_EQ(cell.intensity, 0.25F);
+  // Two places tell nothing: a car behind stands still as well.
+  for (UnitBeam& beam : beams_) beam.place = beam.scan % 2;
+  EXPECT_FALSE(fit_vehicle_body(beams_).has_value());
 }
 
 TEST(FitUnitOfFew, TellsNothingAndSaysSo) {

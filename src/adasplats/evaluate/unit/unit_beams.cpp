@@ -49,16 +49,36 @@ std::vector<FiredBeam> returns_of(const KittiSequence& sequence, std::size_t ind
   return returns;
 }
 
-/// With the beams between returns of a ring.
+/// `count` beams without return beside `beam`, `step_rad` apart, the nearest first.
+void add_beside(const FiredBeam& beam, int count, double step_rad, std::vector<FiredBeam>& beams) {
+  for (int k = 1; k <= count; ++k)
+    beams.push_back({beam.ring, beam.azimuth_rad + k * step_rad, beam.elevation_rad, kNothing,
+                     kNothing, beam.origin, beam.point});
+}
+
+/// With the beams between returns of a ring, and those before the first and behind the last one, as
+/// far as the scan has returns of any ring: nobody fired in a sector that is not there.
 std::vector<FiredBeam> with_missing(const std::vector<FiredBeam>& returns, double step_rad) {
   std::vector<FiredBeam> beams;
+  if (returns.empty()) return beams;
+  const auto [first, last] = std::ranges::minmax_element(returns, {}, &FiredBeam::azimuth_rad);
+  const auto steps_between = [&](double from_rad, double to_rad) {
+    return static_cast<int>(std::round((to_rad - from_rad) / step_rad));
+  };
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const FiredBeam& one = returns[i];
+    if (i == 0 || returns[i - 1].ring != one.ring) {
+      const auto begin = static_cast<std::ptrdiff_t>(beams.size());
+      add_beside(one, steps_between(first->azimuth_rad, one.azimuth_rad), -step_rad, beams);
+      std::reverse(beams.begin() + begin, beams.end());
+    }
     beams.push_back(one);
-    if (i + 1 == returns.size() || returns[i + 1].ring != one.ring) continue;
+    if (i + 1 == returns.size() || returns[i + 1].ring != one.ring) {
+      add_beside(one, steps_between(one.azimuth_rad, last->azimuth_rad), step_rad, beams);
+      continue;
+    }
     const FiredBeam& next = returns[i + 1];
-    const auto steps =
-        static_cast<int>(std::round((next.azimuth_rad - one.azimuth_rad) / step_rad));
+    const int steps = steps_between(one.azimuth_rad, next.azimuth_rad);
     for (int k = 1; k < steps; ++k) {
       const double share = static_cast<double>(k) / steps;
       const auto between = [&](double a, double b) { return a + share * (b - a); };
@@ -123,8 +143,9 @@ std::vector<UnitBeam> collect_unit_beams(const EchoScene& scene, const KittiSequ
       beam.scan = static_cast<std::uint32_t>(indices[s]);
       beam.place = places[s];
       const bool goes_on = i > 0 && fired[i - 1].ring == fired[i].ring;
-      beam.column = goes_on ? all.back().column + 1
-                            : static_cast<std::uint32_t>(fired[i].azimuth_rad / step_rad);
+      beam.column =
+          goes_on ? all.back().column + 1
+                  : static_cast<std::uint32_t>(std::max(fired[i].azimuth_rad, 0.0) / step_rad);
       beam.direction = vec_cast<float>(direction_of(fired[i]));
       all.push_back(beam);
     }

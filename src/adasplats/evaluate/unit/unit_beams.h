@@ -47,7 +47,8 @@ inline bool on_one_surface(const UnitBeam& a, const UnitBeam& b, const UnitBeam&
 
 /// All beams of the scans `indices` of a sequence whose sensor is recognised, scan by scan, ring by
 /// ring, clockwise. Beams without return are those that `step_rad` leaves between two returns of a
-/// ring; where they went is between these. Errors: those of read_kitti_scan.
+/// ring, and beside its first and last one, as far as the scan has any; where they went is between
+/// these or level with the nearest. Errors: those of read_kitti_scan.
 std::vector<UnitBeam> collect_unit_beams(const EchoScene& scene, const KittiSequence& sequence,
                                          std::span<const std::size_t> indices,
                                          std::span<const double> heights_m, double step_rad,

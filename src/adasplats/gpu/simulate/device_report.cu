@@ -146,6 +146,8 @@ DeviceRules::DeviceRules(const ScanRules& rules, const DeviceBuffer<PrimitiveVal
       ring_noise_m_(upload_values(rules.ring_noise_m(), stream)),
       weights_(upload_values(rules.weights(), stream)),
       blocked_(upload_values(rules.blocked(), stream)),
+      body_cells_(upload_values(rules.body_cells(), stream)),
+      body_(upload_values(rules.body(), stream)),
       expected_(upload_values(rules.expected(), stream)) {
   // The four tables of the response in one: nodes and gains of ranges, then of incidences.
   std::vector<float> gains;
@@ -171,6 +173,8 @@ DeviceRules::DeviceRules(const ScanRules& rules, const DeviceBuffer<PrimitiveVal
   }
   view_.weights = weights_.data();
   view_.blocked = blocked_.data();
+  view_.body_cells = body_cells_.data();
+  view_.body = body_.data();
   view_.air.expected = expected_.data();
   view_.primitives = primitives.data();
 }

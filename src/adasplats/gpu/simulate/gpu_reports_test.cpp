@@ -97,6 +97,14 @@ std::vector<Option> options() {
          s.sensor.ring_noise_m = {0.01, 0.02, 0, 0.005, 0.03};
          s.sensor.fields = some_fields(5);
        }},
+      {"vehicle's body",
+       [](ReportCase& s) {
+         s.sensor.ring_noise_m = {0.01, 0.02, 0, 0.005, 0.03};
+         VehicleBody body;
+         for (std::uint16_t column = 100; column < 300; ++column)
+           body.cells.push_back({3, column, 0.6F, 1 + 0.01F * column, 0.3F});
+         s.sensor.body = body;
+       }},
       {"noise of rings",
        [](ReportCase& s) {
          s.sensor.ring_noise_m = {0.01, 0.02, 0, 0.005, 0.03};

@@ -2,23 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "adasplats/evaluate/unit/fit_unit.h"
-#include "adasplats/pipeline/session/scan_range.h"
+#include "adasplats/pipeline/evaluate/measured_unit.h"
 #include "adasplats/pipeline/session/session.h"
 
 namespace adasplats {
 
-/// A model and measured scans in it, of one unit of a sensor.
-struct FitSensorJob {
-  std::filesystem::path model, scans_of;
-  ScanRange scans;
-  std::filesystem::path motion;      ///< of raw scans of a sequence; empty: its own poses
-  std::filesystem::path trajectory;  ///< of a folder of files without a poses.csv in it
-};
+using FitSensorJob = UnitScansJob;
 
 struct FitSensorResult : UnitFit {
   std::string sensor;       ///< of the library, recognised by the points
@@ -36,9 +29,5 @@ FitSensorResult fit_sensor(const FitSensorJob& job, Session& session);
 
 /// The keys of --report.
 nlohmann::ordered_json to_json(const FitSensorResult& result);
-
-/// `agreement`: share of the returns that the model has within half a metre. Errors: data (fewer
-/// than 60 %: `scans` are of another place, or their poses are wrong).
-void require_one_place(double agreement, const std::string& scans);
 
 }  // namespace adasplats

@@ -18,6 +18,7 @@ SimulateOptions options_of(const ScanSettings& settings) {
   options.unit_offsets = settings.unit_offsets;
   options.beam = settings.beam;
   options.ray_drop = settings.ray_drop ? &*settings.ray_drop : nullptr;
+  options.vehicle_body = settings.vehicle_body;
   options.frame = settings.frame;
   options.weather = settings.weather;
   options.fields = settings.fields;
@@ -43,6 +44,16 @@ void check(const ScanSettings& settings) {
   check_weather(settings.weather, settings.sensor);
 }
 
+bool is_ray_drop_file(const std::filesystem::path& choice) {
+  return !choice.empty() && choice != "none";
+}
+
+std::optional<RayDropModel> chosen_ray_drop(const std::filesystem::path& choice,
+                                            const LidarModel& sensor) {
+  if (is_ray_drop_file(choice)) return load_ray_drop(choice);
+  return choice.empty() ? sensor.drop : std::nullopt;
+}
+
 ScanSettings ScanChoice::settings(std::uint64_t seed) const {
   return settings_of(load_lidar_model(sensor), seed);
 }
@@ -54,11 +65,12 @@ ScanSettings ScanChoice::settings_of(LidarModel model, std::uint64_t seed) const
   settings.beam = beam;
   settings.noise = noise;
   settings.unit_offsets = unit_offsets;
+  settings.vehicle_body = vehicle_body;
   settings.frame = frame;
   settings.weather = weather;
   settings.seed = seed;
   check(settings);
-  if (!ray_drop.empty()) settings.ray_drop = load_ray_drop(ray_drop);
+  settings.ray_drop = chosen_ray_drop(ray_drop, settings.sensor);
   return settings;
 }
 

@@ -31,6 +31,7 @@ struct ScanSettings {
   bool unit_offsets = false;  ///< of the sensor's rings, on ranges (LidarModel::range_offsets_m)
   PointFrame frame = PointFrame::raw;
   std::optional<RayDropModel> ray_drop;  ///< none: every echo is reported
+  bool vehicle_body = true;              ///< returns from the sensor's body, where it has one
   Weather weather;
   ScanFields fields;  ///< attributes that are wanted
   std::uint64_t seed = 1;
@@ -38,6 +39,13 @@ struct ScanSettings {
 
 /// Errors: usage (those of check_beam and check_weather).
 void check(const ScanSettings& settings);
+
+/// What --ray-drop says: a file; "none"; nothing: what the sensor's own file has. Errors: those of
+/// load_ray_drop.
+std::optional<RayDropModel> chosen_ray_drop(const std::filesystem::path& choice,
+                                            const LidarModel& sensor);
+/// Whether it is a file.
+bool is_ray_drop_file(const std::filesystem::path& choice);
 
 /// ScanSettings as users give them: by names, and as differences from the sensor's own.
 struct ScanChoice {
@@ -47,7 +55,8 @@ struct ScanChoice {
   bool unit_offsets = false;
   SensorOverrides overrides;
   BeamOptions beam;
-  std::filesystem::path ray_drop;  ///< fitted model; empty: every echo is reported
+  std::filesystem::path ray_drop;  ///< chosen_ray_drop()
+  bool vehicle_body = true;
   Weather weather;
 
   /// Errors: those of load_lidar_model, load_ray_drop and check().
@@ -74,8 +83,13 @@ void visit_settings(ScanChoice& scan, Visit&& visit) {
   visit_settings(scan.overrides, visit);
   visit_settings(scan.beam, visit);
   visit(Setting{.name = "ray_drop",
-                .help = "Beams that get lost as a real sensor's: a file of 'adasplats fit-drop'"},
+                .help = "Beams that get lost as a real sensor's: a file of 'adasplats fit-drop'; "
+                        "'none': no beam, though the sensor's file says which ([drop])"},
         scan.ray_drop);
+  visit(Setting{.name = "vehicle_body",
+                .help = "Returns from what carries the sensor, where its file has them ([body])",
+                .opposite = "no-vehicle-body"},
+        scan.vehicle_body);
   visit_settings(scan.weather, visit);
 }
 

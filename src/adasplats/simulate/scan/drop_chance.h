@@ -3,11 +3,10 @@
 #pragma once
 
 #include "adasplats/core/maths/elementary.h"
+#include "adasplats/sensors/ray_drop_model.h"
 #include "adasplats/simulate/scan/edge_runs.h"
 
 namespace adasplats {
-
-inline constexpr int kDropFeatures = 8;
 
 /// A logistic model of lost echoes, for CPU and GPU: RayDropModel without blocked directions.
 struct DropRules {
@@ -21,29 +20,70 @@ struct DropFeatures {
   double of[kDropFeatures];
 };
 
-/// 1, r, r^2, log(r), 1 - cos, (1 - cos)^2, log(reflectance), r * log(reflectance), r in units of
-/// 10 m. A reflectance that is not finite is the usual one.
-ADASPLATS_HD inline DropFeatures drop_features(float range_m, float cos_incidence,
-                                               float reflectance, double usual_reflectance) {
-  constexpr double kLeastRange = 0.01, kDimmest = 0.005;  // logarithms are finite
+/// What the features are made of: bounded, so that logarithms are finite.
+struct DropConditions {
+  double range = 0;        ///< in units of 10 m
+  double slant = 0;        ///< 1 - cos of the incidence
+  double reflectance = 0;  ///< the usual one where it is not finite
+};
+
+ADASPLATS_HD inline DropConditions drop_conditions(float range_m, float cos_incidence,
+                                                   float reflectance, double usual_reflectance) {
+  constexpr double kLeastRange = 0.01, kDimmest = 0.005;
   const double tens = static_cast<double>(range_m) / 10;
-  const double range = tens > kLeastRange ? tens : kLeastRange;
   const auto cosine = static_cast<double>(cos_incidence);
-  const double slant = 1 - (cosine < 0.0 ? 0.0 : cosine > 1.0 ? 1.0 : cosine);
   const bool is_finite = reflectance - reflectance == 0.0F;
   const double known = is_finite ? static_cast<double>(reflectance) : usual_reflectance;
-  const double dim = log_of(known > kDimmest ? known : kDimmest);
-  return {{1, range, range * range, log_of(range), slant, slant * slant, dim, range * dim}};
+  return {tens > kLeastRange ? tens : kLeastRange,
+          1 - (cosine < 0.0   ? 0.0
+               : cosine > 1.0 ? 1.0
+                              : cosine),
+          known > kDimmest ? known : kDimmest};
+}
+
+/// 1, r, r^2, log(r), 1 - cos, (1 - cos)^2, log(reflectance), r * log(reflectance), r in units of
+/// 10 m, with these logarithms.
+ADASPLATS_HD inline DropFeatures drop_features(const DropConditions& echo, double log_range,
+                                               double log_reflectance) {
+  return {{1, echo.range, echo.range * echo.range, log_range, echo.slant, echo.slant * echo.slant,
+           log_reflectance, echo.range * log_reflectance}};
+}
+
+ADASPLATS_HD inline DropFeatures drop_features(const DropConditions& echo) {
+  return drop_features(echo, log_of(echo.range), log_of(echo.reflectance));
+}
+
+ADASPLATS_HD inline double drop_logit(const DropRules& rules, const DropFeatures& features) {
+  double sum = 0;
+  for (int k = 0; k < kDropFeatures; ++k) sum += rules.weights[k] * features.of[k];
+  return sum;
 }
 
 /// How likely an echo is lost, 0..1.
 ADASPLATS_HD inline double drop_chance(const DropRules& rules, float range_m, float cos_incidence,
                                        float reflectance) {
-  const DropFeatures features =
-      drop_features(range_m, cos_incidence, reflectance, rules.usual_reflectance);
-  double sum = 0;
-  for (int k = 0; k < kDropFeatures; ++k) sum += rules.weights[k] * features.of[k];
-  return 1 / (1 + exp_of(-sum));
+  const DropConditions echo =
+      drop_conditions(range_m, cos_incidence, reflectance, rules.usual_reflectance);
+  return 1 / (1 + exp_of(-drop_logit(rules, drop_features(echo))));
+}
+
+/// Whether `drawn` is below drop_chance(): where a bound of it says so, as for most beams, without
+/// logarithms and exponentials.
+ADASPLATS_HD inline bool is_lost(const DropRules& rules, float range_m, float cos_incidence,
+                                 float reflectance, double drawn) {
+  const DropConditions echo =
+      drop_conditions(range_m, cos_incidence, reflectance, rules.usual_reflectance);
+  const double of_range = rules.weights[3];
+  const double of_reflectance = rules.weights[6] + echo.range * rules.weights[7];
+  const double most =
+      drop_logit(rules,
+                 drop_features(echo, log_floor_of(echo.range), log_floor_of(echo.reflectance))) +
+      kLogFloorError *
+          ((of_range > 0 ? of_range : 0.0) + (of_reflectance > 0 ? of_reflectance : 0.0));
+  // 1 + exp(x) is more than 2 + x + x^2 / 2 + x^3 / 6.
+  const double x = -most;
+  if (x > 0 && drawn * (2 + x * (1 + x * (0.5 + x * (1.0 / 6)))) >= 1) return false;
+  return drawn < 1 / (1 + exp_of(-drop_logit(rules, drop_features(echo))));
 }
 
 }  // namespace adasplats

@@ -9,13 +9,12 @@
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/maths/ray.h"
 #include "adasplats/sensors/lidar_model.h"
+#include "adasplats/sensors/ray_drop_model.h"
 
 namespace adasplats {
 
 /// Where neighbouring beams of a ring meet surfaces farther apart than this, there is an edge.
 inline constexpr float kRangeEdge_m = 0.5F;
-/// Beams lost at one edge, at most.
-inline constexpr std::uint32_t kMostEdgeRun = 6;
 
 /// Beams that are lost at range edges, for CPU and GPU: a footprint that is cut in two gives two
 /// weak echoes. shares[k]: of the edges, those at which k + 1 beams one after the other are lost.

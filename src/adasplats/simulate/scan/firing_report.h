@@ -7,6 +7,7 @@
 
 #include "adasplats/core/maths/random.h"
 #include "adasplats/sensors/lidar_model.h"
+#include "adasplats/sensors/vehicle_body.h"
 #include "adasplats/simulate/scan/air.h"
 #include "adasplats/simulate/scan/drop_chance.h"
 #include "adasplats/simulate/scan/echoes.h"
@@ -51,6 +52,9 @@ struct FiringRules {
   const float* weights = nullptr;  ///< of sub-rays
   DropRules drop;
   const std::uint8_t* blocked = nullptr;  ///< of firings; null: none is
+  const std::uint16_t* body_cells =
+      nullptr;  ///< of firings, numbers in `body`, kNoBody; null: none
+  const BodyCell* body = nullptr;
   AirRules air;
   // the place
   const PrimitiveValues* primitives = nullptr;
@@ -61,6 +65,9 @@ struct FiringRules {
   GainTable incidence_gain;
   std::uint64_t seed = 0;
 };
+
+/// Where a firing meets no cell of the vehicle's body.
+inline constexpr std::uint16_t kNoBody = 0xffff;
 
 /// What is of one scan alone.
 struct ScanState {
@@ -83,7 +90,7 @@ struct ReportedReturn {
 static_assert(sizeof(ReportedReturn) == 16);
 
 /// What a ray's random numbers are for; each has a stream of its own.
-enum class Draw : std::uint64_t { range = 0, angles = 1, drop = 2, intensity = 3 };
+enum class Draw : std::uint64_t { range = 0, angles = 1, drop = 2, intensity = 3, body = 4 };
 
 /// By (seed, scan, firing) and what for. Range noise of a firing's first return has the stream of
 /// the scan alone, as it always had.
@@ -151,13 +158,11 @@ ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanStat
   if (has_fields)
     fields = beam_fields(rules.fields, rules.seed, scan.scan_index, fired.ring, fired.column, k);
   if (rules.drop.on) {
-    const bool blocked = rules.blocked != nullptr && rules.blocked[firing] != 0;
-    const double chance =
-        blocked ? 1.0 : drop_chance(rules.drop, echo.range_m, cosine, values.reflectance);
+    if (rules.blocked != nullptr && rules.blocked[firing] != 0) return false;
     const double drawn =
         has_fields ? fields.drop
                    : scan_draw(rules.seed, Draw::drop, scan.scan_index, firing, k).uniform();
-    if (drawn < chance) return false;
+    if (is_lost(rules.drop, echo.range_m, cosine, values.reflectance, drawn)) return false;
   }
   auto range_m = static_cast<double>(echo.range_m);
   if (fired.ring < rules.range_offset_count) range_m -= rules.range_offsets_m[fired.ring];
@@ -179,11 +184,34 @@ ADASPLATS_HD inline bool measure_return(const FiringRules& rules, const ScanStat
         gain_of(rules.range_gain, reported.range_m) * gain_of(rules.incidence_gain, cosine);
   }
   if (rules.intensity.on && values.reflectance == values.reflectance) {
-    const double share =
-        has_fields ? fields.intensity
-                   : scan_draw(rules.seed, Draw::intensity, scan.scan_index, firing, k).uniform();
-    reported.intensity = unit_intensity(rules.intensity, fired.ring, reported.intensity, share);
+    IntensityShares shares = {fields.zero, fields.intensity};
+    if (!has_fields) {
+      Random random = scan_draw(rules.seed, Draw::intensity, scan.scan_index, firing, k);
+      shares.below = random.uniform();
+      shares.zero = random.uniform();
+    }
+    reported.intensity = unit_intensity(rules.intensity, fired.ring, reported.intensity, shares);
   }
+  return true;
+}
+
+/// Whether a firing ends on what carries the sensor, and what is reported of it then; nothing where
+/// that is out of range.
+ADASPLATS_HD inline bool meets_body(const FiringRules& rules, const ScanState& scan,
+                                    std::uint32_t firing, ReportedReturn* out, int& count) {
+  if (rules.body_cells == nullptr || rules.body_cells[firing] == kNoBody) return false;
+  const BodyCell& cell = rules.body[rules.body_cells[firing]];
+  Random random = scan_draw(rules.seed, Draw::body, scan.scan_index, firing, 0);
+  if (!(random.uniform() < static_cast<double>(cell.share))) return false;
+  const double noise_m = range_noise_of(rules, rules.firings[firing]) * random.normal();
+  ReportedReturn reported;
+  reported.range_m =
+      static_cast<float>(quantised(rules, static_cast<double>(cell.range_m) + noise_m));
+  reported.primitive = Hit::kNone;
+  reported.intensity = rules.has_intensities ? converted(rules.intensity, cell.intensity)
+                                             : std::numeric_limits<float>::quiet_NaN();
+  count = 0;
+  if (in_range(rules, reported.range_m)) out[count++] = reported;
   return true;
 }
 
@@ -257,6 +285,8 @@ template <int kMost>
 ADASPLATS_HD inline int report_firing(const FiringRules& rules, const ScanState& scan,
                                       std::uint32_t firing, const ScanHits& hits,
                                       ReportedReturn* out) {
+  int count = 0;
+  if (meets_body(rules, scan, firing, out, count)) return count;
   const auto class_of = [&](std::uint32_t primitive) -> std::uint16_t {
     return primitive < rules.primitive_count ? rules.primitives[primitive].class_id : 0;
   };
@@ -266,7 +296,6 @@ ADASPLATS_HD inline int report_firing(const FiringRules& rules, const ScanState&
   const int echo_count =
       lost ? 0
            : firing_returns<kMost>(&hits.of(firing), rules.weights, rules.beam, class_of, echoes);
-  int count = 0;
   for (int k = 0; k < echo_count; ++k) {
     ReportedReturn reported;
     if (!measure_return(rules, scan, firing, echoes[k], static_cast<std::uint32_t>(k), reported))

@@ -57,7 +57,13 @@ struct NodePlace {
 ADASPLATS_HD inline NodePlace place_in(const float* nodes, std::uint32_t count, float value) {
   NodePlace place;
   if (count < 2 || !(value > nodes[0])) return place;
-  while (place.below + 2 < count && nodes[place.below + 1] <= value) ++place.below;
+  // By halves, without branches that depend on the value.
+  std::uint32_t step = 1;
+  while (2 * step < count) step *= 2;
+  for (; step > 0; step /= 2) {
+    const std::uint32_t next = place.below + step;
+    if (next + 1 < count && nodes[next] <= value) place.below = next;
+  }
   const float low = nodes[place.below], high = nodes[place.below + 1];
   const float share = (value - low) / (high - low);
   place.share = share < 1.0F ? share : 1.0F;
@@ -96,16 +102,19 @@ ADASPLATS_HD inline float textured(const IntensityRules& rules, float level, dou
   return at_low + row.share * (at_high - at_low);
 }
 
-/// What a unit reports where a model expects `expected`, and a share of all such beams reports
-/// less.
+/// Where a beam lies among all of which the same is expected.
+struct IntensityShares {
+  double zero = 0;   ///< of those that report zero: that do so earlier
+  double below = 0;  ///< of the others: that report less
+};
+
+/// What a unit reports where a model expects `expected`.
 ADASPLATS_HD inline float unit_intensity(const IntensityRules& rules, std::uint32_t ring,
-                                         float expected, double share) {
+                                         float expected, const IntensityShares& shares) {
   const float level = level_of(rules, ring, expected);
   const GainTable zeros{rules.levels, rules.zero_share, rules.level_count};
-  const auto zero = static_cast<double>(gain_of(zeros, level));
-  if (share < zero) return 0;
-  const double of_others = zero < 1 ? (share - zero) / (1 - zero) : 1.0;
-  const float value = converted(rules, textured(rules, level, of_others));
+  if (shares.zero < static_cast<double>(gain_of(zeros, level))) return 0;
+  const float value = converted(rules, textured(rules, level, shares.below));
   return value > rules.step ? value : rules.step;
 }
 

@@ -15,8 +15,7 @@
 namespace adasplats {
 namespace {
 
-constexpr auto kHalfTurn = static_cast<float>(std::numbers::pi);
-constexpr std::size_t kN = RayDropModel::kFeatures;
+constexpr std::size_t kN = kDropFeatures;
 using Row = std::array<double, kN>;
 
 double logistic(double x) { return 1 / (1 + std::exp(-x)); }
@@ -70,6 +69,14 @@ Row newton_step(const Likelihood& at) {
   return x;
 }
 
+Row row_of(const EchoConditions& echo, double usual_reflectance) {
+  const DropFeatures features = drop_features(
+      drop_conditions(echo.range_m, echo.cos_incidence, echo.reflectance, usual_reflectance));
+  Row row{};
+  std::copy_n(features.of, kN, row.begin());
+  return row;
+}
+
 double usual_reflectance_of(std::span<const EchoConditions> echoes, double otherwise) {
   std::vector<float> known;
   for (const EchoConditions& echo : echoes) {
@@ -118,8 +125,19 @@ struct SectorCount {
   std::uint32_t dropped = 0;
 };
 
-/// The sectors of one elevation, place by place.
-using SectorPlaces = std::array<std::map<std::uint32_t, SectorCount>, kSectors>;
+/// The sectors of one ring, place by place.
+struct RingSectors {
+  std::array<std::map<std::uint32_t, SectorCount>, kSectors> sectors;
+  double elevations_deg = 0, echoes = 0;  // sum, count
+
+  void add_elevation(double one_deg) {
+    elevations_deg += one_deg;
+    ++echoes;
+  }
+  float elevation_rad() const {
+    return static_cast<float>(std::round(elevations_deg / echoes * 1e4) / 1e4 * kDegree);
+  }
+};
 
 bool is_blocked(const std::map<std::uint32_t, SectorCount>& places) {
   std::size_t blocked = 0;
@@ -127,55 +145,38 @@ bool is_blocked(const std::map<std::uint32_t, SectorCount>& places) {
   return blocked >= kLeastBlockedPlaces && 4 * blocked >= 3 * places.size();
 }
 
-}  // namespace
-
-std::array<double, RayDropModel::kFeatures> RayDropModel::features(
-    const EchoConditions& echo) const {
-  const DropFeatures features =
-      drop_features(echo.range_m, echo.cos_incidence, echo.reflectance, usual_reflectance);
-  std::array<double, kFeatures> values{};
-  std::copy_n(features.of, kFeatures, values.begin());
-  return values;
+/// Blocked sectors, neighbours joined.
+void add_blocked(const RingSectors& ring, std::vector<BlockedSector>& blocked) {
+  const auto edge_rad = [](int k) {
+    return static_cast<float>((2.0 * k / kSectors - 1) * std::numbers::pi);
+  };
+  bool goes_on = false;
+  for (int sector = 0; sector < kSectors; ++sector) {
+    const bool found = is_blocked(ring.sectors[static_cast<std::size_t>(sector)]);
+    if (found && goes_on)
+      blocked.back().azimuth_end_rad = edge_rad(sector + 1);
+    else if (found)
+      blocked.push_back({ring.elevation_rad(), edge_rad(sector), edge_rad(sector + 1)});
+    goes_on = found;
+  }
 }
 
-DropRules RayDropModel::rules() const {
+}  // namespace
+
+DropRules drop_rules(const RayDropModel& model) {
   DropRules rules;
   rules.on = true;
-  rules.usual_reflectance = usual_reflectance;
-  std::copy_n(weights.begin(), kFeatures, rules.weights);
-  rules.edges.on = !edge_runs.empty();
-  std::copy_n(edge_runs.begin(), std::min<std::size_t>(edge_runs.size(), kMostEdgeRun),
+  rules.usual_reflectance = model.usual_reflectance;
+  std::copy_n(model.weights.begin(), kN, rules.weights);
+  rules.edges.on = !model.edge_runs.empty();
+  std::copy_n(model.edge_runs.begin(), std::min<std::size_t>(model.edge_runs.size(), kMostEdgeRun),
               rules.edges.shares);
   return rules;
 }
 
-double RayDropModel::probability(const EchoConditions& echo) const {
-  if (blocks(echo.direction)) return 1;
-  return drop_chance(rules(), echo.range_m, echo.cos_incidence, echo.reflectance);
-}
-
-bool RayDropModel::blocks(Vec3f direction) const {
-  if (blocked.empty() || !is_known(direction)) return false;
-  constexpr double kMostApart_rad = 0.3 * kDegree;  // beams of an HDL-64E are farther apart
-  const auto elevation = static_cast<float>(elevation_rad(direction));
-  const auto below = [](const BlockedSector& sector, float value) {
-    return sector.elevation_rad < value;
-  };
-  auto first = std::lower_bound(blocked.begin(), blocked.end(), elevation, below);
-  if (first == blocked.end() ||
-      (first != blocked.begin() &&
-       elevation - std::prev(first)->elevation_rad < first->elevation_rad - elevation)) {
-    first = std::lower_bound(blocked.begin(), first, std::prev(first)->elevation_rad, below);
-  }
-  const float nearest = first->elevation_rad;
-  if (std::fabs(static_cast<double>(nearest - elevation)) > kMostApart_rad) return false;
-  const auto azimuth = static_cast<float>(azimuth_rad(direction));
-  for (; first != blocked.end() && first->elevation_rad == nearest; ++first) {
-    // Half a turn itself belongs to the sector that ends there.
-    const bool before_end = azimuth < first->azimuth_end_rad || first->azimuth_end_rad >= kHalfTurn;
-    if (azimuth >= first->azimuth_begin_rad && before_end) return true;
-  }
-  return false;
+double drop_probability(const RayDropModel& model, const EchoConditions& echo) {
+  if (model.blocks(echo.direction)) return 1;
+  return drop_chance(drop_rules(model), echo.range_m, echo.cos_incidence, echo.reflectance);
 }
 
 RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
@@ -193,7 +194,7 @@ RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
   model.usual_reflectance = usual_reflectance_of(echoes, model.usual_reflectance);
   std::vector<Row> rows;
   rows.reserve(echoes.size());
-  for (const EchoConditions& echo : echoes) rows.push_back(model.features(echo));
+  for (const EchoConditions& echo : echoes) rows.push_back(row_of(echo, model.usual_reflectance));
   // From the share alone, which is near enough for Newton's method; halved where it overshoots.
   model.weights[0] = std::log(static_cast<double>(lost) / static_cast<double>(reported));
   Likelihood at = likelihood_of(rows, dropped, model.weights);
@@ -215,37 +216,27 @@ RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
 
 std::vector<BlockedSector> find_blocked_sectors(std::span<const EchoConditions> echoes,
                                                 std::span<const std::uint8_t> dropped,
-                                                std::span<const std::uint32_t> places) {
+                                                std::span<const std::uint32_t> places,
+                                                std::span<const std::uint16_t> rings) {
   check_sizes(echoes.size(), dropped.size());
   check_sizes(echoes.size(), places.size());
-  std::map<std::int64_t, SectorPlaces> by_elevation;  // in hundredths of a degree
+  if (!rings.empty()) check_sizes(echoes.size(), rings.size());
+  std::map<std::int64_t, RingSectors> by_ring;  // or by hundredths of a degree
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     const Vec3f direction = echoes[i].direction;
     if (!is_known(direction) || !is_finite(direction)) continue;
-    const auto elevation = std::llround(elevation_rad(direction) / kDegree * 100);
+    const double elevation_deg = elevation_rad(direction) / kDegree;
+    RingSectors& of_ring = by_ring[rings.empty() ? std::llround(elevation_deg * 100) : rings[i]];
+    of_ring.add_elevation(rings.empty() ? std::round(elevation_deg * 100) / 100 : elevation_deg);
     const double turn = azimuth_rad(direction) / (2 * std::numbers::pi) + 0.5;
     const auto sector = std::min(static_cast<int>(turn * kSectors), kSectors - 1);
-    SectorCount& count = by_elevation[elevation][static_cast<std::size_t>(sector)][places[i]];
+    SectorCount& count = of_ring.sectors[static_cast<std::size_t>(sector)][places[i]];
     ++count.echoes;
     count.dropped += dropped[i] != 0 ? 1 : 0;
   }
   std::vector<BlockedSector> blocked;
-  for (const auto& [elevation, sectors] : by_elevation) {
-    bool goes_on = false;
-    for (int sector = 0; sector < kSectors; ++sector) {
-      const bool found = is_blocked(sectors[static_cast<std::size_t>(sector)]);
-      const auto edge_rad = [](int k) {
-        return static_cast<float>((2.0 * k / kSectors - 1) * std::numbers::pi);
-      };
-      if (found && !goes_on) {
-        blocked.push_back({static_cast<float>(static_cast<double>(elevation) / 100 * kDegree),
-                           edge_rad(sector), edge_rad(sector + 1)});
-      } else if (found) {
-        blocked.back().azimuth_end_rad = edge_rad(sector + 1);
-      }
-      goes_on = found;
-    }
-  }
+  for (const auto& [ring, of_ring] : by_ring) add_blocked(of_ring, blocked);
+  std::ranges::stable_sort(blocked, {}, &BlockedSector::elevation_rad);
   return blocked;
 }
 

@@ -123,6 +123,7 @@ struct SimulateOptions {
   bool unit_offsets = false;  ///< apply LidarModel::range_offsets_m
   BeamOptions beam;
   const RayDropModel* ray_drop = nullptr;  ///< none: every echo is reported
+  bool vehicle_body = true;                ///< returns from LidarModel::body
   PointFrame frame = PointFrame::raw;
   Weather weather;
   ScanFields fields;

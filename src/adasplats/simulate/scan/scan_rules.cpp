@@ -72,9 +72,20 @@ void ScanRules::set_firings(std::vector<Firing> firings) {
   firings_ = std::move(firings);
   if (options_.beam.sub_rays > 1) cast_firings_ = sub_firings(sensor_, firings_, options_.beam);
   blocked_.clear();
-  if (!ray_drop_ || ray_drop_->blocked.empty()) return;
-  for (const Firing& firing : firings_)
-    blocked_.push_back(ray_drop_->blocks(firing.direction) ? 1 : 0);
+  if (ray_drop_ && !ray_drop_->blocked.empty())
+    for (const Firing& firing : firings_)
+      blocked_.push_back(ray_drop_->blocks(firing.direction) ? 1 : 0);
+  body_cells_.clear();
+  if (body().empty()) return;
+  for (const Firing& firing : firings_) {
+    const std::size_t cell = sensor_.body->find(firing.ring, firing.direction);
+    body_cells_.push_back(cell < body().size() ? static_cast<std::uint16_t>(cell) : kNoBody);
+  }
+}
+
+std::span<const BodyCell> ScanRules::body() const {
+  if (!options_.vehicle_body || !sensor_.body) return {};
+  return sensor_.body->cells;
 }
 
 std::span<const double> ScanRules::range_offsets_m() const {
@@ -131,8 +142,10 @@ FiringRules ScanRules::view() const {
   }
   rules.beam = options_.beam;
   rules.weights = weights_.data();
-  if (ray_drop_) rules.drop = ray_drop_->rules();
+  if (ray_drop_) rules.drop = drop_rules(*ray_drop_);
   rules.blocked = blocked_.empty() ? nullptr : blocked_.data();
+  rules.body_cells = body_cells_.empty() ? nullptr : body_cells_.data();
+  rules.body = body().data();
   rules.air = air_;
   rules.air.expected = expected_.data();
   rules.primitives = table_->values.data();

@@ -44,6 +44,9 @@ class ScanRules {
   std::span<const float> weights() const { return weights_; }
   /// Firings whose direction the ray drop blocks; empty where it blocks none.
   std::span<const std::uint8_t> blocked() const { return blocked_; }
+  /// Of firings, numbers in body() or kNoBody; empty where none meets the vehicle.
+  std::span<const std::uint16_t> body_cells() const { return body_cells_; }
+  std::span<const BodyCell> body() const;
   /// Table of AirRules.
   std::span<const double> expected() const { return expected_; }
   std::span<const double> range_offsets_m() const;
@@ -74,6 +77,7 @@ class ScanRules {
   std::vector<Firing> cast_firings_;
   std::vector<float> weights_;
   std::vector<std::uint8_t> blocked_;
+  std::vector<std::uint16_t> body_cells_;
   std::vector<double> expected_;
   AirRules air_;
   std::shared_ptr<const int> identity_;

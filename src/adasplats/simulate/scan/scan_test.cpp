@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "adasplats/simulate/scan/box_mesh_test.h"
@@ -126,6 +127,37 @@ TEST(SimulateScan, TheRangeOfTheSensorIsKept) {
   const auto [low, high] = std::ranges::minmax(scan.ranges_m);
   EXPECT_GT(low, 6.0F);
   EXPECT_LE(high, 9.0F);
+}
+
+// Oracle: by hand. Two columns of the upper ring end on the vehicle, one always, one half of the
+// time.
+TEST(SimulateScan, BeamsEndOnWhatCarriesTheSensor) {
+  const auto disks = ground_disks(60, 0.5F);
+  Drive drive;
+  drive.view = {disks, nullptr};
+  drive.pose.world_from_sensor.translation = {0, 0, 2};
+  drive.sensor.elevations_rad = {-0.2, -0.3};
+  drive.sensor.columns = 720;
+  drive.sensor.first_azimuth_rad = 0.25 * std::numbers::pi / 180;  // between the cells' borders
+  drive.sensor.min_range_m = 1;
+  const Scan without = drive.scan();
+  VehicleBody body;
+  for (std::uint16_t column = 100; column < 300; ++column)
+    body.cells.push_back({0, column, 1, 1.5F, 0.25F});
+  for (std::uint16_t column = 400; column < 600; ++column)
+    body.cells.push_back({0, column, 0.5F, 1.25F, 0.25F});
+  body.cells.push_back({1, 5, 1, 0.5F, 0});  // nearer than the sensor reports
+  drive.sensor.body = body;
+  const Scan with = drive.scan();
+  EXPECT_EQ(without.size(), 1440U);
+  EXPECT_EQ(with.size(), 1439U);
+  EXPECT_EQ(std::ranges::count(with.ranges_m, 1.5F), 200);
+  const auto half = static_cast<double>(std::ranges::count(with.ranges_m, 1.25F));
+  EXPECT_NEAR(half, 100, 5 * std::sqrt(50.0));
+  EXPECT_EQ(std::ranges::count_if(with.ranges_m, [](float range_m) { return range_m < 4; }),
+            200 + std::lround(half));
+  drive.options.vehicle_body = false;
+  EXPECT_EQ(drive.scan().ranges_m, without.ranges_m);
 }
 
 TEST(SimulateScan, AttributesComeFromThePrimitiveThatWasHit) {

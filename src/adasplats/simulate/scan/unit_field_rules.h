@@ -19,7 +19,7 @@ struct UnitFieldRules {
 
 /// The numbers of one beam: shares from 0 to 1, and m.
 struct BeamFields {
-  double drop = 0, intensity = 0, noise_m = 0;
+  double drop = 0, intensity = 0, noise_m = 0, zero = 0;
 };
 
 /// A whole number below `count` of 32 random bits.
@@ -43,9 +43,10 @@ ADASPLATS_HD inline BeamFields beam_fields(const UnitFieldRules& rules, std::uin
   const std::uint8_t* const b = rules.bytes + beam * kUnitFields;
   const auto drop = static_cast<double>(b[0]) + 0.5;
   const auto noise = static_cast<double>(b[2]) - 128;
+  const auto zero = static_cast<double>(b[3]) + 0.5;
   constexpr double kPerSquare_m = kMostFieldNoise_m / (127.0 * 127.0);
   return {drop * drop / 65536.0, (static_cast<double>(b[1]) + 0.5) / 256.0,
-          kPerSquare_m * noise * (noise < 0 ? -noise : noise)};
+          kPerSquare_m * noise * (noise < 0 ? -noise : noise), zero * zero / 65536.0};
 }
 
 }  // namespace adasplats

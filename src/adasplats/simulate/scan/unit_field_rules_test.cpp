@@ -14,7 +14,8 @@
 namespace adasplats {
 namespace {
 
-/// Two turns of 3 rings and 1000 columns: byte 0 is the ring, byte 1 the column by its last digits.
+/// Two turns of 3 rings and 1000 columns: bytes 0 and 3 are the ring, byte 1 the column by its last
+/// digits.
 std::vector<std::uint8_t> numbered_fields() {
   std::vector<std::uint8_t> bytes;
   for (std::uint32_t turn = 0; turn < 2; ++turn)
@@ -23,6 +24,7 @@ std::vector<std::uint8_t> numbered_fields() {
         bytes.push_back(static_cast<std::uint8_t>(ring));
         bytes.push_back(static_cast<std::uint8_t>(column % 250));
         bytes.push_back(static_cast<std::uint8_t>(128 + 127 * turn));
+        bytes.push_back(static_cast<std::uint8_t>(10 * ring));
       }
   return bytes;
 }
@@ -40,6 +42,7 @@ TEST(UnitFields, AreOneTurnTurnedBySomeColumns) {
     for (std::uint32_t column = 0; column < 1000; ++column) {
       const BeamFields beam = beam_fields(rules, 1, scan, 2, column, 0);
       ASSERT_DOUBLE_EQ(beam.drop, 2.5 * 2.5 / 65536);
+      ASSERT_DOUBLE_EQ(beam.zero, 20.5 * 20.5 / 65536);
       ASSERT_DOUBLE_EQ(beam.intensity, ((start + column) % 250 + 0.5) / 256);
       ASSERT_EQ(beam.noise_m, first.noise_m);
     }
@@ -86,11 +89,11 @@ TEST(UnitIntensities, FollowTheTables) {
   EXPECT_EQ(converted(unit.rules, 9), 1.25F);
   EXPECT_EQ(converted(unit.rules, -1), 0);
   // Of level 0.5 half report zero; the middle of the others is the level.
-  EXPECT_EQ(unit_intensity(unit.rules, 0, 0.5F, 0.49), 0);
-  EXPECT_EQ(unit_intensity(unit.rules, 0, 0.5F, 0.51), 0.25F);
-  EXPECT_EQ(unit_intensity(unit.rules, 0, 0.5F, 0.75), 0.5F);
-  EXPECT_EQ(unit_intensity(unit.rules, 0, 0, 0.99), 0);
-  EXPECT_EQ(unit_intensity(unit.rules, 0, 1, 0), 0.5F);
+  EXPECT_EQ(unit_intensity(unit.rules, 0, 0.5F, {0.49, 0.5}), 0);
+  EXPECT_EQ(unit_intensity(unit.rules, 0, 0.5F, {0.51, 0.02}), 0.25F);
+  EXPECT_EQ(unit_intensity(unit.rules, 0, 0.5F, {0.51, 0.5}), 0.5F);
+  EXPECT_EQ(unit_intensity(unit.rules, 0, 0, {0.99, 0.99}), 0);
+  EXPECT_EQ(unit_intensity(unit.rules, 0, 1, {0, 0}), 0.5F);
 }
 
 /// A ring of 4000 firings that meets a wall 10 m away, behind every tenth beam one 20 m away for

@@ -1,9 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A ray drop model as a TOML file.
-
-#include <toml++/toml.h>
+// A ray drop model as a TOML file, or a table of one.
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +14,8 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
-#include "adasplats/simulate/scan/ray_drop.h"
+#include "adasplats/sensors/ray_drop_model.h"
+#include "adasplats/sensors/ray_drop_toml.h"
 
 namespace adasplats {
 namespace {
@@ -44,13 +43,13 @@ std::string list_text(const Numbers& numbers) {
 }
 
 /// Sectors of one elevation as one table.
-std::string blocked_text(const std::vector<BlockedSector>& blocked) {
+std::string blocked_text(const std::vector<BlockedSector>& blocked, const std::string& prefix) {
   std::string text;
   for (std::size_t i = 0; i < blocked.size(); ++i) {
     const bool goes_on = i > 0 && blocked[i].elevation_rad == blocked[i - 1].elevation_rad;
     if (!goes_on) {
       text += i == 0 ? "" : "]\n";
-      text += "\n[[blocked]]\nelevation_deg = ";
+      text += "\n[[" + prefix + "blocked]]\nelevation_deg = ";
       text += degrees_text(blocked[i].elevation_rad) + "\nazimuths_deg = [";
     } else {
       text += ", ";
@@ -71,10 +70,11 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
-/// Reads the parts of one file; each error has the line of what is wrong.
-class DropFile {
+/// Reads the keys of one table; each error has the line of what is wrong.
+class DropTable {
  public:
-  explicit DropFile(const std::filesystem::path& path) : path_(path), table_(parsed()) {
+  DropTable(const toml::table& table, const std::filesystem::path& path)
+      : path_(path), table_(table) {
     for (const auto& [key, value] : table_) {
       const std::string name(key.str());
       if (std::ranges::find(known_keys(), name) != known_keys().end()) continue;
@@ -94,7 +94,7 @@ class DropFile {
       model.usual_reflectance = number_of(*node, "usual_reflectance", 0, 1e9);
     const toml::node* weights = table_.get("weights");
     if (weights == nullptr) throw Error(ErrorKind::config, path_.string() + ": weights is missing");
-    const toml::array& list = array_of(*weights, "weights", RayDropModel::kFeatures);
+    const toml::array& list = array_of(*weights, "weights", std::size_t{kDropFeatures});
     for (std::size_t k = 0; k < list.size(); ++k)
       model.weights[k] = number_of(list[k], "weights", -1e9, 1e9);
     if (const toml::node* node = table_.get("edge_runs")) model.edge_runs = runs_of(*node);
@@ -106,19 +106,6 @@ class DropFile {
   Error error_at(const toml::source_region& place, const std::string& message) const {
     return Error(ErrorKind::config,
                  path_.string() + ":" + std::to_string(place.begin.line) + ": " + message);
-  }
-
-  toml::table parsed() const {
-    const std::string text = read_file(path_);
-    // toml++ frees nested tables by recursion and does not bound the depth of dotted keys.
-    constexpr std::ptrdiff_t kMostDots = 8192;
-    if (std::ranges::count(text, '.') > kMostDots)
-      throw Error(ErrorKind::config, path_.string() + ": too large for a ray drop");
-    try {
-      return toml::parse(text);
-    } catch (const toml::parse_error& error) {
-      throw error_at(error.source(), std::string(error.description()));
-    }
   }
 
   double number_of(const toml::node& node, const char* key, double low, double high) const {
@@ -180,13 +167,13 @@ class DropFile {
     return sectors;
   }
 
-  std::filesystem::path path_;
-  toml::table table_;
+  const std::filesystem::path& path_;
+  const toml::table& table_;
 };
 
 }  // namespace
 
-void save_ray_drop(const std::filesystem::path& path, const RayDropModel& model) {
+std::string ray_drop_toml(const RayDropModel& model, const std::string& prefix) {
   std::string text =
       "# How likely a beam that met something is not told: logistic(weights * (1, r, "
       "r^2, log r,\n# 1 - cos, (1 - cos)^2, log reflectance, r * log reflectance)), "
@@ -199,9 +186,29 @@ void save_ray_drop(const std::filesystem::path& path, const RayDropModel& model)
         "# Of edges of 0.5 m and more between neighbouring beams: the shares at which 1, 2, ... "
         "beams are\n# lost. The weights are of the other beams.\nedge_runs = " +
         list_text(model.edge_runs) + "\n";
-  write_file(path, text + blocked_text(model.blocked));
+  return text + blocked_text(model.blocked, prefix);
 }
 
-RayDropModel load_ray_drop(const std::filesystem::path& path) { return DropFile(path).model(); }
+RayDropModel ray_drop_of_table(const toml::table& table, const std::filesystem::path& path) {
+  return DropTable(table, path).model();
+}
+
+void save_ray_drop(const std::filesystem::path& path, const RayDropModel& model) {
+  write_file(path, ray_drop_toml(model));
+}
+
+RayDropModel load_ray_drop(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  // toml++ frees nested tables by recursion and does not bound the depth of dotted keys.
+  constexpr std::ptrdiff_t kMostDots = 8192;
+  if (std::ranges::count(text, '.') > kMostDots)
+    throw Error(ErrorKind::config, path.string() + ": too large for a ray drop");
+  try {
+    return ray_drop_of_table(toml::parse(text), path);
+  } catch (const toml::parse_error& error) {
+    throw Error(ErrorKind::config, path.string() + ":" + std::to_string(error.source().begin.line) +
+                                       ": " + std::string(error.description()));
+  }
+}
 
 }  // namespace adasplats

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What of the carrier of a sensor its beams meet.
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "adasplats/evaluate/unit/fit_unit.h"
+
+namespace adasplats {
+namespace {
+
+constexpr float kFarthest_m = 4, kBeforeModel_m = 0.5F, kOneRange_m = 0.2F;
+
+bool is_in_the_way(const UnitBeam& beam) {
+  if (!beam.returned() || beam.range_m > kFarthest_m) return false;
+  return !beam.hit || beam.range_m < beam.expected_m - kBeforeModel_m;
+}
+
+/// The beams of one ring in half a degree.
+struct CellBeams {
+  std::size_t beams = 0;
+  std::set<std::uint32_t> places, places_with_returns;
+  std::vector<float> ranges_m, intensities;  // of those that are in the way
+
+  void add(const UnitBeam& beam) {
+    ++beams;
+    places.insert(beam.place);
+    if (!is_in_the_way(beam)) return;
+    places_with_returns.insert(beam.place);
+    ranges_m.push_back(beam.range_m);
+    if (beam.intensity == beam.intensity) intensities.push_back(beam.intensity);
+  }
+  bool stands_still() {
+    const std::size_t seen = places_with_returns.size();
+    if (seen < kLeastBlockedPlaces || 2 * seen < places.size()) return false;
+    std::ranges::sort(ranges_m);
+    const auto at = [&](std::size_t tenths) {
+      return ranges_m[(ranges_m.size() - 1) * tenths / 10];
+    };
+    return at(9) - at(1) < kOneRange_m;
+  }
+};
+
+float middle_of(std::vector<float>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+}  // namespace
+
+std::optional<VehicleBody> fit_vehicle_body(std::span<const UnitBeam> beams) {
+  std::map<std::pair<std::uint16_t, std::uint32_t>, CellBeams> cells;
+  std::set<std::uint32_t> places;
+  for (const UnitBeam& beam : beams) {
+    places.insert(beam.place);
+    if (is_in_the_way(beam)) cells[{beam.ring, body_column(beam.direction)}];
+  }
+  if (places.size() < kLeastBlockedPlaces) return std::nullopt;
+  for (const UnitBeam& beam : beams) {
+    const auto cell = cells.find({beam.ring, body_column(beam.direction)});
+    if (cell != cells.end()) cell->second.add(beam);
+  }
+  VehicleBody body;
+  for (auto& [place, cell] : cells) {
+    if (!cell.stands_still()) continue;
+    const auto returns = static_cast<float>(cell.ranges_m.size());
+    body.cells.push_back({place.first, static_cast<std::uint16_t>(place.second),
+                          returns / static_cast<float>(cell.beams), middle_of(cell.ranges_m),
+                          middle_of(cell.intensities)});
+  }
+  return body;
+}
+
+}  // namespace adasplats
