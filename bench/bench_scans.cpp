@@ -3,12 +3,13 @@
 //
 // What a user gets of the scans that are traced, on the CPU or a GPU, as figures of bench/results:
 //   bench_scans MODEL.ply TRAJECTORY [--sensor NAME] [--device cpu|cuda|optix] [--threads N]
-//       [--scans N] [--repeats N] [--plain] [--json FILE]
+//       [--scans N] [--repeats N] [--plain] [--unit FILE] [--json FILE]
 // Rates of scans a second: hits alone (traced); Scan objects with all their attributes (complete);
 // on a GPU also batches of some attributes in page-locked memory (host) and on the device, waited
 // for. By turns in one run; medians, and medians of the ratios to `traced`. `plain`: the sensor as
 // it is. `rich`: 7 sub-rays, D = 5, two returns, rain. `rich_objects`: the same from a sensor that
-// moves among 20 moving cars of 5,000 splats.
+// moves among 20 moving cars of 5,000 splats. `unit`: scans with all that a file of fit-sensor says
+// of a unit, and without it (`with_over_without`), complete and, on a GPU, batches on the device.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -31,7 +32,7 @@ namespace {
 using namespace adasplats;
 
 struct Arguments {
-  std::string model, trajectory, json, sensor = kDefaultSensor, device = "cpu";
+  std::string model, trajectory, json, unit, sensor = kDefaultSensor, device = "cpu";
   int threads = 0;
   std::size_t scans = 0;
   int repeats = 5;
@@ -54,6 +55,8 @@ Arguments parse(int argc, char** argv) {
       arguments.scans = std::stoul(value());
     } else if (word == "--repeats") {
       arguments.repeats = std::stoi(value());
+    } else if (word == "--unit") {
+      arguments.unit = value();
     } else if (word == "--plain") {
       arguments.plain = true;
     } else if (word == "--json") {
@@ -63,10 +66,10 @@ Arguments parse(int argc, char** argv) {
     }
   }
   if (inputs.size() != 2) {
-    std::fprintf(
-        stderr,
-        "usage: bench_scans MODEL.ply TRAJECTORY [--sensor NAME] [--device "
-        "cpu|cuda|optix] [--threads N] [--scans N] [--repeats N] [--plain] [--json FILE]\n");
+    std::fprintf(stderr,
+                 "usage: bench_scans MODEL.ply TRAJECTORY [--sensor NAME] [--device "
+                 "cpu|cuda|optix] [--threads N] [--scans N] [--repeats N] [--plain] "
+                 "[--unit FILE] [--json FILE]\n");
     std::exit(64);
   }
   arguments.model = inputs[0];
@@ -99,7 +102,8 @@ nlohmann::ordered_json rates_of(const Ways& ways, std::size_t scans, int repeats
   nlohmann::ordered_json json;
   for (const auto& [name, call] : ways) {
     json[name + "_per_s"] = static_cast<double>(scans) / median(seconds[name]);
-    if (name != ways.front().first) json[name + "_over_traced"] = median(ratios[name]);
+    if (name != ways.front().first)
+      json[name + "_over_" + ways.front().first] = median(ratios[name]);
   }
   return json;
 }
@@ -140,6 +144,40 @@ nlohmann::ordered_json measure(const ModelScene& scene, const ScanSettings& sett
   nlohmann::ordered_json json = rates_of(ways, scans.size(), repeats);
   json["rays"] = rules.firings().size();
   json["returns"] = static_cast<double>(returns) / static_cast<double>(scans.size());
+  return json;
+}
+
+/// What a unit costs: scans of it, and of the same sensor without what is the unit's.
+nlohmann::ordered_json measure_unit_cost(const ModelScene& scene, const std::string& file,
+                                         std::span<const ScanMotion> scans,
+                                         const Executor& executor, int repeats) {
+  ScanChoice choice;
+  choice.sensor = file;
+  ScanSettings with = choice.settings(1);
+  ScanSettings without = with;
+  without.ray_drop.reset();
+  without.sensor.drop.reset();
+  without.sensor.body.reset();
+  without.sensor.fields.reset();
+  without.sensor.intensity.reset();
+  without.sensor.ring_noise_m.clear();
+  ScanSimulator plain(scene, without, executor), unit(scene, with, executor);
+  const auto complete = [&](ScanSimulator& simulator) {
+    return [&] { simulator.run(scans, 0, [](std::size_t, const Scan&) {}); };
+  };
+  nlohmann::ordered_json json;
+  json["complete"] =
+      rates_of({{"without", complete(plain)}, {"with", complete(unit)}}, scans.size(), repeats);
+  const GpuScene* const gpu = scene.gpu();
+  if (gpu == nullptr) return json;
+  const auto device = [&](const ScanSimulator& simulator) {
+    return [&] {
+      gpu->report(simulator.rules(), scans, 0, scene.world(), GpuScene::Results::device,
+                  [](ScanBatch&&) {});
+    };
+  };
+  json["device"] =
+      rates_of({{"without", device(plain)}, {"with", device(unit)}}, scans.size(), repeats);
   return json;
 }
 
@@ -217,6 +255,8 @@ nlohmann::ordered_json measure_all(const Arguments& arguments) {
   json["device"] = arguments.device;
   json["threads"] = executor.threads();
   json["scans"] = scans.size();
+  if (!arguments.unit.empty())
+    json["unit"] = measure_unit_cost(scene, arguments.unit, scans, executor, arguments.repeats);
   json["plain"] = measure(scene, plain, scans, executor, arguments.repeats);
   if (arguments.plain) return json;
   const auto some = std::span(scans).first(

@@ -72,6 +72,7 @@ struct Program {
     commands.push_back(make_evaluate_truth_command(evaluate));
     commands.push_back(make_evaluate_presence_command(evaluate));
     commands.push_back(make_evaluate_echoes_command(evaluate));
+    commands.push_back(make_evaluate_unit_command(evaluate));
     commands.push_back(make_evaluate_labels_command(evaluate));
     commands.push_back(make_evaluate_segmentation_command(evaluate));
     commands.push_back(make_evaluate_realism_command(evaluate));

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How good models and scans are: dicts with the keys of 'adasplats evaluate --report'."""
 from ._adasplats.evaluate import (c2c, echoes, labels, presence, realism, resimulate,
-                                  segmentation, truth)
+                                  segmentation, truth, unit)
 
 __all__ = ["c2c", "echoes", "labels", "presence", "realism", "resimulate", "segmentation",
-           "truth"]
+           "truth", "unit"]

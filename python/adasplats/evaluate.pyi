@@ -159,3 +159,19 @@ def truth(
     threads: int = 0,
     progress: Progress | None = None,
 ) -> dict[str, Any]: ...
+
+def unit(
+    model: Path,
+    scans: Path,
+    *,
+    sensor: str = "",
+    first_scan: int = 0,
+    scan_count: int | None = None,
+    scan_stride: int = 1,
+    motion: Path | None = None,
+    trajectory: Path | None = None,
+    device: Device = "auto",
+    gpus: Sequence[int] | None = None,
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> dict[str, Any]: ...

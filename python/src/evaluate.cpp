@@ -12,6 +12,7 @@
 #include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
 #include "adasplats/pipeline/evaluate/evaluate_segmentation.h"
 #include "adasplats/pipeline/evaluate/evaluate_truth.h"
+#include "adasplats/pipeline/evaluate/evaluate_unit.h"
 #include "adasplats/pipeline/provenance/metrics_json.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "arrays.h"
@@ -215,6 +216,25 @@ struct EchoArguments {
   }
 };
 
+struct UnitArguments {
+  EvaluateUnitJob job;
+  WorkOptions work;
+
+  void take(Keywords& keywords) {
+    keywords.take("sensor", job.sensor);
+    take_scan_range(keywords, job.scans.scans);
+    keywords.take("motion", job.scans.motion);
+    keywords.take("trajectory", job.scans.trajectory);
+    work.take(keywords);
+  }
+
+  py::object run(py::handle model, py::handle scans) {
+    job.scans.model = path_of(model, "model");
+    job.scans.scans_of = path_of(scans, "scans");
+    return reported(work, [&](Session& session) { return evaluate_unit(job, session); });
+  }
+};
+
 struct LabelArguments {
   LabelAgreementJob job;
   WorkOptions work{.has_device = false};
@@ -332,6 +352,12 @@ void bind_evaluate(py::module_& module) {
       "Foretold intensities and beams without return against the measured ones.\n\n"
       "model, sequence, motion: paths. drop: file of 'adasplats fit-drop'. Raises ValueError, "
       "OSError.");
+  define<UnitArguments>(
+      evaluate, "unit", "model", "scans",
+      "How well a unit of a sensor, as fit_sensor() learned it, foretells other scans.\n\n"
+      "model, scans, motion, trajectory: paths. sensor: file of fit_sensor(). Intensities and lost "
+      "beams.\n"
+      "Raises ValueError, OSError.");
   define<LabelArguments>(evaluate, "labels", "simulated", "original",
                          "How many simulated points have the class of the nearest measured one.\n\n"
                          "simulated, original: SemanticKITTI folders. window: original scans "

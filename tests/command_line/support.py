@@ -22,6 +22,7 @@ SUBCOMMANDS = [
     ["fit-drop"],
     ["fit-sensor"],
     ["evaluate", "echoes"],
+    ["evaluate", "unit"],
     ["evaluate", "labels"],
     ["evaluate", "segmentation"],
     ["evaluate", "realism"],

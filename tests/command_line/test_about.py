@@ -182,7 +182,7 @@ class Manual(ProgramTest):
     def test_written_again(self):
         self.run_good("man", "evaluate", "-o", self.pages)
         self.run_good("man", "evaluate", "-o", self.folder / "new" / "man1")
-        self.assertEqual(len(list((self.folder / "new" / "man1").iterdir())), 9)
+        self.assertEqual(len(list((self.folder / "new" / "man1").iterdir())), 10)
 
     def read(self, words):
         """A page as a reader shows it, without bold and italics."""

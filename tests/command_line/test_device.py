@@ -8,7 +8,7 @@ from support import SUBCOMMANDS, ProgramTest, tree_digest
 WITH_DEVICE = [["model"], ["simulate"], ["render"], ["evaluate", "resimulate"],
                ["evaluate", "truth"], ["evaluate", "presence"], ["evaluate", "echoes"],
                ["fit-drop"], ["simkitti32"], ["compare"], ["view"], ["demo"], ["segment"],
-               ["calibrate"], ["fit-sensor"]]
+               ["calibrate"], ["fit-sensor"], ["evaluate", "unit"]]
 
 
 class DeviceTest(ProgramTest):

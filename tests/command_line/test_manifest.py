@@ -87,6 +87,7 @@ class Manifest(ProgramTest):
             "--returns": ([], ["--returns", "2"]),
             "--return-mode": ([], ["--return-mode", "last"]),
             "--ray-drop": ([], ["--ray-drop", self.file("drop.toml", DROP)]),
+            "--vehicle-body": ([], ["--no-vehicle-body"]),
             "--rain": ([], ["--rain", "20"]),
             "--fog": ([], ["--fog", "40"]),
             "--snow": ([], ["--snow", "1"]),

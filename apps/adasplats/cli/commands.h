@@ -23,6 +23,7 @@ std::unique_ptr<Command> make_evaluate_resimulate_command(CLI::App& evaluate);
 std::unique_ptr<Command> make_evaluate_truth_command(CLI::App& evaluate);
 std::unique_ptr<Command> make_evaluate_presence_command(CLI::App& evaluate);
 std::unique_ptr<Command> make_evaluate_echoes_command(CLI::App& evaluate);
+std::unique_ptr<Command> make_evaluate_unit_command(CLI::App& evaluate);
 std::unique_ptr<Command> make_evaluate_labels_command(CLI::App& evaluate);
 std::unique_ptr<Command> make_evaluate_segmentation_command(CLI::App& evaluate);
 std::unique_ptr<Command> make_evaluate_realism_command(CLI::App& evaluate);
