@@ -15,6 +15,7 @@ without each part of the calibration, and without what else a drive's models do 
 import json
 import os
 import pathlib
+import shlex
 import subprocess
 import sys
 
@@ -53,11 +54,19 @@ def drives(data):
 
 
 def report_of(words, file):
-    """What a command reports; not run where the program has reported it since it was built."""
-    program = pathlib.Path(words[0])
-    if not file.exists() or file.stat().st_mtime < program.stat().st_mtime:
-        subprocess.run([*map(str, words), "--report", str(file)], check=True,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    """What a command reports; not run where it has reported since the program, and every other file
+    that the command names, was made."""
+    words = [str(word) for word in words]
+    command = file.with_suffix(".command")
+    newest = max(pathlib.Path(word).stat().st_mtime for word in words if pathlib.Path(word).exists())
+    told = command.read_text() if command.exists() else ""
+    if not file.exists() or told != shlex.join(words) or file.stat().st_mtime < newest:
+        done = subprocess.run([*words, "--report", str(file)], stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, text=True)
+        if done.returncode != 0:
+            file.unlink(missing_ok=True)
+            sys.exit(f"{shlex.join(words)}: {done.stderr.strip()}")
+        command.write_text(shlex.join(words))
     return json.loads(file.read_text())
 
 

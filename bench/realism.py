@@ -1,113 +1,147 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether simulated scans can be told from the real ones that they repeat, on every recording.
+"""Whether scans that a fitted unit simulates can be told from the real ones that they repeat.
 
-  bench/realism.py build/release/bin/adasplats REAL_DATA OUT
+  bench/realism.py build/release/bin/adasplats REAL_DATA OUT [--only NAME...] [--plain]
 
-REAL_DATA has kitti-0005, semantickitti-labelled and pandaset-002 as unpacked; what is missing is
-left out. A model of the drive, its scans simulated from the poses of the real ones, and `evaluate
-realism` of both. Writes OUT/realism.json (for bench/results) and prints Markdown tables. What the
-program reported since it was built is not run again. Needs NumPy.
+Drives, units and which scans they were fitted to are those of units.py: of each row a model of the
+drive, a unit fitted to other scans than the judged ones (or said otherwise by the row's name), its
+scans simulated at the poses of the real ones, and `evaluate realism` of both. --plain: also with the
+library's sensor of that kind, for what fitting gives. Writes OUT/realism.json (for bench/results):
+
+  rows     by name: AUC of the judge and of logistic regression by all, geometry, dropout and
+           intensity with intervals of 95 %, real against real likewise, statistics side by side
+  drives   real against real by drive, of as many scans as the row with most of them has
+
+and prints Markdown tables. What is there already is not made again. Needs NumPy.
 """
+import argparse
 import json
 import pathlib
-import sys
 
-import numpy as np
-
-from calibration import report_of
-from provenance import provenance_of
+from units import UNIT_OF, Workshop, kitti_rows, labelled_rows, other_rows
 
 GROUPS = ("all", "geometry", "dropout", "intensity")
-KITTI_SENSOR = ["--sensor", "velodyne-hdl-64e-kitti", "--rolling-shutter"]
-# Of the Pandar64 in the vehicle's frame: what `info` of the drive finds.
-PANDA_SENSOR = ["--sensor", "hesai-pandar64", "--format", "ply", "--mount", "0.019,0.725,1.887"]
-NUMPY_TYPES = {"float": "<f4", "double": "<f8", "uchar": "u1", "ushort": "<u2", "uint": "<u4",
-               "char": "i1", "short": "<i2", "int": "<i4"}
+# Places that no row of the development of units looked at.
+JUDGED = ("03", "05", "07", "09")
+# What is wanted of the judge.
+LIMITS = {"all": 0.8, "geometry": 0.65, "dropout": 0.65, "intensity": 0.75}
+STATISTICS = (
+    ("returns", "returns", "{:.0f}"), ("noise of ranges, mm", "range_noise_m", "{:.1f}"),
+    ("offsets of lasers, mm", "laser_offsets_m", "{:.1f}"),
+    ("noise of intensities", "intensity_noise", "{:.4f}"),
+    ("scatter of rings' intensities", "intensity_rings", "{:.4f}"),
+    ("zeros", "intensity_zeros", "{:.1%}"), ("zero after zero", "intensity_zero_next", "{:.2f}"),
+    ("missing in runs of one", "missing_runs_of_1", "{:.0f}"),
+    ("in runs of 6 to 20", "missing_runs_6_to_20", "{:.0f}"),
+    ("from planes, mm", "plane_residual_m", "{:.1f}"),
+    ("rings found", "unfolded_rings", "{:.1f}"), ("highest intensity", "intensity_most", "{:.2f}"),
+    ("farthest range, m", "range_most_m", "{:.1f}"), ("nearer than 2.5 m", "near_points", "{:.0f}"))
 
 
-def middle_time_s(file):
-    """Of the points of a binary PLY with a `time`."""
-    data = file.read_bytes()
-    header, _, body = data.partition(b"end_header\n")
-    lines = header.decode().split("\n")
-    count = next(int(line.split()[2]) for line in lines if line.startswith("element vertex"))
-    fields = [(line.split()[2], NUMPY_TYPES[line.split()[1]]) for line in lines
-              if line.startswith("property")]
-    times = np.frombuffer(body, np.dtype(fields), count)["time"]
-    return 0.5 * (times.min() + times.max())
+def wanted_rows():
+    places = [row for place, row in zip(UNIT_OF, labelled_rows()) if place in JUDGED]
+    return [*kitti_rows(), *places, *other_rows()]
 
 
-def poses_at_middles(frames, trajectory, output):
-    """The vehicle's poses when its frames were half over, by interpolation (quaternions of poses
-    0.1 s apart: linearly, and made unit)."""
-    rows = np.loadtxt(trajectory, delimiter=",", skiprows=1)
-    middles = np.array([middle_time_s(file) for file in sorted(frames.glob("*.ply"))])
-    poses = np.column_stack([np.interp(middles, rows[:, 0], rows[:, k]) for k in range(1, 8)])
-    poses[:, 3:] /= np.linalg.norm(poses[:, 3:], axis=1)[:, None]
-    np.savetxt(output, np.column_stack([middles, poses]), delimiter=",", fmt="%.9f",
-               header="time,x,y,z,qw,qx,qy,qz", comments="")
-    return output
+def plain_scans(workshop, row):
+    """As workshop.scans(), by the library's sensor."""
+    drive, name = workshop.drives[row.drive], f"{row.key}-plain-scans"
+    workshop.report(["simulate", workshop.model(drive), *drive.driving, "--sensor",
+                     drive.plain_sensor, "-o", workshop.out / name, "--overwrite"], name)
+    return workshop.out / name
 
 
-def drives(data, out):
-    """(name, words of model, words of simulate, words of the real scans)."""
-    found = []
-    kitti = data / "kitti-0005/sequences"
-    if kitti.exists():
-        model = [kitti / "00"]
-        found += [("kitti-0005, 01 as measured", model,
-                   ["--trajectory", kitti / "01_raw", "--motion", kitti / "00", *KITTI_SENSOR],
-                   [kitti / "01_raw"]),
-                  ("kitti-0005, 00", model,
-                   ["--trajectory", kitti / "00", "--points", "deskewed", *KITTI_SENSOR],
-                   [kitti / "00"])]
-    for place in sorted((data / "semantickitti-labelled/sequences").glob("*")):
-        found.append((f"semantickitti {place.name}", [place],
-                      ["--trajectory", place, "--points", "deskewed", *KITTI_SENSOR], [place]))
-    panda = data / "pandaset-002"
-    if panda.exists():
-        trajectory = panda / "vehicle_trajectory.csv"
-        given = ["--trajectory", trajectory]
-        poses = poses_at_middles(panda / "frames", trajectory, out / "pandaset-poses.csv")
-        found.append(("pandaset-002",
-                      [panda / "frames", *given, "--boxes", panda / "cuboids.csv"],
-                      ["--trajectory", poses, *PANDA_SENSOR], [panda / "frames", *given]))
-    return found
+def judged(workshop, row, scans, name):
+    """What `evaluate realism` says of a folder of simulated scans."""
+    drive = workshop.drives[row.drive]
+    report = workshop.report(
+        ["evaluate", "realism", scans / drive.scan_folder, drive.scans, *drive.reading,
+         *(["--scans", row.judged_scans] if row.judged_scans else [])], name)
+    return {key: report[key] for key in ("sensor", "scans", "patches", "auc", "auc_low", "auc_high",
+                                         "logistic", "real_real", "statistics")}
 
 
-def row_of(program, out, name, training, drive, real):
-    stem = out / name.replace(" ", "-").replace(",", "")
-    model = out / ("-".join(training[0].parts[-3:]) + ".ply")
-    report_of([program, "model", *training, "-o", model], model.with_suffix(".json"))
-    scans = stem.with_name(stem.name + "-scans")
-    report_of([program, "simulate", model, *drive, "-o", scans, "--overwrite"],
-              stem.with_name(stem.name + "-simulate.json"))
-    report = report_of([program, "evaluate", "realism", scans, *real],
-                       stem.with_name(stem.name + "-realism.json"))
-    row = {"name": name, **{key: report[key] for key in (
-        "sensor", "scans", "patches", "auc", "auc_low", "auc_high", "logistic", "real_real",
-        "statistics")}}
-    real_all = report["real_real"]["auc"]["all"]
-    print(f"| {name} | " + " | ".join(f"{report['auc'][group]:.3f}" for group in GROUPS)
-          + f" | {real_all:.3f} |", flush=True)
-    return row
+def row_of(workshop, row, with_plain):
+    drive = workshop.drives[row.drive]
+    fit = workshop.unit(row)[1]
+    made = {"name": row.name, "use": row.use, "model_of": drive.model_of,
+            "fitted": {"drive": row.fitted_drive, "scans": row.fitted_scans or "all",
+                       "agreement": fit.get("agreement")},
+            "judged": {"drive": row.drive, "scans": row.judged_scans or "all"}}
+    made.update(judged(workshop, row, workshop.scans(row, f"{row.key}-scans"), f"{row.key}-realism"))
+    made["reached"] = {group: made["auc"][group] is not None and made["auc"][group] <= limit
+                       for group, limit in LIMITS.items()}
+    if with_plain:
+        made["plain"] = judged(workshop, row, plain_scans(workshop, row), f"{row.key}-plain-realism")
+    return made
+
+
+def interval(test, group):
+    if test["auc"][group] is None:
+        return "–"
+    return f"{test['auc'][group]:.3f} ({test['auc_low'][group]:.3f} .. {test['auc_high'][group]:.3f})"
+
+
+def test_lines(name, row):
+    """A row a classifier."""
+    for kind, test in (("trees", row), ("logistic", row["logistic"]),
+                       ("real, real: trees", row["real_real"])):
+        yield f"| {name} | {kind} | " + " | ".join(interval(test, group) for group in GROUPS) + " |"
+
+
+def statistic_lines(rows):
+    yield "| of a scan, real / simulated | " + " | ".join(row["name"] for row in rows) + " |"
+    yield "|---|" + "--:|" * len(rows)
+    for title, key, form in STATISTICS:
+        cells = []
+        for row in rows:
+            pair, scale = row["statistics"][key], 1000 if title.endswith(", mm") else 1
+            cells.append(" / ".join("–" if pair[side] is None else form.format(scale * pair[side])
+                                    for side in ("real", "simulated")))
+        yield f"| {title} | " + " | ".join(cells) + " |"
+
+
+def real_drives(rows):
+    """Real against real of every drive, by the row with most of its scans."""
+    found = {}
+    for row in rows:
+        name = row["judged"]["drive"]
+        if name not in found or scans_of(row) > found[name]["scans"]:
+            found[name] = {"name": name, "scans": scans_of(row), **row["real_real"]}
+    return list(found.values())
+
+
+def scans_of(row):
+    scans = row["scans"]
+    return scans["real"] if isinstance(scans, dict) else scans
 
 
 def main():
-    if len(sys.argv) != 4:
-        sys.exit(__doc__)
-    program, data, out = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
-    out.mkdir(parents=True, exist_ok=True)
-    print("| recording | " + " | ".join(GROUPS) + " | real against real |\n|---|"
-          + "--:|" * (len(GROUPS) + 1))
-    rows = [row_of(program, out, *drive) for drive in drives(data, out)]
-    provenance = provenance_of(program)
-    # Paths of data and output mean nothing elsewhere.
-    provenance["command"] = "realism.py build/release/bin/adasplats REAL_DATA OUT"
-    (out / "realism.json").write_text(
-        json.dumps({"provenance": provenance, "drives": rows}, indent=1) + "\n")
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("data", type=pathlib.Path)
+    parser.add_argument("out", type=pathlib.Path)
+    parser.add_argument("--only", nargs="+", default=[], help="rows whose name has one of these")
+    parser.add_argument("--plain", action="store_true")
+    options = parser.parse_args()
+    workshop = Workshop(options.program, options.data, options.out)
+    print("| scans | judge | " + " | ".join(GROUPS) + " |\n|---|---|" + "---|" * len(GROUPS))
+    rows = []
+    for row in wanted_rows():
+        if not workshop.has(row) or (options.only
+                                     and not any(part in row.name for part in options.only)):
+            continue
+        rows.append(row_of(workshop, row, options.plain))
+        print("\n".join(test_lines(row.name, rows[-1])), flush=True)
+    print("\n" + "\n".join(statistic_lines(rows)))
+    command = ("realism.py build/release/bin/adasplats REAL_DATA OUT"
+               + options.plain * " --plain" + bool(options.only) * " --only ...")
+    (options.out / "realism.json").write_text(json.dumps(
+        {"provenance": workshop.provenance(command), "rows": rows, "drives": real_drives(rows)},
+        indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -28,8 +28,12 @@ class Place:
 
 
 def load_place(file, device):
-    data = np.load(file)
-    return Place(file.stem, torch.tensor(data["positions"].astype(np.float32) / 100, device=device),
+    return place_of(file.stem, np.load(file), device)
+
+
+def place_of(name, data, device):
+    """Of the arrays of a file, or of cubes.py."""
+    return Place(name, torch.tensor(data["positions"].astype(np.float32) / 100, device=device),
                  torch.tensor(data["intensities"].astype(np.float32) / 255, device=device),
                  torch.tensor(data["rings"].astype(np.int64), device=device),
                  torch.tensor(data["scans"].astype(np.int64), device=device),

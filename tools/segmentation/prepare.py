@@ -19,18 +19,7 @@ import numpy as np
 
 from class_map import read_class_map
 from classes import IGNORED, NAMES, TABLES
-
-CUBE_M = 0.05
-FARTHEST_M = 80
-RING_DEG = 0.4  # what is dropped together
-
-
-def one_a_cube(positions, rng):
-    order = rng.permutation(len(positions))
-    cells = np.floor(positions[order] / CUBE_M).astype(np.int64)
-    cells -= cells.min(0)
-    keys = (cells[:, 0] << 42) | (cells[:, 1] << 21) | cells[:, 2]
-    return np.sort(order[np.unique(keys, return_index=True)[1]])
+from cubes import arrays_of
 
 
 def inputs_of(path):
@@ -65,21 +54,10 @@ def main():
         raise SystemExit(f"{options.input}: its points have no labels")
     classes = (np.full(len(cloud.positions), IGNORED, np.uint8) if table is None
                else table[cloud.classes])
-    ways = cloud.positions - cloud.sensor_positions
-    ranges = np.linalg.norm(ways, axis=1)
-    elevations_deg = np.degrees(np.arcsin(np.clip(ways[:, 2] / np.maximum(ranges, 1e-3), -1, 1)))
-    near = np.flatnonzero(ranges < FARTHEST_M)
-    kept = near[one_a_cube(cloud.positions[near], np.random.default_rng(1))]
-    positions = cloud.positions[kept] - np.median(cloud.positions[kept], axis=0)
-    intensities = cloud.intensities[kept] / max(np.percentile(cloud.intensities, 99), 1e-6)
-    np.savez_compressed(
-        options.out,
-        positions=np.round(100 * positions).astype(np.int16),
-        intensities=np.round(255 * np.clip(intensities, 0, 1)).astype(np.uint8),
-        rings=np.clip((elevations_deg[kept] + 40) / RING_DEG, 0, 255).astype(np.uint8),
-        scans=np.unique(cloud.scan_indices[kept], return_inverse=True)[1].astype(np.uint8),
-        classes=classes[kept], names=np.array(names))
-    print(f"{options.out}: {len(kept):,} of {len(ranges):,} points")
+    arrays = arrays_of(cloud.positions, cloud.positions - cloud.sensor_positions, cloud.intensities,
+                       cloud.scan_indices, classes)
+    np.savez_compressed(options.out, **arrays, names=np.array(names))
+    print(f"{options.out}: {len(arrays['classes']):,} of {len(cloud.positions):,} points")
 
 
 if __name__ == "__main__":

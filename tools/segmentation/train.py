@@ -66,8 +66,8 @@ def predictions(network, place, with_intensity, core_m=30.0, margin_m=10.0, leas
     return found
 
 
-def confusion_of(network, place, with_intensity=True):
-    found = predictions(network, place, with_intensity)
+def confusion_of(network, place, with_intensity=True, **tiles):
+    found = predictions(network, place, with_intensity, **tiles)
     known = place.classes != IGNORED
     pairs = place.classes[known] * len(NAMES) + found[known]
     return torch.bincount(pairs, minlength=len(NAMES)**2).view(len(NAMES), -1).cpu().numpy()

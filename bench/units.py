@@ -1,0 +1,216 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""Models of real drives, units of their sensors fitted in them, and scans that such a unit simulates
+at the poses of the real ones: what realism.py, scan_unfolding.py and segmentation_transfer.py share.
+
+REAL_DATA has kitti-0005, semantickitti-labelled and pandaset-002 as unpacked; what is missing is
+left out. A place of SemanticKITTI is never judged by a unit that was fitted to it.
+"""
+import pathlib
+import shlex
+from dataclasses import dataclass
+
+import numpy as np
+
+from calibration import report_of
+from provenance import provenance_of
+
+KITTI_SENSOR = "velodyne-hdl-64e-kitti"
+# Of the Pandar64 in the vehicle's frame: what `info` of the drive finds.
+PANDA_MOUNT = "0.019,0.725,1.887"
+# Place of SemanticKITTI: the place that its unit is fitted in.
+UNIT_OF = {"00": "02", "01": "00", "02": "00", "03": "01", "05": "00", "07": "00", "09": "02"}
+NUMPY_TYPES = {"float": "<f4", "double": "<f8", "uchar": "u1", "ushort": "<u2", "uint": "<u4",
+               "char": "i1", "short": "<i2", "int": "<i4"}
+
+
+def fit_options(unit):
+    """What `fit-sensor` writes into the folder of a unit. Where one file holds all of the unit, the
+    drop model goes from here and from unit_options()."""
+    return ["-o", unit / "unit.toml", "--drop", unit / "drop.toml"]
+
+
+def unit_options(unit):
+    """What `simulate` takes to measure as the unit of a folder does."""
+    return ["--sensor", unit / "unit.toml", "--unit-offsets", "--ray-drop", unit / "drop.toml"]
+
+
+# ---- drives --------------------------------------------------------------------------------
+
+@dataclass(frozen=True)
+class Drive:
+    """Measured scans, how the program reads them, and the drive whose model shows their place."""
+    name: str
+    scans: pathlib.Path
+    model_of: str               # name of a drive
+    model_words: tuple          # of `model`, after its input
+    reading: tuple              # of `fit-sensor` and `evaluate`: how the scans are read
+    fitting: tuple              # of `fit-sensor` alone
+    driving: tuple              # of `simulate`: poses, motion and format, without the sensor
+    scan_folder: str            # of what `simulate` writes
+    plain_sensor: str           # the library's sensor of this kind
+
+
+@dataclass(frozen=True)
+class Row:
+    """Scans that are judged, and which others the unit that simulates them was fitted to."""
+    name: str
+    drive: str
+    fitted_drive: str
+    fitted_scans: str           # FIRST:COUNT[:STRIDE], empty: all
+    judged_scans: str           # likewise
+    use: str = "test"           # or development: the method was chosen by these scans
+
+    @property
+    def key(self):
+        return self.name.replace(" ", "-").replace(",", "")
+
+
+def kitti_drives(data):
+    sequences = data / "kitti-0005/sequences"
+    if not sequences.exists():
+        return
+    whole, raw = sequences / "00", sequences / "01_raw"
+    common = {"model_of": "kitti-0005 00", "model_words": ("--remove", "moving"), "reading": (),
+              "scan_folder": "sequences/00", "plain_sensor": KITTI_SENSOR}
+    yield Drive("kitti-0005 00", whole, fitting=(), driving=(
+        "--trajectory", whole, "--rolling-shutter", "--points", "deskewed"), **common)
+    yield Drive("kitti-0005 01_raw", raw, fitting=("--motion", whole), driving=(
+        "--trajectory", raw, "--motion", whole, "--rolling-shutter"), **common)
+
+
+def labelled_drives(data):
+    """Parked cars stay, as the scans have them."""
+    for place in sorted((data / "semantickitti-labelled/sequences").glob("*")):
+        name = f"semantickitti {place.name}"
+        yield Drive(name, place, name, ("--remove", "none"), (), (), (
+            "--trajectory", place, "--rolling-shutter", "--points", "deskewed"), "sequences/00",
+            KITTI_SENSOR)
+
+
+def panda_drives(data, out):
+    panda = data / "pandaset-002"
+    if not panda.exists():
+        return
+    trajectory = panda / "vehicle_trajectory.csv"
+    poses = poses_at_middles(panda / "frames", trajectory, out / "pandaset-poses.csv")
+    reading = ("--trajectory", trajectory)
+    yield Drive("pandaset-002", panda / "frames", "pandaset-002",
+                (*reading, "--boxes", panda / "cuboids.csv"), reading, (),
+                ("--trajectory", poses, "--format", "ply", "--mount", PANDA_MOUNT), "",
+                "hesai-pandar64")
+
+
+def drives_of(data, out):
+    """By name."""
+    found = [*kitti_drives(data), *labelled_drives(data), *panda_drives(data, out)]
+    return {drive.name: drive for drive in found}
+
+
+def labelled_rows():
+    """Of every place of SemanticKITTI, all of its scans by the unit of another place."""
+    return [Row(f"semantickitti {place} by {by}", f"semantickitti {place}", f"semantickitti {by}", "",
+                "") for place, by in UNIT_OF.items()]
+
+
+def kitti_rows():
+    """Of the drive that the method was chosen by."""
+    whole, raw = "kitti-0005 00", "kitti-0005 01_raw"
+    return [Row("kitti-0005 01_raw by its own even scans", raw, raw, "0:4:2", "", "development"),
+            Row("kitti-0005 01_raw by even scans of 00", raw, whole, "0:39:2", "", "development"),
+            Row("kitti-0005 odd scans of 00 by its even ones", whole, whole, "0:39:2", "1:38:2",
+                "development")]
+
+
+def other_rows():
+    """Frames 12 to 40 of pandaset-002 are its first 29 files, frames 60 to 79 its last 19 (some are
+    missing)."""
+    return [Row("semantickitti 07 by kitti-0005 01_raw", "semantickitti 07", "kitti-0005 01_raw",
+                "0:4:2", ""),
+            Row("pandaset-002 frames 60 to 79 by 12 to 40", "pandaset-002", "pandaset-002", "0:29",
+                "45:19")]
+
+
+def middle_time_s(file):
+    """Of the points of a binary PLY with a `time`."""
+    data = file.read_bytes()
+    header, _, body = data.partition(b"end_header\n")
+    lines = header.decode().split("\n")
+    count = next(int(line.split()[2]) for line in lines if line.startswith("element vertex"))
+    fields = [(line.split()[2], NUMPY_TYPES[line.split()[1]]) for line in lines
+              if line.startswith("property")]
+    times = np.frombuffer(body, np.dtype(fields), count)["time"]
+    return 0.5 * (times.min() + times.max())
+
+
+def poses_at_middles(frames, trajectory, output):
+    """The vehicle's poses when its frames were half over, by interpolation (quaternions of poses
+    0.1 s apart: linearly, and made unit). A file that is there is of the same frames."""
+    if output.exists():
+        return output
+    rows_of_file = np.loadtxt(trajectory, delimiter=",", skiprows=1)
+    middles = np.array([middle_time_s(file) for file in sorted(frames.glob("*.ply"))])
+    poses = np.column_stack([np.interp(middles, rows_of_file[:, 0], rows_of_file[:, k])
+                             for k in range(1, 8)])
+    poses[:, 3:] /= np.linalg.norm(poses[:, 3:], axis=1)[:, None]
+    np.savetxt(output, np.column_stack([middles, poses]), delimiter=",", fmt="%.9f",
+               header="time,x,y,z,qw,qx,qy,qz", comments="")
+    return output
+
+
+# ---- what is made of them ------------------------------------------------------------------
+
+class Workshop:
+    """Models, units and scans in a folder; what is newer than all that it was made of is not made
+    again. `commands` has what was asked for, with the names of folders instead of their paths."""
+
+    def __init__(self, program, data, out):
+        self.program, self.data, self.out = pathlib.Path(program), data, out
+        out.mkdir(parents=True, exist_ok=True)
+        self.drives = drives_of(data, out)
+        self.commands = []
+
+    def report(self, words, name):
+        """What a command reports."""
+        words = [self.program, *words]
+        told = shlex.join(str(word) for word in words)
+        for path, short in ((self.program, "adasplats"), (self.data, "REAL_DATA"),
+                            (self.out, "OUT")):
+            told = told.replace(str(path), short)
+        if told not in self.commands:
+            self.commands.append(told)
+        return report_of(words, self.out / f"{name}.json")
+
+    def model(self, drive):
+        """The file of the model of a drive's place."""
+        of = self.drives[drive.model_of]
+        name = of.name.replace(" ", "-")
+        self.report(["model", of.scans, "-o", self.out / f"{name}.ply", *of.model_words],
+                    f"{name}-model")
+        return self.out / f"{name}.ply"
+
+    def unit(self, row):
+        """The folder of the unit of a row, and what `fit-sensor` reports."""
+        drive = self.drives[row.fitted_drive]
+        scans = f"-{row.fitted_scans.replace(':', '-')}" if row.fitted_scans else ""
+        unit = self.out / ("unit-" + drive.name.replace(" ", "-") + scans)
+        unit.mkdir(exist_ok=True)
+        report = self.report(
+            ["fit-sensor", self.model(drive), drive.scans, *drive.reading, *drive.fitting,
+             *(["--scans", row.fitted_scans] if row.fitted_scans else []), *fit_options(unit)],
+            unit.name)
+        return unit, report
+
+    def scans(self, row, name, more=()):
+        """The folder of scans that the unit of a row simulates at the poses of the real ones."""
+        drive, folder = self.drives[row.drive], self.out / name
+        self.report(["simulate", self.model(drive), *drive.driving,
+                     *unit_options(self.unit(row)[0]), *more, "-o", folder, "--overwrite"], name)
+        return folder
+
+    def has(self, row):
+        return row.drive in self.drives and row.fitted_drive in self.drives
+
+    def provenance(self, command):
+        """Paths of data and output mean nothing elsewhere."""
+        return provenance_of(self.program) | {"command": command, "commands": self.commands}
