@@ -16,11 +16,9 @@ library's sensor of that kind, for what fitting gives. Writes OUT/realism.json (
 
 and prints Markdown tables. What is there already is not made again. Needs NumPy.
 """
-import argparse
 import json
-import pathlib
 
-from units import UNIT_OF, Workshop, kitti_rows, labelled_rows, other_rows
+from units import UNIT_OF, Workshop, kitti_rows, labelled_rows, options_parser, other_rows
 
 GROUPS = ("all", "geometry", "dropout", "intensity")
 # Places that no row of the development of units looked at.
@@ -73,6 +71,7 @@ def row_of(workshop, row, with_plain):
     made.update(judged(workshop, row, workshop.scans(row, f"{row.key}-scans"), f"{row.key}-realism"))
     made["reached"] = {group: made["auc"][group] is not None and made["auc"][group] <= limit
                        for group, limit in LIMITS.items()}
+    made["shown"] = shown_of(made)
     if with_plain:
         made["plain"] = judged(workshop, row, plain_scans(workshop, row), f"{row.key}-plain-realism")
     return made
@@ -84,23 +83,33 @@ def interval(test, group):
     return f"{test['auc'][group]:.3f} ({test['auc_low'][group]:.3f} .. {test['auc_high'][group]:.3f})"
 
 
-def test_lines(name, row):
-    """A row a classifier."""
-    for kind, test in (("trees", row), ("logistic", row["logistic"]),
-                       ("real, real: trees", row["real_real"])):
-        yield f"| {name} | {kind} | " + " | ".join(interval(test, group) for group in GROUPS) + " |"
+def pair_text(row, title, key, form):
+    """Real and simulated."""
+    pair, scale = row["statistics"][key], 1000 if title.endswith(", mm") else 1
+    return " / ".join("–" if pair[side] is None else form.format(scale * pair[side])
+                      for side in ("real", "simulated"))
+
+
+def shown_of(row):
+    """The figures of a row as tables have them."""
+    tests = {"trees": row, "logistic": row["logistic"], "real_real": row["real_real"]}
+    return {**{kind: {group: interval(test, group) for group in GROUPS}
+               for kind, test in tests.items()},
+            "statistics": {key: pair_text(row, title, key, form) for title, key, form in STATISTICS}}
+
+
+def test_lines(row):
+    """A line a classifier."""
+    for kind in ("trees", "logistic", "real_real"):
+        cells = row["shown"][kind].values()
+        yield f"| {row['name']} | {kind.replace('_', ', ')} | " + " | ".join(cells) + " |"
 
 
 def statistic_lines(rows):
     yield "| of a scan, real / simulated | " + " | ".join(row["name"] for row in rows) + " |"
     yield "|---|" + "--:|" * len(rows)
-    for title, key, form in STATISTICS:
-        cells = []
-        for row in rows:
-            pair, scale = row["statistics"][key], 1000 if title.endswith(", mm") else 1
-            cells.append(" / ".join("–" if pair[side] is None else form.format(scale * pair[side])
-                                    for side in ("real", "simulated")))
-        yield f"| {title} | " + " | ".join(cells) + " |"
+    for title, key, _ in STATISTICS:
+        yield f"| {title} | " + " | ".join(row["shown"]["statistics"][key] for row in rows) + " |"
 
 
 def real_drives(rows):
@@ -119,28 +128,19 @@ def scans_of(row):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", type=pathlib.Path)
-    parser.add_argument("data", type=pathlib.Path)
-    parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("--only", nargs="+", default=[], help="rows whose name has one of these")
+    parser = options_parser(__doc__)
     parser.add_argument("--plain", action="store_true")
     options = parser.parse_args()
     workshop = Workshop(options.program, options.data, options.out)
     print("| scans | judge | " + " | ".join(GROUPS) + " |\n|---|---|" + "---|" * len(GROUPS))
     rows = []
-    for row in wanted_rows():
-        if not workshop.has(row) or (options.only
-                                     and not any(part in row.name for part in options.only)):
-            continue
+    for row in workshop.known(wanted_rows(), options.only):
         rows.append(row_of(workshop, row, options.plain))
-        print("\n".join(test_lines(row.name, rows[-1])), flush=True)
+        print("\n".join(test_lines(rows[-1])), flush=True)
     print("\n" + "\n".join(statistic_lines(rows)))
-    command = ("realism.py build/release/bin/adasplats REAL_DATA OUT"
-               + options.plain * " --plain" + bool(options.only) * " --only ...")
+    provenance = workshop.provenance(options, "realism.py" + options.plain * " --plain")
     (options.out / "realism.json").write_text(json.dumps(
-        {"provenance": workshop.provenance(command), "rows": rows, "drives": real_drives(rows)},
+        {"provenance": provenance, "rows": rows, "drives": real_drives(rows)},
         indent=1) + "\n")
 
 

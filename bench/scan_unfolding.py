@@ -16,24 +16,26 @@ the last fifth of a turn to the first. Drives and units are those of units.py. O
   coordinates; points that are not the same in both are an error;
 - points a ring of simulated scans (by who fired) over those of the real scans in which 64 rings
   were found; for rings that are more than 5 % apart, where the points are missing or too many, by
-  range and by sector of azimuth (45 degrees each, from straight ahead to the left).
+  range and by sector of azimuth (45 degrees each, from straight ahead to the left);
+- the shadow of the vehicle: parts of the lower 32 rings (10 degrees) from which no real scan has a twentieth of what the fullest part
+  has, and how many points a scan the simulated ones have there.
 
 Writes OUT/scan_unfolding.json (for bench/results) and prints a Markdown table. What is there already
 is not made again. Needs NumPy.
 """
-import argparse
 import json
-import pathlib
 
 import numpy as np
 
-from units import Workshop, kitti_rows, labelled_rows
+from units import Workshop, kitti_rows, labelled_rows, options_parser
 
 RINGS = 64
 MOST_APART = 0.05
 LEAST_SHARE = 0.9
 RANGES_M = (0, 2.5, 5, 10, 20, 40, 80, np.inf)
 SECTORS = 8
+PARTS = 36
+EMPTY_SHARE = 0.05
 
 
 def turns_of(points):
@@ -73,14 +75,19 @@ class Counts:
         self.scans = 0
         self.by_range = np.zeros((RINGS, len(RANGES_M) - 1))
         self.by_sector = np.zeros((RINGS, SECTORS))
+        self.by_part = np.zeros((RINGS, PARTS))
+        self.most_by_part = np.zeros((RINGS, PARTS))  # of the scan that has most there
 
     def add(self, points, rings):
         known = rings < RINGS
         points, rings = points[known].astype(np.float64), rings[known]
         bands = np.searchsorted(RANGES_M, np.linalg.norm(points, axis=1), "right") - 1
-        sectors = np.minimum((turns_of(points) * SECTORS).astype(int), SECTORS - 1)
+        turns, part = turns_of(points), np.zeros((RINGS, PARTS))
         np.add.at(self.by_range, (rings, bands), 1)
-        np.add.at(self.by_sector, (rings, sectors), 1)
+        np.add.at(self.by_sector, (rings, np.minimum((turns * SECTORS).astype(int), SECTORS - 1)), 1)
+        np.add.at(part, (rings, np.minimum((turns * PARTS).astype(int), PARTS - 1)), 1)
+        self.by_part += part
+        self.most_by_part = np.maximum(self.most_by_part, part)
         self.scans += 1
 
     def a_scan(self, table):
@@ -118,6 +125,14 @@ def rings_json(real, simulated):
                        **difference_of(ring, real, simulated)} for ring in apart]}
 
 
+def shadow_json(real, simulated):
+    """Parts of rings that the vehicle hides from the real scans; points a scan there."""
+    empty = real.most_by_part < EMPTY_SHARE * real.most_by_part.max()
+    empty[:RINGS // 2] = False  # looks at the sky
+    return {"parts": int(empty.sum()), "real": float(real.a_scan(real.by_part)[empty].sum()),
+            "simulated": float(simulated.a_scan(simulated.by_part)[empty].sum())}
+
+
 def compared(scans, rings_of_scans, real_files):
     """Everything that is measured of simulated scans and the real ones that they repeat."""
     real, simulated = Counts(), Counts()
@@ -139,7 +154,7 @@ def compared(scans, rings_of_scans, real_files):
                 for side, counts in found.items()}
     return {"scans": len(shares), "rings_found": found, "scans_with_64_rings": as_asked,
             "right_ring": {"least": min(shares), "mean": float(np.mean(shares))},
-            "rings": rings_json(real, simulated)}
+            "rings": rings_json(real, simulated), "shadow": shadow_json(real, simulated)}
 
 
 def row_of(workshop, row):
@@ -155,7 +170,8 @@ def row_of(workshop, row):
           f"| {min(measured['rings_found']['simulated'])} to "
           f"{max(measured['rings_found']['simulated'])} "
           f"| {measured['right_ring']['least']:.1%} | {measured['right_ring']['mean']:.1%} "
-          f"| {counts['ratio_least']:.3f} to {counts['ratio_most']:.3f} | {len(counts['apart'])} |",
+          f"| {counts['ratio_least']:.3f} to {counts['ratio_most']:.3f} | {len(counts['apart'])} "
+          f"| {measured['shadow']['real']:.0f} | {measured['shadow']['simulated']:.0f} |",
           flush=True)
     return {"name": row.name, "use": row.use, **measured,
             "reached": {"rings": measured["scans_with_64_rings"]["simulated"] == 1,
@@ -164,22 +180,14 @@ def row_of(workshop, row):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", type=pathlib.Path)
-    parser.add_argument("data", type=pathlib.Path)
-    parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("--only", nargs="+", default=[], help="rows whose name has one of these")
-    options = parser.parse_args()
+    options = options_parser(__doc__).parse_args()
     workshop = Workshop(options.program, options.data, options.out)
-    wanted = [row for row in [*kitti_rows(), *labelled_rows()] if workshop.has(row)
-              and (not options.only or any(part in row.name for part in options.only))]
     print("| scans | rings found, real | simulated | right ring, worst scan | mean "
-          "| points a ring, simulated / real | rings more than 5 % apart |\n"
-          "|---|--:|--:|--:|--:|--:|--:|")
-    measured = [row_of(workshop, row) for row in wanted]
-    provenance = workshop.provenance("scan_unfolding.py build/release/bin/adasplats REAL_DATA OUT"
-                                     + (" --only ..." if options.only else ""))
+          "| points a ring, simulated / real | rings more than 5 % apart | points a scan in the "
+          "vehicle's shadow, real | simulated |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|")
+    measured = [row_of(workshop, row)
+                for row in workshop.known([*kitti_rows(), *labelled_rows()], options.only)]
+    provenance = workshop.provenance(options, "scan_unfolding.py")
     (options.out / "scan_unfolding.json").write_text(
         json.dumps({"provenance": provenance, "rows": measured}, indent=1) + "\n")
 

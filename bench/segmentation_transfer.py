@@ -129,8 +129,8 @@ def prepare(options):
                 add_arrays(pack, f"scans/{place}-{side}.npz", arrays)
                 print(f"{place} {side}: {arrays['counts'].sum():,} points of "
                       f"{len(arrays['counts'])} scans", flush=True)
-        provenance = workshop.provenance("segmentation_transfer.py prepare "
-                                         "build/release/bin/adasplats REAL_DATA WORK PACK.tar.xz")
+        provenance = workshop.provenance(argparse.Namespace(only=[]),
+                                         "segmentation_transfer.py prepare")
         add_bytes(pack, "provenance.json", json.dumps(provenance, indent=1).encode())
         for pattern in CODE:
             for file in sorted(ROOT.glob(pattern)):

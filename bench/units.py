@@ -6,6 +6,7 @@ at the poses of the real ones: what realism.py, scan_unfolding.py and segmentati
 REAL_DATA has kitti-0005, semantickitti-labelled and pandaset-002 as unpacked; what is missing is
 left out. A place of SemanticKITTI is never judged by a unit that was fitted to it.
 """
+import argparse
 import pathlib
 import shlex
 from dataclasses import dataclass
@@ -208,9 +209,26 @@ class Workshop:
                      *unit_options(self.unit(row)[0]), *more, "-o", folder, "--overwrite"], name)
         return folder
 
-    def has(self, row):
-        return row.drive in self.drives and row.fitted_drive in self.drives
+    def known(self, rows, only):
+        """Rows whose drives are there, and whose names have one of some texts."""
+        for row in rows:
+            if row.drive not in self.drives or row.fitted_drive not in self.drives:
+                continue
+            if not only or any(text in row.name for text in only):
+                yield row
 
-    def provenance(self, command):
+    def provenance(self, options, script):
         """Paths of data and output mean nothing elsewhere."""
+        only = " --only " + shlex.join(options.only) if options.only else ""
+        command = f"{script} build/release/bin/adasplats REAL_DATA OUT{only}"
         return provenance_of(self.program) | {"command": command, "commands": self.commands}
+
+
+def options_parser(text):
+    """Of a script on all rows."""
+    parser = argparse.ArgumentParser(description=text,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in ("program", "data", "out"):
+        parser.add_argument(name, type=pathlib.Path)
+    parser.add_argument("--only", nargs="+", default=[], help="rows whose name has one of these")
+    return parser

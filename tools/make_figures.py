@@ -220,6 +220,34 @@ SEGMENTATION_MODELS = [
         for thing in THIN),
     ("recall", "movable/removed over movable/points", "0.0 %"),
     ("lost", "movable/others_removed over movable/others", "0.0 %")]
+REALISM_GROUPS = ("all", "geometry", "dropout", "intensity")
+REALISM = [("figures", "use", "text"), *((group, f"shown/trees/{group}", "text")
+                                         for group in REALISM_GROUPS)]
+REALISM_LOGISTIC = [
+    *((f"{group}, logistic", f"shown/logistic/{group}", "text") for group in REALISM_GROUPS),
+    ("all, real against real", "shown/real_real/all", "text")]
+REALISM_STATISTICS = [(title, f"shown/statistics/{key}", "text") for title, key in (
+    ("returns", "returns"), ("noise of ranges, mm", "range_noise_m"),
+    ("offsets of lasers, mm", "laser_offsets_m"), ("noise of intensities", "intensity_noise"),
+    ("scatter of rings' intensities", "intensity_rings"), ("zeros", "intensity_zeros"),
+    ("zero after zero", "intensity_zero_next"), ("missing in runs of one", "missing_runs_of_1"),
+    ("in runs of 6 to 20", "missing_runs_6_to_20"), ("from planes, mm", "plane_residual_m"),
+    ("rings found", "unfolded_rings"), ("highest intensity", "intensity_most"),
+    ("farthest range, m", "range_most_m"), ("nearer than 2.5 m", "near_points"))]
+UNFOLDING = [
+    ("scans", "scans", "0"), ("real with 64 rings", "scans_with_64_rings/real", "0 %"),
+    ("simulated with 64 rings", "scans_with_64_rings/simulated", "0 %"),
+    ("right ring, worst scan", "right_ring/least", "0.0 %"), ("mean", "right_ring/mean", "0.0 %"),
+    ("points a ring, simulated / real, least", "rings/ratio_least", "0.000"),
+    ("most", "rings/ratio_most", "0.000"),
+    ("points in the vehicle's shadow, real", "shadow/real", "0"),
+    ("simulated", "shadow/simulated", "0")]
+TRANSFER = [
+    *((f"{network} on {judged}", f"figures/{network} on {judged}/miou", "0.0 %")
+      for network in ("real", "simulated") for judged in ("real", "simulated")),
+    ("the real network loses", "losses/real network, real to simulated", "0.0"),
+    ("on real scans the simulated one is worse by", "losses/on real, real to simulated network",
+     "0.0")]
 THIN_THINGS = [column for column in COMPARISON if column[0] in ("primitives", *THIN)]
 # Name: (the rows' key where the document gives none, columns). A column that no row fills is left
 # out.
@@ -231,7 +259,9 @@ TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "segmentation": ("networks", SEGMENTATION),
           "segmentation_ablation": ("lessons", SEGMENTATION_ABLATION),
           "segmentation_models": ("places", SEGMENTATION_MODELS),
-          "thin": ("competitors", THIN_THINGS)}
+          "realism": ("rows", REALISM), "realism_logistic": ("rows", REALISM_LOGISTIC),
+          "realism_statistics": ("rows", REALISM_STATISTICS), "unfolding": ("rows", UNFOLDING),
+          "transfer": ("ways", TRANSFER), "thin": ("competitors", THIN_THINGS)}
 
 
 def rows_of(data, key):
