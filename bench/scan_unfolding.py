@@ -17,8 +17,8 @@ the last fifth of a turn to the first. Drives and units are those of units.py. O
 - points a ring of simulated scans (by who fired) over those of the real scans in which 64 rings
   were found; for rings that are more than 5 % apart, where the points are missing or too many, by
   range and by sector of azimuth (45 degrees each, from straight ahead to the left);
-- the shadow of the vehicle: parts of the lower 32 rings (10 degrees) from which no real scan has a twentieth of what the fullest part
-  has, and how many points a scan the simulated ones have there.
+- the shadow of the vehicle: parts of the lower 32 rings (10 degrees) from which no real scan has a
+  twentieth of what the fullest part has, and how many points a scan the simulated ones have there.
 
 Writes OUT/scan_unfolding.json (for bench/results) and prints a Markdown table. What is there already
 is not made again. Needs NumPy.

@@ -16,13 +16,14 @@ of 5 cm of each scan, intensities as shares of the 99th percentile, classes; and
 `train` needs NumPy, PyTorch and a GPU, but no program of ours (also from the unpacked PACK). Of each
 fold (tools/segmentation/recipe.py: a 00 03, b 01 05, c 02 07 09) one network learns from the real
 scans of all other places and one from the simulated ones, all at the same time, for the same number of
-steps; both are judged on real and on simulated scans of the fold's places: all scans of a place
+steps (networks[] in the file tells them); both are judged on real and on simulated scans of the fold's places: all scans of a place
 together, once with intensities and once without, and scan by scan. Writes
 OUT/segmentation_transfer.json (for bench/results; `losses` in points of mIoU) and prints a Markdown
 table. mIoU is of the classes that have 0.05 % of the points of both sides or more. Differences of less
 than about 2 points tell nothing with one seed.
 """
 import argparse
+import concurrent.futures
 import contextlib
 import io
 import json
@@ -235,17 +236,19 @@ def learn(options):
 
 
 def lessons_of(options, folder):
-    """What every network of the folds gave, all trained at once: by (fold, side)."""
+    """What every network of the folds gave, several trained at once: by (fold, side)."""
     wanted = [(fold, side) for fold in options.folds for side in SIDES]
-    threads = max(1, (os.cpu_count() or 1) // len(wanted))
-    running = [subprocess.Popen(
-        [sys.executable, __file__, "learn", str(folder), fold, side, "--seed", str(options.seed),
-         "--steps", str(options.steps), "--minutes", str(options.minutes), "--crops",
-         str(options.crops)], env={**os.environ, "OMP_NUM_THREADS": str(threads)})
-        for fold, side in wanted]
-    if any([process.wait() for process in running]):
-        raise SystemExit("segmentation_transfer: a training failed")
-    return {key: json.loads((folder / "-".join(key) / "judged.json").read_text()) for key in wanted}
+    threads = max(1, (os.cpu_count() or 1) // min(options.at_once, len(wanted)))
+
+    def lesson(key):
+        subprocess.run(
+            [sys.executable, __file__, "learn", str(folder), *key, "--seed", str(options.seed),
+             "--steps", str(options.steps), "--minutes", str(options.minutes), "--crops",
+             str(options.crops)], check=True, env={**os.environ, "OMP_NUM_THREADS": str(threads)})
+        return json.loads((folder / "-".join(key) / "judged.json").read_text())
+
+    with concurrent.futures.ThreadPoolExecutor(options.at_once) as pool:
+        return dict(zip(wanted, pool.map(lesson, wanted)))
 
 
 # ---- figures -------------------------------------------------------------------------------
@@ -344,6 +347,7 @@ def main():
     verb.add_argument("pack", type=pathlib.Path)
     verb.add_argument("out", type=pathlib.Path)
     verb.add_argument("--folds", nargs="+", choices=sorted(FOLDS), default=sorted(FOLDS))
+    verb.add_argument("--at-once", type=int, default=6, help="trainings on the GPU")
     verb.add_argument("--work", type=pathlib.Path, help="folder of what nobody keeps; OUT")
     add_training(verb)
     verb = verbs.add_parser("learn", help="one network, for train")
