@@ -12,6 +12,7 @@ library's sensor of that kind, for what fitting gives. Writes OUT/realism.json (
 
   rows     by name: AUC of the judge and of logistic regression by all, geometry, dropout and
            intensity with intervals of 95 %, real against real likewise, statistics side by side
+           foretold: what `evaluate unit` says of held-out scans, where the program has it
   drives   real against real by drive, of as many scans as the row with most of them has
 
 and prints Markdown tables. What is there already is not made again. Needs NumPy.
@@ -72,6 +73,11 @@ def row_of(workshop, row, with_plain):
     made["reached"] = {group: made["auc"][group] is not None and made["auc"][group] <= limit
                        for group, limit in LIMITS.items()}
     made["shown"] = shown_of(made)
+    foretold = workshop.foretold(row)
+    if foretold is not None:
+        made["foretold"] = {key: foretold[key] for key in (
+            "within_half_a_metre", "intensity", "intensity_near", "drop", "drop_unblocked",
+            "drop_by_rate")}
     if with_plain:
         made["plain"] = judged(workshop, row, plain_scans(workshop, row), f"{row.key}-plain-realism")
     return made

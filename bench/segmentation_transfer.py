@@ -65,7 +65,7 @@ def corrected(program, data, work):
     for place in sorted((data / "semantickitti-labelled/sequences").glob("*")):
         folder = work / "calibrated" / place.name
         folder.parent.mkdir(parents=True, exist_ok=True)
-        report_of([program, "calibrate", place, "-o", folder, "--overwrite"],
+        report_of([program.absolute(), "calibrate", place, "-o", folder, "--overwrite"],
                   folder.with_suffix(".json"))
         copy = linked(place, tree / "semantickitti-labelled/sequences" / place.name, "poses.txt")
         (copy / "poses.txt").write_text((folder / "poses.txt").read_text())

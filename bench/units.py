@@ -9,6 +9,7 @@ left out. A place of SemanticKITTI is never judged by a unit that was fitted to 
 import argparse
 import pathlib
 import shlex
+import subprocess
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,15 +26,19 @@ NUMPY_TYPES = {"float": "<f4", "double": "<f8", "uchar": "u1", "ushort": "<u2", 
                "char": "i1", "short": "<i2", "int": "<i4"}
 
 
+# Whether `fit-sensor` writes one file with all that it learned, or lost beams into one of their own.
+ONE_FILE = False
+
+
 def fit_options(unit):
-    """What `fit-sensor` writes into the folder of a unit. Where one file holds all of the unit, the
-    drop model goes from here and from unit_options()."""
-    return ["-o", unit / "unit.toml", "--drop", unit / "drop.toml"]
+    """What `fit-sensor` writes into the folder of a unit."""
+    return ["-o", unit / "unit.toml", *([] if ONE_FILE else ["--drop", unit / "drop.toml"])]
 
 
 def unit_options(unit):
     """What `simulate` takes to measure as the unit of a folder does."""
-    return ["--sensor", unit / "unit.toml", "--unit-offsets", "--ray-drop", unit / "drop.toml"]
+    return ["--sensor", unit / "unit.toml", "--unit-offsets",
+            *([] if ONE_FILE else ["--ray-drop", unit / "drop.toml"])]
 
 
 # ---- drives --------------------------------------------------------------------------------
@@ -61,6 +66,7 @@ class Row:
     fitted_scans: str           # FIRST:COUNT[:STRIDE], empty: all
     judged_scans: str           # likewise
     use: str = "test"           # or development: the method was chosen by these scans
+    held_out_scans: str = ""    # of those that are judged, where not all are
 
     @property
     def key(self):
@@ -117,7 +123,8 @@ def labelled_rows():
 def kitti_rows():
     """Of the drive that the method was chosen by."""
     whole, raw = "kitti-0005 00", "kitti-0005 01_raw"
-    return [Row("kitti-0005 01_raw by its own even scans", raw, raw, "0:4:2", "", "development"),
+    return [Row("kitti-0005 01_raw by its own even scans", raw, raw, "0:4:2", "", "development",
+                "1:4:2"),
             Row("kitti-0005 01_raw by even scans of 00", raw, whole, "0:39:2", "", "development"),
             Row("kitti-0005 odd scans of 00 by its even ones", whole, whole, "0:39:2", "1:38:2",
                 "development")]
@@ -166,9 +173,9 @@ class Workshop:
     again. `commands` has what was asked for, with the names of folders instead of their paths."""
 
     def __init__(self, program, data, out):
-        self.program, self.data, self.out = pathlib.Path(program), data, out
-        out.mkdir(parents=True, exist_ok=True)
-        self.drives = drives_of(data, out)
+        self.program, self.data, self.out = (path.absolute() for path in (program, data, out))
+        self.out.mkdir(parents=True, exist_ok=True)
+        self.drives = drives_of(self.data, self.out)
         self.commands = []
 
     def report(self, words, name):
@@ -201,6 +208,18 @@ class Workshop:
              *(["--scans", row.fitted_scans] if row.fitted_scans else []), *fit_options(unit)],
             unit.name)
         return unit, report
+
+    def foretold(self, row):
+        """What `evaluate unit` reports of held-out scans; None where the program has no such command."""
+        unit, _ = self.unit(row)
+        asked = subprocess.run([self.program, "evaluate", "unit", "--help"], capture_output=True,
+                               check=False)
+        if not ONE_FILE or asked.returncode != 0:
+            return None
+        drive, scans = self.drives[row.drive], row.held_out_scans or row.judged_scans
+        return self.report(["evaluate", "unit", self.model(drive), drive.scans, *drive.reading,
+                            *drive.fitting, "--sensor", unit / "unit.toml",
+                            *(["--scans", scans] if scans else [])], f"{row.key}-unit")
 
     def scans(self, row, name, more=()):
         """The folder of scans that the unit of a row simulates at the poses of the real ones."""
