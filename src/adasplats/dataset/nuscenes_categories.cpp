@@ -2,48 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/dataset/nuscenes_categories.h"
 
-#include <algorithm>
-#include <array>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
 namespace {
-
-constexpr std::array<std::string_view, 32> kNuscenesCategories = {
-    "noise",
-    "animal",
-    "human.pedestrian.adult",
-    "human.pedestrian.child",
-    "human.pedestrian.construction_worker",
-    "human.pedestrian.personal_mobility",
-    "human.pedestrian.police_officer",
-    "human.pedestrian.stroller",
-    "human.pedestrian.wheelchair",
-    "movable_object.barrier",
-    "movable_object.debris",
-    "movable_object.pushable_pullable",
-    "movable_object.trafficcone",
-    "static_object.bicycle_rack",
-    "vehicle.bicycle",
-    "vehicle.bus.bendy",
-    "vehicle.bus.rigid",
-    "vehicle.car",
-    "vehicle.construction",
-    "vehicle.emergency.ambulance",
-    "vehicle.emergency.police",
-    "vehicle.motorcycle",
-    "vehicle.trailer",
-    "vehicle.truck",
-    "flat.driveable_surface",
-    "flat.other",
-    "flat.sidewalk",
-    "flat.terrain",
-    "static.manmade",
-    "static.other",
-    "static.vegetation",
-    "vehicle.ego",
-};
 
 using WordAndCategory = std::pair<std::string_view, std::string_view>;
 
@@ -90,18 +58,29 @@ constexpr WordAndCategory kNuscenesWords[] = {
 };
 
 std::uint8_t index_of_category(std::string_view name) {
-  const auto found = std::ranges::find(kNuscenesCategories, name);
-  if (found == kNuscenesCategories.end()) throw std::logic_error("nuscenes_category: no such name");
-  return static_cast<std::uint8_t>(found - kNuscenesCategories.begin());
+  const SemanticClass* const found = nuscenes_labels().find(name);
+  if (found == nullptr) throw std::logic_error("nuscenes_category: no such name");
+  return static_cast<std::uint8_t>(found->id);
 }
 
 }  // namespace
 
-std::span<const std::string_view> nuscenes_categories() { return kNuscenesCategories; }
+std::span<const std::string_view> nuscenes_categories() {
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> all;
+    for (const SemanticClass& known : nuscenes_labels().classes())
+      if (known.id != kNuscenesUnlabeled) all.push_back(known.name);
+    return all;
+  }();
+  return names;
+}
 
 std::uint8_t nuscenes_category(std::string_view class_name) {
+  const SemanticClass* const own = nuscenes_labels().find(class_name);
+  if (own != nullptr && own->id != kNuscenesUnlabeled) return static_cast<std::uint8_t>(own->id);
+  const std::string words = lower_case(class_name);
   for (const auto& [word, category] : kNuscenesWords)
-    if (class_name.find(word) != std::string_view::npos) return index_of_category(category);
+    if (words.find(word) != std::string::npos) return index_of_category(category);
   return index_of_category("static.other");
 }
 

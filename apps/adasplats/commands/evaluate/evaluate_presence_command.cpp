@@ -28,7 +28,8 @@ class EvaluatePresenceCommand final : public Command {
     require(
         add_path(app, "POINTS", job_.points, "Point file with sensor positions, or a sequence"));
     app.add_option("--labels", job_.labels,
-                   "What labels mean: semantickitti, paris-carla-3d or a TOML file; the default is "
+                   "What labels mean: semantickitti, paris-carla-3d, pandaset, nuscenes or a TOML "
+                   "file; the default is "
                    "semantickitti for sequence folders, else none")
         ->type_name("SCHEME");
     app.add_option("--within", job_.options.within_m,

@@ -59,8 +59,16 @@ class LabelScheme {
 const LabelScheme& semantickitti_labels();
 /// Paris-CARLA-3D (Deschaud et al. 2021), the 23 CARLA classes of its table 2.
 const LabelScheme& paris_carla_3d_labels();
+/// PandaSet (Xiao et al. 2021): the 42 classes of its semseg, and 0, which some of its points have.
+const LabelScheme& pandaset_labels();
+/// nuScenes-lidarseg (Fong et al. 2021): its 32 categories by their indices, and
+/// kNuscenesUnlabeled, which no file of it has: points of sweeps, which have no labels.
+const LabelScheme& nuscenes_labels();
+inline constexpr std::uint16_t kNuscenesUnlabeled = 255;
+/// All of these.
+std::span<const LabelScheme* const> known_label_schemes();
 
-/// "semantickitti", "paris-carla-3d", or the path of a TOML file:
+/// The name of one of known_label_schemes(), or the path of a TOML file:
 ///     name = "mine"
 ///     [[class]]
 ///     id = 1

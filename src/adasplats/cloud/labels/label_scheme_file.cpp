@@ -165,15 +165,19 @@ LabelScheme read_scheme(const std::string& path) {
 }  // namespace
 
 LabelScheme load_label_scheme(const std::string& name_or_path) {
-  for (const LabelScheme* scheme : {&semantickitti_labels(), &paris_carla_3d_labels()})
+  std::vector<std::string> names;
+  std::string list;
+  for (const LabelScheme* scheme : known_label_schemes()) {
     if (name_or_path == scheme->name()) return *scheme;
+    names.push_back(scheme->name());
+    list += (list.empty() ? "" : ", ") + scheme->name();
+  }
   std::error_code ignored;  // a text too long for a path is none
   if (!std::filesystem::exists(name_or_path, ignored)) {
-    const auto nearest =
-        nearest_word(name_or_path, {semantickitti_labels().name(), paris_carla_3d_labels().name()});
-    throw Error(ErrorKind::no_input, name_or_path + ": neither a file nor a label scheme" +
-                                         (nearest ? ", did you mean '" + *nearest + "'?"
-                                                  : " (semantickitti, paris-carla-3d)"));
+    const auto nearest = nearest_word(name_or_path, names);
+    throw Error(ErrorKind::no_input,
+                name_or_path + ": neither a file nor a label scheme" +
+                    (nearest ? ", did you mean '" + *nearest + "'?" : " (" + list + ")"));
   }
   return read_scheme(name_or_path);
 }

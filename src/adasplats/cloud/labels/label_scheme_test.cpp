@@ -39,6 +39,22 @@ TEST(LabelScheme, SemanticKittiMobilityFollowsTheIds) {
   }
 }
 
+// Oracle: the numbers and names in the data sets' own files.
+TEST(LabelScheme, PandaSetAndNuscenesAsPublished) {
+  EXPECT_EQ(pandaset_labels().classes().size(), 43U);
+  EXPECT_EQ(pandaset_labels().find(std::uint16_t{7})->name, "Road");
+  EXPECT_EQ(pandaset_labels().find("Other Vehicle - Pedicab")->id, 21);
+  EXPECT_EQ(pandaset_labels().find("Other Static Object")->id, 42);
+  EXPECT_EQ(nuscenes_labels().classes().size(), 33U);
+  EXPECT_EQ(nuscenes_labels().find("flat.driveable_surface")->id, 24);
+  EXPECT_EQ(nuscenes_labels().find(std::uint16_t{31})->name, "vehicle.ego");
+  for (const LabelScheme* scheme : known_label_schemes()) {
+    EXPECT_EQ(load_label_scheme(scheme->name()).name(), scheme->name());
+    for (const SemanticClass& known : scheme->classes())
+      EXPECT_EQ(scheme->find(known.name)->id, known.id) << known.name;
+  }
+}
+
 // Oracle: the examples of paper section "Adaptive Splatting" for each group.
 TEST(LabelScheme, GroupsOfThePaper) {
   for (const char* name : {"road", "sidewalk"}) {

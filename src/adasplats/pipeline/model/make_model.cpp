@@ -48,7 +48,8 @@ class ModelMaker {
       scheme_ = label_scheme_for(options_.labels, inputs);
     if (!scheme_ && method_of(options_.build.recipe) == SplatMethod::semantic) {
       throw Error(ErrorKind::usage,
-                  "the method semantic needs labels (semantickitti, paris-carla-3d or a file), or "
+                  "the method semantic needs labels (semantickitti, paris-carla-3d, pandaset, "
+                  "nuscenes or a file), or "
                   "`segment`, with which a network gives the points classes");
     }
   }
