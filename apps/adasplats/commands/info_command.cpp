@@ -84,8 +84,9 @@ class InfoCommand final : public Command {
            "Files, sequence folders and recordings; without any: as --devices")
         ->type_name("PATH");
     app.add_flag("--devices", devices_, "List the GPUs of this machine, or why there are none");
-    app.add_option("--labels", labels_,
-                   "Names the classes: semantickitti, paris-carla-3d or a TOML file")
+    app.add_option(
+           "--labels", labels_,
+           "Names the classes: semantickitti, paris-carla-3d, pandaset, nuscenes or a TOML file")
         ->type_name("SCHEME");
     add_load_options(app, load_);
   }
@@ -120,13 +121,14 @@ class InfoCommand final : public Command {
   /// Models and meshes are described as they are; of a sequence, scans can be chosen.
   void refuse_what_does_not_fit(const std::set<std::string>& kinds) {
     if (kinds.empty() || kinds.contains("point cloud") || kinds.contains("folder of scans") ||
-        kinds.contains("recording"))
+        kinds.contains("recording") || kinds.contains("PandaSet sequence") ||
+        kinds.contains("nuScenes scene"))
       return;
     const std::string why = "on a " + *kinds.begin();
-    refuse(
-        {"--label-field", "--sensor-fields", "--viewpoint", "--trajectory", "--mount",
-         "--mount-rotation", "--time-offset", "--max-distance", "--beams-from-poses", "--salvage"},
-        why);
+    refuse({"--label-field", "--sensor-fields", "--viewpoint", "--trajectory", "--mount",
+            "--mount-rotation", "--time-offset", "--max-distance", "--beams-from-poses",
+            "--salvage", "--scene", "--topic", "--poses-topic"},
+           why);
     if (!kinds.contains("sequence")) refuse({"--scans", "--strict"}, why);
   }
 

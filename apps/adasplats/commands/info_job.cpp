@@ -9,6 +9,7 @@
 #include <optional>
 #include <unordered_set>
 
+#include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/cloud/load/recording_drive.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
@@ -209,6 +210,8 @@ void describe_drive(const DriveFacts& drive, FileFacts& facts) {
   add("poses of the scans", "poses", drive.poses);
   add("clocks", "clock", drive.clock);
   add("not checked", "unchecked", drive.unchecked);
+  add("intensities", "intensities", drive.intensities);
+  add("left out", "left_out", drive.left_out);
 }
 
 /// What the points are taken for: who measured them, and from where.
@@ -242,7 +245,10 @@ FileFacts sequence_facts(const KittiSequence& sequence, const char* kind,
   const bool all = chosen.size() == sequence.scans.size();
   facts.rows.emplace_back(
       "scans", grouped(chosen.size()) + (all ? "" : " of " + grouped(sequence.scans.size())));
-  facts.rows.emplace_back("labels", sequence.labels.empty() ? "no" : "yes");
+  const std::string& labels = sequence.facts.labels;
+  facts.rows.emplace_back("labels", !labels.empty()           ? labels
+                                    : sequence.labels.empty() ? "no"
+                                                              : "yes");
   facts.rows.emplace_back("trajectory", fixed(driven_m, 1) + " m");
   facts.json["scans"] = chosen.size();
   if (!all) facts.json["scans_in_all"] = sequence.scans.size();
@@ -309,12 +315,14 @@ FileFacts run_info(const fs::path& input, const std::string& labels, const LoadO
                    Session& session) {
   if (is_recording(input))
     return recording_facts(input, label_scheme_for(labels, {}), options, session);
-  if (!options.trajectory.empty()) {
+  const DataTree* const tree = data_tree_of(input);
+  if (tree != nullptr || !options.trajectory.empty()) {
     const auto drive =
         open_frame_drive(drive_of(input, options), session.executor, session.progress);
     if (drive)
-      return sequence_facts(*drive, "folder of scans", label_scheme_for(labels, {}), options,
-                            session);
+      return sequence_facts(*drive, tree == nullptr ? "folder of scans" : tree->name,
+                            label_scheme_for(labels, std::span(&input, tree == nullptr ? 0 : 1)),
+                            options, session);
   }
   const fs::path resolved = resolve_cloud_input(input);
   const auto scheme = label_scheme_for(labels, std::span(&resolved, 1));

@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "adasplats/cloud/load/file_kind.h"
+#include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
-#include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/number_text.h"
 
 namespace adasplats {
@@ -156,7 +156,7 @@ std::vector<fs::path> sequences_of_tree(const fs::path& folder) {
 
 std::vector<CloudInput> cloud_inputs(const fs::path& path, SensorScans scans) {
   std::error_code ignored;  // what cannot be looked into fails when it is opened as a file
-  if (!fs::is_directory(path, ignored) || is_recording(path)) return {{path, false}};
+  if (!fs::is_directory(path, ignored) || has_own_poses(path)) return {{path, false}};
   if (is_kitti_sequence(path)) return {{path, true}};
   const Folder folder = look_into(path);
   if (folder.sequences.empty()) return files_of(folder, scans);

@@ -58,6 +58,7 @@ struct DriveSettings {
   std::filesystem::path scan_times;  ///< read_scan_times(); empty: none
   /// Of a recording: whose clouds are the scans, and what topic says the poses; empty: found.
   std::string topic, poses_topic;
+  std::string scene;  ///< of a data root of nuScenes; empty: the only one
   /// Beams start at their poses even where they are seen to start beside them (ScanBeams).
   bool beams_from_poses = false;
 
@@ -122,6 +123,12 @@ void visit_scan_settings(DriveSettings& drive, const char* group, Visit&& visit)
                 .value = "NAME",
                 .group = group},
         drive.poses_topic);
+  visit(Setting{.name = "scene",
+                .help = "Of a data root of nuScenes: the scene to take, by its name (default: the "
+                        "only one)",
+                .value = "NAME",
+                .group = group},
+        drive.scene);
 }
 
 }  // namespace adasplats

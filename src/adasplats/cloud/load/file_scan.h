@@ -22,6 +22,7 @@ struct FileScan {
   std::vector<double> times;  ///< empty: none
   std::vector<float> intensities;
   std::vector<std::uint16_t> classes, instances;
+  std::size_t left_out = 0;  ///< points of the file that are not of the scan
 
   std::size_t size() const { return positions.size(); }
   /// Of the points that have a place; {0, 0} of none, and without times. Errors: none; a time that

@@ -15,6 +15,7 @@
 #include "adasplats/cloud/beams/empty_beams.h"
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/cloud_part.h"
+#include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/dropped_points.h"
 #include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/cloud/load/point_origins.h"
@@ -59,7 +60,7 @@ std::vector<Source> open_sources(std::span<const std::filesystem::path> paths,
   std::vector<Source> sources;
   for (const std::filesystem::path& path : paths) {
     std::optional<KittiSequence> drive;
-    if (!options.trajectory.empty() || is_recording(path))
+    if (!options.trajectory.empty() || has_own_poses(path))
       drive = open_frame_drive(drive_of(path, options), executor, progress);
     if (drive)
       sources.push_back({{path, true}, std::move(drive)});
@@ -117,6 +118,10 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Source
       sources, [](const Source& source) { return is_recording(source.input.path); });
   if ((!options.topic.empty() || !options.poses_topic.empty()) && !any_recording)
     throw usage("`topic` and `poses_topic` are for a recording (MCAP, ROS bag); no input is one");
+  const bool any_tree = std::ranges::any_of(
+      sources, [](const Source& source) { return data_tree_of(source.input.path) != nullptr; });
+  if (!options.scene.empty() && !any_tree)
+    throw usage("`scene` is for a data root of nuScenes; no input is one");
   const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
   if (states_origins && !any_file)
     throw usage("a sensor position is given, but every input has its own");

@@ -52,7 +52,10 @@ void tell_of_drive(const KittiSequence& sequence, ProgressSink& progress) {
   progress.warn(sequence.folder.string() + ": points in the " + facts.points_in + "; poses " +
                 facts.poses + "; beams from " + sequence.beams.description() +
                 "; motion within a sweep: " + facts.motion +
-                (facts.clock.empty() ? "" : "; " + facts.clock));
+                (facts.clock.empty() ? "" : "; " + facts.clock) +
+                (facts.intensities.empty() ? "" : "; intensities " + facts.intensities) +
+                (facts.labels.empty() ? "" : "; labels " + facts.labels) +
+                (facts.left_out.empty() ? "" : "; left out: " + facts.left_out));
 }
 
 KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& frames,
@@ -97,6 +100,8 @@ KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& fr
     }
   }
   progress.end_step();
+  sequence.facts.intensities = frames.intensities;
+  sequence.facts.labels = frames.labels;
   sequence.reader = sweep_reader(frames, std::move(finding), std::move(boxes), drive.with_classes);
   tell_of_drive(sequence, progress);
   return sequence;

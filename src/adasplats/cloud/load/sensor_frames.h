@@ -27,7 +27,8 @@ struct SensorFrames {
   PointTimes times;
   /// Of absolute times, first and last of each file, s in the clock of the poses.
   std::vector<TimeSpan> spans_s;
-  bool poses_are_matched = true;  ///< else those of the middles of the files' times
+  bool poses_are_matched = true;    ///< else those of the middles of the files' times
+  std::string intensities, labels;  ///< DriveFacts'
 };
 
 /// Which sensor measured the scans, and what is known of its motion within a sweep.

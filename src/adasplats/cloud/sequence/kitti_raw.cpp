@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "adasplats/cloud/poses/continued_motion.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/cloud/sequence/files_by_name.h"
 #include "adasplats/core/constants.h"
@@ -192,21 +193,6 @@ Trajectory read_records(const fs::path& drive) {
 /// How far records may be from a scan, as drives that are synced have them.
 constexpr double kRecord_s = 0.1;
 
-/// One more pose before the first and behind the last, as the motion there goes on: scans begin
-/// some milliseconds before the first record.
-Trajectory padded(Trajectory poses) {
-  const double begin_s = poses.front().time_s, end_s = poses.back().time_s;
-  const auto mirrored = [&](double at_s, double inside_s) {
-    const RigidTransform at = interpolate(poses, at_s), inside = interpolate(poses, inside_s);
-    return TimedPose{2 * at_s - inside_s, at * (inside.inverse() * at)};
-  };
-  const TimedPose first = mirrored(begin_s, std::min(begin_s + kRecord_s, end_s));
-  const TimedPose last = mirrored(end_s, std::max(end_s - kRecord_s, begin_s));
-  poses.insert(poses.begin(), first);
-  poses.push_back(last);
-  return poses;
-}
-
 /// Throws data where a scan was measured in a gap of the records or beyond them.
 void require_record_near(const Trajectory& records, double time_s, const fs::path& scan) {
   constexpr double kMostApart = 3;  // of the usual distance of records
@@ -262,7 +248,7 @@ KittiSequence open_kitti_raw_drive(const fs::path& folder) {
   const fs::path stamps = folder / "velodyne_points" / "timestamps.txt";
   const std::vector<double> times_s = read_stamps(stamps);
   const RigidTransform imu_from_velodyne = read_imu_to_velodyne(folder).inverse();
-  const Trajectory records = padded(read_records(folder));
+  const Trajectory records = with_motion_continued(read_records(folder), kRecord_s);
   for (const fs::path& scan : sequence.scans) {
     const double time_s = stamp_of(scan, times_s, stamps);
     require_record_near(records, time_s, scan);

@@ -23,6 +23,9 @@ struct DriveFacts {
   std::string motion;     ///< of the sensor within a sweep
   std::string clock;      ///< whether the clocks of points and poses are one, and what tells it
   std::string unchecked;  ///< of the poses (require_poses_that_fit())
+  /// Of the tree of a data set: how intensities were scaled, which scans have labels, and which
+  /// points of the files are of none of the scans.
+  std::string intensities, labels, left_out;
 };
 
 /// Reads scans that are not in KITTI's layout.

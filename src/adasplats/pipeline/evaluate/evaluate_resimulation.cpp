@@ -10,7 +10,6 @@
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/register_scans.h"
-#include "adasplats/io/bags/recording.h"
 #include "adasplats/pipeline/provenance/metrics_json.h"
 #include "adasplats/pipeline/session/inputs.h"
 
@@ -58,9 +57,11 @@ KittiSequence open_frames(const HeldOutScans& scans, Session& session) {
 }  // namespace
 
 KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
-  const bool is_drive = !scans.trajectory.empty() || is_recording(scans.sequence);
+  const bool is_drive = !scans.trajectory.empty() || has_own_poses(scans.sequence);
   if (!is_drive && (!scans.topic.empty() || !scans.poses_topic.empty()))
     throw Error(ErrorKind::usage, "`topic` and `poses_topic` are for a recording (MCAP, ROS bag)");
+  if (!is_drive && !scans.scene.empty())
+    throw Error(ErrorKind::usage, "`scene` is for a data root of nuScenes");
   if (!is_drive && !scans.boxes.empty())
     throw Error(ErrorKind::usage, "`boxes` are for scans with times and a `trajectory`");
   const bool states_frames = scans.mount || scans.time_offset_s || !scans.scan_times.empty() ||

@@ -3,6 +3,7 @@
 #include "adasplats/pipeline/session/inputs.h"
 
 #include "adasplats/cloud/load/cloud_inputs.h"
+#include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/file_kind.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
@@ -20,8 +21,13 @@ void require_input(const fs::path& path) {
 
 std::optional<LabelScheme> label_scheme_for(const std::string& labels,
                                             std::span<const fs::path> inputs) {
-  if (!labels.empty()) return load_label_scheme(labels);
+  if (!labels.empty()) {
+    const LabelScheme stated = load_label_scheme(labels);
+    for (const fs::path& input : inputs) require_labels_of_tree(input, stated);
+    return stated;
+  }
   for (const fs::path& input : inputs) {
+    if (auto own = labels_of_tree(input)) return own;
     for (const CloudInput& one : cloud_inputs(input, SensorScans::taken)) {
       if (one.is_sequence && fs::is_directory(one.path / "labels")) return semantickitti_labels();
     }

@@ -13,8 +13,9 @@
 
 namespace adasplats {
 
-/// What `labels` names; for an empty one SemanticKITTI where an input is a sequence folder with
-/// labels, else nothing.
+/// What `labels` names; for an empty one that of the first input with labels, SemanticKITTI of a
+/// sequence folder, labels_of_tree() of a tree of a data set; else nothing. Errors: those of
+/// require_labels_of_tree.
 std::optional<LabelScheme> label_scheme_for(const std::string& labels,
                                             std::span<const std::filesystem::path> inputs);
 

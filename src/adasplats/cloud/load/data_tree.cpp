@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/data_tree.h"
+
+#include <algorithm>
+#include <array>
+
+#include "adasplats/cloud/load/nuscenes_drive.h"
+#include "adasplats/cloud/load/pandaset_drive.h"
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::array kDataTrees = {
+    DataTree{"PandaSet sequence", &is_pandaset_sequence, &open_pandaset_drive,
+             &pandaset_class_names},
+    DataTree{"nuScenes scene", &is_nuscenes_root, &open_nuscenes_drive, &nuscenes_class_names}};
+
+/// The first class that a scheme does not have by that name.
+const ClassNames::value_type* first_other(const ClassNames& names, const LabelScheme& scheme) {
+  for (const auto& entry : names) {
+    const SemanticClass* const known = scheme.find(entry.first);
+    if (known == nullptr || known->name != entry.second) return &entry;
+  }
+  return nullptr;
+}
+
+ClassNames class_names_in(const std::filesystem::path& path) {
+  const DataTree* const tree = data_tree_of(path);
+  return tree == nullptr ? ClassNames() : tree->class_names(path);
+}
+
+}  // namespace
+
+const DataTree* data_tree_of(const std::filesystem::path& path) {
+  std::error_code ignored;  // what cannot be looked into is none
+  if (!std::filesystem::is_directory(path, ignored)) return nullptr;
+  const auto found =
+      std::ranges::find_if(kDataTrees, [&path](const DataTree& tree) { return tree.is_one(path); });
+  return found == kDataTrees.end() ? nullptr : &*found;
+}
+
+KittiSequence open_data_tree(const DataTree& tree, const FrameDrive& drive,
+                             const Executor& executor, ProgressSink& progress) {
+  const bool states_others = !drive.trajectory.empty() || !drive.scan_times.empty() ||
+                             !drive.topic.empty() || !drive.poses_topic.empty() ||
+                             drive.points_in != PointsIn::found ||
+                             drive.sweep_points != SweepPoints::found;
+  if (states_others)
+    throw Error(ErrorKind::usage,
+                drive.folder.string() + ": is a " + tree.name +
+                    ", which has poses, times and frames of its own: `trajectory`, `scan_times`, "
+                    "`topic`, `poses_topic`, `points_in` and `sweep_points` are for other drives");
+  return tree.open(drive, executor, progress);
+}
+
+std::optional<LabelScheme> labels_of_tree(const std::filesystem::path& path) {
+  const ClassNames names = class_names_in(path);
+  if (names.empty()) return std::nullopt;
+  for (const LabelScheme* const scheme : known_label_schemes())
+    if (first_other(names, *scheme) == nullptr) return *scheme;
+  return std::nullopt;
+}
+
+void require_labels_of_tree(const std::filesystem::path& path, const LabelScheme& scheme) {
+  const bool is_known = std::ranges::any_of(
+      known_label_schemes(),
+      [&scheme](const LabelScheme* known) { return known->name() == scheme.name(); });
+  if (!is_known) return;
+  const ClassNames names = class_names_in(path);
+  const auto* const other = first_other(names, scheme);
+  if (other == nullptr) return;
+  const SemanticClass* const stated = scheme.find(other->first);
+  throw Error(ErrorKind::usage,
+              path.string() + ": its class " + std::to_string(other->first) + " is '" +
+                  other->second + "', but the label scheme " + scheme.name() + " has " +
+                  (stated == nullptr ? "no class of that number" : "'" + stated->name + "' there") +
+                  "; leave `labels` out, or give a file with the names that it has");
+}
+
+}  // namespace adasplats

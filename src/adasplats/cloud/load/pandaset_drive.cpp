@@ -1,0 +1,235 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/pandaset_drive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "adasplats/cloud/load/intensity_scale.h"
+#include "adasplats/cloud/load/json_rows.h"
+#include "adasplats/cloud/load/sensor_drive.h"
+#include "adasplats/cloud/load/world_drive.h"
+#include "adasplats/cloud/poses/continued_motion.h"
+#include "adasplats/cloud/poses/quaternion_order.h"
+#include "adasplats/cloud/sequence/files_by_name.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/pickle/data_frame.h"
+
+namespace adasplats {
+namespace {
+
+namespace fs = std::filesystem;
+
+Error panda_fault(const fs::path& file, const std::string& what) {
+  return {ErrorKind::data, file.string() + ": " + what};
+}
+
+const Column& panda_column(const fs::path& file, const Table& table, std::string_view name) {
+  const Column* const column = table.find(name);
+  if (column == nullptr)
+    throw panda_fault(file, "has no column of numbers '" + std::string(name) + "'");
+  return *column;
+}
+
+/// The frames of a folder by their numbers: NN.pkl.gz, or NN.pkl.
+std::map<std::size_t, fs::path> numbered_frames(const fs::path& folder) {
+  std::map<std::size_t, fs::path> frames;
+  for (const char* extension : {".gz", ".pkl"}) {
+    for (const fs::path& file : files_by_name(folder, extension)) {
+      const bool is_packed = file.extension() == ".gz";
+      if (is_packed && file.stem().extension() != ".pkl") continue;
+      const auto number = number_in_name(is_packed ? file.stem() : file.filename());
+      if (!number) continue;
+      const auto [twin, is_new] = frames.emplace(*number, file);
+      if (!is_new) throw panda_fault(file, "is of the same frame as " + twin->second.string());
+    }
+  }
+  return frames;
+}
+
+/// One frame a pose. Errors: data where one is missing, or has no pose.
+std::vector<fs::path> frames_of_poses(const fs::path& folder, std::size_t poses,
+                                      const fs::path& poses_file) {
+  const std::map<std::size_t, fs::path> frames = numbered_frames(folder);
+  const std::string has = poses_file.string() + " has " + std::to_string(poses) + " poses";
+  std::vector<fs::path> files;
+  for (std::size_t k = 0; k < poses; ++k) {
+    const auto found = frames.find(k);
+    if (found == frames.end()) {
+      const std::string number = std::to_string(k);
+      throw panda_fault(folder / (std::string(number.size() < 2 ? 1 : 0, '0') + number + ".pkl.gz"),
+                        "this frame is missing; " + has);
+    }
+    files.push_back(found->second);
+  }
+  if (frames.size() > poses)
+    throw panda_fault(frames.rbegin()->second, "this frame has no pose; " + has);
+  return files;
+}
+
+/// The poses of the frames at their times.
+Trajectory read_panda_poses(const fs::path& lidar) {
+  const fs::path poses_file = lidar / "poses.json", times_file = lidar / "timestamps.json";
+  std::vector<double> times_s;
+  for_each_json_row(times_file, [&](const JsonRow& row) {
+    if (!times_s.empty() && !(row.real() > times_s.back()))
+      throw row.fault("its time does not come after the one before");
+    times_s.push_back(row.real());
+  });
+  Trajectory poses;
+  std::vector<PlacedQuaternion> placed;
+  for_each_json_row(poses_file, [&](const JsonRow& row) {
+    const JsonRow at = row.object("position"), heading = row.object("heading");
+    const RigidTransform pose = {
+        row.rotation({heading.real("w"), heading.real("x"), heading.real("y"), heading.real("z")},
+                     "heading"),
+        {at.real("x"), at.real("y"), at.real("z")}};
+    placed.push_back({pose.translation, quaternion_from_rotation(pose.rotation)});
+    poses.push_back({poses.size() < times_s.size() ? times_s[poses.size()] : 0, pose});
+  });
+  if (poses.empty()) throw panda_fault(poses_file, "holds no poses");
+  if (poses.size() != times_s.size())
+    throw panda_fault(times_file, std::to_string(times_s.size()) + " times, but " +
+                                      poses_file.string() + " has " + std::to_string(poses.size()) +
+                                      " poses");
+  const std::string objection = objection_to_quaternion_order(placed);
+  if (!objection.empty()) throw panda_fault(poses_file, objection);
+  return poses;
+}
+
+/// The points of the LiDAR that turns.
+class PandaFrames final : public ScanSource {
+ public:
+  /// `classes`: the file of labels of each frame; empty: there are none.
+  explicit PandaFrames(std::map<fs::path, fs::path> classes) : classes_(std::move(classes)) {}
+  PandaFrames(std::map<fs::path, fs::path> classes, const IntensityScale& scale)
+      : classes_(std::move(classes)), scale_(scale) {}
+
+  FileScan read(const fs::path& file) const override {
+    const Table table = read_data_frame(file);
+    const Column& x = panda_column(file, table, "x");
+    const Column& y = panda_column(file, table, "y");
+    const Column& z = panda_column(file, table, "z");
+    const Column& intensity = panda_column(file, table, "i");
+    const Column& time = panda_column(file, table, "t");
+    const std::vector<std::size_t> rows = rows_of_spinning(file, table);
+    FileScan scan;
+    scan.left_out = table.rows - rows.size();
+    for (const std::size_t row : rows) {
+      scan.positions.push_back({x.as_double(row), y.as_double(row), z.as_double(row)});
+      scan.times.push_back(time.as_double(row));
+      scan.intensities.push_back(static_cast<float>(intensity.as_double(row)));
+    }
+    if (!classes_.empty()) scan.classes = read_classes(classes_.at(file), rows, table.rows);
+    if (scale_) scan.intensities = scale_->scaled(std::move(scan.intensities), file);
+    return scan;
+  }
+
+ private:
+  static std::vector<std::size_t> rows_of_spinning(const fs::path& file, const Table& table) {
+    const Column& sensor = panda_column(file, table, "d");
+    std::vector<std::size_t> rows;
+    for (std::size_t row = 0; row < table.rows; ++row) {
+      const double number = sensor.as_double(row);
+      if (number != 0 && number != 1)
+        throw panda_fault(file, "column 'd' of point " + std::to_string(row) + " is " +
+                                    exact_text(number) + ", expected 0 (Pandar64) or 1 (PandarGT)");
+      if (number == 0) rows.push_back(row);
+    }
+    return rows;
+  }
+
+  static std::vector<std::uint16_t> read_classes(const fs::path& file,
+                                                 const std::vector<std::size_t>& rows,
+                                                 std::size_t points) {
+    const Table table = read_data_frame(file);
+    if (table.rows != points)
+      throw panda_fault(
+          file, std::to_string(table.rows) + " labels, " + std::to_string(points) + " points");
+    const Column& labels = panda_column(file, table, "class");
+    std::vector<std::uint16_t> classes;
+    for (const std::size_t row : rows) {
+      const double id = labels.as_double(row);
+      if (!(id >= 0 && id <= 0xffff) || id != std::trunc(id))
+        throw panda_fault(file, "the class of point " + std::to_string(row) + " is " +
+                                    exact_text(id) + ", expected a whole number from 0 to 65535");
+      classes.push_back(static_cast<std::uint16_t>(id));
+    }
+    return classes;
+  }
+
+  std::map<fs::path, fs::path> classes_;
+  std::optional<IntensityScale> scale_;
+};
+
+std::map<fs::path, fs::path> class_files_of(const FrameDrive& drive,
+                                            const std::vector<fs::path>& files) {
+  std::map<fs::path, fs::path> classes;
+  const fs::path folder = drive.folder / "annotations" / "semseg";
+  const std::map<std::size_t, fs::path> labels = numbered_frames(folder);
+  if (!drive.with_classes || labels.empty()) return classes;
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const auto found = labels.find(k);
+    if (found == labels.end())
+      throw panda_fault(folder / files[k].filename(),
+                        "the labels of this frame are missing, those of others are there");
+    classes.emplace(files[k], found->second);
+  }
+  return classes;
+}
+
+}  // namespace
+
+bool is_pandaset_sequence(const fs::path& folder) {
+  std::error_code ignored;  // what cannot be looked into is none
+  return std::ranges::any_of(
+      std::initializer_list<const char*>{"poses.json", "timestamps.json", "00.pkl.gz"},
+      [&](const char* name) { return fs::is_regular_file(folder / "lidar" / name, ignored); });
+}
+
+ClassNames pandaset_class_names(const fs::path& folder) {
+  const fs::path file = folder / "annotations" / "semseg" / "classes.json";
+  ClassNames names;
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return names;
+  for_each_json_text(file, [&](const std::string& key, const std::string& name) {
+    const auto id = parse_number<std::uint16_t>(key);
+    if (!id) throw panda_fault(file, "'" + key + "' is no number of a class");
+    names.emplace_back(*id, name);
+  });
+  return names;
+}
+
+KittiSequence open_pandaset_drive(const FrameDrive& drive, const Executor& executor,
+                                  ProgressSink& progress) {
+  const fs::path lidar = drive.folder / "lidar";
+  WorldFrames frames;
+  frames.poses_file = lidar / "poses.json";
+  frames.vehicle = read_panda_poses(lidar);
+  frames.files = frames_of_poses(lidar, frames.vehicle.size(), frames.poses_file);
+  // The poses are those at one end of the sweeps.
+  constexpr double kSweep_s = 0.1;
+  frames.vehicle = with_motion_continued(std::move(frames.vehicle), kSweep_s);
+  for (TimedPose& pose : frames.vehicle) pose.time_s -= drive.time_offset_s.value_or(0);
+  frames.is_stated = drive.mount.has_value();
+  frames.others = "points of the PandarGT (d = 1)";
+  frames.own_mount = drive.mount.value_or(MountSettings{}).transform();
+
+  std::map<fs::path, fs::path> classes = class_files_of(drive, frames.files);
+  const bool has_classes = !classes.empty();
+  const IntensityScale scale = scale_of_scans(PandaFrames({}), frames.files);
+  frames.source = std::make_shared<PandaFrames>(std::move(classes), scale);
+  auto sequence = open_world_frames(drive, frames, executor, progress);
+  sequence->facts.points_in = "world (as PandaSet has them)";
+  sequence->facts.intensities = scale.description();
+  sequence->facts.labels = has_classes ? "of all scans" : "none";
+  tell_of_drive(*sequence, progress);
+  return std::move(*sequence);
+}
+
+}  // namespace adasplats
