@@ -6,7 +6,7 @@ import json
 import math
 import unittest
 
-from support import ProgramTest
+from support import ProgramTest, run
 
 
 def turned(q, v):
@@ -85,6 +85,37 @@ class Trees(ProgramTest):
         classes = pandas.read_pickle(sequence / "annotations" / "semseg" / "03.pkl.gz")
         self.assertEqual(len(classes), len(frame))
         self.assertLess(set(classes["class"]), {0, 40, 50, 80})
+
+    def run_drive(self, *arguments):
+        """Runs the program, which says on stderr what it understood of a drive."""
+        result = run(*arguments)
+        self.assertEqual(result.returncode, 0, (arguments, result.stderr))
+        return result
+
+    def test_trees_are_drives(self):
+        """Oracle: the six scans that were simulated."""
+        for word, folder, kind in (("pandaset", "001", "PandaSet sequence"),
+                                   ("nuscenes", "", "nuScenes scene")):
+            tree = self.tree(word) / folder
+            report = self.folder / f"{word}.json"
+            said = self.run_drive("info", tree, "--report", report).stdout
+            facts = json.loads(report.read_text())["files"][0]
+            self.assertEqual(facts["kind"], kind)
+            self.assertEqual(facts["scans"], 6)
+            self.assertGreater(facts["points"], 100)
+            self.assertAlmostEqual(facts["times_s"]["median_step"], 0.1, delta=0.06)
+            self.assertIn("building" if word == "pandaset" else "static.manmade", said)
+            model = self.folder / f"{word}.ply"
+            self.run_drive("model", tree, "--scans", "0:6:2", "-o", model)
+            held = self.run_drive("evaluate", "resimulate", model, tree, "--scans", "1:6:2")
+            self.assertIn("beams", held.stdout)
+            self.run_bad(64, "info", tree, "--topic", "x", says=["--topic", kind])
+
+    def test_scenes_and_labels_that_are_not_there(self):
+        tree = self.tree("nuscenes")
+        self.run_bad(64, "info", tree, "--scene", "scene-7", says=["scene-7", "scene-0001"])
+        self.run_bad(64, "info", tree, "--labels", "semantickitti", says=["noise", "semantickitti"])
+        self.run_bad(64, "info", self.place, "--scene", "scene-7", says=["--scene"])
 
     def test_order_of_before_on_request(self):
         fired = self.tree("kitti-raw", "--point-order", "firing")

@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/pandaset_drive.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "adasplats/cloud/load/court_test.h"
+#include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/poses/rotation.h"
+#include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/pickle/data_frame_writer.h"
+#include "adasplats/io/pickle/gzip.h"
+#include "adasplats/sensors/lidar_model.h"
+
+namespace adasplats {
+namespace {
+
+constexpr double kPandaSweep_s = 0.1;
+const RigidTransform kPandaMount = {rotation_from_yaw_pitch_roll(0, 0.01, 0.02), {0.1, 1.1, 1.9}};
+
+nlohmann::json panda_pose(const RigidTransform& pose) {
+  const Quaternion q = quaternion_from_rotation(pose.rotation);
+  const Vec3d t = pose.translation;
+  return {{"position", {{"x", t.x}, {"y", t.y}, {"z", t.z}}},
+          {"heading", {{"w", q.w}, {"x", q.x}, {"y", q.y}, {"z", q.z}}}};
+}
+
+/// A sequence of a Pandar64 in the court; one point a frame is of the other LiDAR, in the sky.
+class PandaCourt {
+ public:
+  explicit PandaCourt(std::size_t scans = 5, bool is_mounted = true) {
+    const LidarModel sensor = load_lidar_model("hesai-pandar64");
+    const std::vector<Firing> firings = firings_of(sensor);
+    nlohmann::json poses = nlohmann::json::array(), times = poses;
+    for (std::size_t scan = 0; scan < scans; ++scan) {
+      write_scan(sensor, firings, scan);
+      const double end_s = kPandaSweep_s * static_cast<double>(scan + 1);
+      const RigidTransform mount = is_mounted ? kPandaMount : RigidTransform{};
+      poses.push_back(panda_pose(sensor_at(end_s) * mount.inverse()));
+      times.push_back(end_s);
+    }
+    put("lidar/poses.json", poses.dump());
+    put("lidar/timestamps.json", times.dump());
+    put("annotations/semseg/classes.json", R"({"7": "Road", "41": "Building"})");
+  }
+
+  const std::filesystem::path& path() const { return folder_.path(); }
+  void put(const std::string& name, const std::string& content) const {
+    folder_.write(name, content);
+  }
+  void put_frame(const std::string& name, const std::vector<FrameColumn>& columns) const {
+    put(name, gzipped(pickled_data_frame(columns)));
+  }
+  std::pair<PointCloud, LoadReport> load(LoadOptions options = {}) const {
+    options.own_body_m = 0;
+    options.driven_path_m = 0;
+    ProgressSink quiet;
+    return load_cloud(std::span(&folder_.path(), 1), options, Executor(2), quiet);
+  }
+
+  std::vector<Vec3d> world, origins;
+
+ private:
+  void write_scan(const LidarModel& sensor, const std::vector<Firing>& firings, std::size_t scan) {
+    std::vector<double> x, y, z, intensities, times;
+    std::vector<std::int64_t> sensors, classes;
+    const auto add = [&](Vec3d p, double time_s, std::int64_t number) {
+      x.push_back(p.x);
+      y.push_back(p.y);
+      z.push_back(p.z);
+      times.push_back(time_s);
+      intensities.push_back(p.z < 0.1 ? 51 : 102);
+      sensors.push_back(number);
+      classes.push_back(p.z < 0.1 ? 7 : 41);
+    };
+    for (std::size_t i = 0; i < firings.size(); i += 5) {
+      const double time_s =
+          kPandaSweep_s * (static_cast<double>(scan) + static_cast<double>(firings[i].column) /
+                                                           static_cast<double>(sensor.columns));
+      const RigidTransform pose = sensor_at(time_s);
+      const Vec3d way = pose.rotation * vec_cast<double>(firings[i].direction);
+      const auto range_m = range_in_court(pose.translation, way);
+      if (!range_m) continue;
+      world.push_back(pose.translation + *range_m * way);
+      origins.push_back(pose.translation);
+      add(world.back(), time_s, 0);
+      if (i == 0 || x.size() == 1) add({0, 0, 50}, time_s, 1);
+    }
+    const std::string name = "0" + std::to_string(scan) + ".pkl.gz";
+    put_frame("annotations/semseg/" + name, {{"class", std::move(classes)}});
+    put_frame("lidar/" + name, {{"x", std::move(x)},
+                                {"y", std::move(y)},
+                                {"z", std::move(z)},
+                                {"i", std::move(intensities)},
+                                {"t", std::move(times)},
+                                {"d", std::move(sensors)}});
+  }
+
+  TemporaryFolder folder_;
+};
+
+// Oracle: where the beams of the court began, though the poses are those of the vehicle.
+TEST(PandaSetDrive, PointsOriginsClassesAndIntensities) {
+  const PandaCourt court;
+  const auto [cloud, report] = court.load();
+  ASSERT_EQ(cloud.size(), court.world.size());
+  ASSERT_EQ(cloud.scan_poses.size(), 5U);
+  ASSERT_TRUE(cloud.has_beams());
+  for (std::size_t i = 0; i < cloud.size(); i += 11) {
+    EXPECT_LT(length(cloud.world(i) - court.world[i]), 1e-4);
+    const Vec3d origin = cloud.origin + vec_cast<double>(cloud.sensor_positions[i]);
+    EXPECT_LT(length(origin - court.origins[i]), 0.1);
+    const bool is_road = court.world[i].z < 0.1;
+    EXPECT_EQ(cloud.classes[i], is_road ? 7 : 41);
+    EXPECT_EQ(cloud.intensities[i], is_road ? 51.0F / 255 : 102.0F / 255);
+  }
+  ASSERT_EQ(report.drives.size(), 1U);
+  EXPECT_EQ(report.drives[0].sensor, "hesai-pandar64");
+  EXPECT_NE(report.drives[0].facts.left_out.find("5 points of the PandarGT"), std::string::npos);
+  EXPECT_NE(report.drives[0].facts.intensities.find("divided by 255"), std::string::npos);
+}
+
+// Oracle: by hand: a single pose stands for the whole scan.
+TEST(PandaSetDrive, ASingleScanIsADrive) {
+  const PandaCourt court(1, false);
+  const auto [cloud, report] = court.load();
+  EXPECT_EQ(cloud.size(), court.world.size());
+  EXPECT_EQ(cloud.scan_poses.size(), 1U);
+  EXPECT_TRUE(cloud.has_beams());
+}
+
+TEST(PandaSetDrive, StatedMount) {
+  const PandaCourt court(2);
+  LoadOptions options;
+  options.mount = kPandaMount.translation;
+  const auto [cloud, report] = court.load(options);
+  EXPECT_TRUE(report.drives[0].sensor.empty());
+  const std::size_t last = cloud.size() - 1;
+  const Vec3d origin = cloud.origin + vec_cast<double>(cloud.sensor_positions[last]);
+  EXPECT_LT(length(origin - court.origins[last]), 0.05);
+}
+
+TEST(PandaSetDrive, LabelSchemeIsThatOfTheNames) {
+  const PandaCourt court(1, false);
+  const auto scheme = labels_of_tree(court.path());
+  ASSERT_TRUE(scheme);
+  EXPECT_EQ(scheme->name(), "pandaset");
+  EXPECT_EQ(scheme->find(7)->group, SemanticGroup::ground);
+  expect_error(ErrorKind::usage, {"class 41 is 'Building'", "semantickitti"},
+               [&] { require_labels_of_tree(court.path(), semantickitti_labels()); });
+  require_labels_of_tree(court.path(), *scheme);
+  court.put("annotations/semseg/classes.json", R"({"40": "road", "50": "building"})");
+  EXPECT_EQ(labels_of_tree(court.path())->name(), "semantickitti");
+}
+
+using Damage = std::function<void(const PandaCourt&)>;
+
+void expect_damage(const std::vector<std::string>& parts, const Damage& damage,
+                   ErrorKind kind = ErrorKind::data) {
+  const PandaCourt court(2);
+  damage(court);
+  expect_error(kind, parts, [&] { court.load(); });
+}
+
+TEST(PandaSetDrive, DamagedTreesNameTheFile) {
+  namespace fs = std::filesystem;
+  expect_damage({"lidar/01.pkl.gz", "missing", "2 poses"},
+                [](const auto& c) { fs::remove(c.path() / "lidar/01.pkl.gz"); });
+  expect_damage({"lidar/02.pkl.gz", "no pose"}, [](const auto& c) {
+    fs::copy(c.path() / "lidar/01.pkl.gz", c.path() / "lidar/02.pkl.gz");
+  });
+  expect_damage({"semseg/01.pkl.gz", "1 labels"}, [](const auto& c) {
+    c.put_frame("annotations/semseg/01.pkl.gz", {{"class", std::vector<std::int64_t>{7}}});
+  });
+  expect_damage({"semseg/01.pkl.gz", "missing"},
+                [](const auto& c) { fs::remove(c.path() / "annotations/semseg/01.pkl.gz"); });
+  expect_damage({"timestamps.json", "1 times", "2 poses"},
+                [](const auto& c) { c.put("lidar/timestamps.json", "[0.1]"); });
+  expect_damage({"timestamps.json", "element 1", "after"},
+                [](const auto& c) { c.put("lidar/timestamps.json", "[0.1, 0.1]"); });
+  expect_damage({"poses.json", "element 0", "heading", "length"}, [](const auto& c) {
+    c.put("lidar/poses.json",
+          R"([{"position": {"x":0,"y":0,"z":0}, "heading": {"w":2,"x":0,"y":0,"z":0}}])");
+  });
+  expect_damage({"poses.json", "element 0", "'heading'"}, [](const auto& c) {
+    c.put("lidar/poses.json", R"([{"position": {"x":0,"y":0,"z":0}}])");
+  });
+  expect_damage({"poses.json", "byte"}, [](const auto& c) { c.put("lidar/poses.json", "[{"); });
+  expect_damage({"poses.json", "array"}, [](const auto& c) { c.put("lidar/poses.json", "{}"); });
+  expect_damage(
+      {"poses.json", "no such file"},
+      [](const auto& c) { fs::remove(c.path() / "lidar/poses.json"); }, ErrorKind::no_input);
+  expect_damage({"lidar/01.pkl.gz"}, [](const auto& c) {
+    const fs::path file = c.path() / "lidar/01.pkl.gz";
+    fs::resize_file(file, fs::file_size(file) / 2);
+  });
+  expect_damage({"lidar/01.pkl.gz", "'d'", "expected 0"}, [](const auto& c) {
+    const std::vector<double> one = {1.0};
+    c.put_frame("lidar/01.pkl.gz", {{"x", one},
+                                    {"y", one},
+                                    {"z", one},
+                                    {"i", one},
+                                    {"t", one},
+                                    {"d", std::vector<std::int64_t>{2}}});
+  });
+  expect_damage({"lidar/01.pkl.gz", "no column", "'t'"}, [](const auto& c) {
+    const std::vector<double> one = {1.0};
+    c.put_frame("lidar/01.pkl.gz", {{"x", one}, {"y", one}, {"z", one}, {"i", one}});
+  });
+}
+
+TEST(PandaSetDrive, SettingsOfOtherDrives) {
+  const PandaCourt court(1);
+  LoadOptions options;
+  options.topic = "/points";
+  expect_error(ErrorKind::usage, {"PandaSet sequence", "`topic`"}, [&] { court.load(options); });
+}
+
+}  // namespace
+}  // namespace adasplats

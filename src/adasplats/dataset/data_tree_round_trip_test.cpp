@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/dataset/driver_order.h"
+#include "adasplats/dataset/numbered_scan_test.h"
+#include "adasplats/dataset/scan_writer.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kTreeScans = 6;
+
+void write_data_tree(const std::filesystem::path& folder, ScanFormat format) {
+  ScanWriterOptions options;
+  options.labels = &semantickitti_labels();
+  options.image_size = {64, 2};
+  options.drive = {kTreeScans, [](std::size_t i) { return scan_number(i, 0).time_s; }};
+  const auto writer = make_scan_writer(folder, format, options);
+  for (std::size_t k = 0; k < kTreeScans; ++k) {
+    Scan scan = scan_number(k, 70);
+    for (std::uint16_t& id : scan.classes) id = 40;
+    writer->write(k, scan);
+  }
+  writer->finish();
+}
+
+std::pair<PointCloud, LoadReport> load_tree(const std::filesystem::path& folder) {
+  LoadOptions options;
+  options.own_body_m = 0;
+  options.driven_path_m = 0;
+  ProgressSink quiet;
+  return load_cloud(std::span(&folder, 1), options, Executor(2), quiet);
+}
+
+/// Oracle: the scans that were written, in the order of their files.
+void expect_scans(const PointCloud& cloud, FirstRing first, double within_m) {
+  ASSERT_EQ(cloud.size(), kTreeScans * 70);
+  ASSERT_EQ(cloud.scan_poses.size(), kTreeScans);
+  for (std::size_t k = 0; k < kTreeScans; ++k) {
+    const Scan scan = scan_number(k, 70);
+    const auto order = driver_order(scan, first);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const Vec3d world = scan.world_from_sensor * vec_cast<double>(scan.positions[order[i]]);
+      EXPECT_LT(length(cloud.world(70 * k + i) - world), within_m);
+      EXPECT_EQ(cloud.intensities[70 * k + i], scan.intensities[order[i]]);
+    }
+  }
+}
+
+TEST(DataTreeRoundTrip, PandaSet) {
+  const TemporaryFolder folder;
+  write_data_tree(folder.path(), ScanFormat::pandaset);
+  const auto [cloud, report] = load_tree(folder.path() / "001");
+  expect_scans(cloud, FirstRing::top, 1e-4);
+  EXPECT_TRUE(std::ranges::all_of(cloud.classes, [](std::uint16_t id) { return id == 40; }));
+  EXPECT_EQ(report.drives[0].facts.intensities, "as in the files");
+}
+
+TEST(DataTreeRoundTrip, Nuscenes) {
+  const TemporaryFolder folder;
+  write_data_tree(folder.path(), ScanFormat::nuscenes);
+  const auto [cloud, report] = load_tree(folder.path());
+  expect_scans(cloud, FirstRing::bottom, 1e-4);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    EXPECT_EQ(cloud.classes[i], cloud.scan_indices[i] % 5 == 0 ? 24 : kNuscenesUnlabeled);
+  for (std::size_t k = 0; k < kTreeScans; ++k) {
+    const RigidTransform expected = scan_number(k, 0).world_from_sensor;
+    const RigidTransform& pose = cloud.scan_poses[k].world_from_sensor;
+    EXPECT_LT(length(pose.translation - expected.translation), 1e-6);
+    EXPECT_LT(angle_between(pose.rotation, expected.rotation), 1e-7);
+  }
+}
+
+}  // namespace
+}  // namespace adasplats
