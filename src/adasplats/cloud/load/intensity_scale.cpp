@@ -57,6 +57,7 @@ IntensityScale scale_of_scans(const ScanSource& source,
                               const std::vector<std::filesystem::path>& files) {
   const std::set<std::size_t> chosen = {0, files.size() / 2, files.size() - 1};
   std::vector<std::vector<float>> sample;
+  sample.reserve(chosen.size());
   for (const std::size_t k : chosen) sample.push_back(source.read(files[k]).intensities);
   return IntensityScale(sample);
 }
