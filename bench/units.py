@@ -9,7 +9,6 @@ left out. A place of SemanticKITTI is never judged by a unit that was fitted to 
 import argparse
 import pathlib
 import shlex
-import subprocess
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,19 +25,14 @@ NUMPY_TYPES = {"float": "<f4", "double": "<f8", "uchar": "u1", "ushort": "<u2", 
                "char": "i1", "short": "<i2", "int": "<i4"}
 
 
-# Whether `fit-sensor` writes one file with all that it learned, or lost beams into one of their own.
-ONE_FILE = False
-
-
 def fit_options(unit):
     """What `fit-sensor` writes into the folder of a unit."""
-    return ["-o", unit / "unit.toml", *([] if ONE_FILE else ["--drop", unit / "drop.toml"])]
+    return ["-o", unit / "unit.toml"]
 
 
 def unit_options(unit):
     """What `simulate` takes to measure as the unit of a folder does."""
-    return ["--sensor", unit / "unit.toml", "--unit-offsets",
-            *([] if ONE_FILE else ["--ray-drop", unit / "drop.toml"])]
+    return ["--sensor", unit / "unit.toml", "--unit-offsets"]
 
 
 # ---- drives --------------------------------------------------------------------------------
@@ -210,12 +204,8 @@ class Workshop:
         return unit, report
 
     def foretold(self, row):
-        """What `evaluate unit` reports of held-out scans; None where the program has no such command."""
+        """What `evaluate unit` reports of held-out scans."""
         unit, _ = self.unit(row)
-        asked = subprocess.run([self.program, "evaluate", "unit", "--help"], capture_output=True,
-                               check=False)
-        if not ONE_FILE or asked.returncode != 0:
-            return None
         drive, scans = self.drives[row.drive], row.held_out_scans or row.judged_scans
         return self.report(["evaluate", "unit", self.model(drive), drive.scans, *drive.reading,
                             *drive.fitting, "--sensor", unit / "unit.toml",
