@@ -124,10 +124,16 @@ class SweepReader final : public ScanReader {
     const Vec3d then = is_raw ? given : scan_from_then.inverse() * given;
     if (is_raw && is_finite(scan.positions[i]))
       scan.positions[i] = vec_cast<float>(scan_from_then * given);
-    scan.origins.push_back(vec_cast<float>(scan_from_then * mount.translation));
-    const bool has_laser = finding_.sensor && is_finite(scan.positions[i]);
-    scan.lasers.push_back(has_laser ? finding_.sensor->cones.nearest(mount.inverse() * then).first
-                                    : kNoLaser);
+    Vec3d origin;  // in the sensor's frame
+    std::uint16_t laser = kNoLaser;
+    if (finding_.sensor && is_finite(scan.positions[i])) {
+      const SensorCones& cones = finding_.sensor->cones;
+      const Vec3d seen = mount.inverse() * then;
+      laser = cones.nearest(seen).first;
+      origin = cones.origin_of(laser, seen);
+    }
+    scan.origins.push_back(vec_cast<float>(scan_from_then * (mount * origin)));
+    scan.lasers.push_back(laser);
   }
 
   std::shared_ptr<const ScanSource> source_;

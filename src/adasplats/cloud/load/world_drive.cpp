@@ -77,8 +77,9 @@ class FrameReader final : public ScanReader {
         scan.in_boxes.push_back(boxes_.hold(frame.times[i], frame.positions[i]) ? 1 : 0);
       const RigidTransform pose = pose_at(frame.times[i]);
       scan.positions.push_back(vec_cast<float>(scan_from_world * frame.positions[i]));
-      scan.origins.push_back(vec_cast<float>(scan_from_world * pose.translation));
-      scan.lasers.push_back(laser_of(pose.inverse() * frame.positions[i]));
+      const auto [laser, origin] = beam_of_point(pose.inverse() * frame.positions[i]);
+      scan.origins.push_back(vec_cast<float>(scan_from_world * (pose * origin)));
+      scan.lasers.push_back(laser);
     }
     scan.intensities = std::move(frame.intensities);
     if (with_classes_) scan.classes = std::move(frame.classes);
@@ -86,8 +87,11 @@ class FrameReader final : public ScanReader {
   }
 
  private:
-  std::uint16_t laser_of(Vec3d in_sensor) const {
-    return sensor_.cones ? sensor_.cones->nearest(in_sensor).first : kNoLaser;
+  /// Which laser measured a point of the sensor's frame, and where it sits there.
+  std::pair<std::uint16_t, Vec3d> beam_of_point(Vec3d in_sensor) const {
+    if (!sensor_.cones) return {kNoLaser, {}};
+    const std::uint16_t laser = sensor_.cones->nearest(in_sensor).first;
+    return {laser, sensor_.cones->origin_of(laser, in_sensor)};
   }
 
   std::shared_ptr<const ScanSource> source_;

@@ -105,6 +105,25 @@ TEST(RecognizeSensor, NearestConeIsThatOfBruteForce) {
   }
 }
 
+// Oracle: the firings, for origins above, before and beside the axis.
+TEST(RecognizeSensor, BeamsBeginWhereTheTableHasThem) {
+  for (const char* const name :
+       {"velodyne-hdl-64e-kitti", "velodyne-hdl-64e-s2", "ouster-os1-64", "hesai-pandar64"}) {
+    LidarModel model = load_lidar_model(name);
+    model.columns = 36;
+    const SensorCones cones = cones_of(model);
+    for (const Firing& firing : firings_of(model)) {
+      const Vec3d origin = vec_cast<double>(firing.origin);
+      const Vec3d point = origin + 12.5 * vec_cast<double>(firing.direction);
+      const auto [laser, above_rad] = cones.nearest(point);
+      ASSERT_LT(std::fabs(above_rad), 1e-5);
+      ASSERT_LT(length(cones.origin_of(laser, point) - origin), 1e-4) << name << firing.ring;
+    }
+  }
+  const SensorCones aside = {"aside", {{0, 0.2, 0.1, 0.3}}};
+  EXPECT_EQ(aside.origin_of(0, {0.1, 0, 5}), (Vec3d{0, 0, 0.2})) << "within the lateral offset";
+}
+
 TEST(RecognizeSensor, ARosetteHasNoCones) {
   EXPECT_TRUE(cones_of(load_lidar_model("livox-mid-40")).cones.empty());
 }

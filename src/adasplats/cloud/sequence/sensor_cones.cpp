@@ -38,6 +38,19 @@ std::pair<std::uint16_t, double> SensorCones::nearest(Vec3d point) const {
   return {static_cast<std::uint16_t>(best), best_rad};
 }
 
+Vec3d SensorCones::origin_of(std::uint16_t laser, Vec3d point) const {
+  const Cone& cone = cones[laser];
+  const double flat_m = std::hypot(point.x, point.y);
+  if (!(flat_m > std::fabs(cone.aside_m))) return {0, 0, cone.height_m};
+  // In the plane the point is `along_m` ahead in the beam's azimuth and `aside_m` to its left.
+  const double along_m = std::sqrt(flat_m * flat_m - cone.aside_m * cone.aside_m);
+  const double cosine = (along_m * point.x + cone.aside_m * point.y) / (flat_m * flat_m);
+  const double sine = (along_m * point.y - cone.aside_m * point.x) / (flat_m * flat_m);
+  return {cone.outward_m * cosine - cone.aside_m * sine,
+          cone.outward_m * sine + cone.aside_m * cosine,
+          cone.height_m + cone.outward_m * std::tan(cone.elevation_rad)};
+}
+
 SensorCones cones_of(const LidarModel& model) {
   SensorCones result{model.name, {}};
   if (model.rosette) return result;
@@ -48,7 +61,9 @@ SensorCones cones_of(const LidarModel& model) {
     const Vec3d way = vec_cast<double>(firing.direction), from = vec_cast<double>(firing.origin);
     const double flat = std::hypot(way.x, way.y);
     const double outward_m = (way.x * from.x + way.y * from.y) / flat;
-    const SensorCones::Cone cone = {std::atan2(way.z, flat), from.z - outward_m * way.z / flat};
+    const double aside_m = (way.x * from.y - way.y * from.x) / flat;
+    const SensorCones::Cone cone = {std::atan2(way.z, flat), from.z - outward_m * way.z / flat,
+                                    outward_m, aside_m};
     std::optional<SensorCones::Cone>& ring = rings[firing.ring];
     if (!ring) ring = cone;
     if (std::abs(ring->elevation_rad - cone.elevation_rad) > 1e-4) return result;

@@ -16,7 +16,9 @@ namespace adasplats {
 struct SensorCones {
   struct Cone {
     double elevation_rad;
-    double height_m;  ///< of its tip on the axis
+    double height_m;       ///< of its tip on the axis
+    double outward_m = 0;  ///< where the beam begins, from the axis along its own azimuth
+    double aside_m = 0;    ///< and to the left of it
   };
 
   std::string sensor;       ///< name of the model
@@ -26,6 +28,9 @@ struct SensorCones {
   /// sensor's frame) is seen from the cone's tip, rad. For points 3 m away or farther. Needs a
   /// cone.
   std::pair<std::uint16_t, double> nearest(Vec3d point) const;
+
+  /// Where the beam of a laser begins that measured `point`, both in the sensor's frame.
+  Vec3d origin_of(std::uint16_t laser, Vec3d point) const;
 };
 
 /// Without cones where a beam changes its elevation as the sensor turns (rosettes).
