@@ -757,7 +757,11 @@ class Scan:
         """(4, 4) float64, world_from_sensor."""
     @property
     def time(self) -> float:
-        """Of the pose, s."""
+        """Of the pose, s; the middle of the revolution, where the sensor moved."""
+    @property
+    def begin(self) -> float:
+        """When the revolution began, s, which times count from; of a sensor that stood still,
+        whose points have no motion to take out, the same as time."""
     @property
     def rays(self) -> int:
         """How many firings the revolution had."""

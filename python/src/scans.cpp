@@ -16,6 +16,9 @@ template <class Archive>
 void fields(Archive& archive, Scan& scan) {
   archive("world_from_sensor", scan.world_from_sensor);
   archive("time_s", scan.time_s);
+  archive("knots", scan.knots);
+  archive("duration_s", scan.duration_s);
+  archive("frame", scan.frame);
   archive("rays", scan.rays);
   archive("positions", scan.positions);
   for_each_scan_attribute(
@@ -92,7 +95,12 @@ void bind_scan(py::module_& module) {
       .def_property_readonly(
           "pose", [](const Scan& scan) { return matrix_of(scan.world_from_sensor); },
           "(4, 4) float64, world_from_sensor.")
-      .def_readonly("time", &Scan::time_s, "Of the pose, s.")
+      .def_readonly("time", &Scan::time_s,
+                    "Of the pose, s; the middle of the revolution, where the sensor moved.")
+      .def_property_readonly(
+          "begin", [](const Scan& scan) { return ScanView(scan).begin_s(); },
+          "When the revolution began, s, which times count from; of a sensor that stood still,\n"
+          "whose points have no motion to take out, the same as time.")
       .def_readonly("rays", &Scan::rays, "How many firings the revolution had.");
   for_each_scan_attribute([&](const auto& attribute) { bind_attribute(type, attribute); });
   add_pickling<Scan>(type, "Scan");
@@ -131,6 +139,7 @@ void save_scans(const ScanList& list, py::handle folder, const py::kwargs& kwarg
   writing.image_size = list.image_size;
   writing.labels = list.labels.get();
   writing.drive = {list.scans.size(), [&](std::size_t i) { return list.scans[i]->time_s; }};
+  if (!list.scans.empty()) writing.drive.turn_s = list.scans.front()->duration_s;
   const auto writer = make_scan_writer(path, format, writing);
   const Executor executor;
   ParallelWriteOptions parallel;

@@ -19,19 +19,21 @@ McapChannel ros_channel(std::string topic, std::string_view type, std::string de
 
 }  // namespace
 
-McapWriter::McapWriter(const std::filesystem::path& path)
+McapWriter::McapWriter(const std::filesystem::path& path, double later_s)
     : file_(path, "ros2"),
+      later_s_(later_s),
       transforms_(file_.add_channel(ros_channel("/tf", kTransformsType, transforms_definition()))),
       points_(
           file_.add_channel(ros_channel("/points", kPointCloud2Type, point_cloud2_definition()))) {}
 
 std::vector<McapMessage> McapWriter::messages(const ScanView& scan) const {
-  const std::uint64_t time_ns = ros_time_ns(scan.time_s);
+  Trajectory poses = ros_poses_of(scan);
+  for (TimedPose& pose : poses) pose.time_s += later_s_;
   std::vector<McapMessage> messages;
-  messages.push_back(mcap_message(
-      transforms_, time_ns,
-      transform_message(scan.world_from_sensor, scan.time_s, kWorldFrame, kSensorFrame)));
-  messages.push_back(mcap_message(points_, time_ns, point_cloud2_message(scan, kSensorFrame)));
+  messages.push_back(mcap_message(transforms_, ros_time_ns(poses.front().time_s),
+                                  transforms_message(poses, kWorldFrame, kSensorFrame)));
+  messages.push_back(mcap_message(points_, ros_time_ns(ros_stamp_s(scan) + later_s_),
+                                  point_cloud2_message(scan, kSensorFrame, later_s_)));
   return messages;
 }
 

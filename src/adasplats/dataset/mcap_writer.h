@@ -14,12 +14,12 @@ namespace adasplats {
 
 /// Writes scans into one MCAP file that Foxglove and the tools of ROS 2 read: on /points a
 /// sensor_msgs/msg/PointCloud2 a scan in the frame "lidar" (its fields: point_cloud2_message), on
-/// /tf a tf2_msgs/msg/TFMessage with that frame's place in "map", the world, at the scan's time.
+/// /tf a tf2_msgs/msg/TFMessage with that frame's places in "map", the world (ros_poses_of()).
 /// Atomic; memory: three times the largest scan.
 class McapWriter {
  public:
-  /// Errors: cannot_create, io.
-  explicit McapWriter(const std::filesystem::path& path);
+  /// All times are written `later_s` later than scans have them. Errors: cannot_create, io.
+  explicit McapWriter(const std::filesystem::path& path, double later_s = 0);
 
   /// The messages of a scan. Several threads may call it at once.
   /// Errors: data (a time that ROS cannot express: ros_time_ns).
@@ -33,6 +33,7 @@ class McapWriter {
 
  private:
   McapFile file_;
+  double later_s_;
   std::uint16_t transforms_, points_;  ///< channels
 };
 

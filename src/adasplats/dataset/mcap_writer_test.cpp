@@ -94,18 +94,21 @@ struct Transform {
   RigidTransform map_from_lidar;
 };
 
-Transform transform_of(std::string_view message) {
+std::vector<Transform> transforms_of(std::string_view message) {
   CdrReader reader(message);
-  EXPECT_EQ(reader.number<std::uint32_t>(), 1U);
-  Transform transform{reader.time_ns(), {}};
-  EXPECT_EQ(reader.text(), "map");
-  EXPECT_EQ(reader.text(), "lidar");
-  double v[7];
-  for (double& value : v) value = reader.number<double>();
+  std::vector<Transform> transforms(reader.number<std::uint32_t>());
+  for (Transform& transform : transforms) {
+    transform.time_ns = reader.time_ns();
+    EXPECT_EQ(reader.text(), "map");
+    EXPECT_EQ(reader.text(), "lidar");
+    double v[7];
+    for (double& value : v) value = reader.number<double>();
+    EXPECT_NEAR(std::hypot(v[3], v[4], std::hypot(v[5], v[6])), 1, 1e-12);
+    transform.map_from_lidar = {rotation_from_quaternion(v[6], v[3], v[4], v[5]),
+                                {v[0], v[1], v[2]}};
+  }
   EXPECT_TRUE(reader.at_end());
-  EXPECT_NEAR(std::hypot(v[3], v[4], std::hypot(v[5], v[6])), 1, 1e-12);
-  transform.map_from_lidar = {rotation_from_quaternion(v[6], v[3], v[4], v[5]), {v[0], v[1], v[2]}};
-  return transform;
+  return transforms;
 }
 
 mcap_test::File written(const std::vector<Scan>& scans) {
@@ -122,7 +125,7 @@ std::uint64_t exact_ns(double time_s) {
 }
 
 void expect_same(const Cloud& cloud, const Scan& scan) {
-  EXPECT_EQ(cloud.time_ns, exact_ns(scan.time_s));
+  EXPECT_EQ(cloud.time_ns, exact_ns(scan.time_s - 0.5 * scan.duration_s));
   ASSERT_EQ(cloud.points, scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const Vec3f p{cloud.at<float>(i, "x"), cloud.at<float>(i, "y"), cloud.at<float>(i, "z")};
@@ -136,14 +139,22 @@ void expect_same(const Cloud& cloud, const Scan& scan) {
   }
 }
 
-void expect_same(const Transform& transform, const Scan& scan) {
-  EXPECT_EQ(transform.time_ns, exact_ns(scan.time_s));
+void expect_pose(const Transform& transform, const RigidTransform& pose) {
   // World coordinates of UTM keep every bit.
-  EXPECT_EQ(transform.map_from_lidar.translation, scan.world_from_sensor.translation);
+  EXPECT_EQ(transform.map_from_lidar.translation, pose.translation);
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(transform.map_from_lidar.rotation.rows[r][c],
-                  scan.world_from_sensor.rotation.rows[r][c], 1e-14);
+      EXPECT_NEAR(transform.map_from_lidar.rotation.rows[r][c], pose.rotation.rows[r][c], 1e-14);
+}
+
+/// Of scans whose three knots last a tenth of a second around their pose.
+void expect_same(const std::vector<Transform>& transforms, const Scan& scan) {
+  ASSERT_EQ(transforms.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(1e-9 * static_cast<double>(transforms[k].time_ns),
+                scan.time_s - 0.05 + 0.05 * static_cast<double>(k), 1e-6);
+    expect_pose(transforms[k], scan.knots[k]);
+  }
 }
 
 // Oracle: the scans, taken out of the file by the specifications of MCAP and CDR.
@@ -163,11 +174,39 @@ TEST(McapWriter, RoundTrip) {
   ASSERT_EQ(file.messages.size(), 2 * scans.size());
   for (std::size_t i = 0; i < scans.size(); ++i) {
     EXPECT_EQ(file.messages[2 * i].channel, 0);
-    expect_same(transform_of(file.messages[2 * i].data), scans[i]);
+    expect_same(transforms_of(file.messages[2 * i].data), scans[i]);
     const Cloud cloud = cloud_of(file.messages[2 * i + 1].data);
     EXPECT_EQ(file.messages[2 * i + 1].time_ns, cloud.time_ns);
     expect_same(cloud, scans[i]);
   }
+}
+
+// Oracle: by hand. The frame of the points is that of the pose.
+TEST(McapWriter, PointsWithoutMotionHaveTheTimeOfThePose) {
+  Scan scan = scan_number(3, 5);
+  scan.frame = PointFrame::deskewed;
+  scan.knots.erase(scan.knots.begin() + 1);  // none is that of the pose
+  const mcap_test::File file = written({scan});
+  const Cloud cloud = cloud_of(file.messages.back().data);
+  EXPECT_EQ(cloud.time_ns, exact_ns(scan.time_s));
+  EXPECT_NEAR(static_cast<double>(cloud.at<float>(2, "time")), 0.002 - 0.05, 1e-8);
+  const std::vector<Transform> transforms = transforms_of(file.messages.front().data);
+  ASSERT_EQ(transforms.size(), 3U);
+  EXPECT_EQ(transforms[1].time_ns, cloud.time_ns);
+  expect_pose(transforms[1], scan.world_from_sensor);
+}
+
+TEST(McapWriter, NothingIsToBeTakenOutOfScansOfASensorThatStood) {
+  Scan scan = scan_number(3, 5);
+  scan.knots.clear();
+  scan.duration_s = 0;
+  const mcap_test::File file = written({scan});
+  const Cloud cloud = cloud_of(file.messages.back().data);
+  EXPECT_EQ(cloud.time_ns, exact_ns(scan.time_s));
+  EXPECT_FALSE(cloud.fields.contains("time"));
+  EXPECT_TRUE(cloud.fields.contains("ring"));
+  ASSERT_EQ(transforms_of(file.messages.front().data).size(), 1U);
+  expect_pose(transforms_of(file.messages.front().data).front(), scan.world_from_sensor);
 }
 
 TEST(McapWriter, FieldsAreAlignedAndTyped) {
@@ -207,6 +246,8 @@ TEST(McapWriter, TimesThatRosCannotTell) {
     McapWriter writer(folder.path() / "scans.mcap");
     Scan scan = scan_number(0, 1);
     scan.time_s = time_s;
+    scan.knots.clear();
+    scan.duration_s = 0;
     expect_error(ErrorKind::data, {"0 to 2147483647 s"}, [&] { writer.write(scan); });
   }
 }

@@ -9,7 +9,8 @@
 
 namespace adasplats {
 
-/// A scan with all attributes, different for each number.
+/// A scan with all attributes, different for each number, of a sensor that moves for a tenth of a
+/// second.
 inline Scan scan_number(std::uint64_t number, std::size_t points) {
   Random random(11, 0, number);
   Scan scan;
@@ -18,6 +19,11 @@ inline Scan scan_number(std::uint64_t number, std::size_t points) {
       rotation_from_yaw_pitch_roll(random.uniform(-3, 3), random.uniform(-1, 1),
                                    random.uniform(-3, 3)),
       {448262 + random.uniform(), 5411932 + random.uniform(), random.uniform(-50, 50)}};
+  scan.duration_s = 0.1;
+  for (const double ahead_m : {-0.5, 0.0, 0.5}) {
+    scan.knots.push_back(scan.world_from_sensor);
+    scan.knots.back().translation.x += ahead_m;
+  }
   scan.rays = 2 * points;
   for (std::size_t i = 0; i < points; ++i) {
     const Vec3d p{random.uniform(-90, 90), random.uniform(-90, 90), random.uniform(-3, 9)};

@@ -87,20 +87,30 @@ struct CuboidColumns {
   }
 };
 
+/// Of point `i`; as measured, it was seen from where the sensor was at its time.
+Vec3d world_place(const ScanView& scan, std::uint32_t i) {
+  const Vec3d point = vec_cast<double>(scan.positions[i]);
+  const bool is_raw = scan.frame == PointFrame::raw && scan.knots.size() > 1;
+  if (!is_raw || scan.times_s.empty() || !(scan.duration_s > 0))
+    return scan.world_from_sensor * point;
+  return world_point(scan.knots, double{scan.times_s[i]} / scan.duration_s, point);
+}
+
 }  // namespace
 
 std::string pandaset_points(const ScanView& scan, std::span<const std::uint32_t> order) {
   std::vector<double> x, y, z, intensities, times;
   for (auto* values : {&x, &y, &z, &intensities, &times}) values->reserve(order.size());
   for (const std::uint32_t i : order) {
-    const Vec3d p = scan.world_from_sensor * vec_cast<double>(scan.positions[i]);
+    const Vec3d p = world_place(scan, i);
     x.push_back(p.x);
     y.push_back(p.y);
     z.push_back(p.z);
     const double intensity = scan.intensities.empty() ? 0.0 : double{scan.intensities[i]};
     // Networks that are trained on such files do not survive a NaN.
     intensities.push_back(std::isnan(intensity) ? 0.0 : intensity);
-    times.push_back(scan.time_s + (scan.times_s.empty() ? 0.0 : double{scan.times_s[i]}));
+    times.push_back(scan.moved() && !scan.times_s.empty() ? scan.begin_s() + double{scan.times_s[i]}
+                                                          : scan.time_s);
   }
   std::vector<std::int64_t> sensors(order.size(), 0);
   const std::vector<FrameColumn> columns = {{"x", std::move(x)},     {"y", std::move(y)},

@@ -89,8 +89,8 @@ std::uint8_t point_field_type(ColumnType type) {
 
 /// Column and range follow from the rest, or nearly; the widest come first, so that all are
 /// aligned.
-std::vector<ColumnView> message_columns(const ScanView& scan) {
-  std::vector<ColumnView> columns = scan_columns(scan);
+std::vector<ColumnView> message_columns(const ScanView& scan, std::span<const float> times) {
+  std::vector<ColumnView> columns = scan_columns(scan, times);
   std::erase_if(columns, [](const ColumnView& column) {
     return column.name == "column" || column.name == "range";
   });
@@ -163,8 +163,14 @@ std::uint64_t ros_time_ns(double time_s) {
          static_cast<std::uint64_t>(fraction_ns);
 }
 
-std::string point_cloud2_message(const ScanView& scan, std::string_view frame) {
-  const std::vector<ColumnView> columns = message_columns(scan);
+double ros_stamp_s(const ScanView& scan) {
+  return scan.frame == PointFrame::deskewed ? scan.time_s : scan.begin_s();
+}
+
+std::string point_cloud2_message(const ScanView& scan, std::string_view frame, double later_s) {
+  const std::vector<float> from_pose = times_from_pose(scan);
+  const std::vector<ColumnView> columns = message_columns(
+      scan, scan.frame == PointFrame::deskewed ? std::span(from_pose) : scan.times_s);
   std::size_t step = 0;
   for (const ColumnView& column : columns) step += type_bytes(column.type);
   constexpr std::size_t kAlignment = 4;
@@ -174,7 +180,7 @@ std::string point_cloud2_message(const ScanView& scan, std::string_view frame) {
                                      " points is too large for one message");
   constexpr std::size_t kHeadBytes = 1024;
   CdrWriter message(scan.size() * step + kHeadBytes);
-  message.header(scan.time_s, frame);
+  message.header(ros_stamp_s(scan) + later_s, frame);
   message.put(std::uint32_t{1}).put(static_cast<std::uint32_t>(scan.size()));
   message.put(static_cast<std::uint32_t>(columns.size()));
   std::uint32_t offset = 0;
@@ -193,15 +199,38 @@ std::string point_cloud2_message(const ScanView& scan, std::string_view frame) {
   return message.put(std::uint8_t{1}).take();  // every point is valid
 }
 
-std::string transform_message(const RigidTransform& frame_from_child, double time_s,
-                              std::string_view frame, std::string_view child_frame) {
+Trajectory ros_poses_of(const ScanView& scan) {
+  const TimedPose reference = {scan.time_s, scan.world_from_sensor};
+  if (!scan.moved()) return {reference};
+  constexpr double kSameTime_s = 1e-9;
+  const bool has_frame_of_pose = scan.frame == PointFrame::deskewed;
+  Trajectory poses;
+  const double step_s =
+      scan.duration_s / static_cast<double>(std::max<std::size_t>(2, scan.knots.size()) - 1);
+  for (std::size_t k = 0; k < scan.knots.size(); ++k) {
+    const TimedPose knot = {scan.begin_s() + static_cast<double>(k) * step_s, scan.knots[k]};
+    const bool is_reference = std::fabs(knot.time_s - scan.time_s) < kSameTime_s;
+    const bool is_behind = !poses.empty() && poses.back().time_s < scan.time_s - kSameTime_s &&
+                           knot.time_s > scan.time_s + kSameTime_s;
+    if (has_frame_of_pose && is_behind) poses.push_back(reference);
+    poses.push_back(has_frame_of_pose && is_reference ? reference : knot);
+  }
+  return poses;
+}
+
+std::string transforms_message(std::span<const TimedPose> poses, std::string_view frame,
+                               std::string_view child_frame) {
   constexpr std::size_t kBytes = 256;
-  CdrWriter message(kBytes);
-  message.put(std::uint32_t{1}).header(time_s, frame).text(child_frame);
-  const Vec3d t = frame_from_child.translation;
-  message.put(t.x).put(t.y).put(t.z);
-  const Quaternion q = quaternion_from_rotation(frame_from_child.rotation);
-  return message.put(q.x).put(q.y).put(q.z).put(q.w).take();
+  CdrWriter message(kBytes * std::max<std::size_t>(1, poses.size()));
+  message.put(static_cast<std::uint32_t>(poses.size()));
+  for (const TimedPose& pose : poses) {
+    message.header(pose.time_s, frame).text(child_frame);
+    const Vec3d t = pose.world_from_sensor.translation;
+    message.put(t.x).put(t.y).put(t.z);
+    const Quaternion q = quaternion_from_rotation(pose.world_from_sensor.rotation);
+    message.put(q.x).put(q.y).put(q.z).put(q.w);
+  }
+  return message.take();
 }
 
 }  // namespace adasplats

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
-#include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/simulate/scan/scan_view.h"
 
 namespace adasplats {
@@ -24,14 +25,22 @@ std::string transforms_definition();
 /// Seconds as whole nanoseconds. Errors: data (not within 0 to 2^31 - 1 s, what a ROS time holds).
 std::uint64_t ros_time_ns(double time_s);
 
-/// A PointCloud2 of one row in the sensor frame, its time that of the scan. Fields, as far as the
-/// scan has them: x y z intensity time (float32; time in seconds since the revolution began), label
-/// instance ring (uint16), return_index (uint8). Every field lies at a multiple of its size.
-/// Errors: data (a time as above, more than 4 GiB of points).
-std::string point_cloud2_message(const ScanView& scan, std::string_view frame);
+/// The time that the message of a scan has: when its revolution began, as drivers of sensors have
+/// it; of a sensor that stood still, and where the motion was taken out, that of its pose.
+double ros_stamp_s(const ScanView& scan);
 
-/// A TFMessage of one transform: where `child_frame` is in `frame` at a time. Errors: as above.
-std::string transform_message(const RigidTransform& frame_from_child, double time_s,
-                              std::string_view frame, std::string_view child_frame);
+/// A PointCloud2 of one row in the sensor frame, its time ros_stamp_s() + `later_s`. Fields, as far
+/// as the scan has them: x y z intensity time (float32; time in seconds from that of the message;
+/// none where the sensor stood still), label instance ring (uint16), return_index (uint8). Every
+/// field lies at a multiple of its size. Errors: data (a time as above, more than 4 GiB of points).
+std::string point_cloud2_message(const ScanView& scan, std::string_view frame, double later_s = 0);
+
+/// Where the sensor was: at the knots of a scan in which it moved, and at its pose where the points
+/// are in the frame of that; else at its pose alone.
+Trajectory ros_poses_of(const ScanView& scan);
+
+/// A TFMessage: where `child_frame` is in `frame` at each time. Errors: as above.
+std::string transforms_message(std::span<const TimedPose> poses, std::string_view frame,
+                               std::string_view child_frame);
 
 }  // namespace adasplats

@@ -68,7 +68,9 @@ struct LasFields {
       const int number = scan.return_indices.empty() ? 1 : scan.return_indices[i] + 1;
       return_numbers.push_back(static_cast<std::uint8_t>(number));
     }
-    for (const float time : scan.times_s) times.push_back(scan.time_s + static_cast<double>(time));
+    times.assign(scan.moved() ? scan.times_s.size() : scan.size(), scan.time_s);
+    for (std::size_t i = 0; scan.moved() && i < times.size(); ++i)
+      times[i] = scan.begin_s() + static_cast<double>(scan.times_s[i]);
   }
 
   std::vector<ColumnView> columns() const {
@@ -87,13 +89,14 @@ constexpr std::size_t kExpectedPointBytes = 48;
 
 std::string ply_bytes(const ScanView& scan) {
   ByteBuffer file(scan.size() * kExpectedPointBytes);
-  put_ply(file, scan.size(), scan_columns(scan));
+  put_ply(file, scan.size(), scan_columns(scan, times_from_pose(scan)));
   return file.take();
 }
 
 std::string pcd_bytes(const ScanView& scan) {
   ByteBuffer file(scan.size() * kExpectedPointBytes);
-  put_pcd(file, scan.size(), scan_columns(scan), viewpoint_of(scan.world_from_sensor));
+  put_pcd(file, scan.size(), scan_columns(scan, times_from_pose(scan)),
+          viewpoint_of(scan.world_from_sensor));
   return file.take();
 }
 
@@ -101,7 +104,8 @@ std::string npz_bytes(const std::filesystem::path& path, const ScanView& scan) {
   static_assert(sizeof(Vec3f) == 3 * sizeof(float));
   std::vector<NamedArray> arrays = {
       {"points", {ColumnType::f32, {scan.size(), 3}, scan.positions.data()}}};
-  const std::vector<ColumnView> columns = scan_columns(scan);
+  const std::vector<float> times = times_from_pose(scan);
+  const std::vector<ColumnView> columns = scan_columns(scan, times);
   constexpr std::size_t kPosition = 3;  // x, y and z are "points"
   for (std::size_t k = kPosition; k < columns.size(); ++k)
     arrays.push_back(
@@ -118,7 +122,7 @@ std::string las_bytes(const std::filesystem::path& path, const ScanView& scan,
                       double full_intensity) {
   const LasFields fields(scan, full_intensity);
   std::vector<ColumnView> columns = fields.columns();
-  for (ColumnView column : scan_columns(scan)) {
+  for (ColumnView column : scan_columns(scan, {})) {
     if (column.name == "time" || column.name == "return_index") continue;
     if (column.name == "intensity") column.name = "intensity_value";
     columns.push_back(column);

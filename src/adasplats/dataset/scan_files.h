@@ -68,15 +68,16 @@ void write_scan_ply(const std::filesystem::path& path, const ScanView& scan);
 void write_scan_npy(const std::filesystem::path& path, const ScanView& scan);
 
 /// .npz with, as far as the scan has them, points (float32, N x 3), intensities, labels (class
-/// ids), instances, rings, columns, times, ranges, return_indices (N each), world_from_sensor
-/// (float64, 4 x 4) and time (float64, 1).
+/// ids), instances, rings, columns, times (times_from_pose()), ranges, return_indices (N each),
+/// world_from_sensor (float64, 4 x 4) and time (float64, 1).
 void write_scan_npz(const std::filesystem::path& path, const ScanView& scan);
 
 /// PCD, binary, with the columns of scan_columns(); VIEWPOINT is world_from_sensor.
 void write_scan_pcd(const std::filesystem::path& path, const ScanView& scan);
 
 /// LAS 1.4, point format 6, in millimetres. Intensity: 0..`full_intensity` becomes 0..65535.
-/// Classification is the low byte of the class, GPS time the scan's time and the point's. Extra
+/// Classification is the low byte of the class, GPS time when the point was measured, or the scan's
+/// time where the sensor stood still meanwhile (times_from_pose() has why). Extra
 /// bytes: intensity_value, label, instance, ring, column, range, as far as the scan has them.
 void write_scan_las(const std::filesystem::path& path, const ScanView& scan,
                     double full_intensity = 1.0);

@@ -51,7 +51,10 @@ void expect_columns_of(const Table& table, const Scan& scan) {
   EXPECT_EQ(column(table, "instance"), doubles(scan.instances));
   EXPECT_EQ(column(table, "ring"), doubles(scan.rings));
   EXPECT_EQ(column(table, "column"), doubles(scan.columns));
-  EXPECT_EQ(column(table, "time"), doubles(scan.times_s));
+  const Doubles times = column(table, "time");
+  ASSERT_EQ(times.size(), scan.knots.empty() ? 0 : scan.times_s.size());
+  for (std::size_t i = 0; i < times.size(); ++i)
+    EXPECT_NEAR(times[i], static_cast<double>(scan.times_s[i]) - 0.05, 1e-8);
   EXPECT_EQ(column(table, "range"), doubles(scan.ranges_m));
   EXPECT_EQ(column(table, "return_index"), doubles(scan.return_indices));
 }
@@ -86,9 +89,12 @@ TEST(ScanFiles, EmptyScansAndScansWithoutAttributes) {
   bare.intensities.clear();
   bare.classes.clear();
   bare.instances.clear();
-  for (const Scan& scan : {Scan{}, bare}) {
+  Scan still = bare;
+  still.knots.clear();
+  still.duration_s = 0;
+  for (const Scan& scan : {Scan{}, bare, still}) {
     write_scan_ply(folder.path() / "scan.ply", scan);
-    EXPECT_EQ(read_ply(folder.path() / "scan.ply").columns.size(), 7U);
+    EXPECT_EQ(read_ply(folder.path() / "scan.ply").columns.size(), scan.knots.empty() ? 6U : 7U);
     expect_columns_of(read_ply(folder.path() / "scan.ply"), scan);
     write_scan_pcd(folder.path() / "scan.pcd", scan);
     expect_columns_of(read_pcd(folder.path() / "scan.pcd"), scan);
@@ -114,7 +120,8 @@ TEST(ScanFiles, Las) {
   for (std::size_t i = 0; i < 5; ++i) {
     EXPECT_NEAR(column(table, "x")[i], static_cast<double>(scan.positions[i].x), 0.000501);
     EXPECT_NEAR(column(table, "z")[i], static_cast<double>(scan.positions[i].z), 0.000501);
-    EXPECT_EQ(column(table, "gps_time")[i], scan.time_s + static_cast<double>(scan.times_s[i]));
+    EXPECT_EQ(column(table, "gps_time")[i],
+              scan.time_s - 0.05 + static_cast<double>(scan.times_s[i]));
   }
   EXPECT_EQ(column(table, "intensity"), (Doubles{0, 32768, 65535, 65535, 0}));
   EXPECT_EQ(column(table, "classification"), (Doubles{0, 40, 255, 0, 0}));
@@ -134,6 +141,11 @@ TEST(ScanFiles, LasWithoutLabels) {
   scan.classes.clear();
   scan.intensities.clear();
   write_scan_las(folder.path() / "scan.las", scan);
+  scan.knots.clear();
+  scan.duration_s = 0;
+  write_scan_las(folder.path() / "still.las", scan);
+  EXPECT_EQ(column(read_las(folder.path() / "still.las"), "gps_time"),
+            (Doubles{scan.time_s, scan.time_s}));
   const Table table = read_las(folder.path() / "scan.las");
   EXPECT_EQ(column(table, "classification"), (Doubles{0, 0}));
   EXPECT_EQ(column(table, "intensity"), (Doubles{0, 0}));
@@ -213,7 +225,7 @@ TEST(ScanFiles, Npz) {
   EXPECT_EQ(npy_values<std::uint16_t>(member(zip, "instances.npy"), "(5,)"), scan.instances);
   EXPECT_EQ(npy_values<std::uint16_t>(member(zip, "rings.npy"), "(5,)"), scan.rings);
   EXPECT_EQ(npy_values<std::uint32_t>(member(zip, "columns.npy"), "(5,)"), scan.columns);
-  EXPECT_EQ(npy_values<float>(member(zip, "times.npy"), "(5,)"), scan.times_s);
+  EXPECT_EQ(npy_values<float>(member(zip, "times.npy"), "(5,)"), times_from_pose(scan));
   EXPECT_EQ(npy_values<float>(member(zip, "ranges.npy"), "(5,)"), scan.ranges_m);
   EXPECT_EQ(npy_values<std::uint8_t>(member(zip, "return_indices.npy"), "(5,)"),
             scan.return_indices);

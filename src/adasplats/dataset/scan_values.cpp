@@ -62,7 +62,19 @@ std::vector<std::uint8_t> returns_of_firings(const ScanView& scan) {
   return counts;
 }
 
-std::vector<ColumnView> scan_columns(const ScanView& scan) {
+std::vector<float> times_from_pose(const ScanView& scan) {
+  std::vector<float> times;
+  if (!scan.moved()) return times;
+  const double begin_s = scan.begin_s() - scan.time_s;
+  times.reserve(scan.times_s.size());
+  for (const float since_begin_s : scan.times_s)
+    times.push_back(static_cast<float>(begin_s + static_cast<double>(since_begin_s)));
+  return times;
+}
+
+std::vector<ColumnView> scan_columns(const ScanView& given, std::span<const float> times) {
+  ScanView scan = given;
+  scan.times_s = times;
   // An empty scan has no first point to take addresses from.
   const Vec3f* const first = scan.positions.data();
   std::vector<ColumnView> columns = {
@@ -72,6 +84,7 @@ std::vector<ColumnView> scan_columns(const ScanView& scan) {
   for_each_scan_attribute([&](const auto& attribute) {
     const auto& values = attribute.of(scan);
     if (values.size() != scan.size() || (attribute.is_optional && values.empty())) return;
+    if (!scan.moved() && attribute.column == std::string_view("time")) return;
     using Value = typename std::decay_t<decltype(values)>::value_type;
     columns.push_back({attribute.column, column_type<Value>(), values.data(), sizeof(Value)});
   });

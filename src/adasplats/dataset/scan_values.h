@@ -27,10 +27,15 @@ std::vector<std::uint32_t> packed_labels(const ScanView& scan,
 /// How many returns the firing of each point has; points of one firing stand side by side.
 std::vector<std::uint8_t> returns_of_firings(const ScanView& scan);
 
+/// When each point was measured, s from the scan's own time (negative before it), which is that of
+/// its pose; who takes the motion out needs no more. Empty where the sensor stood still: there is
+/// no motion to take out of its points, whenever they were measured.
+std::vector<float> times_from_pose(const ScanView& scan);
+
 /// What the scan has, as columns of a file: x y z [intensity] [label] [instance] [ring] [column]
-/// [time] [range] [return_index]. They are views of `scan`. Attributes with another number of
-/// values than points are left out.
-std::vector<ColumnView> scan_columns(const ScanView& scan);
+/// [time] [range] [return_index]. They are views of `scan` and of `times`, the column `time`.
+/// Attributes with another number of values than points are left out.
+std::vector<ColumnView> scan_columns(const ScanView& scan, std::span<const float> times);
 
 /// "000042": how data sets name scan `index`.
 std::string scan_name(std::size_t index);

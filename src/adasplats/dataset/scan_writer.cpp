@@ -3,6 +3,7 @@
 #include "adasplats/dataset/scan_writer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "adasplats/core/words.h"
@@ -80,12 +81,14 @@ class FileWriter final : public WriterWithPoses {
 /// All scans as messages of one file.
 class MessageWriter final : public WriterWithPoses {
  public:
-  explicit MessageWriter(std::filesystem::path folder)
-      : WriterWithPoses(std::move(folder)), writer_(this->folder() / "scans.mcap") {}
+  MessageWriter(std::filesystem::path folder, double later_s)
+      : WriterWithPoses(std::move(folder)),
+        later_s_(later_s),
+        writer_(this->folder() / "scans.mcap", later_s) {}
 
   EncodedScan encode(std::size_t /*index*/, const ScanView& scan) const override {
     EncodedScan encoded;
-    encoded.pose = {scan.time_s, scan.world_from_sensor};
+    encoded.pose = {scan.time_s + later_s_, scan.world_from_sensor};
     encoded.points = scan.size();
     encoded.messages = writer_.messages(scan);
     return encoded;
@@ -101,10 +104,16 @@ class MessageWriter final : public WriterWithPoses {
   }
 
  private:
+  double later_s_;
   McapWriter writer_;
 };
 
 }  // namespace
+
+double ros_delay_s(const DriveSpan& drive) {
+  const double first_s = drive.begin_s - 0.5 * drive.turn_s;
+  return drive.begin_s >= 0 && first_s < 0 ? std::ceil(-first_s) : 0;
+}
 
 void ScanWriter::write(std::size_t index, const ScanView& scan) {
   const EncodedScan encoded = encode(index, scan);
@@ -123,7 +132,8 @@ std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder
   if (format == ScanFormat::kitti_raw) return make_kitti_raw_writer(folder, options);
   if (format == ScanFormat::pandaset) return make_pandaset_writer(folder, options);
   if (format == ScanFormat::nuscenes) return make_nuscenes_writer(folder, options);
-  if (format == ScanFormat::mcap) return std::make_unique<MessageWriter>(folder);
+  if (format == ScanFormat::mcap)
+    return std::make_unique<MessageWriter>(folder, ros_delay_s(options.drive));
   return std::make_unique<FileWriter>(folder, format, options);
 }
 

@@ -25,6 +25,7 @@ struct DriveSpan {
   double begin_s = 0;     ///< of the first scan, since 1970
   double apart_s = 0;     ///< from the first scan to the second; 0: there is none
   std::size_t scans = 0;  ///< of the whole drive
+  double turn_s = 0;      ///< how long a revolution lasts in which the sensor moves; 0: it stands
 
   DriveSpan() = default;
   /// Of `count` scans; time_of(i) is when scan i is. Two are asked for at most.
@@ -35,6 +36,10 @@ struct DriveSpan {
         scans(count) {}
 };
 
+/// How much later the times of a drive are in messages of ROS, which know none before 0, in whole
+/// seconds: 0 unless the first scan, but not the beginning of its revolution, is at 0 or later.
+double ros_delay_s(const DriveSpan& drive);
+
 /// The objects of a world in scan number `index` at `time_s`. Several threads may call it at once.
 using BoxesOfScan = std::function<std::vector<ObjectBox>(std::size_t index, double time_s)>;
 
@@ -43,7 +48,7 @@ struct ScanWriterOptions {
   double full_intensity = 1.0;           ///< LAS: what becomes its largest intensity
   const LabelScheme* labels = nullptr;   ///< names and colours of classes; outlives the writer
   PointOrder order = PointOrder::kitti;  ///< of points in KITTI's files
-  DriveSpan drive;                       ///< trees that name files by it
+  DriveSpan drive;                       ///< trees that name files by it, and ros_delay_s()
   BoxesOfScan boxes;                     ///< trees that list objects; none: there is no world
 };
 
@@ -82,10 +87,10 @@ class ScanWriter {
 
 /// A writer into `folder`, which exists. semantickitti: FOLDER/sequences/00 as SemanticKittiWriter
 /// and FOLDER/poses/00.txt, points in `options.order`; range_image: files of write_range_image();
-/// mcap: FOLDER/scans.mcap as McapWriter; kitti_raw, pandaset, nuscenes: as
-/// make_kitti_raw_writer(), make_pandaset_writer() and make_nuscenes_writer(); else
-/// NNNNNN.EXT of scan_files.h. All but semantickitti have poses.csv beside them. Errors:
-/// cannot_create, io; mcap, kitti_raw: data (times that they cannot express).
+/// mcap: FOLDER/scans.mcap as McapWriter, and poses.csv, both ros_delay_s() later; kitti_raw,
+/// pandaset, nuscenes: as make_kitti_raw_writer(), make_pandaset_writer() and
+/// make_nuscenes_writer(); else NNNNNN.EXT of scan_files.h. All but semantickitti have poses.csv
+/// beside them. Errors: cannot_create, io; mcap, kitti_raw: data (times that they cannot express).
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
                                              const ScanWriterOptions& options = {});
 

@@ -43,12 +43,22 @@ ScanWriterOptions writing_options(const ScanSimulator& simulator, PointOrder ord
                                   std::span<const ScanMotion> scans) {
   ScanWriterOptions writing;
   writing.drive = {scans.size(), [&](std::size_t i) { return scans[i].reference.time_s; }};
+  if (!scans.empty()) writing.drive.turn_s = scans.front().duration_s;
   writing.order = order;
   writing.image_size = image_size_of(simulator.firings());
   writing.labels = simulator.scene().labels();
   if (const World* const world = simulator.scene().world())
     writing.boxes = [world](std::size_t i, double time_s) { return world->boxes(i, time_s); };
   return writing;
+}
+
+void tell_of_delay(const SimulateJob& job, const DriveSpan& drive, ProgressSink& progress) {
+  const double later_s = ros_delay_s(drive);
+  if (job.format != ScanFormat::mcap || later_s == 0) return;
+  progress.warn(job.output.string() +
+                ": the first revolution begins before 0 s, which messages of " +
+                "ROS cannot tell: all times of scans.mcap and poses.csv are " +
+                std::to_string(static_cast<long>(later_s)) + " s later than those of the drive");
 }
 
 /// Casts the scans that are not there yet and writes them beside that.
@@ -58,8 +68,9 @@ ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> sc
   const ModelScene& scene = simulator.scene();
   // An attempt that was interrupted at its very end had been given the poses already.
   std::filesystem::remove(folder.path() / "sequences" / "00" / "poses.txt");
-  const auto writer = make_scan_writer(folder.path(), job.format,
-                                       writing_options(simulator, job.point_order, scans));
+  const ScanWriterOptions writing = writing_options(simulator, job.point_order, scans);
+  tell_of_delay(job, writing.drive, session.progress);
+  const auto writer = make_scan_writer(folder.path(), job.format, writing);
   const std::size_t first = keep_written_scans(*writer, folder, scans);
   const LidarModel& sensor = simulator.settings().sensor;
   require_room(folder.path(), job.format, scans.size() - first, sensor.rays_per_scan(),

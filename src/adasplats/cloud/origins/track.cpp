@@ -11,13 +11,18 @@ namespace {
 constexpr double kGapInPoses = 10, kLeastGap_s = 1;
 
 /// Where the sensor is `ahead_s` behind the pose `at` (before it where that is negative), as fast
-/// as from its neighbour `from`.
+/// as from its neighbour `from`; it turns on by as much as between them at most.
 TimedPose run_out(const TimedPose& at, const TimedPose& from, double ahead_s) {
   TimedPose pose = at;
   const Vec3d way = at.world_from_sensor.translation - from.world_from_sensor.translation;
+  const double share = ahead_s / (at.time_s - from.time_s);  // of the way between them
   pose.time_s += ahead_s;
-  pose.world_from_sensor.translation =
-      at.world_from_sensor.translation + (ahead_s / (at.time_s - from.time_s)) * way;
+  pose.world_from_sensor.translation = at.world_from_sensor.translation + share * way;
+  const Trajectory turn = {
+      {0, {}},
+      {1, {from.world_from_sensor.rotation.transposed() * at.world_from_sensor.rotation, {}}}};
+  pose.world_from_sensor.rotation =
+      at.world_from_sensor.rotation * interpolate(turn, share).rotation;
   return pose;
 }
 

@@ -281,6 +281,9 @@ class ReportsOnGpu : public testing::TestWithParam<GpuBackend> {
     for (std::size_t i = 0; i < found.size(); ++i) {
       EXPECT_EQ(found[i].rays, expected[i].rays);
       EXPECT_EQ(found[i].time_s, expected[i].time_s);
+      EXPECT_EQ(found[i].knots.size(), expected[i].knots.size());
+      EXPECT_EQ(found[i].duration_s, expected[i].duration_s);
+      EXPECT_EQ(found[i].frame, expected[i].frame);
       EXPECT_TRUE(found[i].positions == expected[i].positions) << "positions of scan " << i;
       for_each_scan_attribute([&](const auto& attribute) {
         EXPECT_TRUE(attribute.of(found[i]) == attribute.of(expected[i]))
@@ -379,7 +382,7 @@ TEST_P(ReportsOnGpu, BatchesHoldTheScans) {
   for (const ScanBatch& batch : kept) {
     for (std::size_t i = 0; i < batch.scans(); ++i) {
       found.emplace_back();
-      ScanView(batch, i, motions[batch.first + i], rules->firings().size()).copy_to(found.back());
+      ScanView(batch, i, motions[batch.first + i], *rules).copy_to(found.back());
     }
   }
   expect_same(found, expected);

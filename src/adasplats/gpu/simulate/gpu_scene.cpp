@@ -68,7 +68,7 @@ class SceneScanCaster final : public ScanCaster {
           scans, first_number, world, GpuScene::Results::host, [&](const ScanBatch& batch) {
             if (taken.size() < batch.scans()) taken.resize(batch.scans());
             executor.for_chunks(batch.scans(), 1, [&](std::size_t i, std::size_t) {
-              ScanView(batch, i, scans[batch.first + i], rules.firings().size()).copy_to(taken[i]);
+              ScanView(batch, i, scans[batch.first + i], rules).copy_to(taken[i]);
             });
             for (std::size_t i = 0; i < batch.scans(); ++i)
               sink(batch.first + i, std::move(taken[i]));

@@ -114,8 +114,7 @@ ReportTimes ScanSimulator::run_held(std::span<const ScanMotion> scans, std::uint
     return run(scans, first_number, [&](std::size_t i, Scan&& scan) { sink(i, pool_.hold(scan)); });
   return run_batches(scans, first_number, GpuScene::Results::host, [&](ScanBatch&& batch) {
     for (std::size_t i = 0; i < batch.scans(); ++i)
-      sink(batch.first + i,
-           {ScanView(batch, i, scans[batch.first + i], rules_.firings().size()), batch.memory});
+      sink(batch.first + i, {ScanView(batch, i, scans[batch.first + i], rules_), batch.memory});
   });
 }
 

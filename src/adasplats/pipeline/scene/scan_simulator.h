@@ -115,7 +115,7 @@ class ScanSimulator {
   ReportTimes run(std::span<const ScanMotion> scans, std::uint64_t first_number, Sink sink);
   using HeldSink = FunctionRef<void(std::size_t i, HeldScan&& scan)>;
   /// The same without a copy, for sinks that only read: who is slower than the casting holds a few
-  /// scans, not many.
+  /// scans, not many. They view `scans`, too.
   ReportTimes run_held(std::span<const ScanMotion> scans, std::uint64_t first_number,
                        HeldSink sink);
   /// The same in batches without a copy. On a GPU a batch has as many scans as a launch; else one,

@@ -56,6 +56,9 @@ Scan kept_points(const Scan& scan, std::span<const std::uint8_t> keep) {
   Scan kept;
   kept.world_from_sensor = scan.world_from_sensor;
   kept.time_s = scan.time_s;
+  kept.knots = scan.knots;
+  kept.duration_s = scan.duration_s;
+  kept.frame = scan.frame;
   kept.rays = scan.rays;
   kept.positions = kept_values(scan.positions, keep);
   for_each_scan_attribute(

@@ -28,11 +28,24 @@ struct PrimitiveAttributes {
   const IntensityResponse* response = nullptr;
 };
 
+/// Which frame the points of a scan are in, where the sensor moves during it.
+enum class PointFrame : std::uint8_t {
+  raw,       ///< the sensor's when each was measured, as sensors report them
+  deskewed,  ///< the sensor's at the scan's reference pose, the motion taken out
+};
+inline constexpr std::pair<std::string_view, PointFrame> kPointFrames[] = {
+    {"raw", PointFrame::raw}, {"deskewed", PointFrame::deskewed}};
+inline Words<PointFrame> words_of(PointFrame) { return kPointFrames; }
+
 /// One revolution of one LiDAR: the returns, by firing in the order of `firings_of`, those of one
 /// firing in the order in which the sensor reports them.
 struct Scan {
   RigidTransform world_from_sensor;
-  double time_s = 0;
+  double time_s = 0;  ///< of that pose: the middle of the revolution, where the sensor moved
+  /// Where it moved during the revolution, as ScanMotion has them; else empty and 0.
+  std::vector<RigidTransform> knots;
+  double duration_s = 0;
+  PointFrame frame = PointFrame::raw;
   std::size_t rays = 0;          ///< firings; size() of them returned, where each returns once
   std::vector<Vec3f> positions;  ///< sensor frame, m
   std::vector<float> ranges_m;
@@ -107,15 +120,6 @@ ScanFields scan_fields(std::span<const std::string> names);
 
 /// The points that keep[i] says, of every attribute.
 Scan kept_points(const Scan& scan, std::span<const std::uint8_t> keep);
-
-/// Which frame the points of a scan are in, where the sensor moves during it.
-enum class PointFrame : std::uint8_t {
-  raw,       ///< the sensor's when each was measured, as sensors report them
-  deskewed,  ///< the sensor's at the scan's reference pose, the motion taken out
-};
-inline constexpr std::pair<std::string_view, PointFrame> kPointFrames[] = {
-    {"raw", PointFrame::raw}, {"deskewed", PointFrame::deskewed}};
-inline Words<PointFrame> words_of(PointFrame) { return kPointFrames; }
 
 struct SimulateOptions {
   std::uint64_t seed = 0;     ///< of noise, drop, weather; drawn by (seed, scan index, firing)

@@ -14,7 +14,18 @@ namespace {
 constexpr std::size_t kMostKnots = 64;
 constexpr double kMostTurn_rad = 0.5 * std::numbers::pi / 180;
 
-/// Angle between two rotations; the cosine is (trace - 1) / 2.
+/// Between which two knots a share of the revolution is, and how far behind the first, 0..1.
+struct KnotPlace {
+  std::size_t segment;
+  double late;
+};
+
+KnotPlace place_of(std::size_t knots, double share) {
+  const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(knots - 1);
+  const std::size_t segment = std::min(static_cast<std::size_t>(place), knots - 2);
+  return {segment, place - static_cast<double>(segment)};
+}
+
 /// Knots that a scan needs: as many segments as half degrees, and as poses of the motion.
 std::size_t knots_needed(const Trajectory& motion, double begin_s, double end_s) {
   const auto by_time = [](const TimedPose& pose, double time_s) { return pose.time_s < time_s; };
@@ -49,7 +60,7 @@ std::vector<ScanMotion> moving_scans(std::span<const TimedPose> poses, const Tra
   std::vector<ScanMotion> scans;
   scans.reserve(poses.size());
   for (const TimedPose& pose : poses) {
-    ScanMotion scan{pose, {}};
+    ScanMotion scan{pose, {}, duration_s};
     const double begin_s = pose.time_s - 0.5 * duration_s;
     const RigidTransform from_motion =
         pose.world_from_sensor * interpolate(motion, pose.time_s).inverse();
@@ -66,10 +77,16 @@ std::vector<ScanMotion> moving_scans(std::span<const TimedPose> poses, const Tra
 RigidTransform pose_at(const ScanMotion& motion, double share) {
   if (motion.knots.size() < 2)
     return motion.knots.empty() ? motion.reference.world_from_sensor : motion.knots.front();
-  const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(motion.knots.size() - 1);
-  const std::size_t segment = std::min(static_cast<std::size_t>(place), motion.knots.size() - 2);
-  const Trajectory ends = {{0.0, motion.knots[segment]}, {1.0, motion.knots[segment + 1]}};
-  return interpolate(ends, place - static_cast<double>(segment));
+  const KnotPlace place = place_of(motion.knots.size(), share);
+  const Trajectory ends = {{0.0, motion.knots[place.segment]},
+                           {1.0, motion.knots[place.segment + 1]}};
+  return interpolate(ends, place.late);
+}
+
+Vec3d world_point(std::span<const RigidTransform> knots, double share, Vec3d point) {
+  const KnotPlace place = place_of(knots.size(), share);
+  return (1 - place.late) * (knots[place.segment] * point) +
+         place.late * (knots[place.segment + 1] * point);
 }
 
 std::vector<ScanPose> scan_poses(const ScanMotion& motion, Vec3d scene_origin) {

@@ -17,6 +17,7 @@ struct ScanMotion {
   /// world_from_sensor at equal times from the beginning of the revolution to its end; empty: the
   /// sensor stands at `reference`.
   std::vector<RigidTransform> knots;
+  double duration_s = 0;  ///< of the revolution, around the time of `reference`; 0: it stands
 
   std::size_t knot_count() const { return knots.empty() ? 1 : knots.size(); }
 };
@@ -34,6 +35,11 @@ std::vector<ScanMotion> moving_scans(std::span<const TimedPose> poses, const Tra
 
 /// Where the sensor is when `share` (0..1) of the revolution is over.
 RigidTransform pose_at(const ScanMotion& motion, double share);
+
+/// Where a point is in the world that was measured when `share` (0..1) of the revolution was over,
+/// in the sensor's frame at that time: mixed linearly between two knots, as scan_ray() does. Needs
+/// two knots.
+Vec3d world_point(std::span<const RigidTransform> knots, double share, Vec3d point);
 
 /// The knots as rays are made from them.
 std::vector<ScanPose> scan_poses(const ScanMotion& motion, Vec3d scene_origin);

@@ -115,6 +115,9 @@ void ScanReporter::report_chunks(const ScanMotion& motion, const ScanState& stat
   }
   scan.world_from_sensor = motion.reference.world_from_sensor;
   scan.time_s = motion.reference.time_s;
+  scan.knots = motion.knots;
+  scan.duration_s = motion.duration_s;
+  scan.frame = rules_.frame();
   scan.rays = firings;
   resize(scan, returns);
   executor_.for_chunks(chunks_.size(), 1,

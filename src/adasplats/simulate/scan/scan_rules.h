@@ -57,6 +57,7 @@ class ScanRules {
   const UnitFields* unit_fields() const;
   /// What scans have of what is wanted.
   ScanFields fields() const;
+  PointFrame frame() const { return options_.frame; }
   bool deskews() const { return options_.frame == PointFrame::deskewed; }
   /// With pointers to what this holds, which must outlive it.
   FiringRules view() const;

@@ -5,21 +5,29 @@
 #include <algorithm>
 #include <utility>
 
+#include "adasplats/simulate/scan/scan_rules.h"
+
 namespace adasplats {
 
 ScanView::ScanView(const Scan& scan)
     : world_from_sensor(scan.world_from_sensor),
       time_s(scan.time_s),
+      knots(scan.knots),
+      duration_s(scan.duration_s),
+      frame(scan.frame),
       rays(scan.rays),
       positions(scan.positions) {
   for_each_scan_attribute([&](const auto& attribute) { attribute.of(*this) = attribute.of(scan); });
 }
 
 ScanView::ScanView(const ScanBatch& batch, std::size_t i, const ScanMotion& motion,
-                   std::size_t rays_cast)
+                   const ScanRules& rules)
     : world_from_sensor(motion.reference.world_from_sensor),
       time_s(motion.reference.time_s),
-      rays(rays_cast) {
+      knots(motion.knots),
+      duration_s(motion.duration_s),
+      frame(rules.frame()),
+      rays(rules.firings().size()) {
   const auto part = [&](auto& values, const auto* array) {
     if (array != nullptr) values = {array + batch.offsets[i], array + batch.offsets[i + 1]};
   };
@@ -38,6 +46,9 @@ std::size_t ScanView::size() const {
 void ScanView::copy_to(Scan& scan) const {
   scan.world_from_sensor = world_from_sensor;
   scan.time_s = time_s;
+  scan.knots.assign(knots.begin(), knots.end());
+  scan.duration_s = duration_s;
+  scan.frame = frame;
   scan.rays = rays;
   scan.positions.assign(positions.begin(), positions.end());
   for_each_scan_attribute([&](const auto& attribute) {

@@ -14,10 +14,15 @@
 
 namespace adasplats {
 
+class ScanRules;
+
 /// A scan whose arrays belong to someone else: members as Scan's. What encoders read.
 struct ScanView {
   RigidTransform world_from_sensor;
   double time_s = 0;
+  std::span<const RigidTransform> knots;
+  double duration_s = 0;
+  PointFrame frame = PointFrame::raw;
   std::size_t rays = 0;
   std::span<const Vec3f> positions;
   std::span<const float> ranges_m;
@@ -31,8 +36,12 @@ struct ScanView {
 
   ScanView() = default;
   ScanView(const Scan& scan);  // NOLINT: every scan is one, as every vector is a span
-  /// Scan i of a batch in host memory, which was cast by `motion` with so many rays.
-  ScanView(const ScanBatch& batch, std::size_t i, const ScanMotion& motion, std::size_t rays);
+  /// Scan i of a batch in host memory, which was cast by `motion` with those rules. Views `motion`.
+  ScanView(const ScanBatch& batch, std::size_t i, const ScanMotion& motion, const ScanRules& rules);
+
+  /// When the revolution began, which times_s count from; time_s of a sensor that stood still.
+  double begin_s() const { return time_s - 0.5 * duration_s; }
+  bool moved() const { return !knots.empty(); }
 
   /// Returns.
   std::size_t size() const;
@@ -40,7 +49,7 @@ struct ScanView {
   void copy_to(Scan& scan) const;
 };
 
-/// A view that is valid as long as it holds `memory`.
+/// A view that is valid as long as it holds `memory` (and, of a batch, its motion is there).
 struct HeldScan {
   ScanView scan;
   std::shared_ptr<const void> memory;
