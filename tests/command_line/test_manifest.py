@@ -10,7 +10,9 @@ from support import SENSOR, ProgramTest, tree_digest, write_poses
 
 # Options that change where results go, who computes, or what is said, but no scan.
 DECIDE_NOTHING = {"--output", "--help", "--version", "--threads", "--report", "--config",
-                  "--overwrite", "--device", "--gpus"}
+                  "--overwrite", "--device", "--gpus",
+                  # They choose among poses of a recording: those that are chosen are in it.
+                  "--topic", "--poses-topic"}
 SCHEME = """\
 name = "mine"
 [[class]]

@@ -3,7 +3,7 @@
 """Simulations without any recorded poses: places, and paths above the ground of the model."""
 import unittest
 
-from support import ProgramTest, tree_digest
+from support import ProgramTest, run, tree_digest
 
 
 class Places(ProgramTest):
@@ -51,6 +51,35 @@ class Places(ProgramTest):
         shifted = self.poses_of("--path", "3,0;9,0", "--every", "3", "--offset", "0,0,1")
         self.assertEqual([pose[1] for pose in shifted], [3, 6, 9])
         self.assertAlmostEqual(shifted[0][3], 2.73, delta=0.03)
+
+    def test_a_recording_is_a_trajectory(self):
+        """Oracle: the clouds' times in the recording are those of the beginning of revolutions."""
+        path = ["--path", "3,0;9,1", "--rolling-shutter", "--format", "mcap"]
+        self.assertIn("1 s later", run(*self.command(*path)).stderr)
+        recorded = self.folder / "recorded.mcap"
+        (self.folder / "scans" / "scans.mcap").rename(recorded)
+
+        def times_and_ways():
+            lines = (self.folder / "scans" / "poses.csv").read_text().splitlines()[1:]
+            return [[float(word) for word in line.split(",")[:2]] for line in lines]
+
+        middles = times_and_ways()
+        result = run(*self.command("--trajectory", recorded, "--poses-topic", "/tf", "--format",
+                                   "npy", "--overwrite"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(f"{len(middles)} poses of 'lidar' in 'map' by tf", result.stderr)
+        begins = times_and_ways()
+        self.assertEqual(len(begins), len(middles))
+        for (begin, _), (middle, _) in zip(begins, middles):
+            self.assertAlmostEqual(begin, middle - 0.05, delta=1e-6)
+        # 10 m/s; half a revolution before the middle.
+        for (_, begin), (_, middle) in list(zip(begins, middles))[1:-1]:
+            self.assertAlmostEqual(middle - begin, 0.5 * 6 / 37**0.5, delta=1e-3)
+        for words, says in [(["--topic", "/other"], "/points"), (["--poses-topic", "/x"], "/tf")]:
+            self.run_bad(64, *self.command("--trajectory", recorded, *words), "--overwrite",
+                         says=[says])
+        self.run_bad(64, *self.command("--trajectory", self.poses, "--topic", "/points"),
+                     "--overwrite", says=["recording"])
 
     def test_scans_are_those_of_the_same_poses_in_a_file(self):
         for words in [["--path", "3,0;9,0"], ["--path", "3,0;9,1", "--rolling-shutter"]]:

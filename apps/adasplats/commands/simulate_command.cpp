@@ -89,7 +89,7 @@ class SimulateCommand final : public Command {
 
   void add_drive_options(OptionSet& app) {
     add_path(app, "--trajectory", job_.drive.trajectory,
-             "Poses of the sensor: KITTI poses.txt, CSV, TUM, or a sequence folder");
+             "Poses of the sensor: KITTI poses.txt, CSV, TUM, a sequence folder or a recording");
     add_places(app, "--at", job_.drive.at,
                "Instead: a place where it stands; without Z above the ground of the model. May be "
                "given several times, a scan each");

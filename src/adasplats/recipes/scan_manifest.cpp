@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/words.h"
+#include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/pipeline/scene/scene_files.h"
 #include "adasplats/pipeline/session/inputs.h"
@@ -17,8 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The numbers of a trajectory as they were read, whatever files they came from.
-Json trajectory_content(const std::filesystem::path& path) {
-  const Trajectory trajectory = load_trajectory(path);
+Json trajectory_content(const Trajectory& trajectory) {
   Sha256 hash;
   for (const TimedPose& pose : trajectory) {
     const auto& [rotation, place] = pose.world_from_sensor;
@@ -54,8 +54,8 @@ Json matrix_content(const RigidTransform& transform) {
 }
 
 /// A trajectory, or what stands for one.
-Json where_content(const DriveOptions& drive) {
-  if (!drive.trajectory.empty()) return {{"trajectory", trajectory_content(drive.trajectory)}};
+Json where_content(const DriveOptions& drive, const DrivenPoses& driven) {
+  if (!drive.trajectory.empty()) return {{"trajectory", trajectory_content(driven.poses)}};
   Json json = {{"height_m", drive.height_m.value_or(kRoofHeight_m)}};
   Json& places = json[drive.path.empty() ? "at" : "path"] = Json::array();
   for (const SensorPlace& place : drive.at)
@@ -67,14 +67,19 @@ Json where_content(const DriveOptions& drive) {
 
 Json drive_content(const DriveOptions& drive) {
   const auto given = [](std::optional<double> value) { return value ? Json(*value) : Json(); };
-  Json json = where_content(drive);
+  DrivenPoses driven;
+  ProgressSink silent;  // scans_along() has said what there was to say
+  if (!drive.trajectory.empty()) driven = driven_poses(drive, silent);
+  Json json = where_content(drive, driven);
   json.update(Json{{"offset_m", {drive.offset_m.x, drive.offset_m.y, drive.offset_m.z}},
                    {"mount", matrix_content(drive.mount)},
                    {"every", drive.every},
                    {"rate_hz", given(drive.rate_hz)},
                    {"spacing_m", given(drive.spacing_m)},
                    {"rolling_shutter", drive.rolling_shutter}});
-  if (!drive.motion.empty()) json["motion"] = trajectory_content(drive.motion);
+  const bool has_motion = !drive.trajectory.empty() && drive.rolling_shutter &&
+                          (!drive.motion.empty() || is_recording(drive.trajectory));
+  if (has_motion) json["motion"] = trajectory_content(driven.motion);
   return json;
 }
 

@@ -111,11 +111,12 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   settings.fields = fields_of(job.format);
   check_drive(job.drive);
   std::vector<ScanMotion> scans;
-  if (!job.drive.trajectory.empty()) scans = scans_along(job.drive, settings.sensor);
+  if (!job.drive.trajectory.empty())
+    scans = scans_along(job.drive, settings.sensor, session.progress);
   checked_output_folder(job.output, job.overwrite, kCommand);  // before long work
   const ModelScene scene(job.model, job.labels, session, WorldFiles::taken);
   if (job.drive.trajectory.empty())
-    scans = scans_along(job.drive, settings.sensor, scene, session.executor);
+    scans = scans_along(job.drive, settings.sensor, scene, session.executor, session.progress);
   ResumableFolder folder(job.output, job.overwrite, kCommand,
                          simulate_content(job, settings, scene));
   ScanSimulator simulator(scene, settings, session.executor);

@@ -3,6 +3,7 @@
 #include "adasplats/cloud/load/recording_poses.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "adasplats/core/error.h"
@@ -62,18 +63,30 @@ RecordedPoses poses_of_file(const FrameDrive& drive, const std::vector<double>& 
   return found;
 }
 
+/// What a topic says that tells where one frame is in another.
+const FrameEdge& edge_of_topic(const TopicSurvey& topic) {
+  if (topic.edges.size() != 1)
+    throw Error(ErrorKind::data, topic.topic.name + " has poses of " +
+                                     std::to_string(topic.edges.size()) +
+                                     " pairs of frames, expected one");
+  const FrameEdge& edge = topic.edges.begin()->second;
+  if (!edge.fault.empty()) throw Error(ErrorKind::data, edge.fault);
+  return edge;
+}
+
+/// "of 'base_link' in 'odom' by /odometry".
+std::string words_of_edge(const FrameEdge& edge, const std::string& topic) {
+  return (edge.child.empty() ? "" : "of '" + edge.child + "' ") + "in '" + edge.parent + "' by " +
+         topic;
+}
+
 /// The poses of a topic that says where one frame is in another.
 RecordedPoses poses_of_topic(const FrameDrive& drive, const FrameTree& tree,
                              const TopicSurvey& topic, const TopicSurvey& clouds) {
   const std::string& name = topic.topic.name;
-  if (topic.edges.size() != 1)
-    throw Error(ErrorKind::data, name + " has poses of " + std::to_string(topic.edges.size()) +
-                                     " pairs of frames, expected one");
-  const FrameEdge& edge = topic.edges.begin()->second;
-  if (!edge.fault.empty()) throw Error(ErrorKind::data, edge.fault);
+  const FrameEdge& edge = edge_of_topic(topic);
   RecordedPoses found;
-  found.by = "of '" + edge.child + "' in '" + edge.parent + "' by " + name;
-  if (edge.child.empty()) found.by = "in '" + edge.parent + "' by " + name;
+  found.by = words_of_edge(edge, name);
   if (drive.mount) {
     found.poses = mounted(edge.parent_from_child, drive.mount->transform());
   } else if (edge.child.empty()) {
@@ -118,29 +131,109 @@ Error no_poses(const RecordingSurvey& survey, const FrameTree& tree, const Topic
                    "; expected tf from a fixed frame to it, `poses_topic` or a `trajectory`");
 }
 
+/// The topic of that name. Errors: usage where it has no poses.
+const TopicSurvey& stated_topic_of_poses(const RecordingSurvey& survey, const std::string& name) {
+  const auto topic = survey.topics.find(name);
+  if (topic == survey.topics.end() || topic->second.edges.empty())
+    throw Error(ErrorKind::usage, name + " is no topic with poses; there are " +
+                                      list_of_topics(survey, [](const TopicSurvey& one) {
+                                        return !one.edges.empty();
+                                      }));
+  return topic->second;
+}
+
+/// The only topic of odometry or poses; null: none. Errors: usage where there are several.
+const TopicSurvey* only_topic_of_poses(const RecordingSurvey& survey) {
+  const TopicSurvey* only = nullptr;
+  for (const auto& [name, topic] : survey.topics) {
+    if (!tells_one_pose(topic)) continue;
+    if (only != nullptr)
+      throw Error(ErrorKind::usage,
+                  "has several topics of poses: " + list_of_topics(survey, &tells_one_pose) +
+                      "; `poses_topic` states which");
+    only = &topic;
+  }
+  return only;
+}
+
 RecordedPoses poses_within(const FrameDrive& drive, const RecordingSurvey& survey,
                            const TopicSurvey& clouds) {
   const FrameTree tree = tree_of(survey);
   if (!drive.poses_topic.empty()) {
-    const auto topic = survey.topics.find(drive.poses_topic);
-    if (topic == survey.topics.end() || topic->second.edges.empty())
-      throw Error(ErrorKind::usage, drive.poses_topic + " is no topic with poses; there are " +
-                                        list_of_topics(survey, [](const TopicSurvey& one) {
-                                          return !one.edges.empty();
-                                        }));
-    if (topic->second.is_transforms()) return poses_of_tree(drive, tree, clouds.frame);
-    return poses_of_topic(drive, tree, topic->second, clouds);
+    const TopicSurvey& topic = stated_topic_of_poses(survey, drive.poses_topic);
+    if (topic.is_transforms()) return poses_of_tree(drive, tree, clouds.frame);
+    return poses_of_topic(drive, tree, topic, clouds);
   }
   if (tree.moves(clouds.frame)) return poses_of_tree(drive, tree, clouds.frame);
-  std::vector<const TopicSurvey*> candidates;
+  const TopicSurvey* const only = only_topic_of_poses(survey);
+  if (only == nullptr) throw no_poses(survey, tree, clouds);
+  return poses_of_topic(drive, tree, *only, clouds);
+}
+
+/// The only frame that moves in the one above it.
+std::string only_moving_frame(const RecordingSurvey& survey) {
+  std::set<std::string> moving;
   for (const auto& [name, topic] : survey.topics)
-    if (tells_one_pose(topic)) candidates.push_back(&topic);
-  if (candidates.size() > 1)
-    throw Error(ErrorKind::usage,
-                "has several topics of poses: " + list_of_topics(survey, &tells_one_pose) +
-                    "; `poses_topic` states which");
-  if (candidates.empty()) throw no_poses(survey, tree, clouds);
-  return poses_of_topic(drive, tree, *candidates.front(), clouds);
+    for (const auto& [frames, edge] : topic.edges)
+      if (topic.is_transforms() && !edge.is_static && edge.parent_from_child.size() > 1)
+        moving.insert(edge.child);
+  if (moving.empty())
+    throw Error(ErrorKind::data,
+                "has no poses: neither transforms that change nor topics of odometry or poses");
+  if (moving.size() == 1) return *moving.begin();
+  std::string all;
+  for (const std::string& frame : moving) all += (all.empty() ? "'" : ", '") + frame + "'";
+  throw Error(ErrorKind::usage, "several frames move by tf (" + all +
+                                    ") and no clouds tell which is the sensor's; `poses_topic` "
+                                    "states a topic of odometry or poses");
+}
+
+/// Of a recording without clouds.
+RecordedPoses poses_without_clouds(const RecordingSurvey& survey, const std::string& poses_topic) {
+  const TopicSurvey* const topic = poses_topic.empty()
+                                       ? only_topic_of_poses(survey)
+                                       : &stated_topic_of_poses(survey, poses_topic);
+  if (topic == nullptr || topic->is_transforms())
+    return poses_of_tree({}, tree_of(survey), only_moving_frame(survey));
+  const FrameEdge& edge = edge_of_topic(*topic);
+  return {edge.parent_from_child, words_of_edge(edge, topic->topic.name), ""};
+}
+
+/// poses_within(), but for a vehicle that nothing joins to the clouds.
+RecordedPoses poses_of_clouds_or_vehicle(const RecordingSurvey& survey, const TopicSurvey& clouds,
+                                         const std::string& poses_topic) {
+  FrameDrive drive;
+  drive.poses_topic = poses_topic;
+  const FrameTree tree = tree_of(survey);
+  const bool by_tree = poses_topic.empty()
+                           ? tree.moves(clouds.frame)
+                           : stated_topic_of_poses(survey, poses_topic).is_transforms();
+  const TopicSurvey* topic = nullptr;
+  if (!by_tree)
+    topic = poses_topic.empty() ? only_topic_of_poses(survey)
+                                : &stated_topic_of_poses(survey, poses_topic);
+  if (topic == nullptr) return poses_within(drive, survey, clouds);
+  const FrameEdge& edge = edge_of_topic(*topic);
+  const bool is_joined = edge.child.empty() || edge.child == clouds.frame ||
+                         (tree.has(edge.child) && tree.has(clouds.frame));
+  if (is_joined) return poses_within(drive, survey, clouds);
+  return {edge.parent_from_child,
+          words_of_edge(edge, topic->topic.name) + ", which nothing joins to '" + clouds.frame +
+              "' of the clouds",
+          ""};
+}
+
+/// Calls find(), and puts the recording before what is wrong with it.
+template <class Find>
+RecordedPoses named_errors(const RecordingSurvey& survey, const Find& find) {
+  try {
+    return find();
+  } catch (const Error& error) {
+    const std::string path = survey.recording->path().string();
+    const std::string message = error.what();
+    if (message.starts_with(path)) throw;
+    throw Error(error.kind(), path + ": " + message);
+  }
 }
 
 }  // namespace
@@ -172,14 +265,15 @@ const TopicSurvey& topic_of_clouds(const RecordingSurvey& survey, const std::str
 RecordedPoses poses_of_clouds(const FrameDrive& drive, const RecordingSurvey& survey,
                               const TopicSurvey& clouds, const std::vector<double>& stamps_s) {
   if (!drive.trajectory.empty()) return poses_of_file(drive, stamps_s);
-  try {
-    return poses_within(drive, survey, clouds);
-  } catch (const Error& error) {
-    const std::string path = survey.recording->path().string();
-    const std::string message = error.what();
-    if (message.starts_with(path)) throw;
-    throw Error(error.kind(), path + ": " + message);
-  }
+  return named_errors(survey, [&] { return poses_within(drive, survey, clouds); });
+}
+
+RecordedPoses poses_of_carrier(const RecordingSurvey& survey, const TopicSurvey* clouds,
+                               const std::string& poses_topic) {
+  return named_errors(survey, [&] {
+    return clouds == nullptr ? poses_without_clouds(survey, poses_topic)
+                             : poses_of_clouds_or_vehicle(survey, *clouds, poses_topic);
+  });
 }
 
 }  // namespace adasplats

@@ -26,4 +26,10 @@ struct RecordedPoses {
 RecordedPoses poses_of_clouds(const FrameDrive& drive, const RecordingSurvey& survey,
                               const TopicSurvey& clouds, const std::vector<double>& stamps_s);
 
+/// The poses of what carried the sensor, for who drives that way again: those of the clouds' frame,
+/// or of a vehicle that nothing joins to it; without `clouds` (null) those of `poses_topic`, of the
+/// only topic of poses, or of the only frame that moves by tf. Errors: usage, data.
+RecordedPoses poses_of_carrier(const RecordingSurvey& survey, const TopicSurvey* clouds,
+                               const std::string& poses_topic);
+
 }  // namespace adasplats

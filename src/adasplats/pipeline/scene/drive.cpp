@@ -7,7 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "adasplats/cloud/load/recorded_trajectory.h"
 #include "adasplats/core/error.h"
+#include "adasplats/io/bags/recording.h"
 #include "adasplats/pipeline/session/inputs.h"
 
 namespace adasplats {
@@ -52,6 +54,10 @@ void check_drive(const DriveOptions& drive) {
     throw Error(ErrorKind::usage, "`rate` and `spacing` cannot stand together");
   if (!drive.motion.empty() && !drive.rolling_shutter)
     throw Error(ErrorKind::usage, "`motion` is of use with `rolling_shutter` alone");
+  const bool is_recorded = has_file && is_recording(drive.trajectory);
+  require_effect(!drive.topic.empty(), is_recorded, "topic", "a recording as `trajectory` alone");
+  require_effect(!drive.poses_topic.empty(), is_recorded, "poses_topic",
+                 "a recording as `trajectory` alone");
   require_effect(!drive.motion.empty(), has_file, "motion", "`trajectory` alone");
   require_effect(drive.speed_mps.has_value(), has_path, "speed", "`path` alone");
   require_effect(drive.height_m.has_value(), !has_file, "height", "`at` and `path` alone");
@@ -63,20 +69,37 @@ void check_drive(const DriveOptions& drive) {
   require_finite(drive);
 }
 
-std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor) {
-  check_drive(drive);
-  if (drive.trajectory.empty()) throw std::logic_error("scans_along: a path without a model");
-  const Trajectory given = load_trajectory(drive.trajectory);
-  Trajectory all = given;
-  if (drive.rate_hz) all = resampled_by_time(all, *drive.rate_hz);
-  if (drive.spacing_m) all = resampled_by_distance(all, *drive.spacing_m);
-  if (drive.motion.empty()) return scans_at(drive, sensor, all, given);
-  return scans_at(drive, sensor, all, load_trajectory(drive.motion));
+DrivenPoses driven_poses(const DriveOptions& drive, ProgressSink& progress) {
+  DrivenPoses driven;
+  require_input(drive.trajectory);
+  if (is_recording(drive.trajectory)) {
+    RecordedTrajectory recorded =
+        trajectory_of_recording(drive.trajectory, drive.topic, drive.poses_topic, progress);
+    progress.warn(drive.trajectory.string() + ": " + std::to_string(recorded.poses.size()) +
+                  " poses " + recorded.by);
+    driven = {std::move(recorded.poses), std::move(recorded.motion)};
+  } else {
+    driven.poses = driven.motion = load_trajectory(drive.trajectory);
+  }
+  if (!drive.motion.empty()) driven.motion = load_trajectory(drive.motion);
+  return driven;
 }
 
 std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
-                                    const ModelScene& scene, const Executor& executor) {
-  if (!drive.trajectory.empty()) return scans_along(drive, sensor);
+                                    ProgressSink& progress) {
+  check_drive(drive);
+  if (drive.trajectory.empty()) throw std::logic_error("scans_along: a path without a model");
+  DrivenPoses driven = driven_poses(drive, progress);
+  Trajectory all = std::move(driven.poses);
+  if (drive.rate_hz) all = resampled_by_time(all, *drive.rate_hz);
+  if (drive.spacing_m) all = resampled_by_distance(all, *drive.spacing_m);
+  return scans_at(drive, sensor, all, driven.motion);
+}
+
+std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
+                                    const ModelScene& scene, const Executor& executor,
+                                    ProgressSink& progress) {
+  if (!drive.trajectory.empty()) return scans_along(drive, sensor, progress);
   check_drive(drive);
   PathDrive how;
   how.height_m = drive.height_m.value_or(kRoofHeight_m);

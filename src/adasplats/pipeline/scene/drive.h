@@ -4,10 +4,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "adasplats/cloud/poses/mount.h"
 #include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/core/progress.h"
 #include "adasplats/core/setting.h"
 #include "adasplats/pipeline/scene/placed_poses.h"
 #include "adasplats/sensors/lidar_model.h"
@@ -17,7 +19,8 @@ namespace adasplats {
 
 /// Where a sensor drives: by `trajectory`, or without a recording by `at` or `path`.
 struct DriveOptions {
-  std::filesystem::path trajectory;  ///< pose file or sequence folder
+  std::filesystem::path trajectory;  ///< pose file, sequence folder or recording
+  std::string topic, poses_topic;    ///< of a recording (trajectory_of_recording()); empty: found
   std::vector<SensorPlace> at;       ///< places where it stands, one scan each
   std::vector<PathCorner> path;      ///< along straight lines
   std::optional<double> speed_mps;   ///< on a path; kTownSpeed_mps
@@ -67,6 +70,16 @@ void visit_settings(DriveOptions& drive, Visit&& visit) {
       Setting{.name = "rolling_shutter",
               .help = "The sensor moves while it turns; a pose is that of the middle of its scan"},
       drive.rolling_shutter);
+  visit(Setting{.name = "topic",
+                .help = "Of a recording as trajectory: the topic of points at whose times it is "
+                        "taken (default: the only one)",
+                .value = "NAME"},
+        drive.topic);
+  visit(Setting{.name = "poses_topic",
+                .help = "Of a recording as trajectory: the topic of its poses, tf, odometry or "
+                        "poses (default: tf, else the only one)",
+                .value = "NAME"},
+        drive.poses_topic);
   visit(Setting{.name = "motion",
                 .help = "How it moves where the trajectory has too few poses to tell (with a "
                         "rolling shutter)"},
@@ -77,11 +90,21 @@ void visit_settings(DriveOptions& drive, Visit&& visit) {
 /// has no effect or is out of range.
 void check_drive(const DriveOptions& drive);
 
+/// The poses of `trajectory`, and how the sensor moves between and around them: as `motion` says, a
+/// recording with all of its poses, else as the poses do. Errors: those of load_trajectory() and
+/// trajectory_of_recording().
+struct DrivenPoses {
+  Trajectory poses, motion;
+};
+DrivenPoses driven_poses(const DriveOptions& drive, ProgressSink& progress);
+
 /// The scans of a trajectory. Errors: those of check_drive(); usage, data (no poses).
-std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor);
+std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
+                                    ProgressSink& progress);
 
 /// Likewise of a trajectory, places or a path in a model. Errors: likewise; data (no ground).
 std::vector<ScanMotion> scans_along(const DriveOptions& drive, const LidarModel& sensor,
-                                    const ModelScene& scene, const Executor& executor);
+                                    const ModelScene& scene, const Executor& executor,
+                                    ProgressSink& progress);
 
 }  // namespace adasplats

@@ -155,13 +155,14 @@ TEST_F(PlacedPoses, RollingShutterOnAPath) {
   drive.path = {{kOrigin.x - 10, kOrigin.y + 3}, {kOrigin.x - 4, kOrigin.y + 3}};
   drive.every = 2;
   drive.rolling_shutter = true;
+  ProgressSink quiet;
   const LidarModel sensor = load_lidar_model("velodyne-vlp-16");
-  const auto scans = scans_along(drive, sensor, scene_, executor_);
+  const auto scans = scans_along(drive, sensor, scene_, executor_, quiet);
   ASSERT_EQ(scans.size(), 4U);
   EXPECT_FALSE(scans[1].knots.empty());
   drive.path.pop_back();
   expect_error(ErrorKind::usage, {"two corners"},
-               [&] { scans_along(drive, sensor, scene_, executor_); });
+               [&] { scans_along(drive, sensor, scene_, executor_, quiet); });
 }
 
 }  // namespace

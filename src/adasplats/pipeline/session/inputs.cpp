@@ -5,8 +5,10 @@
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/file_kind.h"
+#include "adasplats/cloud/load/recorded_trajectory.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
+#include "adasplats/io/bags/recording.h"
 
 namespace adasplats {
 
@@ -65,6 +67,10 @@ bool is_splat_model(const fs::path& file) {
 
 Trajectory load_trajectory(const fs::path& path) {
   require_input(path);
+  if (is_recording(path)) {
+    ProgressSink silent;
+    return trajectory_of_recording(path, "", "", silent).motion;
+  }
   if (!fs::is_directory(path)) return read_trajectory(path);
   return open_kitti_sequence(resolve_cloud_input(path)).trajectory;
 }

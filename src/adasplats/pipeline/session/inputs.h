@@ -31,7 +31,8 @@ std::filesystem::path resolve_cloud_input(const std::filesystem::path& input);
 /// Whether a file is a PLY that has what a splat model has (a radius and a normal).
 bool is_splat_model(const std::filesystem::path& file);
 
-/// The trajectory of a pose file or of a sequence folder.
+/// The trajectory of a pose file or of a sequence folder; of a recording all of its poses
+/// (trajectory_of_recording()).
 Trajectory load_trajectory(const std::filesystem::path& path);
 
 /// Every n-th pose of that trajectory, shifted in world axes. Errors: usage (`every` is 0), data
