@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "adasplats/core/error.h"
+#include "adasplats/io/bags/packed_recording.h"
 #include "adasplats/io/base/input_file.h"
 #include "adasplats/io/base/line_reader.h"
 #include "adasplats/io/base/number_text.h"
@@ -28,7 +30,7 @@ constexpr RecordingKind kRecordingKinds[] = {{"MCAP", ".mcap", &open_mcap},
                                              {"ROS 2 bag", ".db3", &open_sqlite}};
 
 const RecordingKind* kind_of_recording(const fs::path& path) {
-  const std::string extension = lower_case(path.extension().string());
+  const std::string extension = lower_case(without_packing(path).extension().string());
   for (const RecordingKind& kind : kRecordingKinds)
     if (kind.extension == extension) return &kind;
   return nullptr;
@@ -42,7 +44,10 @@ std::string list_of_kinds(std::string_view RecordingKind::*part) {
 }
 
 std::unique_ptr<RecordingFile> open_recording_file(const fs::path& path) {
-  if (const RecordingKind* const kind = kind_of_recording(path)) return kind->open(path);
+  const RecordingKind* const kind = kind_of_recording(path);
+  if (kind != nullptr && without_packing(path) != path)
+    return open_packed_recording(path, kind->open);
+  if (kind != nullptr) return kind->open(path);
   throw data_error({path, {}, {}}, "unknown kind of recording " + shown(path.extension().string()) +
                                        ", understood are " +
                                        list_of_kinds(&RecordingKind::extension));
@@ -61,18 +66,22 @@ std::optional<std::string> yaml_value(std::string_view line, std::string_view ke
 
 }  // namespace
 
-std::vector<fs::path> files_of_ros2_bag(const fs::path& folder) {
+Ros2Bag ros2_bag_in(const fs::path& folder) {
   const fs::path metadata = folder / kMetadataName;
   InputFile input(metadata);
   LineReader reader(input);
   std::vector<fs::path> files;
+  std::string packing, mode;
   bool in_list = false;
   while (const auto line = reader.next_filled()) {
-    const auto packed = yaml_value(*line, "compression_mode:");
-    if (packed && !packed->empty() && lower_case(*packed) != "none")
-      throw data_error({metadata, {}, reader.line()},
-                       "the bag is packed (" + *packed +
-                           "), which is not read: unpack it with `ros2 bag convert`");
+    if (const auto format = yaml_value(*line, "compression_format:")) packing = lower_case(*format);
+    if (const auto packed = yaml_value(*line, "compression_mode:")) {
+      mode = lower_case(*packed);
+      if (!mode.empty() && mode != "none" && mode != "file" && mode != "message")
+        throw data_error({metadata, {}, reader.line()},
+                         "the bag is packed by " + shown(*packed) +
+                             ", which is not read: unpack it with `ros2 bag convert`");
+    }
     const auto file = in_list ? yaml_value(*line, "- ") : std::nullopt;
     if (file) {
       const fs::path name = *file;
@@ -91,7 +100,11 @@ std::vector<fs::path> files_of_ros2_bag(const fs::path& folder) {
     throw Error(
         ErrorKind::data,
         metadata.string() + ": lists no files (relative_file_paths), expected .mcap or .db3");
-  return files;
+  if (mode != "message")
+    packing.clear();
+  else if (packing.empty())
+    packing = "zstd";  // the only one that ROS 2 comes with
+  return {std::move(files), std::move(packing)};
 }
 
 Recording::Recording(const fs::path& path) : path_(path) {
@@ -100,7 +113,12 @@ Recording::Recording(const fs::path& path) : path_(path) {
     files_.push_back(open_recording_file(path));
     return;
   }
-  for (const fs::path& file : files_of_ros2_bag(path)) files_.push_back(open_recording_file(file));
+  const Ros2Bag bag = ros2_bag_in(path);
+  for (const fs::path& file : bag.files) {
+    files_.push_back(open_recording_file(file));
+    if (!bag.message_packing.empty())
+      files_.back() = with_packed_messages(std::move(files_.back()), bag.message_packing, file);
+  }
 }
 
 void Recording::for_each_message(MessageVisitor visit) const {

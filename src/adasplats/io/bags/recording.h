@@ -54,8 +54,8 @@ class RecordingFile {
 
 /// Messages by topics, as robots record them: MCAP (Foxglove's specification, version 0), ROS 1
 /// bags (format 2.0), and ROS 2 bags: a folder with metadata.yaml and files of MCAP or SQLite, or
-/// one such file. It is read from front to back; a chunk is in memory at a time, and of message()
-/// the last four (kMostChunkBytes each at most).
+/// one such file, packed as a whole or not (packed_recording.h). It is read from front to back; a
+/// chunk is in memory at a time, and of message() the last four (kMostChunkBytes each at most).
 class Recording {
  public:
   /// Errors: no_input, data (none of these formats; a folder whose files are not all there).
@@ -70,8 +70,8 @@ class Recording {
   std::vector<std::unique_ptr<RecordingFile>> files_;
 };
 
-/// Whether a path is a recording by its name: .mcap, .bag, .db3, a folder with the metadata.yaml of
-/// a ROS 2 bag.
+/// Whether a path is a recording by its name: .mcap, .bag, .db3, these with .zstd or .zst behind
+/// it, a folder with the metadata.yaml of a ROS 2 bag.
 bool is_recording(const std::filesystem::path& path);
 
 /// "MCAP, ROS 1 bag, ROS 2 bag", for help.
@@ -85,8 +85,12 @@ std::unique_ptr<RecordingFile> open_mcap(const std::filesystem::path& path);
 std::unique_ptr<RecordingFile> open_rosbag(const std::filesystem::path& path);
 std::unique_ptr<RecordingFile> open_sqlite(const std::filesystem::path& path);
 
-/// The files of a ROS 2 bag by its metadata.yaml, in their order. Errors: data (no such list, a
-/// file that is missing, files that are packed as a whole or message by message).
-std::vector<std::filesystem::path> files_of_ros2_bag(const std::filesystem::path& folder);
+/// What a ROS 2 bag consists of by its metadata.yaml.
+struct Ros2Bag {
+  std::vector<std::filesystem::path> files;  ///< in their order
+  std::string message_packing;               ///< of single messages, "zstd"; empty: none
+};
+/// Errors: data (no such list, a packing of another kind than file or message).
+Ros2Bag ros2_bag_in(const std::filesystem::path& folder);
 
 }  // namespace adasplats

@@ -217,8 +217,93 @@ TEST(Ros2Bag, AFolderIsItsFilesInTheirOrder) {
   expect_error(ErrorKind::data, {"metadata.yaml:4", "../other"}, read);
   describe("");
   expect_error(ErrorKind::data, {"relative_file_paths"}, read);
-  describe("    - drive_0.mcap\n", "  compression_mode: FILE\n");
-  expect_error(ErrorKind::data, {"FILE", "ros2 bag convert"}, read);
+  describe("    - drive_0.mcap\n", "  compression_mode: CHUNK\n");
+  expect_error(ErrorKind::data, {"CHUNK", "ros2 bag convert"}, read);
+}
+
+/// A frame of zstd (RFC 8878) of at most 128 KiB: one segment that says its size, one raw block.
+std::string zstd_frame(const std::string& bytes) {
+  const auto size = static_cast<std::uint32_t>(bytes.size());
+  std::string frame("\x28\xb5\x2f\xfd\xa0", 5);
+  for (int k = 0; k < 4; ++k) frame += static_cast<char>(size >> (8 * k));
+  const std::uint32_t block = size << 3 | 1;  // the last one
+  for (int k = 0; k < 3; ++k) frame += static_cast<char>(block >> (8 * k));
+  return frame + bytes;
+}
+
+/// Runs what needs zstd; where the program was built without, expects that to be said.
+template <class F>
+void with_zstd(F&& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::unavailable) throw;
+    EXPECT_NE(std::string(error.what()).find("libzstd-dev"), std::string::npos);
+  }
+}
+
+// Oracle: the same bag as it is.
+TEST(Ros2Bag, FilesThatArePackedAsAWholeLeaveNothingBehind) {
+  const TemporaryFolder folder, unpacked;
+  ASSERT_EQ(setenv("TMPDIR", unpacked.path().c_str(), 1), 0);
+  const std::string plain = mcap_of(kSaid);
+  with_zstd([&] {
+    const auto path = folder.file("drive.mcap.zstd", zstd_frame(plain));
+    EXPECT_TRUE(is_recording(path));
+    expect_said(path);
+    // Frames stand one behind the other.
+    expect_said(folder.file("parts.MCAP.zst",
+                            zstd_frame(plain.substr(0, 100)) + zstd_frame(plain.substr(100))));
+    io_test::write_bytes(folder.path() / "metadata.yaml",
+                         "rosbag2_bagfile_information:\n  version: 4\n  relative_file_paths:\n"
+                         "    - drive.mcap.zstd\n  compression_format: zstd\n"
+                         "  compression_mode: FILE\n");
+    expect_said(folder.path());
+    const auto refused = [&](const std::string& bytes, std::vector<std::string> words) {
+      const auto broken = folder.file("broken.mcap.zstd", bytes);
+      words.push_back(broken.string());
+      expect_error(ErrorKind::data, words, [&] { contents_of(broken); });
+    };
+    const std::string whole = zstd_frame(plain);
+    refused(whole.substr(0, whole.size() - 1), {"end early"});
+    refused(whole.substr(0, 3), {"end early"});
+    refused("this is not zstd but some text", {"zstd is broken"});
+    refused(whole + "more", {"broken"});
+    // What is wrong within is said of the file that the user has.
+    refused(zstd_frame(plain.substr(0, plain.size() / 2)), {"(unpacked)"});
+  });
+  EXPECT_TRUE(std::filesystem::is_empty(unpacked.path()));
+  ASSERT_EQ(setenv("TMPDIR", (unpacked.path() / "absent").c_str(), 1), 0);
+  EXPECT_THROW(contents_of(folder.path() / "drive.mcap.zstd"), Error);
+  ASSERT_EQ(unsetenv("TMPDIR"), 0);
+}
+
+// Oracle: the same messages as they are.
+TEST(Ros2Bag, MessagesThatArePackedOneByOne) {
+  const TemporaryFolder folder;
+  std::vector<Said> packed = kSaid;
+  for (Said& said : packed) said.bytes = zstd_frame(said.bytes);
+  const auto describe = [&](const std::string& format) {
+    io_test::write_bytes(folder.path() / "metadata.yaml",
+                         "rosbag2_bagfile_information:\n  version: 5\n  relative_file_paths:\n"
+                         "    - drive.mcap\n  compression_format: " +
+                             format + "\n  compression_mode: message\n");
+  };
+  describe("zstd");
+  with_zstd([&] {
+    folder.file("drive.mcap", mcap_of(packed));
+    expect_said(folder.path());
+    packed[1].bytes.pop_back();
+    folder.file("drive.mcap", mcap_of(packed));
+    expect_error(ErrorKind::data, {"drive.mcap", "/b", "end early"},
+                 [&] { contents_of(folder.path()); });
+    folder.file("drive.mcap", mcap_of(kSaid));
+    expect_error(ErrorKind::data, {"drive.mcap", "/a", "broken"},
+                 [&] { contents_of(folder.path()); });
+    describe("lz4");
+    expect_error(ErrorKind::data, {"drive.mcap", "lz4", "zstd"},
+                 [&] { contents_of(folder.path()); });
+  });
 }
 
 // Nothing broken escapes but as an Error, and every message that a file gives can be read again.

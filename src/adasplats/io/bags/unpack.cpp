@@ -137,7 +137,55 @@ std::string unpack_bz2(std::string_view packed, std::size_t size, const std::str
                                       ", which this program was built without (" + package + ")"};
 }
 
+[[maybe_unused]] constexpr const char* kZstdPackage = "libzstd-dev";
+
 }  // namespace
+
+#ifdef ADASPLATS_HAVE_ZSTD
+std::string unpack_sized(std::string_view packing, std::string_view packed,
+                         const std::string& where) {
+  if (packing != "zstd")
+    throw Error(ErrorKind::data,
+                where + " is packed with " + shown(packing) + ", understood is zstd");
+  if (packed.empty()) return {};
+  const auto size = ZSTD_getFrameContentSize(packed.data(), packed.size());
+  if (size == ZSTD_CONTENTSIZE_ERROR) throw broken_stream(where, packing, "it begins otherwise");
+  if (size == ZSTD_CONTENTSIZE_UNKNOWN)
+    throw Error(ErrorKind::data, where + " does not say the size that it unpacks to");
+  return unpack(packing, packed, size, where);
+}
+
+void unpack_zstd_stream(FunctionRef<std::string_view(std::size_t)> next,
+                        FunctionRef<void(std::string_view)> take, const std::string& where) {
+  const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(),
+                                                                             &ZSTD_freeDStream);
+  if (!stream || ZSTD_isError(ZSTD_initDStream(stream.get())) != 0) throw std::bad_alloc();
+  std::string piece(ZSTD_DStreamOutSize(), '\0');
+  std::size_t left = 0, done = 0;  // 0: a frame has ended
+  bool is_full = false;            // what came filled the piece, so more may be waiting
+  for (;;) {
+    const std::string_view packed = next(done);
+    if (packed.empty() && !is_full) break;
+    ZSTD_inBuffer in{packed.data(), packed.size(), 0};
+    ZSTD_outBuffer out{piece.data(), piece.size(), 0};
+    left = ZSTD_decompressStream(stream.get(), &out, &in);
+    if (ZSTD_isError(left) != 0) throw broken_stream(where, "zstd", ZSTD_getErrorName(left));
+    take({piece.data(), out.pos});
+    done = in.pos;
+    is_full = out.pos == piece.size() && left != 0;
+  }
+  if (left != 0) throw Error(ErrorKind::data, where + ": its packed bytes end early");
+}
+#else
+std::string unpack_sized(std::string_view, std::string_view, const std::string& where) {
+  throw no_library(where, "zstd", kZstdPackage);
+}
+
+void unpack_zstd_stream(FunctionRef<std::string_view(std::size_t)>,
+                        FunctionRef<void(std::string_view)>, const std::string& where) {
+  throw no_library(where, "zstd", kZstdPackage);
+}
+#endif
 
 std::string unpack(std::string_view packing, std::string_view packed, std::uint64_t size,
                    const std::string& where) {
@@ -155,7 +203,7 @@ std::string unpack(std::string_view packing, std::string_view packed, std::uint6
 #ifdef ADASPLATS_HAVE_ZSTD
   if (packing == "zstd") return unpack_zstd(packed, bytes, where);
 #else
-  if (packing == "zstd") throw no_library(where, "zstd", "libzstd-dev");
+  if (packing == "zstd") throw no_library(where, "zstd", kZstdPackage);
 #endif
 #ifdef ADASPLATS_HAVE_LZ4
   if (packing == "lz4") return unpack_lz4(packed, bytes, where);
