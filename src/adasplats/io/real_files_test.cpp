@@ -277,7 +277,8 @@ TEST_F(RealFiles, E57HasTheReferencesValues) {
   EXPECT_EQ(values_of(cube, "z").at(1), 0.485);
   EXPECT_EQ(values_of(cube, "blue").at(1), 65280);
   const Table integers = read_points(folder_ / "cry-inc+e57__testdata__integer_intensity.e57");
-  EXPECT_EQ(values_of(integers, "intensity"), (std::vector<double>{-66, 66}));
+  // -66 and 66 of the intensityLimits -66 and 66.
+  EXPECT_EQ(values_of(integers, "intensity"), (std::vector<double>{0, 1}));
 }
 
 }  // namespace

@@ -194,7 +194,8 @@ void take_comment(const PointFile& file, const std::string& comment, ProgressSin
   if (comment.starts_with(kWithheld))
     progress.warn(file.path.string() + ": " + comment.substr(kWithheld.size()) +
                   " are flagged as withheld (deleted), left out");
-  if (comment.starts_with("salvaged") || comment.starts_with("left out: "))
+  if (comment.starts_with("salvaged") || comment.starts_with("left out: ") ||
+      comment.starts_with("intensities: "))
     progress.warn(file.path.string() + ": " + comment);
   if (comment.starts_with("geographic: ") && file.table.rows > 0)
     throw Error(ErrorKind::data,

@@ -119,6 +119,45 @@ void add_starts(const E57Scan& scan, const std::vector<std::string>& columns, E5
     time_s += *scan.start_gps_s;
 }
 
+/// Whether the scans say of all intensities what they are between.
+bool have_intensity_limits(const std::vector<E57Scan>& scans) {
+  return std::ranges::all_of(scans, [](const E57Scan& scan) {
+    return scan.field("intensity") == nullptr || scan.intensity_limits;
+  });
+}
+
+/// Brings the intensities of a scan to 0..1 by its limits, so that those of all scans are of one
+/// scale. Gives how many are beyond the limits by more than a thousandth of their distance.
+std::size_t scale_intensities(const E57Scan& scan, const std::vector<std::string>& columns,
+                              E57Points& points) {
+  constexpr double kBeyond = 1e-3;
+  const auto found = std::ranges::find(columns, "intensity");
+  if (found == columns.end() || !scan.intensity_limits) return 0;
+  const auto [least, most] = *scan.intensity_limits;
+  std::size_t beyond = 0;
+  for (double& value : points.columns[static_cast<std::size_t>(found - columns.begin())]) {
+    value = (value - least) / (most - least);
+    if (value < -kBeyond || value > 1 + kBeyond) ++beyond;
+  }
+  return beyond;
+}
+
+/// What was done to intensities, where that is not what the file says.
+void tell_of_intensities(const std::vector<E57Scan>& scans, std::size_t beyond, Table& table) {
+  std::size_t with = 0, limited = 0;
+  for (const E57Scan& scan : scans) {
+    if (scan.field("intensity") == nullptr) continue;
+    ++with;
+    if (scan.intensity_limits) ++limited;
+  }
+  if (limited > 0 && limited < with)
+    table.comments.push_back("intensities: as stored, since only " + std::to_string(limited) +
+                             " of " + std::to_string(with) + " scans have intensityLimits");
+  if (beyond > 0)
+    table.comments.push_back("intensities: " + std::to_string(beyond) +
+                             " are beyond the intensityLimits of their scan, and so beyond 0 to 1");
+}
+
 void add_comments(const E57Content& content, Table& table) {
   if (content.images > 0)
     table.comments.push_back("left out: " + std::to_string(content.images) + " images");
@@ -141,14 +180,18 @@ Table read_e57(const std::filesystem::path& path) {
   const std::vector<std::string> names = columns.names;
   const bool have_starts =
       std::ranges::all_of(scans, [](const E57Scan& scan) { return scan.start_gps_s.has_value(); });
+  const bool have_limits = have_intensity_limits(scans);
+  std::size_t beyond = 0;
   E57Table gathered(std::move(columns));
   for (std::size_t k = 0; k < scans.size(); ++k) {
     E57Points points = read_e57_points(file, scans[k], sections[k], names);
     if (have_starts) add_starts(scans[k], names, points);
+    if (have_limits) beyond += scale_intensities(scans[k], names, points);
     gathered.add(scans[k], std::move(points));
   }
   Table table = gathered.take(scans.size());
   add_comments(content, table);
+  tell_of_intensities(scans, beyond, table);
   return table;
 }
 

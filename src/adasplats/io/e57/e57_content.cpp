@@ -45,6 +45,7 @@ class ScanReader {
     if (const XmlElement* const start = element_.child("acquisitionStart"))
       if (const XmlElement* const value = start->child("dateTimeValue"))
         scan.start_gps_s = parsed<double>("dateTimeValue of acquisitionStart", value->text);
+    scan.intensity_limits = intensity_limits();
     return scan;
   }
 
@@ -129,6 +130,23 @@ class ScanReader {
                   ", expected Integer, ScaledInteger, Float or String");
     }
     return field;
+  }
+
+  /// None where they bound nothing: writers put 0 and 0 for what they do not know.
+  std::optional<std::pair<double, double>> intensity_limits() const {
+    const XmlElement* const limits = element_.child("intensityLimits");
+    const auto limit = [&](const char* name) {
+      const XmlElement* const one = limits == nullptr ? nullptr : limits->child(name);
+      if (one == nullptr) return std::numeric_limits<double>::quiet_NaN();
+      const double stored =
+          parsed<double>(std::string(name) + " of its intensityLimits", one->text);
+      const std::string* const type = one->attribute("type");
+      if (type == nullptr || *type != "ScaledInteger") return stored;
+      return stored * number_or(*one, "scale", 1.0) + number_or(*one, "offset", 0.0);
+    };
+    const double least = limit("intensityMinimum"), most = limit("intensityMaximum");
+    if (!(least < most)) return std::nullopt;
+    return std::pair(least, most);
   }
 
   void take_pose(E57Scan& scan) const {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "adasplats/core/maths/rigid_transform.h"
@@ -41,6 +42,9 @@ struct E57Scan {
   /// from it; of a cloud made of several scans it is not.
   bool has_scanner = false;
   std::optional<double> start_gps_s;  ///< acquisitionStart, s since 1980-01-06
+  /// Least and greatest intensity that the scanner can give (intensityLimits), the one below the
+  /// other.
+  std::optional<std::pair<double, double>> intensity_limits;
   std::vector<E57Field> fields;
   std::uint64_t points = 0;
   std::uint64_t section_offset = 0;  ///< physical; means nothing where there are no points

@@ -222,6 +222,51 @@ TEST(E57, ColumnsOfTheStandardAndOfExtensions) {
   EXPECT_EQ(values_of(table, "las:x"), (Doubles{10, 11, 12}));
 }
 
+std::string limits_of(const std::string& least, const std::string& most) {
+  return "<intensityLimits type=\"Structure\"><intensityMinimum type=\"Float\">" + least +
+         "</intensityMinimum><intensityMaximum type=\"Float\">" + most +
+         "</intensityMaximum></intensityLimits>";
+}
+
+// Oracle: by hand.
+TEST(E57, IntensitiesAreBetweenTheirLimits) {
+  std::vector<std::string> streams = three_points();
+  streams.push_back(stream_of<float>({100, 150, 200}));
+  const std::string fields = xyz_fields() + float_field("intensity", true);
+  const auto two_scans = [&](const std::string& first, const std::string& second) {
+    E57Composer composer;
+    composer.add_scan(3, fields, streams, first);
+    composer.add_scan(3, fields, streams, second);
+    composer.add_scan(3, xyz_fields(), three_points());  // has no intensities to limit
+    return read_composed(composer.file());
+  };
+  const auto first_six = [](const Table& table) {
+    Doubles values = values_of(table, "intensity");
+    values.resize(6);
+    return values;
+  };
+  const Table both = two_scans(limits_of("100", "200"), limits_of("0", "400"));
+  EXPECT_EQ(first_six(both), (Doubles{0, 0.5, 1, 0.25, 0.375, 0.5}));
+  EXPECT_TRUE(std::isnan(values_of(both, "intensity")[7]));
+  EXPECT_TRUE(both.comments.empty());
+  const Doubles stored = {100, 150, 200, 100, 150, 200};
+  const Table one = two_scans(limits_of("100", "200"), "");
+  EXPECT_EQ(first_six(one), stored);
+  ASSERT_EQ(one.comments.size(), 1U);
+  EXPECT_NE(one.comments[0].find("1 of 2 scans have intensityLimits"), std::string::npos);
+  EXPECT_EQ(first_six(two_scans(limits_of("0", "0"), limits_of("", ""))), stored) << "not known";
+  const Table beyond = two_scans(limits_of("0", "160"), limits_of("100", "200"));
+  EXPECT_EQ(first_six(beyond)[2], 1.25);
+  ASSERT_EQ(beyond.comments.size(), 1U);
+  EXPECT_NE(beyond.comments[0].find("intensities: 1 are beyond"), std::string::npos);
+  const std::string scaled =
+      "<intensityLimits type=\"Structure\"><intensityMinimum type=\"ScaledInteger\" scale=\"10\" "
+      "offset=\"50\">5</intensityMinimum><intensityMaximum type=\"Integer\">200"
+      "</intensityMaximum></intensityLimits>";
+  EXPECT_EQ(first_six(two_scans(scaled, scaled)), (Doubles{0, 0.5, 1, 0, 0.5, 1}));
+  EXPECT_THROW(two_scans(limits_of("much", "more"), ""), Error);
+}
+
 TEST(E57, ColumnsThatOnlySomeScansHave) {
   E57Composer composer;
   std::vector<std::string> streams = three_points();
