@@ -47,6 +47,10 @@ void sort_beams(LidarFile& file) {
   reorder(file.model.firing_times_s, order);
   reorder(file.model.range_offsets_m, order);
   reorder(file.model.ring_noise_m, order);
+  if (file.model.packets) {
+    reorder(file.model.packets->laser_ids, order);
+    reorder(file.model.packets->range_offsets_m, order);
+  }
   reorder(file.column_steps, order);
   reorder(file.column_phases, order);
 }
@@ -111,6 +115,7 @@ void LidarFile::clear_pattern() {
   model.fields.reset();
   model.drop.reset();
   model.body.reset();
+  model.packets.reset();
   model.free_pattern.clear();
   model.rosette.reset();
   column_steps.clear();

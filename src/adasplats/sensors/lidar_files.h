@@ -60,6 +60,10 @@ std::vector<double> even_fan_rad(int beams, double top_deg, double bottom_deg);
 /// R_y(eta) with z up would turn +x down.)
 Vec3f direction_of(double azimuth_rad, double elevation_rad);
 
+/// The ray of beam `ring` of a sensor whose head has turned to `head_rad`, counter-clockwise from
+/// +x; without column and time.
+Firing firing_at(const LidarModel& model, std::size_t ring, double head_rad);
+
 /// Firing `column` of beam `ring` of a sensor whose head turns.
 Firing turned_firing(const LidarModel& model, std::size_t ring, std::uint32_t column);
 

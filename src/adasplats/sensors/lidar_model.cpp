@@ -45,17 +45,13 @@ Vec3f direction_of(double azimuth_rad, double elevation_rad) {
 
 double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
 
-Firing turned_firing(const LidarModel& model, std::size_t ring, std::uint32_t column) {
-  const double share = static_cast<double>(column) / model.columns;
-  const double late_s = model.firing_times_s.empty() ? 0.0 : model.firing_times_s[ring];
-  const double angle_rad = (share + late_s * model.rotation_hz) * kTurn;
-  const double head_rad = model.first_azimuth_rad + (model.clockwise ? -angle_rad : angle_rad);
+Firing firing_at(const LidarModel& model, std::size_t ring, double head_rad) {
   const double offset_rad =
       model.azimuth_offsets_rad.empty() ? 0.0 : model.azimuth_offsets_rad[ring];
   Firing firing{direction_of(head_rad + offset_rad, model.elevations_rad[ring]),
                 static_cast<std::uint16_t>(ring),
-                column,
-                static_cast<float>(share / model.rotation_hz + late_s),
+                0,
+                0,
                 {}};
   if (!model.beam_origins_m.empty()) {
     const Vec3d head = model.beam_origins_m[ring];
@@ -64,6 +60,17 @@ Firing turned_firing(const LidarModel& model, std::size_t ring, std::uint32_t co
     firing.origin =
         vec_cast<float>(Vec3d{cos * head.x - sin * head.y, sin * head.x + cos * head.y, head.z});
   }
+  return firing;
+}
+
+Firing turned_firing(const LidarModel& model, std::size_t ring, std::uint32_t column) {
+  const double share = static_cast<double>(column) / model.columns;
+  const double late_s = model.firing_times_s.empty() ? 0.0 : model.firing_times_s[ring];
+  const double angle_rad = (share + late_s * model.rotation_hz) * kTurn;
+  Firing firing =
+      firing_at(model, ring, model.first_azimuth_rad + (model.clockwise ? -angle_rad : angle_rad));
+  firing.column = column;
+  firing.time_s = static_cast<float>(share / model.rotation_hz + late_s);
   return firing;
 }
 

@@ -9,6 +9,7 @@
 
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/sensors/divergence.h"
+#include "adasplats/sensors/packet_layout.h"
 #include "adasplats/sensors/ray_drop_model.h"
 #include "adasplats/sensors/unit_fields.h"
 #include "adasplats/sensors/unit_intensity.h"
@@ -62,6 +63,8 @@ struct LidarModel {
   std::optional<RayDropModel> drop;
   /// Its returns from what carries it; without: none.
   std::optional<VehicleBody> body;
+  /// How its packets are laid out; without: none are known.
+  std::optional<PacketLayout> packets;
   std::uint32_t columns = 0;     ///< azimuth steps a revolution
   double first_azimuth_rad = 0;  ///< of the head when a revolution begins
   double rotation_hz = 10.0;     ///< revolutions, or scans of a free pattern, a second

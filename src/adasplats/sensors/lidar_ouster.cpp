@@ -150,6 +150,23 @@ void read_frames(const Metadata& metadata, LidarModel& model) {
   model.beam_origins_m.assign(model.elevations_rad.size(), origin);
 }
 
+/// Which packets the metadata speak of; none where it is a profile that is not known. Ranges count
+/// from the axis. Metadata from before there were profiles say none.
+std::optional<PacketLayout> packets_of(const Metadata& metadata, const LidarModel& model) {
+  const std::string profile = metadata.text("udp_profile_lidar");
+  PacketLayout layout;
+  if (profile.empty() || profile == "LEGACY") {
+    layout.format = PacketFormat::ouster_legacy;
+  } else if (profile == "RNG19_RFL8_SIG16_NIR16") {
+    layout.format = PacketFormat::ouster_single;
+  } else {
+    return std::nullopt;
+  }
+  const Vec3d along = beam_origin(metadata);
+  layout.range_offsets_m.assign(model.elevations_rad.size(), -std::hypot(along.x, along.z));
+  return layout;
+}
+
 /// The sensor of the library with the same optics: ranges, noise, divergence.
 LidarFile base_of(const std::string& product_line, std::size_t beams) {
   if (product_line.starts_with("OS-0")) return *read_library_lidar("ouster-os0-128");
@@ -182,6 +199,10 @@ LidarFile read_ouster_json(std::string_view text, const std::filesystem::path& p
   if (metadata.text("udp_profile_lidar").ends_with("_DUAL")) model.most_returns = 2;
   read_mode(metadata, model);
   read_frames(metadata, model);
+  model.packets = packets_of(metadata, model);
+  if (model.packets)
+    for (std::size_t beam = 0; beam < model.elevations_rad.size(); ++beam)
+      model.packets->laser_ids.push_back(static_cast<std::uint32_t>(beam));
   return file;
 }
 

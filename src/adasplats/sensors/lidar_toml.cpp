@@ -59,6 +59,8 @@ const Keys& sensor_keys() {
                             "beam_origins_m",
                             "range_offsets_m",
                             "ring_noise_m",
+                            "packets",
+                            "laser_ids",
                             "intensity",
                             "fields",
                             "drop",
@@ -398,6 +400,26 @@ VehicleBody read_body(const SensorTable& sensor, std::size_t rings) {
   return body;
 }
 
+/// A word for the format, and each number below `beams` once.
+void read_packets(const SensorTable& table, std::size_t beams, LidarModel& model) {
+  if (table.has("packets")) {
+    const std::string word = table.text("packets", "");
+    const std::vector<std::string> words = list_of<PacketFormat>(kPacketFormats);
+    if (std::ranges::find(words, word) == words.end())
+      throw table.error("packets", "are of no known format: " + unknown_word("it", word, words));
+    if (!model.packets) model.packets.emplace();
+    model.packets->format = value_of(word, kPacketFormats);
+  }
+  if (!table.has("laser_ids")) return;
+  if (!model.packets) throw table.error("laser_ids", "needs packets, their format");
+  std::vector<std::uint32_t> ids = table.whole_numbers("laser_ids", 0);
+  std::vector<std::uint32_t> sorted = ids;
+  std::ranges::sort(sorted);
+  for (std::size_t i = 0; i < sorted.size(); ++i)
+    if (sorted[i] != i) throw table.error("laser_ids", "has not each number from 0 on once");
+  read_one_a_beam(table, "laser_ids", beams, std::move(ids), model.packets->laser_ids);
+}
+
 void read_beams(const SensorTable& table, LidarFile& file) {
   LidarModel& model = file.model;
   if (table.has("elevations_deg") || has_fan(table) || !file.has_beams()) {
@@ -417,6 +439,7 @@ void read_beams(const SensorTable& table, LidarFile& file) {
                   table.numbers("range_offsets_m", -kFar_m, kFar_m), model.range_offsets_m);
   read_one_a_beam(table, "ring_noise_m", beams, table.numbers("ring_noise_m", 0, kFar_m),
                   model.ring_noise_m);
+  read_packets(table, beams, model);
   if (table.has("intensity")) model.intensity = read_intensity(table, beams);
   if (table.has("fields")) model.fields = read_fields(table, beams);
   if (table.has("drop")) model.drop = ray_drop_of_table(table.raw_table("drop"), table.path());
@@ -521,8 +544,8 @@ void read_divergence(const SensorTable& table, LidarModel& model) {
 void check_untouched(const SensorTable& table, const LidarModel& model) {
   for (const char* key :
        {"azimuth_offsets_deg", "beam_origins_m", "firing_times_us", "column_steps", "column_phases",
-        "columns", "first_azimuth_deg", "clockwise", "range_offsets_m", "ring_noise_m", "intensity",
-        "fields", "drop", "body"})
+         "columns", "first_azimuth_deg", "clockwise", "range_offsets_m", "ring_noise_m", "packets",
+         "laser_ids", "intensity", "fields", "drop", "body"})
     if (table.has(key))
       throw table.error(key, "does not fit a sensor that is a rosette or a list of rays");
   for (const Firing& firing : model.free_pattern)

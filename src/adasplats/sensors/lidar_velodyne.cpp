@@ -237,14 +237,21 @@ LidarFile read_velodyne_yaml(std::string_view text, const std::filesystem::path&
                                 std::to_string(calibration.lasers.size()));
   const auto family = family_of(calibration, path.filename().string());
   LidarFile file = family ? *read_library_lidar(family->name) : unknown_turning_lidar();
+  const std::optional<PacketLayout> packets = file.model.packets;
   file.clear_pattern();
   LidarModel& model = file.model;
   model.name = path.stem().string();
   model.source = path.filename().string() + (family ? std::string(", like ") + family->name : "");
   for (const Laser& laser : calibration.lasers) add_laser(laser, model);
-  if (family)
-    for (const int id : laser_ids(calibration))
+  if (family && packets) {
+    model.packets = PacketLayout{packets->format, {}, {}};
+    for (const int id : laser_ids(calibration)) {
       model.firing_times_s.push_back(1e-6 * family->firing_time_us(id));
+      model.packets->laser_ids.push_back(static_cast<std::uint32_t>(id));
+    }
+    for (const Laser& laser : calibration.lasers)
+      model.packets->range_offsets_m.push_back(laser.value("dist_correction", 0));
+  }
   const auto resolution = calibration.header.find("distance_resolution");
   if (resolution != calibration.header.end() && resolution->second >= 0)
     model.range_resolution_m = resolution->second;

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "adasplats/sensors/packet_layout.h"
+
+namespace adasplats {
+
+/// Private to sensors/: where the bytes of packets lie. All numbers are little-endian.
+
+// Velodyne, all sensors: 12 blocks of 100 bytes (flag, azimuth in 0.01 degrees, 32 channels of a
+// range and an intensity), microseconds past the hour of the first firing, two factory bytes.
+inline constexpr std::size_t kVelodyneBlocks = 12, kBlockBytes = 100, kBlockChannels = 32;
+inline constexpr std::size_t kBlockHeadBytes = 4, kVelodyneChannelBytes = 3;
+inline constexpr std::size_t kVelodyneBytes = kVelodyneBlocks * kBlockBytes + 6;
+/// Of the first 32 lasers, the second...
+inline constexpr std::uint16_t kBlockFlags[] = {0xEEFF, 0xDDFF, 0xCCFF, 0xBBFF};
+inline constexpr std::uint16_t kAzimuthSteps = 36000;
+inline constexpr std::uint64_t kMicrosecondsPerHour = 3'600'000'000;
+
+/// The place of a laser's firing in a packet: of column `column` of it.
+struct VelodynePlace {
+  std::size_t block = 0, channel = 0;
+
+  VelodynePlace(std::size_t lasers, std::size_t column, std::size_t laser) {
+    const std::size_t firing = column * lasers + laser;
+    block = firing / kBlockChannels;
+    channel = firing % kBlockChannels;
+  }
+  std::size_t byte() const {
+    return block * kBlockBytes + kBlockHeadBytes + channel * kVelodyneChannelBytes;
+  }
+};
+
+/// Ouster: columns of a head (time in ns, measurement id, then by the profile frame id and encoder
+/// count or status), 12 bytes a channel and a foot.
+struct OusterBytes {
+  std::size_t head = 0, column_head = 16, column_foot = 4, foot = 0;
+  std::size_t lasers = 0;
+
+  OusterBytes(PacketFormat format, std::size_t count) : lasers(count) {
+    if (format != PacketFormat::ouster_single) return;
+    head = foot = 32;
+    column_head = 12;
+    column_foot = 0;
+  }
+  static constexpr std::size_t kChannel = 12, kColumns = 16;
+  std::size_t column() const { return column_head + kChannel * lasers + column_foot; }
+  std::size_t packet() const { return head + kColumns * column() + foot; }
+};
+inline constexpr std::uint32_t kOusterValid = 0xFFFFFFFF;
+inline constexpr std::uint32_t kEncoderTicks = 90112;  ///< a turn
+
+}  // namespace adasplats

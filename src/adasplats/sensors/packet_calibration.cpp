@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What drivers need to know of a sensor beside its packets.
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+#include <string>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/words.h"
+#include "adasplats/sensors/packet_sensor.h"
+
+namespace adasplats {
+namespace {
+
+using MetadataJson = nlohmann::ordered_json;
+
+constexpr double kMillimetres = 1e3;
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+
+Vec3d origin_of_beam(const LidarModel& model, std::size_t ring) {
+  return model.beam_origins_m.empty() ? Vec3d{} : model.beam_origins_m[ring];
+}
+
+double offset_of_beam(const LidarModel& model, std::size_t ring) {
+  return model.azimuth_offsets_rad.empty() ? 0.0 : model.azimuth_offsets_rad[ring];
+}
+
+/// Where a beam begins, split along the beam, upwards across it and to its left: any place is of
+/// that kind, with a distance that is added to the range (read_velodyne_yaml() is the inverse).
+struct LaserOffsets {
+  double along_m = 0, up_m = 0, left_m = 0;
+
+  LaserOffsets(const LidarModel& model, std::size_t ring) {
+    const Vec3d at = origin_of_beam(model, ring);
+    const double offset_rad = offset_of_beam(model, ring), tilt_rad = model.elevations_rad[ring];
+    const double ahead_m = std::cos(offset_rad) * at.x + std::sin(offset_rad) * at.y;
+    left_m = std::cos(offset_rad) * at.y - std::sin(offset_rad) * at.x;
+    along_m = std::cos(tilt_rad) * ahead_m + std::sin(tilt_rad) * at.z;
+    up_m = std::cos(tilt_rad) * at.z - std::sin(tilt_rad) * ahead_m;
+  }
+};
+
+std::string velodyne_yaml(const PacketSensor& sensor) {
+  const LidarModel& model = sensor.model;
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(12);
+  text << "lasers:\n";
+  for (std::size_t laser = 0; laser < sensor.lasers(); ++laser) {
+    const std::size_t ring = sensor.ring_of_laser[laser];
+    const LaserOffsets at(model, ring);
+    text << "- {dist_correction: " << at.along_m << ", dist_correction_x: " << at.along_m
+         << ", dist_correction_y: " << at.along_m
+         << ", focal_distance: 0.0, focal_slope: 0.0,\n  horiz_offset_correction: " << at.left_m
+         << ", laser_id: " << laser << ", rot_correction: " << offset_of_beam(model, ring)
+         << ",\n  vert_correction: " << model.elevations_rad[ring]
+         << ", vert_offset_correction: " << at.up_m << "}\n";
+  }
+  text << "num_lasers: " << sensor.lasers() << "\ndistance_resolution: " << sensor.facts.quantum_m
+       << "\n";
+  return text.str();
+}
+
+/// By how many columns the pixels of each row are to be moved to stand above each other.
+std::vector<int> pixel_shifts(const LidarModel& model, const std::vector<double>& azimuths_deg) {
+  std::vector<int> shifts;
+  for (const double azimuth_deg : azimuths_deg)
+    shifts.push_back(static_cast<int>(std::lround(azimuth_deg * model.columns / 360.0)));
+  const int least = std::ranges::min(shifts);
+  for (int& shift : shifts) shift -= least;
+  return shifts;
+}
+
+/// The model in the words of the SDK: OS-1-64.
+std::string product_line(const PacketSensor& sensor) {
+  const std::string& name = sensor.model.name;
+  for (const char* kind : {"0", "1", "2"})
+    if (name.find(std::string("os") + kind) != std::string::npos)
+      return std::string("OS-") + kind + "-" + std::to_string(sensor.lasers());
+  return "OS-1-" + std::to_string(sensor.lasers());
+}
+
+Error not_ouster(const LidarModel& model, const std::string& why) {
+  return {ErrorKind::usage, "sensor '" + model.name + "': " + why};
+}
+
+/// Where all beams leave, which metadata say once.
+Vec3d common_origin(const LidarModel& model) {
+  const Vec3d origin = origin_of_beam(model, 0);
+  for (std::size_t ring = 0; ring < model.elevations_rad.size(); ++ring)
+    if (origin_of_beam(model, ring) != origin)
+      throw not_ouster(model, "its beams leave at different places, which metadata cannot say");
+  if (origin.y != 0) throw not_ouster(model, "its beams leave beside its axis");
+  return origin;
+}
+
+std::string ouster_json(const PacketSensor& sensor) {
+  const LidarModel& model = sensor.model;
+  const Vec3d origin = common_origin(model);
+  std::vector<double> altitudes_deg, azimuths_deg;
+  for (std::size_t laser = 0; laser < sensor.lasers(); ++laser) {
+    const std::size_t ring = sensor.ring_of_laser[laser];
+    altitudes_deg.push_back(kDegreesPerRadian * model.elevations_rad[ring]);
+    azimuths_deg.push_back(-kDegreesPerRadian * offset_of_beam(model, ring));
+  }
+  const double cos = std::cos(model.first_azimuth_rad), sin = std::sin(model.first_azimuth_rad);
+  MetadataJson json;
+  json["prod_line"] = product_line(sensor);
+  json["prod_sn"] = "000000000000";
+  json["prod_pn"] = "simulated";
+  json["build_rev"] = "v2.0.0";
+  json["image_rev"] = "simulated";
+  json["hostname"] = "";
+  json["status"] = "RUNNING";
+  json["json_calibration_version"] = 4;
+  json["lidar_mode"] =
+      std::to_string(model.columns) + "x" + std::to_string(std::lround(model.rotation_hz));
+  json["beam_altitude_angles"] = altitudes_deg;
+  json["beam_azimuth_angles"] = azimuths_deg;
+  json["lidar_origin_to_beam_origin_mm"] = kMillimetres * origin.x;
+  json["lidar_to_sensor_transform"] = {cos, -sin, 0.0, 0.0, sin, cos,
+                                       0.0, 0.0,  0.0, 0.0, 1.0, kMillimetres * origin.z,
+                                       0.0, 0.0,  0.0, 1.0};
+  json["imu_to_sensor_transform"] = {1, 0, 0, 6.253, 0, 1, 0, -11.775, 0, 0, 1, 7.645, 0, 0, 0, 1};
+  json["data_format"] = {{"pixels_per_column", sensor.lasers()},
+                         {"columns_per_packet", sensor.facts.columns},
+                         {"columns_per_frame", model.columns},
+                         {"column_window", {0, model.columns - 1}},
+                         {"pixel_shift_by_row", pixel_shifts(model, azimuths_deg)},
+                         {"udp_profile_lidar", "LEGACY"},
+                         {"udp_profile_imu", "LEGACY"}};
+  json["udp_port_lidar"] = sensor.facts.port;
+  json["udp_port_imu"] = sensor.facts.port + 1;
+  return json.dump(2) + "\n";
+}
+
+/// An S3 takes 57.6 us for all lasers, an S2 48.
+std::string hdl64_generation(const LidarModel& model) {
+  constexpr double kLongestOfS2_s = 50e-6;
+  const auto& times_s = model.firing_times_s;
+  return !times_s.empty() && std::ranges::max(times_s) > kLongestOfS2_s ? "s3" : "s2";
+}
+
+}  // namespace
+
+CalibrationFile calibration_file(const PacketSensor& sensor) {
+  if (is_ouster(sensor.format)) return {"metadata.json", ouster_json(sensor)};
+  // By such a name load_lidar_model() knows the firing times.
+  const std::string name = sensor.format == PacketFormat::hdl_64e
+                               ? "calibration-" + hdl64_generation(sensor.model) + ".yaml"
+                               : "calibration.yaml";
+  return {name, velodyne_yaml(sensor)};
+}
+
+}  // namespace adasplats

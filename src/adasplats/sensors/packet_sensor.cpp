@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/sensors/packet_sensor.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/words.h"
+#include "adasplats/sensors/packet_bytes.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::size_t kOusterLasers[] = {16, 32, 64, 128};
+
+/// "'velodyne-vlp-16', ...": of the library, that send packets.
+std::string sensors_with_packets() {
+  std::string list;
+  for (const std::string& name : lidar_model_names())
+    if (load_lidar_model(name).packets) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+Error not_packets(const LidarModel& model, const std::string& why) {
+  return {ErrorKind::usage,
+          "sensor '" + model.name + "': " + why +
+              "; sensors with packets: " + sensors_with_packets() +
+              ", or a file that is like one of them (its keys packets and laser_ids)"};
+}
+
+void check_beams(const LidarModel& model, PacketFormat format, std::size_t lasers) {
+  const std::size_t beams = model.elevations_rad.size();
+  const std::string name(word_of(format, kPacketFormats));
+  if (!model.free_pattern.empty() || model.rosette || beams == 0)
+    throw not_packets(
+        model, "does not fire all its beams in every column, as packets " + name + " have them");
+  const bool fits = lasers != 0
+                        ? beams == lasers
+                        : std::ranges::find(kOusterLasers, beams) != std::end(kOusterLasers);
+  if (!fits)
+    throw not_packets(model, "has " + std::to_string(beams) + " beams, packets " + name + " " +
+                                 (lasers != 0 ? std::to_string(lasers) : "16, 32, 64 or 128"));
+  if (!is_ouster(format) && model.packets->laser_ids.empty())
+    throw not_packets(model, "says no laser_ids, the places of its beams in packets " + name);
+  if (!model.clockwise) throw not_packets(model, "turns counter-clockwise");
+}
+
+}  // namespace
+
+PacketFacts facts_of_packets(PacketFormat format) {
+  constexpr std::uint32_t k16Bits = 65535;
+  constexpr std::uint16_t kVelodynePort = 2368, kOusterPort = 7502;
+  switch (format) {
+    case PacketFormat::vlp_16: return {16, 0.002, k16Bits, 24, kVelodynePort};
+    case PacketFormat::hdl_32e: return {32, 0.002, k16Bits, 12, kVelodynePort};
+    case PacketFormat::vlp_32c: return {32, 0.004, k16Bits, 12, kVelodynePort};
+    case PacketFormat::hdl_64e: return {64, 0.002, k16Bits, 6, kVelodynePort};
+    case PacketFormat::vls_128: return {128, 0.004, k16Bits, 3, kVelodynePort};
+    case PacketFormat::ouster_legacy: return {0, 0.001, (1U << 20) - 1, 16, kOusterPort};
+    case PacketFormat::ouster_single: break;
+  }
+  return {0, 0.001, (1U << 19) - 1, 16, kOusterPort};
+}
+
+std::size_t PacketSensor::payload_bytes() const {
+  if (!is_ouster(format)) return kVelodyneBytes;
+  const OusterBytes bytes(format, lasers());
+  return bytes.packet();
+}
+
+PacketSensor packet_sensor(const LidarModel& model) {
+  if (!model.packets) throw not_packets(model, "no packets of it are known");
+  PacketSensor sensor{
+      model.packets->format, facts_of_packets(model.packets->format), model, {}, {}, {}};
+  check_beams(model, sensor.format, sensor.facts.lasers);
+  const std::size_t beams = model.elevations_rad.size();
+  sensor.ring_of_laser.resize(beams);
+  sensor.laser_of_ring.resize(beams);
+  for (std::size_t ring = 0; ring < beams; ++ring) {
+    const std::size_t laser =
+        model.packets->laser_ids.empty() ? ring : model.packets->laser_ids[ring];
+    sensor.laser_of_ring[ring] = static_cast<std::uint16_t>(laser);
+    sensor.ring_of_laser.at(laser) = static_cast<std::uint16_t>(ring);
+  }
+  sensor.range_offsets_m = model.packets->range_offsets_m;
+  if (sensor.range_offsets_m.empty()) {
+    sensor.range_offsets_m.assign(beams, 0.0);
+    if (is_ouster(sensor.format) && !model.beam_origins_m.empty())
+      std::ranges::transform(model.beam_origins_m, sensor.range_offsets_m.begin(),
+                             [](const Vec3d& origin) { return -origin.x; });
+  }
+  return sensor;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/sensors/packet_decoder.h"
+#include "adasplats/sensors/packet_encoder.h"
+
+namespace adasplats {
+namespace {
+
+constexpr const char* kSendingSensors[] = {
+    "velodyne-vlp-16",     "velodyne-hdl-32e",       "velodyne-vlp-32c", "velodyne-hdl-64e-s2",
+    "velodyne-hdl-64e-s3", "velodyne-hdl-64e-kitti", "velodyne-vls-128", "ouster-os0-128",
+    "ouster-os1-128",      "ouster-os1-64",          "ouster-os2-128"};
+constexpr std::uint64_t kSent_ns = (472'000ULL * 3600 + 17) * 1'000'000'000;
+
+/// One packet whose lasers all measure 1000 + laser counts.
+struct SentPacket {
+  PacketSensor sensor;
+  std::vector<PacketReturn> returns;
+  std::vector<PacketColumn> columns;
+  std::string payload;
+
+  SentPacket(const std::string& name, std::uint32_t first_column)
+      : sensor(packet_sensor(load_lidar_model(name))) {
+    for (std::uint32_t laser = 0; laser < sensor.lasers(); ++laser)
+      returns.push_back({1000 + laser, static_cast<std::uint16_t>(257 * (laser + 1))});
+    const double column_s = 1.0 / (sensor.model.rotation_hz * sensor.model.columns);
+    for (std::uint32_t k = 0; k < sensor.facts.columns; ++k)
+      columns.push_back({kSent_ns + static_cast<std::uint64_t>(std::llround(1e9 * column_s * k)),
+                         (first_column + k) % sensor.model.columns, 7, returns});
+    payload = encode_packet(sensor, columns, 0);
+  }
+};
+
+TEST(Packets, WhatIsReadAreTheFiringsOfTheSensor) {
+  for (const char* name : kSendingSensors) {
+    for (const std::uint32_t first : {0U, 640U}) {
+      const SentPacket sent(name, first);
+      const PacketDecoder decoder(sent.sensor);
+      ASSERT_TRUE(decoder.has_size(sent.payload)) << name;
+      EXPECT_EQ(decoder.objection(sent.payload), std::nullopt) << name;
+      const auto columns = decoder.columns(sent.payload);
+      ASSERT_EQ(columns.size(), sent.columns.size());
+      const std::vector<Firing> firings = firings_of(sent.sensor.model);
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        PacketPoints points;
+        decoder.add_points(sent.payload, k, columns[k], points);
+        ASSERT_EQ(points.positions.size(), sent.sensor.lasers());
+        for (std::size_t laser = 0; laser < points.positions.size(); ++laser) {
+          const std::size_t ring = points.rings[laser];
+          EXPECT_EQ(sent.sensor.laser_of_ring[ring], laser);
+          const Firing& firing = firings[ring * sent.sensor.model.columns + sent.columns[k].column];
+          const double range_m =
+              (1000.0 + static_cast<double>(laser)) * sent.sensor.facts.quantum_m +
+              sent.sensor.range_offsets_m[ring];
+          const Vec3d expected =
+              vec_cast<double>(firing.origin) + range_m * vec_cast<double>(firing.direction);
+          // A step of 0.01 degrees, and as much of what is between two blocks.
+          EXPECT_LT(length(points.positions[laser] - expected), 2e-4 * range_m + 2e-5)
+              << name << ' ' << k << ' ' << laser;
+          EXPECT_NEAR(
+              static_cast<double>(columns[k].time_ns - columns[0].time_ns) * 1e-9 +
+                  points.late_s[laser],
+              firing.time_s - firings[sent.columns[0].column].time_s +
+                  (sent.sensor.model.firing_times_s.empty() ? 0
+                                                            : sent.sensor.model.firing_times_s[0]),
+              1e-7);
+          EXPECT_EQ(points.intensities[laser], static_cast<float>(laser + 1));
+        }
+      }
+    }
+  }
+}
+
+TEST(Packets, BytesOfAVlp16AsItsManualHasThem) {
+  const SentPacket sent("velodyne-vlp-16", 904);  // half a turn
+  const std::string& packet = sent.payload;
+  ASSERT_EQ(packet.size(), 1206U);
+  EXPECT_EQ(packet.substr(0, 2), "\xFF\xEE");
+  const auto u16 = [&](std::size_t place) {
+    return static_cast<unsigned>(static_cast<std::uint8_t>(packet[place]) |
+                                 static_cast<std::uint8_t>(packet[place + 1]) << 8);
+  };
+  EXPECT_EQ(u16(2), 18000U);
+  EXPECT_EQ(u16(102), 18040U);  // two sequences of 360 / 1808 degrees
+  EXPECT_EQ(u16(4), 1000U);
+  EXPECT_EQ(u16(4 + 3 * 15), 1015U);
+  EXPECT_EQ(u16(4 + 3 * 16), 1000U);  // the second sequence
+  EXPECT_EQ(packet[6], 1);
+  std::uint32_t micros = 0;
+  std::memcpy(&micros, packet.data() + 1200, 4);
+  EXPECT_EQ(micros, 17'000'000U);
+  EXPECT_EQ(packet.substr(1204), "\x37\x22");
+}
+
+TEST(Packets, OtherSensorsAndTwoReturnsAreRefused) {
+  const SentPacket sent("velodyne-vlp-16", 0);
+  const PacketDecoder decoder(sent.sensor);
+  std::string other = sent.payload;
+  other[1204] = 0x39;
+  EXPECT_NE(decoder.objection(other).value_or("").find("two returns"), std::string::npos);
+  other = sent.payload;
+  other[1205] = 0x21;
+  EXPECT_NE(decoder.objection(other).value_or("").find("hdl-32e"), std::string::npos);
+  other = sent.payload;
+  other[100] = 0;
+  EXPECT_NE(decoder.objection(other).value_or("").find("block 1"), std::string::npos);
+  // The lower block of an HDL-64E.
+  const PacketDecoder large(packet_sensor(load_lidar_model("velodyne-hdl-64e-s3")));
+  EXPECT_NE(large.objection(sent.payload).value_or("").find("0xDDFF"), std::string::npos);
+}
+
+TEST(Packets, SensorsWithoutAreRefusedWithThoseThatHaveSome) {
+  for (const char* name : {"hdl-64-paper", "hesai-pandar64", "livox-mid-40"})
+    expect_error(ErrorKind::usage, {name, "velodyne-vlp-16", "ouster-os2-128"},
+                 [&] { packet_sensor(load_lidar_model(name)); });
+}
+
+TEST(Packets, KeysOfAFile) {
+  const TemporaryFolder folder;
+  const auto load = [&](const std::string& text) {
+    return load_lidar_model(folder.write("mine.toml", text).string());
+  };
+  const std::string like = "like = \"velodyne-vlp-16\"\n";
+  EXPECT_EQ(packet_sensor(load(like)).ring_of_laser[1], 7);
+  // New beams are of no known place.
+  expect_error(ErrorKind::usage, {"no packets of it"}, [&] {
+    packet_sensor(load(like + "beams = 16\nelevation_top_deg = 1\nelevation_bottom_deg = -1\n"));
+  });
+  expect_error(ErrorKind::config, {"mine.toml:2", "vlp-17"},
+               [&] { load(like + "packets = \"vlp-17\"\n"); });
+  expect_error(ErrorKind::config, {"mine.toml:2", "15 values, expected 16"}, [&] {
+    load(like + "laser_ids = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14]\n");
+  });
+  expect_error(ErrorKind::config, {"mine.toml:2", "once"}, [&] {
+    load(like + "laser_ids = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 14]\n");
+  });
+  expect_error(ErrorKind::usage, {"has 16 beams", "32"},
+               [&] { packet_sensor(load(like + "packets = \"hdl-32e\"\n")); });
+}
+
+TEST(Packets, CalibrationFilesAreTheSensor) {
+  const TemporaryFolder folder;
+  for (const char* name : kSendingSensors) {
+    const PacketSensor sensor = packet_sensor(load_lidar_model(name));
+    const CalibrationFile file = calibration_file(sensor);
+    const PacketSensor again =
+        packet_sensor(load_lidar_model(folder.write(file.name, file.text).string()));
+    ASSERT_EQ(again.lasers(), sensor.lasers()) << name;
+    EXPECT_EQ(again.ring_of_laser, sensor.ring_of_laser) << name;
+    for (std::size_t ring = 0; ring < sensor.lasers(); ++ring) {
+      EXPECT_NEAR(again.model.elevations_rad[ring], sensor.model.elevations_rad[ring], 1e-9);
+      const std::uint32_t column = 100;
+      if (again.model.columns != sensor.model.columns) continue;  // of another unit
+      if (again.model.first_azimuth_rad != sensor.model.first_azimuth_rad) continue;
+      const Firing a = firings_of(sensor.model)[ring * sensor.model.columns + column];
+      const Firing b = firings_of(again.model)[ring * sensor.model.columns + column];
+      const auto point = [&](const Firing& firing, const PacketSensor& of) {
+        return vec_cast<double>(firing.origin) +
+               (20 + of.range_offsets_m[ring]) * vec_cast<double>(firing.direction);
+      };
+      EXPECT_LT(length(point(a, sensor) - point(b, again)), 1e-5) << name << ' ' << ring;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace adasplats
