@@ -49,8 +49,9 @@ class SimulateCommand final : public Command {
     add_settings(app, job_.scan);
     add_choice<ScanFormat>(app, "--format", job_.format, choices_of<ScanFormat>(kScanFormats),
                            "Of the scans; semantickitti writes OUTPUT/sequences/00, mcap "
-                           "OUTPUT/scans.mcap, kitti-raw, "
-                           "pandaset and nuscenes the trees of those data sets");
+                           "OUTPUT/scans.mcap, pcap OUTPUT/drive.pcap with the packets that the "
+                           "sensor sends, kitti-raw, pandaset and nuscenes the trees of those "
+                           "data sets");
     add_choice<PointOrder>(
         app, "--point-order", job_.point_order, choices_of<PointOrder>(kPointOrders),
         "Of trees of data sets: as the data set's own files (KITTI's: ring by ring, "

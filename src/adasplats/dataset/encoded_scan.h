@@ -10,6 +10,7 @@
 
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/io/mcap/mcap_file.h"
+#include "adasplats/sensors/packet_sensor.h"
 
 namespace adasplats {
 
@@ -21,8 +22,9 @@ struct EncodedFile {
 
 /// A scan as the bytes that are written of it, and what the files of all scans need to know.
 struct EncodedScan {
-  std::vector<EncodedFile> files;     ///< of its own
-  std::vector<McapMessage> messages;  ///< for a file of all scans
+  std::vector<EncodedFile> files;            ///< of its own
+  std::vector<McapMessage> messages;         ///< for a file of all scans
+  std::vector<PacketReturn> packet_returns;  ///< of every firing, column by column
   TimedPose pose;
   std::size_t points = 0;
   bool has_classes = false;

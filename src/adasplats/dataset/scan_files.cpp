@@ -155,6 +155,7 @@ ScanFields fields_of(ScanFormat format) {
   if (format == ScanFormat::semantickitti || format == ScanFormat::kitti_raw)
     fields.ranges = fields.columns = fields.times = false;
   if (format == ScanFormat::pandaset) fields.ranges = false;
+  if (format == ScanFormat::pcap) fields.classes = fields.instances = fields.times = false;
   if (format == ScanFormat::nuscenes) fields.ranges = fields.times = false;
   return fields;
 }
@@ -169,6 +170,7 @@ ScanBytes scan_bytes(ScanFormat format) {
     case ScanFormat::pandaset: return {20, 56, 0, 0};
     case ScanFormat::nuscenes: return {20, 21, 0, 0};
     case ScanFormat::npy: return {20, 20, 0, 0};
+    case ScanFormat::pcap: return {0, 0, 3, 13};  // Velodyne's channels, Ouster's and their heads
     case ScanFormat::ply:
     case ScanFormat::pcd:
     case ScanFormat::npz: return {kLeast, kMost, 0, 0};
@@ -222,7 +224,8 @@ std::vector<EncodedFile> encode_scan_files(ScanFormat format, const std::string&
     case ScanFormat::mcap:
     case ScanFormat::kitti_raw:
     case ScanFormat::pandaset:
-    case ScanFormat::nuscenes: throw std::logic_error("encode_scan_files: no format of points");
+    case ScanFormat::nuscenes:
+    case ScanFormat::pcap: throw std::logic_error("encode_scan_files: no format of points");
   }
   return files;
 }

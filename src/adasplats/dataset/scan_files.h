@@ -26,7 +26,8 @@ enum class ScanFormat : std::uint8_t {
   mcap,
   kitti_raw,
   pandaset,
-  nuscenes
+  nuscenes,
+  pcap
 };
 inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"semantickitti", ScanFormat::semantickitti},
@@ -39,11 +40,13 @@ inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"mcap", ScanFormat::mcap},
     {"kitti-raw", ScanFormat::kitti_raw},
     {"pandaset", ScanFormat::pandaset},
-    {"nuscenes", ScanFormat::nuscenes}};
+    {"nuscenes", ScanFormat::nuscenes},
+    {"pcap", ScanFormat::pcap}};
 
 /// Whether the format is the tree of a data set, with points in the order of its own files.
 constexpr bool is_tree(ScanFormat format) {
-  return format == ScanFormat::semantickitti || format >= ScanFormat::kitti_raw;
+  return format == ScanFormat::semantickitti ||
+         (format >= ScanFormat::kitti_raw && format != ScanFormat::pcap);
 }
 
 /// Bytes that scans become, but for headers and what all have in common.

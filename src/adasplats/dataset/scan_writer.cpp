@@ -10,6 +10,7 @@
 #include "adasplats/dataset/kitti_raw_writer.h"
 #include "adasplats/dataset/mcap_writer.h"
 #include "adasplats/dataset/nuscenes_writer.h"
+#include "adasplats/dataset/packet_writer.h"
 #include "adasplats/dataset/pandaset_writer.h"
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/semantickitti_writer.h"
@@ -132,6 +133,7 @@ std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder
   if (format == ScanFormat::kitti_raw) return make_kitti_raw_writer(folder, options);
   if (format == ScanFormat::pandaset) return make_pandaset_writer(folder, options);
   if (format == ScanFormat::nuscenes) return make_nuscenes_writer(folder, options);
+  if (format == ScanFormat::pcap) return make_packet_writer(folder, options);
   if (format == ScanFormat::mcap)
     return std::make_unique<MessageWriter>(folder, ros_delay_s(options.drive));
   return std::make_unique<FileWriter>(folder, format, options);

@@ -15,6 +15,7 @@
 #include "adasplats/dataset/kitti_order.h"
 #include "adasplats/dataset/range_image.h"
 #include "adasplats/dataset/scan_files.h"
+#include "adasplats/sensors/lidar_model.h"
 #include "adasplats/simulate/scan/scan_view.h"
 #include "adasplats/simulate/world/world.h"
 
@@ -43,6 +44,17 @@ double ros_delay_s(const DriveSpan& drive);
 /// The objects of a world in scan number `index` at `time_s`. Several threads may call it at once.
 using BoxesOfScan = std::function<std::vector<ObjectBox>(std::size_t index, double time_s)>;
 
+/// What packets need to know beside the scans.
+struct PacketOptions {
+  const LidarModel* sensor = nullptr;  ///< that measured them; outlives the writer
+  double begin_after_s =
+      0;            ///< the revolution begins so long after a scan's time; negative: before
+  int returns = 1;  ///< that a firing can have
+  bool has_angular_noise = true;  ///< the sensor's is simulated
+  bool is_raw = true;             ///< the motion is in the points, as measured
+  double full_intensity = 1.0;    ///< what becomes 255, the largest
+};
+
 struct ScanWriterOptions {
   ImageSize image_size;                  ///< of range images (image_size_of)
   double full_intensity = 1.0;           ///< LAS: what becomes its largest intensity
@@ -50,6 +62,7 @@ struct ScanWriterOptions {
   PointOrder order = PointOrder::kitti;  ///< of points in KITTI's files
   DriveSpan drive;                       ///< trees that name files by it, and ros_delay_s()
   BoxesOfScan boxes;                     ///< trees that list objects; none: there is no world
+  PacketOptions packets;                 ///< pcap
 };
 
 /// Makes scans of one drive files of a folder. What a scan becomes can be worked out and written by
@@ -89,8 +102,9 @@ class ScanWriter {
 /// and FOLDER/poses/00.txt, points in `options.order`; range_image: files of write_range_image();
 /// mcap: FOLDER/scans.mcap as McapWriter, and poses.csv, both ros_delay_s() later; kitti_raw,
 /// pandaset, nuscenes: as make_kitti_raw_writer(), make_pandaset_writer() and
-/// make_nuscenes_writer(); else NNNNNN.EXT of scan_files.h. All but semantickitti have poses.csv
-/// beside them. Errors: cannot_create, io; mcap, kitti_raw: data (times that they cannot express).
+/// make_nuscenes_writer(); pcap: make_packet_writer(); else NNNNNN.EXT of scan_files.h. All but
+/// semantickitti have poses.csv beside them. Errors: cannot_create, io; mcap, kitti_raw: data
+/// (times that they cannot express).
 std::unique_ptr<ScanWriter> make_scan_writer(const std::filesystem::path& folder, ScanFormat format,
                                              const ScanWriterOptions& options = {});
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/recipes/simulate_scans.h"
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
@@ -10,6 +12,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/dataset/kitti_boxes.h"
+#include "adasplats/dataset/packet_writer.h"
 #include "adasplats/dataset/parallel_scan_writer.h"
 #include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/output/resumable_folder.h"
@@ -39,16 +42,38 @@ void require_returns(const SimulateResult& result, const ModelScene& scene,
                    "are trajectory and model in one frame? offset and mount shift it");
 }
 
-ScanWriterOptions writing_options(const ScanSimulator& simulator, PointOrder order,
+/// The least usual scale of intensities that none of the place exceeds.
+double scale_of_intensities(const ModelScene& scene) {
+  double highest = 0;
+  for (const float value : scene.attributes().intensities)
+    if (std::isfinite(value)) highest = std::max(highest, static_cast<double>(value));
+  for (const double scale : {1.0, 255.0})
+    if (highest <= scale) return scale;
+  return 65535.0;
+}
+
+PacketOptions packet_options(const ScanSettings& settings, const DriveOptions& drive) {
+  PacketOptions packets;
+  packets.sensor = &settings.sensor;
+  packets.returns = settings.beam.returns;
+  packets.has_angular_noise = settings.noise;
+  packets.is_raw = settings.frame == PointFrame::raw;
+  if (drive.rolling_shutter) packets.begin_after_s = -0.5 / settings.sensor.rotation_hz;
+  return packets;
+}
+
+ScanWriterOptions writing_options(const ScanSimulator& simulator, const SimulateJob& job,
                                   std::span<const ScanMotion> scans) {
   ScanWriterOptions writing;
   writing.drive = {scans.size(), [&](std::size_t i) { return scans[i].reference.time_s; }};
   if (!scans.empty()) writing.drive.turn_s = scans.front().duration_s;
-  writing.order = order;
+  writing.order = job.point_order;
   writing.image_size = image_size_of(simulator.firings());
   writing.labels = simulator.scene().labels();
   if (const World* const world = simulator.scene().world())
     writing.boxes = [world](std::size_t i, double time_s) { return world->boxes(i, time_s); };
+  writing.packets = packet_options(simulator.settings(), job.drive);
+  writing.packets.full_intensity = scale_of_intensities(simulator.scene());
   return writing;
 }
 
@@ -68,7 +93,7 @@ ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> sc
   const ModelScene& scene = simulator.scene();
   // An attempt that was interrupted at its very end had been given the poses already.
   std::filesystem::remove(folder.path() / "sequences" / "00" / "poses.txt");
-  const ScanWriterOptions writing = writing_options(simulator, job.point_order, scans);
+  const ScanWriterOptions writing = writing_options(simulator, job, scans);
   tell_of_delay(job, writing.drive, session.progress);
   const auto writer = make_scan_writer(folder.path(), job.format, writing);
   const std::size_t first = keep_written_scans(*writer, folder, scans);
@@ -110,6 +135,8 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   ScanSettings settings = job.scan.settings(session.seed);
   settings.fields = fields_of(job.format);
   check_drive(job.drive);
+  if (job.format == ScanFormat::pcap)
+    require_packets(settings.sensor, packet_options(settings, job.drive));
   std::vector<ScanMotion> scans;
   if (!job.drive.trajectory.empty())
     scans = scans_along(job.drive, settings.sensor, session.progress);

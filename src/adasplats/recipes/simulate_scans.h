@@ -41,7 +41,7 @@ struct SimulateResult {
 };
 
 /// Simulates and writes. Interrupted at any moment, the same job goes on after the last whole scan
-/// and gives the same bytes; formats of one file for all scans (mcap) begin anew.
+/// and gives the same bytes; formats of one file for all scans (mcap, pcap) begin anew.
 /// Errors: cannot_create (also where what was left unfinished is of another job, other inputs or
 /// another version), io (also where the disk has no room for the scans), data (no ray met
 /// anything).

@@ -544,8 +544,8 @@ void read_divergence(const SensorTable& table, LidarModel& model) {
 void check_untouched(const SensorTable& table, const LidarModel& model) {
   for (const char* key :
        {"azimuth_offsets_deg", "beam_origins_m", "firing_times_us", "column_steps", "column_phases",
-         "columns", "first_azimuth_deg", "clockwise", "range_offsets_m", "ring_noise_m", "packets",
-         "laser_ids", "intensity", "fields", "drop", "body"})
+        "columns", "first_azimuth_deg", "clockwise", "range_offsets_m", "ring_noise_m", "packets",
+        "laser_ids", "intensity", "fields", "drop", "body"})
     if (table.has(key))
       throw table.error(key, "does not fit a sensor that is a rosette or a list of rays");
   for (const Firing& firing : model.free_pattern)

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/dataset/packet_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "adasplats/core/error.h"
+#include "adasplats/dataset/writer_with_poses.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/packets/capture_writer.h"
+#include "adasplats/sensors/packet_encoder.h"
+
+namespace adasplats {
+namespace {
+
+constexpr double kNanosecondsInSecond = 1e9;
+constexpr std::uint64_t kNanosecondsInMicrosecond = 1000;
+constexpr double kSecondsInHour = 3600;
+constexpr double kMostOverlap = 0.05;  // of a revolution: recorded poses are not quite regular
+
+/// As sensors leave the factory; locally administered hardware addresses.
+UdpEnd sensor_end(std::uint16_t port) { return {{2, 0, 0, 0, 0, 1}, {192, 168, 1, 201}, port}; }
+UdpEnd everyone(std::uint16_t port) {
+  return {{255, 255, 255, 255, 255, 255}, {255, 255, 255, 255}, port};
+}
+
+PacketSensor sensor_of(const PacketOptions& options) {
+  if (options.sensor == nullptr)
+    throw Error(ErrorKind::usage,
+                "packets need the sensor that measured the scans: they are written by a "
+                "simulation, not of scans alone");
+  require_packets(*options.sensor, options);
+  return packet_sensor(*options.sensor);
+}
+
+class PacketWriter final : public WriterWithPoses {
+ public:
+  PacketWriter(std::filesystem::path folder, const PacketOptions& options)
+      : WriterWithPoses(std::move(folder)),
+        options_(options),
+        sensor_(sensor_of(options)),
+        capture_(this->folder() / "drive.pcap"),
+        turn_s_(1.0 / sensor_.model.rotation_hz),
+        column_s_(turn_s_ / sensor_.model.columns),
+        nothing_(sensor_.lasers()) {}
+
+  EncodedScan encode(std::size_t /*index*/, const ScanView& scan) const override {
+    EncodedScan encoded;
+    encoded.pose = {scan.time_s, scan.world_from_sensor};
+    encoded.points = scan.size();
+    if (scan.rings.size() != scan.size() || scan.columns.size() != scan.size() ||
+        scan.ranges_m.size() != scan.size())
+      throw std::logic_error("packets of a scan without rings, columns or ranges");
+    encoded.packet_returns.resize(sensor_.lasers() * sensor_.model.columns);
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      const std::size_t ring = scan.rings[i];
+      const std::size_t place = scan.columns[i] * sensor_.lasers() + sensor_.laser_of_ring.at(ring);
+      encoded.packet_returns.at(place) = return_of(scan, i, sensor_.range_offsets_m[ring]);
+    }
+    return encoded;
+  }
+
+  void append(std::size_t index, const EncodedScan& scan) override {
+    // A revolution around time 0 begins before it: all is an hour later then.
+    if (index == 0 && scan.pose.time_s + options_.begin_after_s < 0) shift_s_ = kSecondsInHour;
+    const double begin_s = scan.pose.time_s + options_.begin_after_s + shift_s_;
+    require_time(begin_s, index);
+    const bool goes_on = end_s_ && std::fabs(begin_s - *end_s_) < 0.5 * column_s_;
+    if (!goes_on) flush();
+    const std::size_t lasers = sensor_.lasers();
+    for (std::uint32_t column = 0; column < sensor_.model.columns; ++column)
+      add_column(begin_s, column, std::span(scan.packet_returns).subspan(column * lasers, lasers));
+    end_s_ = begin_s + turn_s_;
+    ++frame_;
+    EncodedScan middle;
+    middle.pose = {begin_s + 0.5 * turn_s_, scan.pose.world_from_sensor};
+    WriterWithPoses::append(index, middle);
+  }
+
+  std::string main_file(std::size_t /*index*/) const override { return ""; }
+
+  void finish() override {
+    flush();
+    capture_.finish();
+    const CalibrationFile calibration = calibration_file(sensor_);
+    write_file(folder() / calibration.name, calibration.text);
+    WriterWithPoses::finish();
+  }
+
+ private:
+  /// A range of the beam as counts; what came back is at least one.
+  PacketReturn return_of(const ScanView& scan, std::size_t i, double offset_m) const {
+    const double range_m = static_cast<double>(scan.ranges_m[i]) - offset_m;
+    const double counts = std::clamp(std::round(range_m / sensor_.facts.quantum_m), 1.0,
+                                     static_cast<double>(sensor_.facts.most));
+    double share = scan.intensities.empty() ? 0.0 : static_cast<double>(scan.intensities[i]);
+    share = std::isnan(share) ? 0.0 : std::clamp(share / options_.full_intensity, 0.0, 1.0);
+    return {static_cast<std::uint32_t>(counts),
+            static_cast<std::uint16_t>(std::lround(65535 * share))};
+  }
+
+  void require_time(double begin_s, std::size_t index) const {
+    const std::string scan =
+        "scan " + std::to_string(index) + " begins at " + std::to_string(begin_s) + " s";
+    if (begin_s < 0) throw Error(ErrorKind::data, scan + ", before 1970, which packets cannot say");
+    if (end_s_ && *end_s_ - begin_s > kMostOverlap * turn_s_)
+      throw Error(ErrorKind::data,
+                  scan + ", before the last one ended at " + std::to_string(*end_s_) +
+                      " s: one sensor cannot send both; take fewer poses, or a faster rotation");
+  }
+
+  void add_column(double begin_s, std::uint32_t column, std::span<const PacketReturn> returns) {
+    const double late_ns = kNanosecondsInSecond * column_s_ * column;
+    const auto begin_ns = static_cast<std::uint64_t>(std::llround(begin_s * kNanosecondsInSecond));
+    columns_.push_back({begin_ns + static_cast<std::uint64_t>(std::llround(late_ns)),
+                        column % sensor_.model.columns,
+                        static_cast<std::uint16_t>(frame_),
+                        {}});
+    returns_.emplace_back(returns.begin(), returns.end());
+    columns_.back().returns = returns_.back();
+    if (columns_.size() == sensor_.facts.columns) send();
+  }
+
+  void send() {
+    const auto column_ns =
+        static_cast<std::uint64_t>(std::llround(column_s_ * kNanosecondsInSecond));
+    const std::uint64_t sent_us = (columns_.back().time_ns + column_ns) / kNanosecondsInMicrosecond;
+    sent_us_ = std::max(sent_us_, sent_us);
+    capture_.add(sent_us_, sensor_end(sensor_.facts.port), everyone(sensor_.facts.port),
+                 encode_packet(sensor_, columns_, packets_++));
+    columns_.clear();
+    returns_.clear();
+  }
+
+  /// Turns on until the packet is full.
+  void flush() {
+    for (std::uint32_t more = 0; !columns_.empty(); ++more)
+      add_column(*end_s_ - turn_s_, sensor_.model.columns + more, nothing_);
+  }
+
+  PacketOptions options_;
+  PacketSensor sensor_;
+  CaptureWriter capture_;
+  double turn_s_, column_s_;
+  double shift_s_ = 0;  ///< of all times
+  std::vector<PacketReturn> nothing_;
+  std::optional<double> end_s_;  ///< of the last scan
+  std::uint64_t frame_ = 0, packets_ = 0, sent_us_ = 0;
+  std::vector<PacketColumn> columns_;              ///< of the open packet
+  std::deque<std::vector<PacketReturn>> returns_;  ///< theirs
+};
+
+}  // namespace
+
+void require_packets(const LidarModel& model, const PacketOptions& options) {
+  const PacketSensor sensor = packet_sensor(model);
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorKind::usage, "packets of sensor '" + model.name + "': " + why);
+  };
+  if (sensor.format == PacketFormat::ouster_single)
+    refuse("written are those of profile LEGACY alone");
+  if (options.returns > 1) refuse("hold one return a firing; --returns 1");
+  if (options.has_angular_noise && model.angular_noise_rad > 0)
+    refuse(
+        "do not hold the angles of beams, so their noise would be lost; --no-noise, or a sensor "
+        "without");
+  if (!options.is_raw) refuse("are as measured, with the motion in them; --points raw");
+  const double most_m = sensor.facts.most * sensor.facts.quantum_m;
+  if (model.max_range_m > most_m)
+    refuse("hold ranges up to " + std::to_string(most_m) + " m, and the sensor measures up to " +
+           std::to_string(model.max_range_m) + " m; --max-range");
+  if (!is_ouster(sensor.format)) return;
+  const std::string mode =
+      std::to_string(model.columns) + "x" + std::to_string(std::lround(model.rotation_hz));
+  constexpr const char* kModes[] = {"512x10", "512x20", "1024x10", "1024x20", "2048x10", "4096x5"};
+  if (std::ranges::find(kModes, mode) == std::end(kModes) ||
+      model.rotation_hz != std::round(model.rotation_hz))
+    refuse("its mode " + mode + " is none of 512x10, 512x20, 1024x10, 1024x20, 2048x10, 4096x5");
+  calibration_file(sensor);  // says what metadata cannot
+}
+
+std::unique_ptr<ScanWriter> make_packet_writer(const std::filesystem::path& folder,
+                                               const ScanWriterOptions& options) {
+  return std::make_unique<PacketWriter>(folder, options.packets);
+}
+
+}  // namespace adasplats

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/dataset/packet_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/io/packets/datagram_reader.h"
+#include "adasplats/sensors/packet_decoder.h"
+
+namespace adasplats {
+namespace {
+
+/// A scan with one return, of ring 3 in column 40.
+Scan scan_of_one(double time_s, float range_m, float intensity) {
+  Scan scan;
+  scan.time_s = time_s;
+  scan.rays = 1;
+  scan.positions = {{range_m, 0, 0}};
+  scan.ranges_m = {range_m};
+  scan.intensities = {intensity};
+  scan.rings = {3};
+  scan.columns = {40};
+  return scan;
+}
+
+struct WrittenDrive {
+  std::size_t packets = 0;
+  PacketPoints points;
+};
+
+WrittenDrive written(const std::vector<Scan>& scans, const ScanWriterOptions& options) {
+  const TemporaryFolder folder;
+  const auto writer = make_scan_writer(folder.path(), ScanFormat::pcap, options);
+  for (std::size_t i = 0; i < scans.size(); ++i) writer->write(i, scans[i]);
+  writer->finish();
+  WrittenDrive drive;
+  const PacketDecoder decoder(packet_sensor(*options.packets.sensor));
+  DatagramReader reader(folder.path() / "drive.pcap");
+  while (const auto datagram = reader.next()) {
+    ++drive.packets;
+    const auto columns = decoder.columns(datagram->payload);
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      decoder.add_points(datagram->payload, k, columns[k], drive.points);
+  }
+  return drive;
+}
+
+TEST(PacketWriter, RangesAndIntensities) {
+  const LidarModel sensor = load_lidar_model("velodyne-vlp-16");
+  ScanWriterOptions options;
+  options.packets.sensor = &sensor;
+  options.packets.full_intensity = 2;
+  const float unknown = std::numeric_limits<float>::quiet_NaN();
+  const WrittenDrive drive = written(
+      {scan_of_one(10, 12.3456F, 1), scan_of_one(20, 0.0001F, 3), scan_of_one(30, 100, unknown)},
+      options);
+  ASSERT_EQ(drive.points.positions.size(), 3U);
+  EXPECT_NEAR(length(drive.points.positions[0]), 12.346, 1e-5);
+  EXPECT_NEAR(length(drive.points.positions[1]), 0.002, 1e-6);  // it did come back
+  EXPECT_NEAR(length(drive.points.positions[2]), 100, 1e-5);
+  EXPECT_EQ(drive.points.intensities, (std::vector<float>{128, 255, 0}));
+  EXPECT_EQ(drive.points.rings, (std::vector<std::uint16_t>{3, 3, 3}));
+  EXPECT_EQ(drive.packets, 3U * 76);  // 1808 columns and 16 more, 24 a packet
+}
+
+TEST(PacketWriter, PacketsGoOnFromScanToScan) {
+  const LidarModel sensor = load_lidar_model("velodyne-vlp-16");
+  ScanWriterOptions options;
+  options.packets.sensor = &sensor;
+  EXPECT_EQ(
+      written({scan_of_one(10, 5, 0), scan_of_one(10.1, 5, 0), scan_of_one(10.2, 5, 0)}, options)
+          .packets,
+      226U);  // 3 * 1808 / 24
+  // A twentieth of a revolution too early is what recorded poses do, more is another sensor.
+  EXPECT_EQ(written({scan_of_one(10, 5, 0), scan_of_one(10.096, 5, 0)}, options).packets, 152U);
+  expect_error(ErrorKind::data, {"scan 1", "before the last one ended"}, [&] {
+    written({scan_of_one(10, 5, 0), scan_of_one(10.09, 5, 0)}, options);
+  });
+}
+
+TEST(PacketWriter, TimesBefore1970) {
+  const LidarModel sensor = load_lidar_model("velodyne-vlp-16");
+  ScanWriterOptions options;
+  options.packets.sensor = &sensor;
+  expect_error(ErrorKind::data, {"before 1970"},
+               [&] { written({scan_of_one(-7200, 5, 0)}, options); });
+  options.packets.begin_after_s = -0.05;
+  const TemporaryFolder folder;
+  const auto writer = make_scan_writer(folder.path(), ScanFormat::pcap, options);
+  writer->write(0, scan_of_one(0, 5, 0));
+  writer->finish();
+  EXPECT_NEAR(read_trajectory(folder.path() / "poses.csv").front().time_s, 3600, 1e-6);
+  DatagramReader reader(folder.path() / "drive.pcap");
+  EXPECT_NEAR(1e-9 * static_cast<double>(reader.next().value().time_ns), 3600 - 0.05, 0.002);
+}
+
+TEST(PacketWriter, WhatPacketsCannotHoldIsRefused) {
+  LidarModel sensor = load_lidar_model("velodyne-vlp-16");
+  PacketOptions options;
+  const auto refused = [&](const std::string& why) {
+    expect_error(ErrorKind::usage, {"velodyne-vlp-16", why},
+                 [&] { require_packets(sensor, options); });
+  };
+  require_packets(sensor, options);
+  sensor.max_range_m = 131.08;
+  refused("--max-range");
+  sensor.max_range_m = 131.07;
+  require_packets(sensor, options);
+  sensor.angular_noise_rad = 0.001;
+  refused("--no-noise");
+  options.has_angular_noise = false;
+  require_packets(sensor, options);
+  options.returns = 2;
+  refused("one return");
+  options.returns = 1;
+  options.is_raw = false;
+  refused("as measured");
+  const TemporaryFolder folder;
+  expect_error(ErrorKind::usage, {"need the sensor"},
+               [&] { make_scan_writer(folder.path(), ScanFormat::pcap); });
+}
+
+}  // namespace
+}  // namespace adasplats
