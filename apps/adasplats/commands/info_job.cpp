@@ -11,6 +11,7 @@
 
 #include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/packet_drive.h"
 #include "adasplats/cloud/load/recording_drive.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
@@ -309,10 +310,66 @@ FileFacts recording_facts(const fs::path& input, const std::optional<LabelScheme
   return facts;
 }
 
+/// What a capture holds of UDP, and what is understood of it as a drive.
+FileFacts capture_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
+                        const LoadOptions& options, Session& session) {
+  const PacketSurvey survey =
+      survey_packets(input, decoder_of_capture(input, options.packets_of), session.progress);
+  FileFacts facts;
+  try {
+    facts = sequence_facts(
+        open_packet_drive(drive_of(input, options), survey, session.executor, session.progress),
+        "capture", scheme, options, session);
+  } catch (const Error& error) {
+    facts = {};
+    facts.kind = "capture";
+    facts.rows.emplace_back("no drive", error.what());
+    facts.json["no_drive"] = error.what();
+  }
+  if (survey.decoder) {
+    facts.rows.emplace_back("packets of", survey.decoder->sensor().model.name);
+    facts.json["packets_of"] = survey.decoder->sensor().model.name;
+  }
+  facts.json["sources"] = nlohmann::ordered_json::array();
+  for (const auto& [name, source] : survey.sources) {
+    std::string text = grouped(source.datagrams) + " datagrams, " + grouped(source.packets) +
+                       " packets of the sensor, " + grouped(source.revolutions.size()) +
+                       " revolutions";
+    if (source.lost_columns > 0)
+      text += ", " + grouped(source.lost_columns) + " columns missing in " + grouped(source.gaps) +
+              " gaps";
+    if (source.packets > 0)
+      text += "; captured " + fixed(1e-9 * static_cast<double>(source.ahead_ns), 6) +
+              " s after its own times";
+    if (!source.objection.empty()) text += "; some " + source.objection;
+    facts.rows.emplace_back("from " + name, text);
+    facts.json["sources"].push_back({{"name", name},
+                                     {"datagrams", source.datagrams},
+                                     {"packets", source.packets},
+                                     {"revolutions", source.revolutions.size()},
+                                     {"lost_columns", source.lost_columns},
+                                     {"gaps", source.gaps},
+                                     {"objection", source.objection}});
+  }
+  const DatagramCounts& counts = survey.counts;
+  facts.rows.emplace_back("frames", grouped(counts.frames) + ", " + grouped(counts.others) +
+                                        " of other protocols than UDP, " + grouped(counts.cut) +
+                                        " not whole, " + grouped(counts.torn) +
+                                        " datagrams of which parts are missing");
+  facts.json["frames"] = {{"all", counts.frames},
+                          {"others", counts.others},
+                          {"cut", counts.cut},
+                          {"timeless", counts.timeless},
+                          {"torn", counts.torn}};
+  return facts;
+}
+
 }  // namespace
 
 FileFacts run_info(const fs::path& input, const std::string& labels, const LoadOptions& options,
                    Session& session) {
+  if (is_capture(input))
+    return capture_facts(input, label_scheme_for(labels, {}), options, session);
   if (is_recording(input))
     return recording_facts(input, label_scheme_for(labels, {}), options, session);
   const DataTree* const tree = data_tree_of(input);

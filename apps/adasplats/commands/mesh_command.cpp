@@ -34,7 +34,7 @@ class MeshCommand final : public Command {
                    },
                    "Point files (" + point_format_names() +
                        "), SemanticKITTI sequence folders and recordings (" +
-                       recording_format_names() + ")")
+                       recording_format_names() + ", PCAP)")
                 ->type_name("PATH"));
     require(writes(add_path(app, "-o,--output", output_, "Mesh to write, PLY"), {".ply"}));
     app.add_option("--labels", job_.labels,

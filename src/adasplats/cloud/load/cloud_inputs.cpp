@@ -156,7 +156,7 @@ std::vector<fs::path> sequences_of_tree(const fs::path& folder) {
 
 std::vector<CloudInput> cloud_inputs(const fs::path& path, SensorScans scans) {
   std::error_code ignored;  // what cannot be looked into fails when it is opened as a file
-  if (!fs::is_directory(path, ignored) || has_own_poses(path)) return {{path, false}};
+  if (!fs::is_directory(path, ignored) || is_drive_by_itself(path)) return {{path, false}};
   if (is_kitti_sequence(path)) return {{path, true}};
   const Folder folder = look_into(path);
   if (folder.sequences.empty()) return files_of(folder, scans);

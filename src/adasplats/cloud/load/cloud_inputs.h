@@ -20,7 +20,7 @@ struct CloudInput {
 enum class SensorScans : std::uint8_t { refused, taken };
 
 /// What a path means as points, for every part of the program that takes some:
-/// - what is no folder: that, as a file of points; likewise what has_own_poses();
+/// - what is no folder: that, as a file of points; likewise what is_drive_by_itself();
 /// - a sequence folder (with `velodyne`): that;
 /// - a tree of sequences (FOLDER/sequences/NAME or FOLDER/NAME, each with `velodyne`): all of them
 ///   by name;

@@ -59,6 +59,8 @@ struct DriveSettings {
   /// Of a recording: whose clouds are the scans, and what topic says the poses; empty: found.
   std::string topic, poses_topic;
   std::string scene;  ///< of a data root of nuScenes; empty: the only one
+  /// Of a capture of packets: the sensor that sent them (load_lidar_model()).
+  std::string packets_of;
   /// Beams start at their poses even where they are seen to start beside them (ScanBeams).
   bool beams_from_poses = false;
 
@@ -129,6 +131,12 @@ void visit_scan_settings(DriveSettings& drive, const char* group, Visit&& visit)
                 .value = "NAME",
                 .group = group},
         drive.scene);
+  visit(Setting{.name = "packets_of",
+                .help = "Of a capture (PCAP): the sensor that sent its packets, of the library or "
+                        "its maker's file (default: metadata.json or calibration*.yaml beside it)",
+                .value = "SENSOR",
+                .group = group},
+        drive.packets_of);
 }
 
 }  // namespace adasplats

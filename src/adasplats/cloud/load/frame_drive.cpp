@@ -11,6 +11,7 @@
 #include "adasplats/cloud/load/file_scan.h"
 #include "adasplats/cloud/load/frame_evidence.h"
 #include "adasplats/cloud/load/nuscenes_drive.h"
+#include "adasplats/cloud/load/packet_drive.h"
 #include "adasplats/cloud/load/recording_drive.h"
 #include "adasplats/cloud/load/scan_stamps.h"
 #include "adasplats/cloud/load/sensor_drive.h"
@@ -104,11 +105,12 @@ FrameDrive drive_of(const std::filesystem::path& folder, const DriveSettings& se
           .topic = settings.topic,
           .poses_topic = settings.poses_topic,
           .scene = settings.scene,
+          .packets_of = settings.packets_of,
           .beams_from_poses = settings.beams_from_poses};
 }
 
-bool has_own_poses(const std::filesystem::path& path) {
-  return is_recording(path) || data_tree_of(path) != nullptr;
+bool is_drive_by_itself(const std::filesystem::path& path) {
+  return is_recording(path) || is_capture(path) || data_tree_of(path) != nullptr;
 }
 
 bool has_timed_frames(const std::filesystem::path& folder) {
@@ -131,6 +133,11 @@ std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Exe
                                 progress);
   if (const DataTree* const tree = data_tree_of(drive.folder))
     return open_data_tree(*tree, drive, executor, progress);
+  if (is_capture(drive.folder))
+    return open_packet_drive(
+        drive,
+        survey_packets(drive.folder, decoder_of_capture(drive.folder, drive.packets_of), progress),
+        executor, progress);
   const std::vector<std::filesystem::path> files = scan_files(drive.folder);
   const auto open_as_world = [&]() -> std::optional<KittiSequence> {
     // Where the mount is stated nothing is to be recognised.

@@ -17,8 +17,8 @@ namespace adasplats {
 
 /// A drive whose scans are files of points, and the trajectory of the vehicle or of the sensor.
 struct FrameDrive {
-  /// Of the files, one a scan (scan_files()), a recording (is_recording()), or the tree of a data
-  /// set (data_tree_of()).
+  /// Of the files, one a scan (scan_files()), a recording (is_recording()), a capture
+  /// (is_capture()), or the tree of a data set (data_tree_of()).
   std::filesystem::path folder;
   std::filesystem::path trajectory;     ///< as read_trajectory takes it
   std::filesystem::path boxes;          ///< of moving objects (MovingBoxes); empty: none
@@ -30,15 +30,16 @@ struct FrameDrive {
   std::filesystem::path scan_times;  ///< read_scan_times(); empty: none
   std::string topic, poses_topic;    ///< of a recording (open_recording_drive()); empty: found
   std::string scene;                 ///< of a root of nuScenes; empty: the only one
+  std::string packets_of;            ///< of a capture (open_packet_drive())
   bool beams_from_poses = false;     ///< of points in the sensor's frame: recognise nothing
 };
 
 /// A folder and what is said of it.
 FrameDrive drive_of(const std::filesystem::path& folder, const DriveSettings& settings);
 
-/// Whether a path is a drive that has the poses of its scans in it: a recording, or a tree of a
-/// data set. open_frame_drive() then needs no trajectory.
-bool has_own_poses(const std::filesystem::path& path);
+/// Whether a path is a drive and no folder of files: a recording, a capture of packets, or a tree of
+/// a data set. Recordings and trees have the poses of their scans in them.
+bool is_drive_by_itself(const std::filesystem::path& path);
 
 /// Whether a folder holds files of points of one extension, the first of which has times of at most
 /// a second: scans, not tiles of a recording.

@@ -25,8 +25,8 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/large_vector.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/io/packets/capture_reader.h"
 
 namespace adasplats {
 
@@ -60,7 +60,7 @@ std::vector<Source> open_sources(std::span<const std::filesystem::path> paths,
   std::vector<Source> sources;
   for (const std::filesystem::path& path : paths) {
     std::optional<KittiSequence> drive;
-    if (!options.trajectory.empty() || has_own_poses(path))
+    if (!options.trajectory.empty() || is_drive_by_itself(path))
       drive = open_frame_drive(drive_of(path, options), executor, progress);
     if (drive)
       sources.push_back({{path, true}, std::move(drive)});
@@ -122,6 +122,9 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Source
       sources, [](const Source& source) { return data_tree_of(source.input.path) != nullptr; });
   if (!options.scene.empty() && !any_tree)
     throw usage("`scene` is for a data root of nuScenes; no input is one");
+  const auto is_of_packets = [](const Source& source) { return is_capture(source.input.path); };
+  if (!options.packets_of.empty() && std::ranges::none_of(sources, is_of_packets))
+    throw usage("`packets_of` is for a capture of packets (.pcap, .pcapng); no input is one");
   const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
   if (states_origins && !any_file)
     throw usage("a sensor position is given, but every input has its own");

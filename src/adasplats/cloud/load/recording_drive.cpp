@@ -11,6 +11,7 @@
 #include <map>
 #include <utility>
 
+#include "adasplats/cloud/load/covered_scans.h"
 #include "adasplats/cloud/load/file_scan.h"
 #include "adasplats/cloud/load/frame_evidence.h"
 #include "adasplats/cloud/load/recording_poses.h"
@@ -132,36 +133,16 @@ RecordedDrive scans_of(const RecordingSurvey& survey, const TopicSurvey& topic,
 /// measured, from its stamp.
 void leave_out_uncovered(RecordedDrive& scans, const Track& track, TimeSpan within_s,
                          const fs::path& path, ProgressSink& progress) {
-  const TimeSpan covered = track.covered_s();
-  const auto is_known = [&](double stamp_s) {
-    const double begin_s = stamp_s + within_s.first, end_s = stamp_s + within_s.last;
-    // The last gap that begins before the scan ends.
-    const auto behind = std::ranges::lower_bound(track.gaps, end_s, {}, &TimeSpan::first);
-    const bool in_gap = behind != track.gaps.begin() && begin_s < std::prev(behind)->last;
-    return begin_s >= covered.first && end_s <= covered.last && !in_gap;
-  };
-  const std::size_t all = scans.stamps_s.size();
-  const double first_s = scans.stamps_s.front(), last_s = scans.stamps_s.back();
+  std::vector<TimeSpan> spans_s;
+  for (const double stamp_s : scans.stamps_s)
+    spans_s.push_back({stamp_s + within_s.first, stamp_s + within_s.last});
   std::size_t kept = 0;
-  for (std::size_t k = 0; k < all; ++k) {
-    if (!is_known(scans.stamps_s[k])) continue;
+  for (const std::size_t k : covered_scans(spans_s, track, path, "clouds", progress)) {
     scans.stamps_s[kept] = scans.stamps_s[k];
     scans.frames.files[kept++] = scans.frames.files[k];
   }
-  if (kept == all) return;
-  std::array<char, 320> text{};
-  std::snprintf(text.data(), text.size(),
-                ": %zu of %zu clouds (%.3f to %.3f s) were made when there are no poses (these are "
-                "of %.3f to %.3f s, with %zu gaps); nothing is extrapolated",
-                all - kept, all, first_s, last_s, track.measured_s.first, track.measured_s.last,
-                track.gaps.size());
-  if (2 * kept < all)
-    throw Error(ErrorKind::data, path.string() + text.data() +
-                                     ": the clocks differ (`time_offset` states by how much), or "
-                                     "the poses are of another drive");
   scans.stamps_s.resize(kept);
   scans.frames.files.resize(kept);
-  progress.warn(path.string() + text.data() + ", so they are left out");
 }
 
 /// Sets what the times of the points mean; gives when points of a scan were measured, from its

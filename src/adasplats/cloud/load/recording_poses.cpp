@@ -46,23 +46,6 @@ FrameTree tree_of(const RecordingSurvey& survey) {
   return tree;
 }
 
-RecordedPoses poses_of_file(const FrameDrive& drive, const std::vector<double>& stamps_s) {
-  RecordedPoses found;
-  found.poses = read_trajectory(drive.trajectory);
-  found.by = "interpolated at the times of the clouds' headers";
-  if (!has_times(drive.trajectory)) {
-    if (found.poses.size() != stamps_s.size())
-      throw Error(ErrorKind::data, drive.trajectory.string() + ": " +
-                                       std::to_string(found.poses.size()) +
-                                       " poses without times, " + std::to_string(stamps_s.size()) +
-                                       " clouds; expected one pose a cloud, or poses with times");
-    for (std::size_t k = 0; k < stamps_s.size(); ++k) found.poses[k].time_s = stamps_s[k];
-    found.by = "one a cloud, at the times of their headers";
-  }
-  if (drive.mount) found.poses = mounted(std::move(found.poses), drive.mount->transform());
-  return found;
-}
-
 /// What a topic says that tells where one frame is in another.
 const FrameEdge& edge_of_topic(const TopicSurvey& topic) {
   if (topic.edges.size() != 1)
@@ -262,9 +245,28 @@ const TopicSurvey& topic_of_clouds(const RecordingSurvey& survey, const std::str
   return *chosen;
 }
 
+RecordedPoses poses_of_trajectory(const FrameDrive& drive, const std::vector<double>& stamps_s,
+                                  const std::string& scans, const std::string& when) {
+  RecordedPoses found;
+  found.poses = read_trajectory(drive.trajectory);
+  found.by = "interpolated " + when;
+  if (!has_times(drive.trajectory)) {
+    if (found.poses.size() != stamps_s.size())
+      throw Error(ErrorKind::data,
+                  drive.trajectory.string() + ": " + std::to_string(found.poses.size()) +
+                      " poses without times, " + std::to_string(stamps_s.size()) + " " + scans +
+                      "; expected one pose each, or poses with times");
+    for (std::size_t k = 0; k < stamps_s.size(); ++k) found.poses[k].time_s = stamps_s[k];
+    found.by = "one each, " + when;
+  }
+  if (drive.mount) found.poses = mounted(std::move(found.poses), drive.mount->transform());
+  return found;
+}
+
 RecordedPoses poses_of_clouds(const FrameDrive& drive, const RecordingSurvey& survey,
                               const TopicSurvey& clouds, const std::vector<double>& stamps_s) {
-  if (!drive.trajectory.empty()) return poses_of_file(drive, stamps_s);
+  if (!drive.trajectory.empty()) 
+    return poses_of_trajectory(drive, stamps_s, "clouds", "at the times of the clouds' headers");
   return named_errors(survey, [&] { return poses_within(drive, survey, clouds); });
 }
 

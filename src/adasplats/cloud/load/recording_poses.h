@@ -21,6 +21,11 @@ struct RecordedPoses {
   std::string because;  ///< what says that the clouds are in a frame that moves; empty: nothing
 };
 
+/// Those of the stated trajectory; where it has no times, one pose each of the `scans` ("clouds")
+/// at their times. `when` says which those are. Errors: data.
+RecordedPoses poses_of_trajectory(const FrameDrive& drive, const std::vector<double>& stamps_s,
+                                  const std::string& scans, const std::string& when);
+
 /// As open_recording_drive() chooses them; `stamps_s` are the times of the clouds, which poses of a
 /// trajectory without times get. Errors: usage, data.
 RecordedPoses poses_of_clouds(const FrameDrive& drive, const RecordingSurvey& survey,

@@ -10,6 +10,7 @@
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/register_scans.h"
+#include "adasplats/io/packets/capture_reader.h"
 #include "adasplats/pipeline/provenance/metrics_json.h"
 #include "adasplats/pipeline/session/inputs.h"
 
@@ -57,11 +58,13 @@ KittiSequence open_frames(const HeldOutScans& scans, Session& session) {
 }  // namespace
 
 KittiSequence open_held_out(const HeldOutScans& scans, Session& session) {
-  const bool is_drive = !scans.trajectory.empty() || has_own_poses(scans.sequence);
+  const bool is_drive = !scans.trajectory.empty() || is_drive_by_itself(scans.sequence);
   if (!is_drive && (!scans.topic.empty() || !scans.poses_topic.empty()))
     throw Error(ErrorKind::usage, "`topic` and `poses_topic` are for a recording (MCAP, ROS bag)");
   if (!is_drive && !scans.scene.empty())
     throw Error(ErrorKind::usage, "`scene` is for a data root of nuScenes");
+  if (!is_capture(scans.sequence) && !scans.packets_of.empty())
+    throw Error(ErrorKind::usage, "`packets_of` is for a capture of packets (.pcap, .pcapng)");
   if (!is_drive && !scans.boxes.empty())
     throw Error(ErrorKind::usage, "`boxes` are for scans with times and a `trajectory`");
   const bool states_frames = scans.mount || scans.time_offset_s || !scans.scan_times.empty() ||

@@ -20,14 +20,14 @@ constexpr std::size_t kStepScans = 8;  // that tell the azimuth step: they agree
 }  // namespace
 
 bool needs_trajectory(const std::filesystem::path& given) {
-  return !has_own_poses(given) && !is_kitti_sequence(resolve_cloud_input(given)) &&
+  return !is_drive_by_itself(given) && !is_kitti_sequence(resolve_cloud_input(given)) &&
          !std::filesystem::exists(given / "poses.csv");
 }
 
 KittiSequence open_ring_scans(const std::filesystem::path& given,
                               const std::filesystem::path& trajectory, Session& session) {
   require_input(given);
-  if (has_own_poses(given)) {
+  if (is_drive_by_itself(given)) {
     FrameDrive drive{.folder = given, .trajectory = trajectory};
     drive.with_classes = false;
     return open_frame_drive(drive, session.executor, session.progress).value();
