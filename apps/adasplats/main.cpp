@@ -64,6 +64,7 @@ struct Program {
     commands.push_back(make_render_command(app));
     commands.push_back(make_view_command(app));
     commands.push_back(make_export_command(app));
+    commands.push_back(make_send_command(app));
     CLI::App& evaluate = group("evaluate", "Measure simulations and models",
                                "  adasplats evaluate c2c scans street/mapping.ply\n"
                                "  adasplats evaluate resimulate place.ply sequences/01\n");

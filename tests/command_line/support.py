@@ -40,6 +40,7 @@ SUBCOMMANDS = [
     ["compare"],
     ["view"],
     ["export"],
+    ["send"],
     ["demo"],
 ]
 # What tells of the program and computes nothing.

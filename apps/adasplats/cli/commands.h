@@ -34,6 +34,7 @@ std::unique_ptr<Command> make_sensors_command(CLI::App& program);
 std::unique_ptr<Command> make_compare_command(CLI::App& program);
 std::unique_ptr<Command> make_view_command(CLI::App& program);
 std::unique_ptr<Command> make_export_command(CLI::App& program);
+std::unique_ptr<Command> make_send_command(CLI::App& program);
 std::unique_ptr<Command> make_demo_command(CLI::App& program);
 std::unique_ptr<Command> make_help_command(CLI::App& program);
 std::unique_ptr<Command> make_version_command(CLI::App& program);
