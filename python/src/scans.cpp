@@ -134,6 +134,10 @@ void save_scans(const ScanList& list, py::handle folder, const py::kwargs& kwarg
   take_format(keywords, format, writing.order);
   keywords.finish();
   const std::filesystem::path path = path_of(folder, "folder");
+  if (format == ScanFormat::pcap)
+    throw Error(ErrorKind::usage,
+                "packets need the sensor that measured the scans: 'adasplats simulate --format "
+                "pcap' writes them");
   const py::gil_scoped_release released;
   std::filesystem::create_directories(path);
   writing.image_size = list.image_size;

@@ -250,7 +250,10 @@ def test_every_format_of_the_program_can_be_saved(street, scene, poses, tmp_path
     assert {"semantickitti", "range-image", "mcap"} < set(formats)
     poses[:2].save(tmp_path / "poses.csv")
     scans = scene.simulate(street.sensor, adasplats.Trajectory.read(tmp_path / "poses.csv"))
-    for format in formats:
+    with pytest.raises(ValueError, match="packets need the sensor"):
+        scans.save(tmp_path / "pcap", format="pcap")
+    assert not (tmp_path / "pcap").exists()
+    for format in [format for format in formats if format != "pcap"]:
         run_program("simulate", street.model, "--sensor", street.sensor, "--trajectory",
                     tmp_path / "poses.csv", "-o", tmp_path / ("cli-" + format), "--format", format)
         scans.save(tmp_path / format, format=format)

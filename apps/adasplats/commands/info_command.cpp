@@ -120,11 +120,13 @@ class InfoCommand final : public Command {
  private:
   /// Models and meshes are described as they are; of a sequence, scans can be chosen.
   void refuse_what_does_not_fit(const std::set<std::string>& kinds) {
-    if (kinds.empty() || kinds.contains("point cloud") || kinds.contains("folder of scans") ||
+    if (kinds.empty() || kinds.contains("capture")) return;
+    const std::string why = "on a " + *kinds.begin();
+    refuse({"--packets-of"}, why);
+    if (kinds.contains("point cloud") || kinds.contains("folder of scans") ||
         kinds.contains("recording") || kinds.contains("PandaSet sequence") ||
         kinds.contains("nuScenes scene"))
       return;
-    const std::string why = "on a " + *kinds.begin();
     refuse({"--label-field", "--sensor-fields", "--viewpoint", "--trajectory", "--mount",
             "--mount-rotation", "--time-offset", "--max-distance", "--beams-from-poses",
             "--salvage", "--scene", "--topic", "--poses-topic"},

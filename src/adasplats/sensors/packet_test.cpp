@@ -101,6 +101,47 @@ TEST(Packets, BytesOfAVlp16AsItsManualHasThem) {
   EXPECT_EQ(packet.substr(1204), "\x37\x22");
 }
 
+/// Profile RNG19_RFL8_SIG16_NIR16, put together after the Firmware User Manual: 32 bytes before and
+/// behind 16 columns of 12 bytes and 12 bytes a channel.
+TEST(Packets, OustersNewerProfileIsRead) {
+  LidarModel model = load_lidar_model("ouster-os1-64");
+  model.packets->format = PacketFormat::ouster_single;
+  const PacketDecoder decoder(packet_sensor(model));
+  std::string packet(32 + 16 * (12 + 64 * 12) + 32, '\0');
+  const auto put = [&](std::size_t place, auto value) {
+    std::memcpy(packet.data() + place, &value, sizeof value);
+  };
+  put(2, std::uint16_t{513});  // frame
+  for (std::size_t k = 0; k < 16; ++k) {
+    const std::size_t head = 32 + k * (12 + 64 * 12);
+    put(head, std::uint64_t{kSent_ns + 97'656 * k});
+    put(head + 8, static_cast<std::uint16_t>(256 + k));
+    put(head + 10, static_cast<std::uint16_t>(k != 3));  // one was not measured
+    // Bits above the 19 of the range are not of it.
+    put(head + 12 + 12 * 7, std::uint32_t{20'012 | 0xFFF80000});
+    put(head + 12 + 12 * 7 + 4, std::uint8_t{200});
+  }
+  ASSERT_TRUE(decoder.has_size(packet));
+  EXPECT_EQ(decoder.objection(packet), std::nullopt);
+  const auto columns = decoder.columns(packet);
+  ASSERT_EQ(columns.size(), 16U);
+  EXPECT_EQ(columns[5].frame, 513U);
+  EXPECT_EQ(columns[5].time_ns, static_cast<std::int64_t>(kSent_ns + 5 * 97'656));
+  EXPECT_FALSE(columns[3].is_valid);
+  EXPECT_TRUE(columns[4].is_valid);
+  PacketPoints points;
+  decoder.add_points(packet, 0, columns[0], points);
+  ASSERT_EQ(points.positions.size(), 1U);
+  EXPECT_EQ(points.rings[0], 7);
+  EXPECT_EQ(points.intensities[0], 200);
+  const Firing firing = firings_of(model)[7 * 1024 + 256];
+  const Vec3d expected =
+      vec_cast<double>(firing.origin) + (20.012 - 0.012163) * vec_cast<double>(firing.direction);
+  EXPECT_LT(length(points.positions[0] - expected), 1e-5);
+  put(32 + 8, std::uint16_t{1024});
+  EXPECT_NE(decoder.objection(packet).value_or("").find("1024"), std::string::npos);
+}
+
 TEST(Packets, OtherSensorsAndTwoReturnsAreRefused) {
   const SentPacket sent("velodyne-vlp-16", 0);
   const PacketDecoder decoder(sent.sensor);

@@ -1,0 +1,223 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/packet_drive.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/mutator_test.h"
+#include "adasplats/io/packets/capture_writer.h"
+#include "adasplats/sensors/packet_encoder.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::int64_t kDriveBegin_ns = (472'222LL * 3600 - 1) * 1'000'000'000;  // 1 s to the hour
+constexpr std::uint8_t kSender = 201;
+
+std::shared_ptr<const PacketDecoder> decoder_named(const std::string& name) {
+  return std::make_shared<const PacketDecoder>(packet_sensor(load_lidar_model(name)));
+}
+
+/// What a sensor sends during some revolutions around which everything is 10 m away.
+class SentDrive {
+ public:
+  SentDrive(const std::string& sensor, std::size_t columns)
+      : decoder_(decoder_named(sensor)), returns_(decoder_->sensor().lasers()) {
+    const PacketSensor& sent = decoder_->sensor();
+    for (PacketReturn& one : returns_)
+      one = {static_cast<std::uint32_t>(std::lround(10 / sent.facts.quantum_m)), 257 * 9};
+    std::vector<PacketColumn> packet;
+    for (std::size_t k = 0; k < columns; ++k) {
+      const auto late_ns = static_cast<std::int64_t>(
+          std::llround(1e9 * decoder_->column_s() * static_cast<double>(k)));
+      packet.push_back({static_cast<std::uint64_t>(kDriveBegin_ns + late_ns),
+                        static_cast<std::uint32_t>(k % sent.model.columns),
+                        static_cast<std::uint16_t>(k / sent.model.columns), returns_});
+      if (packet.size() < sent.facts.columns) continue;
+      payloads.push_back(encode_packet(sent, packet, payloads.size()));
+      times_ns.push_back(static_cast<std::int64_t>(packet.back().time_ns));
+      packet.clear();
+    }
+  }
+
+  const std::shared_ptr<const PacketDecoder>& decoder() const { return decoder_; }
+  std::filesystem::path write(const TemporaryFolder& folder, std::int64_t captured_later_ns = 0,
+                              std::uint8_t sender = kSender) const {
+    const std::filesystem::path path = folder.path() / "sent.pcap";
+    CaptureWriter writer(path);
+    add_to(writer, captured_later_ns, sender);
+    writer.finish();
+    return path;
+  }
+  void add_to(CaptureWriter& writer, std::int64_t captured_later_ns, std::uint8_t sender) const {
+    const UdpEnd from{{}, {10, 0, 0, sender}, 2368}, to{{}, {10, 0, 0, 1}, 2368};
+    for (std::size_t k = 0; k < payloads.size(); ++k)
+      writer.add(static_cast<std::uint64_t>(times_ns[k] + captured_later_ns) / 1000, from, to,
+                 payloads[k]);
+  }
+  PacketSurvey survey(const std::filesystem::path& path) const {
+    ProgressSink quiet;
+    return survey_packets(path, decoder_, quiet);
+  }
+
+  std::vector<std::string> payloads;
+  std::vector<std::int64_t> times_ns;
+
+ private:
+  std::shared_ptr<const PacketDecoder> decoder_;
+  std::vector<PacketReturn> returns_;
+};
+
+TEST(PacketDrive, RevolutionsAndTheirTimesAcrossTheHour) {
+  for (const char* name :
+       {"velodyne-vlp-16", "velodyne-hdl-64e-kitti", "velodyne-vls-128", "ouster-os1-64"}) {
+    const TemporaryFolder folder;
+    const std::size_t columns = decoder_named(name)->sensor().model.columns;
+    const SentDrive drive(name, 15 * columns + columns / 2);
+    const PacketSurvey survey = drive.survey(drive.write(folder));
+    ASSERT_EQ(survey.sources.size(), 1U);
+    const auto& [source_name, source] = *survey.sources.begin();
+    EXPECT_EQ(source_name, "10.0.0.201:2368");
+    EXPECT_EQ(source.packets, drive.payloads.size());
+    EXPECT_EQ(source.lost_columns, 0U) << name;
+    ASSERT_EQ(source.revolutions.size(), 16U) << name;
+    const double turn_ns = 1e9 / decoder_named(name)->sensor().model.rotation_hz;
+    for (std::size_t k = 0; k < 15; ++k) {
+      const Revolution& turn = source.revolutions[k];
+      EXPECT_EQ(turn.columns, columns);
+      // Velodyne's times are whole microseconds.
+      EXPECT_NEAR(static_cast<double>(turn.begin_ns - kDriveBegin_ns),
+                  static_cast<double>(k) * turn_ns, 1100)
+          << name;
+      EXPECT_NEAR(static_cast<double>(turn.end_ns - turn.begin_ns), turn_ns, 2100) << name;
+    }
+  }
+}
+
+TEST(PacketDrive, ClocksThatBeginElsewhere) {
+  // An Ouster that counts since it was switched on is of the capture's time...
+  const TemporaryFolder folder;
+  const SentDrive ouster("ouster-os1-64", 3 * 1024);
+  const std::int64_t later_ns = 1'000'000'000'000;
+  EXPECT_NEAR(static_cast<double>(ouster.survey(ouster.write(folder, later_ns))
+                                      .sources.begin()
+                                      ->second.revolutions[0]
+                                      .begin_ns -
+                                  kDriveBegin_ns),
+              static_cast<double>(later_ns), 2e6);
+  // ...and one whose clock is some seconds off keeps its own.
+  EXPECT_EQ(ouster.survey(ouster.write(folder, 37'000'000'000))
+                .sources.begin()
+                ->second.revolutions[0]
+                .begin_ns,
+            kDriveBegin_ns);
+  // Velodyne's hour is that of the capture.
+  const SentDrive velodyne("velodyne-vlp-16", 3 * 1808);
+  EXPECT_NEAR(static_cast<double>(velodyne.survey(velodyne.write(folder, 7'200'000'000'000))
+                                      .sources.begin()
+                                      ->second.revolutions[0]
+                                      .begin_ns -
+                                  kDriveBegin_ns),
+              7.2e12, 1000);
+}
+
+TEST(PacketDrive, MissingPacketsAndClocksThatAreSet) {
+  const TemporaryFolder folder;
+  SentDrive drive("velodyne-vlp-16", 4 * 1808);
+  drive.payloads.erase(drive.payloads.begin() + 20, drive.payloads.begin() + 23);
+  drive.times_ns.erase(drive.times_ns.begin() + 20, drive.times_ns.begin() + 23);
+  const PacketSurvey survey = drive.survey(drive.write(folder));
+  EXPECT_EQ(survey.sources.begin()->second.gaps, 1U);
+  EXPECT_EQ(survey.sources.begin()->second.lost_columns, 3U * 24);
+  std::uint32_t micros = 0;
+  std::memcpy(&micros, drive.payloads[50].data() + 1200, 4);
+  micros += 5'000'000;
+  std::memcpy(drive.payloads[50].data() + 1200, &micros, 4);
+  expect_error(ErrorKind::data, {"sent.pcap: packet 51 of 10.0.0.201:2368", "jumps by 5.0"},
+               [&] { drive.survey(drive.write(folder)); });
+}
+
+class OpenedCapture : public testing::Test {
+ protected:
+  KittiSequence open(const SentDrive& sent, const std::string& topic = "") const {
+    FrameDrive drive{
+        .folder = folder_.path() / "sent.pcap",
+        .trajectory = folder_.write(
+            "poses.csv", "time,x,y,z,qw,qx,qy,qz\n" + std::to_string(kDriveBegin_ns / 1e9 - 1) +
+                             ",0,0,0,1,0,0,0\n" + std::to_string(kDriveBegin_ns / 1e9 + 1) +
+                             ",0,0,0,1,0,0,0\n")};
+    drive.topic = topic;
+    drive.points_in = PointsIn::sensor;
+    ProgressSink quiet;
+    return open_packet_drive(drive, sent.survey(drive.folder), Executor(1), quiet);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(OpenedCapture, PointsAreWhereTheBeamsEnd) {
+  for (const char* name : {"velodyne-hdl-64e-s3", "ouster-os0-128"}) {
+    const PacketSensor sensor = packet_sensor(load_lidar_model(name));
+    const SentDrive sent(name, 3 * sensor.model.columns);
+    sent.write(folder_);
+    const KittiSequence sequence = open(sent);
+    ASSERT_EQ(sequence.scans.size(), 3U);
+    const KittiScan scan = read_kitti_scan(sequence, 1);
+    const std::size_t all = sensor.lasers() * sensor.model.columns;
+    EXPECT_NEAR(static_cast<double>(scan.positions.size()), static_cast<double>(all),
+                static_cast<double>(16 * sensor.lasers()));
+    for (std::size_t k = 0; k < scan.positions.size(); k += 97)
+      EXPECT_NEAR(length(scan.positions[k]), 10, 0.25);  // origins are off the axis
+    EXPECT_EQ(scan.intensities[0], 9);
+  }
+}
+
+TEST_F(OpenedCapture, SeveralSensorsAreToldApart) {
+  const SentDrive sent("velodyne-vlp-16", 3 * 1808);
+  const std::filesystem::path path = folder_.path() / "sent.pcap";
+  CaptureWriter writer(path);
+  sent.add_to(writer, 0, 201);
+  sent.add_to(writer, 0, 202);
+  writer.finish();
+  expect_error(ErrorKind::usage, {"several sensors", "`topic`", "10.0.0.202:2368"},
+               [&] { open(sent); });
+  EXPECT_EQ(open(sent, "10.0.0.202:2368").scans.size(), 3U);
+  expect_error(ErrorKind::usage, {"10.0.0.9:1", "10.0.0.201:2368"},
+               [&] { open(sent, "10.0.0.9:1"); });
+}
+
+TEST_F(OpenedCapture, BrokenPacketsEndInErrors) {
+  io_test::Mutator mutator(11);
+  std::size_t opened = 0, refused = 0;
+  for (const char* name : {"velodyne-vlp-16", "velodyne-hdl-64e-s3", "ouster-os1-64"}) {
+    const PacketSensor sensor = packet_sensor(load_lidar_model(name));
+    const SentDrive whole(name, sensor.model.columns / 16);
+    for (int round = 0; round < 40; ++round) {
+      SentDrive sent = whole;
+      for (std::size_t k = 0; k < sent.payloads.size(); k += 2) {
+        const std::size_t bytes = sent.payloads[k].size();
+        sent.payloads[k] = mutator.mutate(sent.payloads[k], sent.payloads[0]);
+        if (round % 2 == 0) sent.payloads[k].resize(bytes, '\x55');
+      }
+      sent.write(folder_);
+      try {
+        const KittiSequence sequence = open(sent);
+        for (std::size_t k = 0; k < sequence.scans.size(); ++k) read_kitti_scan(sequence, k);
+        ++opened;
+      } catch (const Error&) {
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(opened, 6U);
+  EXPECT_EQ(opened + refused, 120U);
+}
+
+}  // namespace
+}  // namespace adasplats
