@@ -4,6 +4,7 @@
 
 #include <pybind11/stl.h>
 
+#include "adasplats/core/error.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/dataset/parallel_scan_writer.h"
 #include "adasplats/dataset/scan_writer.h"

@@ -10,7 +10,7 @@ import unittest
 from collections import defaultdict
 
 import packet_parser
-from support import ProgramTest, run
+from support import ProgramTest, run, tree_digest
 
 try:
     import numpy
@@ -213,6 +213,13 @@ class Packets(ProgramTest):
         for begin_s, time_s in zip(begins, times):
             self.assertAlmostEqual(begin_s + 0.05, time_s, delta=2e-6)
         self.assertEqual(len(begins), len(times))
+
+    def test_threads_make_no_difference(self):
+        digests = set()
+        for threads in ("1", "3"):
+            folder, _ = self.both("velodyne-vlp-16", "--threads", threads)
+            digests.add(tree_digest(folder))
+        self.assertEqual(len(digests), 1)
 
     def test_refused(self):
         simulate = ["simulate", self.place, "--trajectory", self.poses, "-o", self.folder / "no",

@@ -14,8 +14,6 @@ namespace adasplats::app {
 namespace {
 
 constexpr const char* kSendExamples =
-    "  adasplats simulate place.ply --trajectory poses.csv --sensor velodyne-vlp-16 --format pcap "
-    "-o drive\n"
     "  adasplats send drive/drive.pcap --to 127.0.0.1\n"
     "  adasplats send drive.pcapng --to 192.168.1.77:2368 --port 2368 --speed 0.5\n";
 

@@ -197,13 +197,15 @@ TEST(Packets, CalibrationFilesAreTheSensor) {
         packet_sensor(load_lidar_model(folder.write(file.name, file.text).string()));
     ASSERT_EQ(again.lasers(), sensor.lasers()) << name;
     EXPECT_EQ(again.ring_of_laser, sensor.ring_of_laser) << name;
+    const std::vector<Firing> firings = firings_of(sensor.model);
+    const std::vector<Firing> firings_again = firings_of(again.model);
     for (std::size_t ring = 0; ring < sensor.lasers(); ++ring) {
       EXPECT_NEAR(again.model.elevations_rad[ring], sensor.model.elevations_rad[ring], 1e-9);
       const std::uint32_t column = 100;
       if (again.model.columns != sensor.model.columns) continue;  // of another unit
       if (again.model.first_azimuth_rad != sensor.model.first_azimuth_rad) continue;
-      const Firing a = firings_of(sensor.model)[ring * sensor.model.columns + column];
-      const Firing b = firings_of(again.model)[ring * sensor.model.columns + column];
+      const Firing a = firings[ring * sensor.model.columns + column];
+      const Firing b = firings_again[ring * sensor.model.columns + column];
       const auto point = [&](const Firing& firing, const PacketSensor& of) {
         return vec_cast<double>(firing.origin) +
                (20 + of.range_offsets_m[ring]) * vec_cast<double>(firing.direction);

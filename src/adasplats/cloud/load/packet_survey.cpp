@@ -70,7 +70,8 @@ class RevolutionFinder {
   void count_gap(std::int64_t time_ns) {
     if (source_.packets == 1 || time_ns - last_ns_ < 3 * column_ns_ / 2) return;
     ++source_.gaps;
-    source_.lost_columns += static_cast<std::uint64_t>((time_ns - last_ns_) / column_ns_ - 1);
+    source_.lost_columns +=
+        static_cast<std::uint64_t>((time_ns - last_ns_ + column_ns_ / 2) / column_ns_ - 1);
   }
 
   const PacketDecoder& decoder_;
