@@ -59,10 +59,12 @@ def datagrams(path):
 
 
 class Velodyne:
-    """lasers, firing time of a laser in us within a sequence of cycle_us, metres a count."""
+    """lasers, firing time of a laser in us within a sequence of cycle_us, metres a count; the time of
+    a packet is stamp_us after its first firing."""
 
-    def __init__(self, lasers, time_us, cycle_us, quantum_m, factory=None):
+    def __init__(self, lasers, time_us, cycle_us, quantum_m, factory=None, stamp_us=0):
         self.lasers, self.time_us, self.cycle_us = lasers, time_us, cycle_us
+        self.stamp_us = stamp_us
         self.quantum_m, self.factory = quantum_m, factory
 
     def returns(self, path):
@@ -103,7 +105,8 @@ class Velodyne:
                 late_us = self.time_us(laser)
                 if counts == 0:
                     continue
-                found.append(((micros + k * self.cycle_us + late_us) * 1e-6, laser,
+                since_us = k * self.cycle_us + late_us - self.stamp_us
+                found.append(((micros + since_us) * 1e-6, laser,
                               (azimuth + turn * late_us / self.cycle_us) % 360,
                               counts * self.quantum_m, intensity))
         return found
@@ -113,7 +116,7 @@ VLP_16 = Velodyne(16, lambda i: 2.304 * i, 55.296, 0.002, 0x22)
 HDL_32E = Velodyne(32, lambda i: 1.152 * i, 46.08, 0.002, 0x21)
 VLP_32C = Velodyne(32, lambda i: 2.304 * (i // 2), 55.296, 0.004, 0x28)
 HDL_64E_S3 = Velodyne(64, lambda i: 7.2 * (i % 32 // 4) + (0, 1.3, 2.5, 3.7)[i % 4], 57.6, 0.002)
-VLS_128 = Velodyne(128, lambda i: 2.665 * (i // 8 + i // 64), 53.3, 0.004, 0xA1)
+VLS_128 = Velodyne(128, lambda i: 2.665 * (i // 8 + i // 64), 53.3, 0.004, 0xA1, 3 * 2.665)
 
 
 def ouster_returns(path, channels):

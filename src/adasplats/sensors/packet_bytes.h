@@ -21,6 +21,12 @@ inline constexpr std::uint16_t kBlockFlags[] = {0xEEFF, 0xDDFF, 0xCCFF, 0xBBFF};
 inline constexpr std::uint16_t kAzimuthSteps = 36000;
 inline constexpr std::uint64_t kMicrosecondsPerHour = 3'600'000'000;
 
+/// How long after its first firing the time of a packet is: a VLS-128 aligns the top of the hour
+/// with the fourth of its groups of lasers (2.665 us each).
+constexpr std::int64_t stamp_after_first_ns(PacketFormat format) {
+  return format == PacketFormat::vls_128 ? 3 * 2665 : 0;
+}
+
 /// The place of a laser's firing in a packet: of column `column` of it.
 struct VelodynePlace {
   std::size_t block = 0, channel = 0;

@@ -131,7 +131,7 @@ std::vector<MeasuredColumn> PacketDecoder::velodyne_columns(std::string_view pay
       if (since_begin < 0) since_begin += kAzimuthSteps;
       MeasuredColumn column;
       column.time_ns =
-          std::int64_t{micros} * 1000 +
+          std::int64_t{micros} * 1000 - stamp_after_first_ns(sensor_.format) +
           std::llround(static_cast<double>(columns.size()) * column_s() * kNanosecondsInOne_s);
       column.head_rad = -steps / kAzimuthSteps * kWholeTurn_rad;
       column.turn_rad_s = -per_firing / kAzimuthSteps * kWholeTurn_rad / column_s();

@@ -78,7 +78,8 @@ std::string velodyne_packet(const PacketSensor& sensor, std::span<const PacketCo
       put_at(packet, place.byte() + 2,
              static_cast<std::uint8_t>(std::lround(found.intensity / 257.0)));
     }
-  const std::uint64_t time_ns = columns.front().time_ns;
+  const std::uint64_t time_ns =
+      columns.front().time_ns + static_cast<std::uint64_t>(stamp_after_first_ns(sensor.format));
   constexpr std::size_t kTail = kVelodyneBlocks * kBlockBytes;
   put_at(packet, kTail,
          static_cast<std::uint32_t>(time_ns / kNanosecondsPerMicrosecond % kMicrosecondsPerHour));
