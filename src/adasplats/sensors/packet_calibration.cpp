@@ -69,6 +69,7 @@ std::string velodyne_yaml(const PacketSensor& sensor) {
 /// By how many columns the pixels of each row are to be moved to stand above each other.
 std::vector<int> pixel_shifts(const LidarModel& model, const std::vector<double>& azimuths_deg) {
   std::vector<int> shifts;
+  shifts.reserve(azimuths_deg.size());
   for (const double azimuth_deg : azimuths_deg)
     shifts.push_back(static_cast<int>(std::lround(azimuth_deg * model.columns / 360.0)));
   const int least = std::ranges::min(shifts);

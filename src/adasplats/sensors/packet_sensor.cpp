@@ -49,14 +49,14 @@ void check_beams(const LidarModel& model, PacketFormat format, std::size_t laser
 }  // namespace
 
 PacketFacts facts_of_packets(PacketFormat format) {
-  constexpr std::uint32_t k16Bits = 65535;
+  constexpr std::uint32_t kSixteenBits = 65535;
   constexpr std::uint16_t kVelodynePort = 2368, kOusterPort = 7502;
   switch (format) {
-    case PacketFormat::vlp_16: return {16, 0.002, k16Bits, 24, kVelodynePort};
-    case PacketFormat::hdl_32e: return {32, 0.002, k16Bits, 12, kVelodynePort};
-    case PacketFormat::vlp_32c: return {32, 0.004, k16Bits, 12, kVelodynePort};
-    case PacketFormat::hdl_64e: return {64, 0.002, k16Bits, 6, kVelodynePort};
-    case PacketFormat::vls_128: return {128, 0.004, k16Bits, 3, kVelodynePort};
+    case PacketFormat::vlp_16: return {16, 0.002, kSixteenBits, 24, kVelodynePort};
+    case PacketFormat::hdl_32e: return {32, 0.002, kSixteenBits, 12, kVelodynePort};
+    case PacketFormat::vlp_32c: return {32, 0.004, kSixteenBits, 12, kVelodynePort};
+    case PacketFormat::hdl_64e: return {64, 0.002, kSixteenBits, 6, kVelodynePort};
+    case PacketFormat::vls_128: return {128, 0.004, kSixteenBits, 3, kVelodynePort};
     case PacketFormat::ouster_legacy: return {0, 0.001, (1U << 20) - 1, 16, kOusterPort};
     case PacketFormat::ouster_single: break;
   }
