@@ -24,7 +24,9 @@ constexpr std::size_t kScans = 23;
 std::size_t points_of(std::size_t index) { return index % 5 == 3 ? 0 : 64 + 7 * index; }
 
 ScanWriterOptions writing_options() {
+  static const LidarModel sensor = load_lidar_model("velodyne-hdl-64e-s3");  // of 64 rings
   ScanWriterOptions options;
+  options.packets.sensor = &sensor;
   options.image_size = {64, 8};
   options.labels = &semantickitti_labels();
   return options;

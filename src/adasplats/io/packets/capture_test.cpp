@@ -97,14 +97,13 @@ TEST(Capture, BothOrdersOfPcapng) {
 TEST(Capture, OtherLinks) {
   const TemporaryFolder folder;
   const std::string ip = ip_frame(udp_text(1, "p"), 1, 0).substr(14);
-  const std::pair<std::uint32_t, std::string> links[] = {
-      {101, ip},
-      {228, ip},
-      {0, "\2\0\0\0" + ip},
-      {113, std::string(14, '\0') + std::string("\x08\0", 2) + ip},
-      {276, std::string("\x08\0", 2) + std::string(18, '\0') + ip}};
-  for (auto [link, frame] : links) {
-    if (link == 0) frame = std::string("\2\0\0\0", 4) + ip;
+  const std::string family("\2\0\0\0", 4), type("\x08\0", 2);
+  const std::pair<std::uint32_t, std::string> links[] = {{101, ip},
+                                                         {228, ip},
+                                                         {0, family + ip},
+                                                         {113, std::string(14, '\0') + type + ip},
+                                                         {276, type + std::string(18, '\0') + ip}};
+  for (const auto& [link, frame] : links) {
     DatagramReader reader(
         folder.write("a.pcap", pcap_of({{kFirst_ns, frame}}, false, false, link)));
     const auto all = all_of(reader);
