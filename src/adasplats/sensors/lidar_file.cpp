@@ -80,7 +80,7 @@ void check_size(const LidarFile& file) {
                                        " rays a scan, expected at most " + std::to_string(most));
 }
 
-enum class Format : std::uint8_t { toml, json, yaml, csv };
+enum class Format : std::uint8_t { toml, json, yaml, xml, csv };
 
 /// By the extension, else by what it holds.
 Format format_of(const fs::path& path, std::string_view text) {
@@ -90,6 +90,8 @@ Format format_of(const fs::path& path, std::string_view text) {
   if (extension == ".toml") return Format::toml;
   if (extension == ".json") return Format::json;
   if (extension == ".yaml" || extension == ".yml") return Format::yaml;
+  if (extension == ".xml" || text.find("<boost_serialization") != std::string_view::npos)
+    return Format::xml;
   if (extension == ".csv" || extension == ".txt") return Format::csv;
   if (text.substr(0, text.find_first_not_of(" \t\r\n") + 1).ends_with('{')) return Format::json;
   if (text.find("lasers:") != std::string_view::npos) return Format::yaml;
@@ -99,7 +101,7 @@ Format format_of(const fs::path& path, std::string_view text) {
 bool names_a_format(const fs::path& path) {
   const std::string extension = path.extension().string();
   return extension == ".toml" || extension == ".json" || extension == ".yaml" ||
-         extension == ".yml" || extension == ".csv";
+         extension == ".yml" || extension == ".xml" || extension == ".csv";
 }
 
 }  // namespace
@@ -163,15 +165,17 @@ LidarFile read_lidar(const std::string& name_or_path, int nesting) {
   if (auto known = read_library_lidar(name_or_path)) return std::move(*known);
   const fs::path path(name_or_path);
   if (!names_a_format(path) && !fs::is_regular_file(path))
-    throw Error(ErrorKind::usage,
-                unknown_lidar_model(name_or_path,
-                                    " or a file: .toml, .json (Ouster), .yaml (Velodyne), .csv "
-                                    "(rays, or Hesai's angles)"));
+    throw Error(
+        ErrorKind::usage,
+        unknown_lidar_model(name_or_path,
+                            " or a file: .toml, .json (Ouster), .yaml or .xml (Velodyne), .csv "
+                            "(rays, or Hesai's angles)"));
   const std::string text = read_file(path);
   switch (format_of(path, text)) {
     case Format::toml: return read_lidar_toml(text, path, nesting);
     case Format::json: return read_ouster_json(text, path);
     case Format::yaml: return read_velodyne_yaml(text, path);
+    case Format::xml: return read_velodyne_xml(text, path);
     case Format::csv: break;
   }
   return read_lidar_csv(text, path);

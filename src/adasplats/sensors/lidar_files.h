@@ -43,6 +43,7 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
 LidarFile read_hesai_csv(std::string_view text, const std::filesystem::path& path);
 LidarFile read_ouster_json(std::string_view text, const std::filesystem::path& path);
 LidarFile read_velodyne_yaml(std::string_view text, const std::filesystem::path& path);
+LidarFile read_velodyne_xml(std::string_view text, const std::filesystem::path& path);
 
 /// A ring is a number of 16 bits.
 constexpr std::size_t kMostBeams = 65536;

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The calibration files of Velodyne sensors as the ROS driver velodyne_pointcloud has them: YAML
-// with a list "lasers", each laser in braces or key by key on lines of its own. They give angles
+// The calibration files of Velodyne sensors as the ROS driver velodyne_pointcloud has them, YAML
+// with a list "lasers", each laser in braces or key by key on lines of its own; and as the maker
+// delivers them (db.xml, which VeloView reads, too), in degrees and centimetres. They give angles
 // and offsets; times, ranges and the rest are those of the sensor in the library that has as many
 // lasers.
 
@@ -12,6 +13,7 @@
 #include <numbers>
 #include <string>
 
+#include "adasplats/io/e57/xml.h"
 #include "adasplats/sensors/lidar_files.h"
 #include "adasplats/sensors/text_fields.h"
 
@@ -224,10 +226,66 @@ std::vector<int> laser_ids(const Calibration& calibration) {
   return ids;
 }
 
-}  // namespace
+/// The child of an element that must be there.
+const XmlElement& needed_child(const XmlElement& parent, const char* name,
+                               const std::filesystem::path& path) {
+  if (const XmlElement* const child = parent.child(name)) return *child;
+  throw data_error(
+      {path, std::nullopt, std::nullopt},
+      "no <" + std::string(name) + "> in <" + parent.name + ">: not a Velodyne calibration");
+}
 
-LidarFile read_velodyne_yaml(std::string_view text, const std::filesystem::path& path) {
-  const Calibration calibration = CalibrationReader(text, path).read();
+/// Puts the number of a child, in other units, where it is there.
+void put_xml_number(const XmlElement& parent, const char* child_name, double unit, const char* key,
+                    const FilePlace& place, std::map<std::string, double, std::less<>>& values) {
+  if (const XmlElement* const child = parent.child(child_name))
+    values[key] = unit * finite_number(child->text, child_name, place);
+}
+
+/// The lasers of db.xml that are enabled.
+Calibration xml_calibration(std::string text, const std::filesystem::path& path) {
+  constexpr double kCentimetre_m = 0.01, kDegree_rad = std::numbers::pi / 180;
+  const FilePlace place{path, std::nullopt, std::nullopt};
+  // Of a document type nothing is needed; lines stay where they are.
+  const std::size_t type = text.find("<!DOCTYPE");
+  if (type != std::string::npos)
+    for (std::size_t k = type; k < text.size() && text[k] != '\n'; ++k) {
+      const bool is_end = text[k] == '>';
+      text[k] = ' ';
+      if (is_end) break;
+    }
+  const XmlElement root = parse_xml(path, text);
+  const XmlElement& database = needed_child(root, "DB", path);
+  std::vector<bool> enabled;
+  if (const XmlElement* const list = database.child("enabled_"))
+    for (const XmlElement& one : list->children)
+      if (one.name == "item") enabled.push_back(one.text != "0");
+  Calibration calibration;
+  put_xml_number(database, "distLSB_", kCentimetre_m, "distance_resolution", place,
+                 calibration.header);
+  std::size_t index = 0;
+  for (const XmlElement& item : needed_child(database, "points_", path).children) {
+    if (item.name != "item") continue;
+    const std::size_t number = index++;
+    if (number < enabled.size() && !enabled[number]) continue;
+    const XmlElement& values = needed_child(item, "px", path);
+    Laser laser{{}, place};
+    put_xml_number(values, "id_", 1, "laser_id", place, laser.values);
+    put_xml_number(values, "rotCorrection_", kDegree_rad, "rot_correction", place, laser.values);
+    put_xml_number(values, "vertCorrection_", kDegree_rad, "vert_correction", place, laser.values);
+    put_xml_number(values, "distCorrection_", kCentimetre_m, "dist_correction", place,
+                   laser.values);
+    put_xml_number(values, "vertOffsetCorrection_", kCentimetre_m, "vert_offset_correction", place,
+                   laser.values);
+    put_xml_number(values, "horizOffsetCorrection_", kCentimetre_m, "horiz_offset_correction",
+                   place, laser.values);
+    if (calibration.lasers.size() >= kMostBeams) throw data_error(place, "more than 65536 lasers");
+    calibration.lasers.push_back(std::move(laser));
+  }
+  return calibration;
+}
+
+LidarFile lidar_of_calibration(const Calibration& calibration, const std::filesystem::path& path) {
   const FilePlace place{path, std::nullopt, std::nullopt};
   if (calibration.lasers.empty()) throw data_error(place, "a calibration with no lasers");
   const auto told = calibration.header.find("num_lasers");
@@ -256,6 +314,16 @@ LidarFile read_velodyne_yaml(std::string_view text, const std::filesystem::path&
   if (resolution != calibration.header.end() && resolution->second >= 0)
     model.range_resolution_m = resolution->second;
   return file;
+}
+
+}  // namespace
+
+LidarFile read_velodyne_yaml(std::string_view text, const std::filesystem::path& path) {
+  return lidar_of_calibration(CalibrationReader(text, path).read(), path);
+}
+
+LidarFile read_velodyne_xml(std::string_view text, const std::filesystem::path& path) {
+  return lidar_of_calibration(xml_calibration(std::string(text), path), path);
 }
 
 }  // namespace adasplats

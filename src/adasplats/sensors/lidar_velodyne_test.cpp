@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 #include <string>
 
 #include "adasplats/core/temporary_folder_test.h"
@@ -127,6 +128,52 @@ TEST_F(VelodyneYaml, HostileFilesAreErrorsNotCrashes) {
   std::string many = "lasers:\n";
   for (int i = 0; i < 70'000; ++i) many += "- vert_correction: 0\n";
   expect_data_error(many, "more than 65536");
+}
+
+/// What VeloView and the ROS driver's generator read as db.xml: degrees, centimetres, and lasers
+/// that are switched off.
+TEST_F(VelodyneYaml, TheMakersXmlIsTheSame) {
+  std::string xml =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"yes\" ?>\n"
+      "<!DOCTYPE boost_serialization>\n<boost_serialization version=\"9\">\n<DB>\n"
+      "<distLSB_>0.2</distLSB_>\n<enabled_><count>17</count>";
+  std::string points = "<points_><count>17</count>";
+  std::string yaml = "lasers:\n";
+  for (int id = 0; id < 17; ++id) {
+    xml += id == 16 ? "<item>0</item>" : "<item>1</item>";
+    const std::string k = std::to_string(id);
+    points += "<item><px><id_>" + k + "</id_><rotCorrection_>-" + k + ".5</rotCorrection_>" +
+              "<vertCorrection_>" + k + ".25</vertCorrection_><distCorrection_>1" + k +
+              "</distCorrection_><vertOffsetCorrection_>2" + k +
+              "</vertOffsetCorrection_><horizOffsetCorrection_>-2.6</horizOffsetCorrection_>" +
+              "<focalDistance_>0</focalDistance_></px></item>\n";
+    if (id == 16) continue;
+    std::ostringstream laser;
+    laser.precision(17);
+    laser << "- {laser_id: " << id << ", rot_correction: " << -(id + 0.5) * kPi / 180
+          << ", vert_correction: " << (id + 0.25) * kPi / 180
+          << ", dist_correction: " << 0.01 * std::stod("1" + k)
+          << ", vert_offset_correction: " << 0.01 * std::stod("2" + k)
+          << ", horiz_offset_correction: -0.026}\n";
+    yaml += laser.str();
+  }
+  xml += "</enabled_>\n" + points + "</points_>\n</DB>\n</boost_serialization>\n";
+  const LidarModel a = load(xml, "db.xml"), b = load(yaml + "distance_resolution: 0.002\n");
+  ASSERT_EQ(a.elevations_rad.size(), 16U);
+  ASSERT_TRUE(a.packets && b.packets);
+  EXPECT_EQ(a.packets->laser_ids, b.packets->laser_ids);
+  EXPECT_EQ(a.firing_times_s, b.firing_times_s);
+  EXPECT_NEAR(a.range_resolution_m, 0.002, 1e-12);
+  for (std::size_t ring = 0; ring < 16; ++ring) {
+    EXPECT_NEAR(a.elevations_rad[ring], b.elevations_rad[ring], 1e-12);
+    EXPECT_NEAR(a.azimuth_offsets_rad[ring], b.azimuth_offsets_rad[ring], 1e-12);
+    EXPECT_NEAR(a.packets->range_offsets_m[ring], b.packets->range_offsets_m[ring], 1e-12);
+    EXPECT_LT(length(a.beam_origins_m[ring] - b.beam_origins_m[ring]), 1e-12);
+  }
+  for (const char* broken : {"<a/>", "<DB></DB>", "no xml", "<b><DB><points_/></DB></b>",
+                             "<b><DB><points_><item><px><vertCorrection_>x</vertCorrection_></px>"
+                             "</item></points_></DB></b>"})
+    expect_error(ErrorKind::data, {"bad.xml"}, [&] { load(broken, "bad.xml"); });
 }
 
 }  // namespace
