@@ -5,17 +5,13 @@ import json
 import math
 import re
 import socket
+import struct
 import time
 import unittest
 from collections import defaultdict
 
 import packet_parser
 from support import ProgramTest, run, tree_digest
-
-try:
-    import numpy
-except ImportError:
-    numpy = None
 
 # Manual 63-9243, table "Vertical angles by laser id".
 VLP_16_TILTS = [-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15]
@@ -65,7 +61,17 @@ def ouster_point(metadata, channel, column, range_m):
             for r in range(3)]
 
 
-@unittest.skipIf(numpy is None, "NumPy is not installed")
+def ply_rows(path):
+    """The vertices of a binary PLY as dictionaries."""
+    head, body = path.read_bytes().split(b"end_header\n", 1)
+    kinds = {"float": "f", "double": "d", "uchar": "B", "ushort": "H", "uint": "I", "int": "i"}
+    properties = [line.split()[1:] for line in head.decode().splitlines()
+                  if line.startswith("property")]
+    layout = struct.Struct("<" + "".join(kinds[kind] for kind, _ in properties))
+    names = [name for _, name in properties]
+    return [dict(zip(names, values)) for values in layout.iter_unpack(body)]
+
+
 class Packets(ProgramTest):
     def setUp(self):
         super().setUp()
@@ -80,18 +86,16 @@ class Packets(ProgramTest):
         """The folder of the packets, and the same scans as rows of (time in s, ring, range, point,
         column)."""
         folders = {}
-        for word in ("pcap", "npz"):
+        for word in ("pcap", "ply"):
             folders[word] = self.folder / word
             self.run_good("simulate", self.place, "--trajectory", self.poses, "--sensor", sensor,
                           "-o", folders[word], "--format", word, "--overwrite", *arguments)
+        begins_s = [float(line.split(",")[0]) for line in
+                    (folders["ply"] / "poses.csv").read_text().splitlines()[1:]]
         truth = []
-        for path in sorted(folders["npz"].glob("*.npz")):
-            scan = numpy.load(path)
-            begin_s = float(scan["time"][0])
-            truth += [(begin_s + float(t), int(ring), float(r), point, int(column))
-                      for t, ring, r, point, column in
-                      zip(scan["times"], scan["rings"], scan["ranges"], scan["points"],
-                          scan["columns"])]
+        for begin_s, path in zip(begins_s, sorted(folders["ply"].glob("*.ply")), strict=True):
+            truth += [(begin_s + row["time"], row["ring"], row["range"],
+                       (row["x"], row["y"], row["z"]), row["column"]) for row in ply_rows(path)]
         return folders["pcap"], truth
 
     def check_velodyne(self, sensor, parser, calibration_name="calibration.yaml"):
