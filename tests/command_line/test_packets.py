@@ -117,7 +117,10 @@ class Packets(ProgramTest):
         for ring, rows in found.items():
             for (t, _, azimuth, range_m, laser), (true_t, _, true_m, point) in \
                     zip(rows, expected[ring]):
-                self.assertAlmostEqual(t, true_t % 3600, delta=2e-6)
+                # Times of packets are cut to microseconds; 24 sequences take 0.3 us less by the
+                # manual than those that fill a revolution.
+                self.assertLess(t - true_t % 3600, 0.1e-6)
+                self.assertGreater(t - true_t % 3600, -1.4e-6)
                 self.assertAlmostEqual(range_m, true_m, delta=parser.quantum_m / 2 + 1e-5)
                 place = driver_point(lasers[laser], azimuth, range_m)
                 # A step of 0.01 degrees, and one more of what is between two blocks.
