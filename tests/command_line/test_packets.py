@@ -270,7 +270,7 @@ class Captures(ProgramTest):
                 self.assertEqual(result.returncode, 0, result.stderr)
                 figures = json.loads(report.read_text())
                 # The place that sent them has them at its surfaces, to the steps of packets.
-                self.assertLess(figures["range_error_m"]["median"], 0.004)
+                self.assertLess(figures["range_error_m"]["median"], 0.002)
 
     def test_what_is_needed_is_said(self):
         folder = self.drive("vlp", "velodyne-vlp-16")

@@ -50,7 +50,7 @@ class SentDrive {
   const std::shared_ptr<const PacketDecoder>& decoder() const { return decoder_; }
   std::filesystem::path write(const TemporaryFolder& folder, std::int64_t captured_later_ns = 0,
                               std::uint8_t sender = kSender) const {
-    const std::filesystem::path path = folder.path() / "sent.pcap";
+    std::filesystem::path path = folder.path() / "sent.pcap";
     CaptureWriter writer(path);
     add_to(writer, captured_later_ns, sender);
     writer.finish();
