@@ -265,7 +265,7 @@ RecordedPoses poses_of_trajectory(const FrameDrive& drive, const std::vector<dou
 
 RecordedPoses poses_of_clouds(const FrameDrive& drive, const RecordingSurvey& survey,
                               const TopicSurvey& clouds, const std::vector<double>& stamps_s) {
-  if (!drive.trajectory.empty()) 
+  if (!drive.trajectory.empty())
     return poses_of_trajectory(drive, stamps_s, "clouds", "at the times of the clouds' headers");
   return named_errors(survey, [&] { return poses_within(drive, survey, clouds); });
 }
