@@ -37,8 +37,8 @@ struct FrameDrive {
 /// A folder and what is said of it.
 FrameDrive drive_of(const std::filesystem::path& folder, const DriveSettings& settings);
 
-/// Whether a path is a drive and no folder of files: a recording, a capture of packets, or a tree of
-/// a data set. Recordings and trees have the poses of their scans in them.
+/// Whether a path is a drive and no folder of files: a recording, a capture of packets, or a tree
+/// of a data set. Recordings and trees have the poses of their scans in them.
 bool is_drive_by_itself(const std::filesystem::path& path);
 
 /// Whether a folder holds files of points of one extension, the first of which has times of at most
