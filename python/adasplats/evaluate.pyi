@@ -168,7 +168,7 @@ def unit(
     model: Path,
     scans: Path,
     *,
-    sensor: str = "",
+    sensor: str | None = None,
     first_scan: int = 0,
     scan_count: int | None = None,
     scan_stride: int = 1,
