@@ -59,7 +59,7 @@ double damp_shares(std::span<const UnitBeam> beams, const UnitIntensity& unit,
                    std::vector<float>& shares) {
   constexpr std::size_t kLeastTriples = 1000;
   constexpr int kHalvings = 6;
-  constexpr double kOfAStep = 0.5;
+  constexpr double kOfAStep = 0.25;
   const std::vector<SharedTriple> triples = triples_of(beams, shares);
   if (triples.size() < kLeastTriples) return 1;
   std::vector<float> measured;

@@ -87,11 +87,8 @@ std::optional<DropFit> fit_unit_drop(std::span<const UnitBeam> beams, double max
   std::vector<std::size_t> of_echoes;
   for (const std::size_t i : numbers) {
     const bool at_edge = found.ends[i] == BeamEnd::lost_at_edge && !fit.model.edge_runs.empty();
-    if (at_edge || fit.model.blocks(beams[i].direction)) continue;
-    if (found.ends[i] == BeamEnd::lost_in_long_run) {
-      fit.shares[i] = 0;
-      continue;
-    }
+    const bool in_long_run = found.ends[i] == BeamEnd::lost_in_long_run;
+    if (at_edge || in_long_run || fit.model.blocks(beams[i].direction)) continue;
     echoes.push_back(conditions_of(beams[i]));
     lost.push_back(beams[i].returned() ? 0 : 1);
     of_echoes.push_back(i);

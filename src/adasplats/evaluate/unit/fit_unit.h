@@ -58,9 +58,9 @@ struct DropFit {
 };
 
 /// Blocked sectors; runs of lost beams at range edges, of the returns alone; the logistic model of
-/// the beams that are lost elsewhere, in runs of 20 at most. Longer ones have the share 0: they are
-/// lost whatever the chance, as what they met did not answer at all. None where fit_ray_drop() has
-/// too few of either kind.
+/// the beams that are lost elsewhere, in runs of 20 at most. Longer ones are of the place, where
+/// something did not answer at all, and not told. None where
+/// fit_ray_drop() has too few of either kind.
 std::optional<DropFit> fit_unit_drop(std::span<const UnitBeam> beams, double max_range_m);
 
 /// Shares of beams (IntensityFit, DropFit); empty: none is told.

