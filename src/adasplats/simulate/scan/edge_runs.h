@@ -42,6 +42,16 @@ ADASPLATS_HD inline bool is_edge(const Firing* firings, const ScanHits& hits, st
   return firings[i].ring == firings[i + 1].ring && firings[i].column + 1 == firings[i + 1].column;
 }
 
+/// Whether ranges jump anywhere between firings first and last, whoever they are of: most beams are
+/// far from all edges, which this tells without a branch a firing.
+ADASPLATS_HD inline bool ranges_jump(const ScanHits& hits, std::uint32_t first,
+                                     std::uint32_t last) {
+  int jumps = 0;
+  for (std::uint32_t i = first; i < last; ++i)
+    jumps |= std::fabs(hits.of(i + 1).t - hits.of(i).t) > kRangeEdge_m ? 1 : 0;
+  return jumps != 0;
+}
+
 /// Whether a firing is one of those that are lost at an edge beside it. Edges one above the other
 /// in four rings lose the same beams.
 ADASPLATS_HD inline bool lost_at_edge(const EdgeRunRules& rules, const Firing* firings,
@@ -50,7 +60,10 @@ ADASPLATS_HD inline bool lost_at_edge(const EdgeRunRules& rules, const Firing* f
   constexpr std::uint32_t kRingsAlike = 4;
   const std::uint32_t first =
       firing >= hits.first + kMostEdgeRun ? firing - kMostEdgeRun : hits.first;
-  for (std::uint32_t i = first; i < firing + kMostEdgeRun && i + 1 < hits.end; ++i) {
+  const std::uint32_t last =
+      firing + kMostEdgeRun < hits.end ? firing + kMostEdgeRun : hits.end - 1;
+  if (!ranges_jump(hits, first, last)) return false;
+  for (std::uint32_t i = first; i < last; ++i) {
     if (!is_edge(firings, hits, i)) continue;
     Random random(seed ^ 0x6564676573ULL, scan_index,
                   std::uint64_t{firings[i].ring / kRingsAlike} << 32 | firings[i].column);
