@@ -123,21 +123,11 @@ bool has_timed_frames(const std::filesystem::path& folder) {
   return !(end - begin > kLongestScan_s);
 }
 
-std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Executor& executor,
-                                              ProgressSink& progress) {
-  if (!drive.scene.empty() && !is_nuscenes_root(drive.folder))
-    throw Error(ErrorKind::usage,
-                drive.folder.string() + ": is no data root of nuScenes, which `scene` is for");
-  if (is_recording(drive.folder))
-    return open_recording_drive(drive, survey_recording(drive.folder, progress), executor,
-                                progress);
-  if (const DataTree* const tree = data_tree_of(drive.folder))
-    return open_data_tree(*tree, drive, executor, progress);
-  if (is_capture(drive.folder))
-    return open_packet_drive(
-        drive,
-        survey_packets(drive.folder, decoder_of_capture(drive.folder, drive.packets_of), progress),
-        executor, progress);
+namespace {
+
+/// A folder of files, one a scan.
+std::optional<KittiSequence> open_files(const FrameDrive& drive, const Executor& executor,
+                                        ProgressSink& progress) {
   const std::vector<std::filesystem::path> files = scan_files(drive.folder);
   const auto open_as_world = [&]() -> std::optional<KittiSequence> {
     // Where the mount is stated nothing is to be recognised.
@@ -189,6 +179,26 @@ std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Exe
     tell_of_drive(*sequence, progress);
   }
   return sequence;
+}
+
+}  // namespace
+
+std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Executor& executor,
+                                              ProgressSink& progress) {
+  if (!drive.scene.empty() && !is_nuscenes_root(drive.folder))
+    throw Error(ErrorKind::usage,
+                drive.folder.string() + ": is no data root of nuScenes, which `scene` is for");
+  if (is_recording(drive.folder))
+    return open_recording_drive(drive, survey_recording(drive.folder, progress), executor,
+                                progress);
+  if (const DataTree* const tree = data_tree_of(drive.folder))
+    return open_data_tree(*tree, drive, executor, progress);
+  if (is_capture(drive.folder))
+    return open_packet_drive(
+        drive,
+        survey_packets(drive.folder, decoder_of_capture(drive.folder, drive.packets_of), progress),
+        executor, progress);
+  return open_files(drive, executor, progress);
 }
 
 }  // namespace adasplats

@@ -25,6 +25,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/large_vector.h"
 #include "adasplats/core/stopwatch.h"
+#include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/packets/capture_reader.h"
 
