@@ -194,9 +194,29 @@ std::string ScanBeams::description() const {
   return from_hdl64 && !sweeps_m.empty() ? origin + ", moving" : origin;
 }
 
+namespace {
+
+/// Throws data where a pose is of a time when nothing is known of the motion.
+void require_motion_of(const Trajectory& poses, const Trajectory& motion) {
+  constexpr double kMostBeside_s = 1;
+  for (const TimedPose& pose : poses) {
+    if (pose.time_s > motion.front().time_s - kMostBeside_s &&
+        pose.time_s < motion.back().time_s + kMostBeside_s)
+      continue;
+    throw Error(ErrorKind::data, "a scan of " + std::to_string(pose.time_s) +
+                                     " s, but `motion` is of " +
+                                     std::to_string(motion.front().time_s) + " to " +
+                                     std::to_string(motion.back().time_s) +
+                                     " s: the clocks differ, or it is of another drive");
+  }
+}
+
+}  // namespace
+
 void set_raw_motions(ScanBeams& beams, const Trajectory& poses, const Trajectory& motion,
                      double revolution_s) {
   beams.raw_motions.clear();
+  require_motion_of(poses, motion);
   for (const TimedPose& pose : poses) {
     const RigidTransform frame_from_world = interpolate(motion, pose.time_s).inverse();
     const auto moved = [&](double after_s) {

@@ -59,7 +59,8 @@ struct ScanBeams {
 
 /// Fills beams.raw_motions of scans that are not motion-compensated: poses (one a scan, of its
 /// middle) moving as `motion` does, whose times are theirs and whose frame need not be.
-/// `revolution_s`: KITTI's by default.
+/// `revolution_s`: KITTI's by default. Errors: data (a pose more than a second before or behind the
+/// motion).
 void set_raw_motions(ScanBeams& beams, const Trajectory& poses, const Trajectory& motion,
                      double revolution_s = 0.1033);
 

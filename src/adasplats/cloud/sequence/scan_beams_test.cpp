@@ -386,6 +386,9 @@ TEST(RawMotions, PointsAreBroughtToTheFrameOfTheMiddle) {
     motion.push_back({time_s, {rotation_from_yaw_pitch_roll(0.5, 0, 0), {10 * time_s, 0, 0}}});
   }
   ScanBeams beams;
+  expect_error(ErrorKind::data, {"1001", "`motion` is of", "the clocks differ"}, [&] {
+    set_raw_motions(beams, {{1001.0, {}}}, motion, 0.1);
+  });
   set_raw_motions(beams, {{1.0, {}}}, motion, 0.1);
   ASSERT_EQ(beams.raw_motions.size(), 1U);
   const Vec3d ahead = {std::cos(0.5), -std::sin(0.5), 0};  // the drive's direction in the frame
