@@ -57,11 +57,23 @@ char separator_of(std::string_view line) {
   return line.find(',') != std::string_view::npos ? ',' : ' ';
 }
 
+/// A column's name without the unit behind it, `x [m]` and `time (s)`, where that is the one of
+/// columns without a unit. Another unit stays a part of the name, so that what expects metres or
+/// seconds finds none.
+std::string_view without_unit(std::string_view name) {
+  for (const std::string_view unit : {"[m]", "(m)", "[s]", "(s)", "[]", "()", "[-]", "(-)"}) {
+    if (!name.ends_with(unit) || name.size() == unit.size()) continue;
+    name.remove_suffix(unit.size());
+    return name.substr(0, name.find_last_not_of(' ') + 1);
+  }
+  return name;
+}
+
 std::vector<std::string> split_names(std::string_view line, char separator) {
   std::vector<std::string> names;
   Cells cells(line, separator);
   while (const std::optional<std::string_view> cell = cells.next())
-    names.push_back(lower_case(*cell));
+    names.emplace_back(without_unit(lower_case(*cell)));
   // A separator at the line's end begins no column.
   if (!names.empty() && names.back().empty()) names.pop_back();
   return names;

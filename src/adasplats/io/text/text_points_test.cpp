@@ -75,6 +75,14 @@ TEST(TextPoints, HeaderOfNames) {
   EXPECT_EQ(table.rows, 2U);
 }
 
+TEST(TextPoints, NamesMayHaveTheirUnit) {
+  const Table table = read("Z [m];X[m];Y (m);time [ns];GPS Time (s);Intensity [-]\n3;1;2;4;5;6\n");
+  EXPECT_EQ(names_of(table), (Names{"z", "x", "y", "time [ns]", "gps time", "intensity"}));
+  EXPECT_EQ(values_of(table, "x"), (Doubles{1}));
+  // Nothing takes feet for metres.
+  EXPECT_EQ(names_of(read("x [ft],y [ft],z [ft]\n1,2,3\n")), (Names{"x [ft]", "y [ft]", "z [ft]"}));
+}
+
 TEST(TextPoints, EmptyCellsAreMissingValues) {
   const Table table = read("x,y,z,w\n1,2,3,\n1,2,3,4\n1,2,,nan\n");
   EXPECT_TRUE(std::isnan(values_of(table, "w")[0]));
