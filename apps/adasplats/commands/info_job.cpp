@@ -222,7 +222,7 @@ void describe_beams(const ScanBeams& beams, const std::string& motion, FileFacts
   facts.rows.emplace_back("beams from", beams.description());
   const std::string known = !motion.empty()              ? motion
                             : !beams.sweeps_m.empty()    ? "taken out of the points"
-                            : !beams.raw_motions.empty() ? "in the points, as measured"
+                            : !beams.raw_motions.empty() ? "in the points, as measured; taken out"
                                                          : "not known: scans as if standing still";
   facts.rows.emplace_back("motion of a scan", known);
   facts.json["motion"] = known;

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -113,6 +115,23 @@ void join(std::vector<KittiScan>& scans, std::vector<T> KittiScan::*attribute, s
   }
 }
 
+/// Tells the lasers of a scan's points; where the sensor moved, brings the points to the scan's
+/// frame and says where their beams began.
+void recognise_lasers(const PartRun& run, CloudPart& part) {
+  PointCloud& cloud = part.cloud;
+  for (std::size_t i = run.begin; i < run.end; ++i) {
+    const Vec3d point = vec_cast<double>(cloud.positions[i]);
+    if (part.scan_origins.empty()) {
+      cloud.lasers[i] = part.beams.laser_of(run.scan, point);
+      continue;
+    }
+    const MeasuredBeam beam = part.beams.beam_of(run.scan, point);
+    cloud.lasers[i] = beam.laser;
+    cloud.positions[i] = vec_cast<float>(beam.end);
+    part.scan_origins[i] = vec_cast<float>(beam.origin);
+  }
+}
+
 /// Scans of a reader: how many points they have is known when they are read.
 void read_with_reader(const KittiSequence& sequence, const std::vector<std::size_t>& chosen,
                       CloudPart& part, const Executor& executor, ProgressSink& progress) {
@@ -141,11 +160,9 @@ void read_with_reader(const KittiSequence& sequence, const std::vector<std::size
   executor.for_chunks(tasks.size(), 1, [&](std::size_t task, std::size_t) { tasks[task](); });
   if (part.beams.from_hdl64) {
     cloud.lasers.resize(points);
-    executor.for_chunks(part.runs.size(), 1, [&](std::size_t k, std::size_t) {
-      const PartRun& run = part.runs[k];
-      for (std::size_t i = run.begin; i < run.end; ++i)
-        cloud.lasers[i] = part.beams.laser_of(run.scan, vec_cast<double>(cloud.positions[i]));
-    });
+    part.scan_origins.resize(part.beams.raw_motions.empty() ? 0 : points);
+    executor.for_chunks(part.runs.size(), 1,
+                        [&](std::size_t k, std::size_t) { recognise_lasers(part.runs[k], part); });
   }
   const auto unknown = [](std::uint16_t laser) { return laser == kNoLaser; };
   if (std::ranges::all_of(cloud.lasers, unknown)) cloud.lasers.clear();
@@ -165,6 +182,7 @@ void size_arrays(bool has_labels, CloudPart& part, const Executor& executor) {
   add(cloud.intensities);
   add(cloud.scan_indices);
   if (part.beams.from_hdl64) add(cloud.lasers);
+  if (!part.beams.raw_motions.empty()) add(part.scan_origins);
   if (has_labels) {
     add(cloud.classes);
     add(cloud.instances);
@@ -180,9 +198,18 @@ void read_files(const KittiSequence& sequence, const std::vector<std::size_t>& c
   for_each_scan(chosen.size(), executor, progress, [&](std::size_t k) {
     const PartRun& run = part.runs[k];
     store_scan(run, read_kitti_scan(sequence, chosen[k]), cloud);
-    for (std::size_t i = run.begin; i < run.end && !cloud.lasers.empty(); ++i)
-      cloud.lasers[i] = part.beams.laser_of(run.scan, vec_cast<double>(cloud.positions[i]));
+    if (!cloud.lasers.empty()) recognise_lasers(run, part);
   });
+}
+
+std::string unknown_motion_text(const KittiSequence& sequence) {
+  std::array<char, 300> text{};
+  std::snprintf(text.data(), text.size(),
+                ": scans are as they were measured, of a sensor that moves %.2f m within each, and "
+                "nothing tells how (poses half a second and more apart, or points of other scans "
+                "that are met no better): taken as if it stood still",
+                sequence.beams.unknown_sweep_m);
+  return sequence.folder.string() + text.data();
 }
 
 }  // namespace
@@ -194,6 +221,8 @@ CloudPart read_sequence_part(const KittiSequence& sequence, const LoadOptions& o
   CloudPart part;
   part.is_sequence = true;
   part.beams = sequence.beams;
+  constexpr double kStill_m = 0.02;
+  if (part.beams.unknown_sweep_m > kStill_m) progress.warn(unknown_motion_text(sequence));
   if (sequence.reader)
     read_with_reader(sequence, chosen, part, executor, progress);
   else

@@ -58,6 +58,14 @@ void tell_of_drive(const KittiSequence& sequence, ProgressSink& progress) {
                 (facts.left_out.empty() ? "" : "; left out: " + facts.left_out));
 }
 
+std::string motion_text(const ScanBeams& beams) {
+  if (!beams.sweeps_m.empty()) return "taken out of the points, by the cones of its beams";
+  return beams.raw_motions.empty() ? "in the points, as measured; scans as if standing still"
+                                   : "in the points, as measured, and taken out by the poses, "
+                                     "which points of other scans "
+                                     "confirm";
+}
+
 KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& frames,
                                  const std::string& because, const Executor& executor,
                                  ProgressSink& progress) {
@@ -87,9 +95,7 @@ KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& fr
   if (drive.beams_from_poses) {
     sequence.facts.motion = "not looked for: beams from the poses";
   } else if (sequence.beams.from_hdl64) {
-    sequence.facts.motion = sequence.beams.sweeps_m.empty()
-                                ? "in the points, as measured"
-                                : "taken out of the points, by the cones of its beams";
+    sequence.facts.motion = motion_text(sequence.beams);
   } else {
     finding = look_at_sweeps(frames, drive.sweep_points, executor);
     sequence.facts.motion = finding.motion;

@@ -367,6 +367,10 @@ bool ScaleEvidence::contradicts() const {
          static_cast<double>(met) >= kLeastGain * other;
 }
 
+std::vector<ScanNumbers> scan_pairs(const Trajectory& trajectory) {
+  return pairs_of(trajectory, 1);
+}
+
 PoseEvidence weigh_poses(const KittiSequence& sequence, const Executor& executor) {
   const std::vector<ScanNumbers> pairs = pairs_of(sequence.trajectory, 1);
   std::vector<PoseEvidence> of_pairs(pairs.size());

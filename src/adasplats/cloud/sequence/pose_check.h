@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
@@ -46,6 +47,9 @@ struct PoseEvidence {
   /// Whether the translations of the poses are seen to be right: far better than none.
   bool confirms() const;
 };
+
+/// Up to four pairs of scans, earlier and later, that are 3 to 15 m apart.
+std::vector<std::pair<std::size_t, std::size_t>> scan_pairs(const Trajectory& trajectory);
 
 /// Judges up to four pairs of scans that are 3 to 15 m apart by their poses. Ground looks the same
 /// from everywhere, so only points in columns of 1 m that something of at least 1 m fills count. A

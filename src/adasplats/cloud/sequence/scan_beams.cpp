@@ -10,7 +10,9 @@
 #include <numbers>
 #include <utility>
 
+#include "adasplats/cloud/poses/continued_motion.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/cloud/sequence/sweep_check.h"
 #include "adasplats/core/error.h"
 
 namespace adasplats {
@@ -247,6 +249,30 @@ FanDistances fan_distances(const KittiSequence& sequence, std::size_t index, Vec
   return distances_m;
 }
 
+/// Whether poses are near enough in time to say how the sensor moved during a revolution.
+bool says_motion_of_sweeps(const Trajectory& poses) {
+  constexpr double kMostApart_s = 5 * kRevolution_s;
+  std::vector<double> apart_s;
+  for (std::size_t k = 1; k < poses.size(); ++k)
+    apart_s.push_back(poses[k].time_s - poses[k - 1].time_s);
+  return !apart_s.empty() && median_of_all(std::move(apart_s)) <= kMostApart_s;
+}
+
+/// Of scans as they were measured: their motions by the poses, unless these are too far apart or
+/// the points do not lie on each other the better for it.
+void find_raw_motions(const KittiSequence& sequence, const std::vector<Vec3d>& sweeps_m,
+                      ScanBeams& beams, const Executor& executor) {
+  if (says_motion_of_sweeps(sequence.trajectory)) {
+    set_raw_motions(beams, sequence.trajectory,
+                    with_motion_continued(sequence.trajectory, kRevolution_s));
+    if (weigh_sweeps(sequence, beams, executor).confirms()) return;
+    beams.raw_motions.clear();
+  }
+  std::vector<double> lengths_m;
+  for (const Vec3d sweep_m : sweeps_m) lengths_m.push_back(length(sweep_m));
+  beams.unknown_sweep_m = median_of_all(std::move(lengths_m));
+}
+
 }  // namespace
 
 ScanBeams recognize_beams(const KittiSequence& sequence, const Executor& executor) {
@@ -254,7 +280,10 @@ ScanBeams recognize_beams(const KittiSequence& sequence, const Executor& executo
   constexpr std::size_t kLeastPoints = 500;
   constexpr double kMostDistance_m = 0.01;
 
-  ScanBeams moving{true, sweeps_of(sequence.trajectory), {}, {}, {}, kSensor};
+  ScanBeams moving;
+  moving.from_hdl64 = true;
+  moving.sweeps_m = sweeps_of(sequence.trajectory);
+  moving.sensor = kSensor;
   std::vector<FanDistances> of_scans(std::min(kScans, sequence.scans.size()));
   executor.for_chunks(of_scans.size(), 1, [&](std::size_t k, std::size_t) {
     // Not the first and the last one: their speeds are less sure.
@@ -272,7 +301,10 @@ ScanBeams recognize_beams(const KittiSequence& sequence, const Executor& executo
   const auto [as_measured, compensated] = std::pair(median_m[0], median_m[1]);
   require_times_in_seconds(sequence, median_m, kMostDistance_m);
   if (!(std::min(as_measured, compensated) < kMostDistance_m)) return {};
-  if (as_measured <= compensated) moving.sweeps_m.clear();
+  if (compensated < as_measured) return moving;
+  const std::vector<Vec3d> sweeps_m = std::exchange(moving.sweeps_m, {});
+  constexpr double kClearly = 0.8;
+  if (as_measured < kClearly * compensated) find_raw_motions(sequence, sweeps_m, moving, executor);
   return moving;
 }
 

@@ -41,6 +41,8 @@ struct ScanBeams {
   std::vector<Vec3d> sweeps_m;
   /// Of each scan whose points are as they were measured; empty: as if the sensor stood still.
   std::vector<SweepMotion> raw_motions;
+  /// Of such points without raw_motions: how far the sensor moves during a revolution, m (median).
+  double unknown_sweep_m = 0;
   /// What the recognised sensor's lasers measure beside its table; beam_of() corrects it.
   LaserOffsets offsets;
   /// What was recognised where scans say themselves where beams began; else empty.
@@ -66,9 +68,11 @@ void set_raw_motions(ScanBeams& beams, const Trajectory& poses, const Trajectory
 
 /// Finds from the points of up to five scans whether a Velodyne HDL-64E measured them: they lie on
 /// the 64 cones that its beams sweep, to a few millimetres (two centimetres by chance), when the
-/// motion compensation is undone where there was one. Other sensors: default, all beams from the
-/// frame's origin. Errors: data where the motion can be undone by the times of the poses only were
-/// these milli-, micro- or nanoseconds.
+/// motion compensation is undone where there was one. Scans as they were measured, by poses at most
+/// half a second apart: also how the sensor moved (raw_motions), if points on upright things of
+/// other scans are met more often with that motion taken out. Other sensors: default, all beams
+/// from the frame's origin. Errors: data where the motion can be undone by the times of the poses
+/// only were these milli-, micro- or nanoseconds.
 ScanBeams recognize_beams(const KittiSequence& sequence, const Executor& executor);
 
 }  // namespace adasplats

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/sequence/sweep_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "adasplats/cloud/sequence/pose_check.h"
+#include "adasplats/core/maths/symmetric_eigen.h"
+
+namespace adasplats {
+namespace {
+
+constexpr double kCell_m = 0.5, kFarthest_m = 30, kNearest_m = 3;
+constexpr std::size_t kLeastOnWalls = 500;  // for a median that tells a tenth apart
+
+/// What points of a cell have in common.
+struct WallCell {
+  std::size_t count = 0;
+  Vec3d sum;
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+
+  void add(Vec3d p) {
+    ++count;
+    sum = sum + p;
+    xx += p.x * p.x, xy += p.x * p.y, xz += p.x * p.z;
+    yy += p.y * p.y, yz += p.y * p.z, zz += p.z * p.z;
+  }
+};
+
+/// A plane through the middle of a cell's points; `is_wall` false where they lie on no upright one.
+struct Wall {
+  bool is_wall = false;
+  Vec3d middle, normal;
+};
+
+Wall wall_of(const WallCell& cell) {
+  constexpr std::size_t kLeast = 8;
+  constexpr double kThick_m = 0.06, kWide_m = 0.05, kMostTilt = 0.3;
+  if (cell.count < kLeast) return {};
+  const double n = static_cast<double>(cell.count);
+  const Vec3d m = (1 / n) * cell.sum;
+  const SymmetricEigen eigen =
+      symmetric_eigen({cell.xx / n - m.x * m.x, cell.xy / n - m.x * m.y, cell.xz / n - m.x * m.z,
+                       cell.yy / n - m.y * m.y, cell.yz / n - m.y * m.z, cell.zz / n - m.z * m.z});
+  const Vec3d normal = eigen.vectors[2];
+  const bool flat = eigen.values[2] < kThick_m * kThick_m && eigen.values[1] > kWide_m * kWide_m;
+  return {flat && std::fabs(normal.z) < kMostTilt, m, normal};
+}
+
+std::uint64_t cell_key(Vec3d p) {
+  const auto along = [](double v) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v / kCell_m)) +
+                                      (1 << 20));
+  };
+  return along(p.x) << 42 | along(p.y) << 21 | along(p.z);
+}
+
+/// The near points of a scan, in its frame: as they stand, or with the motion of `beams` taken out.
+std::vector<Vec3d> moved_points(const KittiSequence& sequence, std::size_t index,
+                                const ScanBeams* beams) {
+  std::vector<Vec3d> points;
+  const auto scan = try_kitti_points(sequence, index);
+  if (!scan) return points;
+  for (const Vec3f position : scan->positions) {
+    const Vec3d p = vec_cast<double>(position);
+    const double range_m = length(p);
+    if (!(range_m > kNearest_m && range_m < kFarthest_m)) continue;
+    points.push_back(beams == nullptr ? p : beams->beam_of(index, p).end);
+  }
+  return points;
+}
+
+/// Distances of the later scan's points from the earlier one's walls.
+std::vector<double> wall_distances_m(const KittiSequence& sequence, const ScanBeams* beams,
+                                     std::pair<std::size_t, std::size_t> scans) {
+  std::unordered_map<std::uint64_t, WallCell> cells;
+  for (const Vec3d p : moved_points(sequence, scans.first, beams)) cells[cell_key(p)].add(p);
+  std::unordered_map<std::uint64_t, Wall> walls;
+  for (const auto& [key, cell] : cells)
+    if (const Wall wall = wall_of(cell); wall.is_wall) walls.emplace(key, wall);
+  const RigidTransform earlier_from_later =
+      sequence.trajectory[scans.first].world_from_sensor.inverse() *
+      sequence.trajectory[scans.second].world_from_sensor;
+  std::vector<double> distances_m;
+  for (const Vec3d later : moved_points(sequence, scans.second, beams)) {
+    const Vec3d p = earlier_from_later * later;
+    const auto found = walls.find(cell_key(p));
+    if (found == walls.end()) continue;
+    distances_m.push_back(std::fabs(dot(p - found->second.middle, found->second.normal)));
+  }
+  return distances_m;
+}
+
+double median_apart_m(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+bool SweepEvidence::confirms() const {
+  // Without any motion the medians are equal. On a drive of KITTI at 4.5 m/s the right motion has
+  // 0.85 of it and its reverse 1.18, on a simulated one 0.67 and 1.53; of compensated scans 1.06.
+  constexpr double kLeastGain = 0.97;
+  return points >= kLeastOnWalls && moved_m < kLeastGain * still_m;
+}
+
+SweepEvidence weigh_sweeps(const KittiSequence& sequence, const ScanBeams& beams,
+                           const Executor& executor) {
+  const auto pairs = scan_pairs(sequence.trajectory);
+  std::vector<std::vector<double>> still_m(pairs.size()), moved_m(pairs.size());
+  executor.for_chunks(2 * pairs.size(), 1, [&](std::size_t k, std::size_t) {
+    auto& distances_m = k % 2 == 0 ? still_m[k / 2] : moved_m[k / 2];
+    distances_m = wall_distances_m(sequence, k % 2 == 0 ? nullptr : &beams, pairs[k / 2]);
+  });
+  std::vector<double> all_still_m, all_moved_m;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    all_still_m.insert(all_still_m.end(), still_m[k].begin(), still_m[k].end());
+    all_moved_m.insert(all_moved_m.end(), moved_m[k].begin(), moved_m[k].end());
+  }
+  if (all_still_m.empty() || all_moved_m.empty()) return {};
+  return {std::min(all_still_m.size(), all_moved_m.size()), median_apart_m(all_still_m),
+          median_apart_m(all_moved_m)};
+}
+
+}  // namespace adasplats
