@@ -248,6 +248,11 @@ TRANSFER = [
     ("the real network loses", "losses/real network, real to simulated", "0.0"),
     ("on real scans the simulated one is worse by", "losses/on real, real to simulated network",
      "0.0")]
+INPUT_KINDS = [("written by", "written_by", "text"), ("other reader", "other_reader", "text"),
+               ("points", "points", "0,000"), ("largest difference", "shown", "text")]
+INPUT_DRIVES = [("scans of", "scans_of", "text"), ("held-out beams", "rays", "0,000"),
+                ("median", "median_m", "0.00 cm"), ("within 10 cm", "within_10cm", "0.0 %"),
+                ("no hit", "no_hit", "0.0 %")]
 THIN_THINGS = [column for column in COMPARISON if column[0] in ("primitives", *THIN)]
 # Name: (the rows' key where the document gives none, columns). A column that no row fills is left
 # out.
@@ -261,7 +266,8 @@ TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "segmentation_models": ("places", SEGMENTATION_MODELS),
           "realism": ("rows", REALISM), "realism_logistic": ("rows", REALISM_LOGISTIC),
           "realism_statistics": ("rows", REALISM_STATISTICS), "unfolding": ("rows", UNFOLDING),
-          "transfer": ("ways", TRANSFER), "thin": ("competitors", THIN_THINGS)}
+          "transfer": ("ways", TRANSFER), "input_kinds": ("kinds", INPUT_KINDS),
+          "input_drives": ("drives", INPUT_DRIVES), "thin": ("competitors", THIN_THINGS)}
 
 
 def rows_of(data, key):
