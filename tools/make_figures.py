@@ -234,6 +234,14 @@ REALISM_STATISTICS = [(title, f"shown/statistics/{key}", "text") for title, key 
     ("in runs of 6 to 20", "missing_runs_6_to_20"), ("from planes, mm", "plane_residual_m"),
     ("rings found", "unfolded_rings"), ("highest intensity", "intensity_most"),
     ("farthest range, m", "range_most_m"), ("nearer than 2.5 m", "near_points"))]
+FORETOLD = [
+    ("rank correlation of intensities", "foretold/intensity/rank_correlation", "0.000"),
+    ("RMSE after one curve", "foretold/intensity/rmse_after_curve", "0.0000"),
+    ("of beams within 0.5 m", "foretold/intensity_near/rmse_after_curve", "0.0000"),
+    ("lost beams: accuracy", "foretold/drop/accuracy", "0.0 %"), ("F1", "foretold/drop/f1", "0.000"),
+    ("outside of the shadow: accuracy", "foretold/drop_unblocked/accuracy", "0.0 %"),
+    ("F1", "foretold/drop_unblocked/f1", "0.000"),
+    ("F1 by the expected rate", "foretold/drop_by_rate/f1", "0.000")]
 UNFOLDING = [
     ("scans", "scans", "0"), ("real with 64 rings", "scans_with_64_rings/real", "0 %"),
     ("simulated with 64 rings", "scans_with_64_rings/simulated", "0 %"),
@@ -265,7 +273,8 @@ TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "segmentation_ablation": ("lessons", SEGMENTATION_ABLATION),
           "segmentation_models": ("places", SEGMENTATION_MODELS),
           "realism": ("rows", REALISM), "realism_logistic": ("rows", REALISM_LOGISTIC),
-          "realism_statistics": ("rows", REALISM_STATISTICS), "unfolding": ("rows", UNFOLDING),
+          "realism_statistics": ("rows", REALISM_STATISTICS), "foretold": ("rows", FORETOLD),
+          "unfolding": ("rows", UNFOLDING),
           "transfer": ("ways", TRANSFER), "input_kinds": ("kinds", INPUT_KINDS),
           "input_drives": ("drives", INPUT_DRIVES), "thin": ("competitors", THIN_THINGS)}
 
