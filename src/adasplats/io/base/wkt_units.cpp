@@ -2,88 +2,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/io/base/wkt_units.h"
 
-#include <algorithm>
 #include <cmath>
-#include <initializer_list>
-#include <vector>
 
-#include "adasplats/io/base/line_reader.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/wkt.h"
 
 namespace adasplats {
 namespace {
 
-bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
-  return std::ranges::find(words, word) != words.end();
-}
-
-/// KEYWORD[value, value, ..., KEYWORD[...], ...], open while its end has not come.
-struct Node {
-  std::string keyword;              ///< lower case
-  std::vector<std::string> values;  ///< those that are no nodes, without quotes
-};
-
-bool is_projected(std::string_view keyword) {
-  return is_one_of(keyword, {"projcs", "projcrs", "projectedcrs"});
-}
-
-bool is_vertical(std::string_view keyword) {
-  return is_one_of(keyword, {"vert_cs", "vertcs", "vertcrs", "verticalcrs"});
-}
-
-/// What of the coordinates a unit is of, by what it lies in: "" for another's unit.
-std::string coordinates_of(const std::vector<Node>& open) {
-  std::size_t outer = open.size() - 1;
-  if (outer > 0 && open[outer - 1].keyword == "axis") --outer;
-  if (outer == 0) return "";
-  const std::string& system = open[outer - 1].keyword;
-  if (is_projected(system)) return "x and y";
-  return is_vertical(system) ? "z" : "";
-}
-
-/// What a node says at its end, if it is a unit of coordinates other than the metre.
-std::optional<std::string> foreign_unit(const std::vector<Node>& open) {
+/// What a unit says that is another than the metre.
+std::optional<std::string> foreign_unit(const WktNode& unit, std::string_view coordinates) {
   constexpr double kTolerance = 1e-9;
-  const Node& node = open.back();
-  if (!is_one_of(node.keyword, {"unit", "lengthunit"}) || node.values.size() < 2)
-    return std::nullopt;
-  const auto metres = parse_number<double>(node.values[1]);
+  if (unit.values.size() < 2) return std::nullopt;
+  const auto metres = parse_number<double>(unit.values[1]);
   if (!metres || !(std::fabs(*metres - 1) > kTolerance)) return std::nullopt;
-  const std::string coordinates = coordinates_of(open);
-  if (coordinates.empty()) return std::nullopt;
-  return coordinates + " in " + node.values[0] + " (" + exact_text(*metres) + " m), by the WKT";
+  return std::string(coordinates) + " in " + unit.values[0] + " (" + exact_text(*metres) +
+         " m), by the WKT";
+}
+
+/// Of the units in a system, or of its axes, the first that is no metre.
+std::optional<std::string> foreign_unit_of(const WktNode& system, std::string_view coordinates) {
+  for (const WktNode& node : system.nodes) {
+    std::optional<std::string> unit;
+    if (node.is_one_of({"unit", "lengthunit"})) unit = foreign_unit(node, coordinates);
+    if (node.is_one_of({"axis"})) unit = foreign_unit_of(node, coordinates);
+    if (unit) return unit;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> foreign_units_of(const WktNode& node) {
+  std::optional<std::string> unit;
+  if (node.is_one_of({"projcs", "projcrs", "projectedcrs"}))
+    unit = foreign_unit_of(node, "x and y");
+  if (node.is_one_of({"vert_cs", "vertcs", "vertcrs", "verticalcrs"}))
+    unit = foreign_unit_of(node, "z");
+  for (const WktNode& inner : node.nodes) {
+    if (unit) break;
+    unit = foreign_units_of(inner);
+  }
+  return unit;
 }
 
 }  // namespace
 
 std::optional<std::string> foreign_units_of_wkt(std::string_view text) {
-  std::vector<Node> open;
-  std::string word;
-  const auto end_value = [&] {
-    const std::string_view value = BlankTokens(word).rest();
-    if (!open.empty() && !value.empty()) open.back().values.emplace_back(value);
-    word.clear();
-  };
-  bool is_quoted = false;
-  for (const char c : text) {
-    if (c == '\0') break;
-    if (c == '"') {
-      is_quoted = !is_quoted;
-    } else if (is_quoted) {
-      word += c;
-    } else if (c == '[' || c == '(') {
-      open.push_back({lower_case(BlankTokens(word).rest()), {}});
-      word.clear();
-    } else if (c == ',' || c == ']' || c == ')') {
-      end_value();
-      if (c == ',' || open.empty()) continue;
-      if (auto unit = foreign_unit(open)) return unit;
-      open.pop_back();
-    } else {
-      word += c == '\n' || c == '\r' ? ' ' : c;
-    }
-  }
-  return std::nullopt;
+  return foreign_units_of(parse_wkt(text));
 }
 
 std::optional<std::string> geographic_system_of_wkt(std::string_view text) {
