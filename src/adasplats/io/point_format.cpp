@@ -34,16 +34,22 @@ constexpr PointFormat kFormats[] = {
      .extensions = kPly,
      .beginnings = kPlyStarts,
      .means = ExtensionMeans::geometry,
-     .read = [](const Path& path, const Options&) { return read_ply(path); }},
+     .read = [](const Path& path, const Options&) { return read_ply(path); },
+     .read_crs = &read_ply_crs},
     {.name = "PCD",
      .extensions = kPcd,
      .beginnings = kPcdStarts,
      .read = [](const Path& path, const Options&) { return read_pcd(path); }},
-    {.name = "LAS or LAZ", .extensions = kLas, .beginnings = kLasStarts, .read = &read_las},
+    {.name = "LAS or LAZ",
+     .extensions = kLas,
+     .beginnings = kLasStarts,
+     .read = &read_las,
+     .read_crs = [](const Path& path) { return read_las_facts(path).crs; }},
     {.name = "E57",
      .extensions = kE57,
      .beginnings = kE57Starts,
-     .read = [](const Path& path, const Options&) { return read_e57(path); }},
+     .read = [](const Path& path, const Options&) { return read_e57(path); },
+     .read_crs = &read_e57_crs},
     {.name = "KITTI bin",
      .extensions = kBin,
      .remark = " (KITTI; *.pcd.bin: nuScenes)",
@@ -110,6 +116,13 @@ std::string point_format_names() {
     text += (text.empty() ? "" : ", ") + std::string(format.name);
   }
   return text;
+}
+
+bool is_las(const Path& path) { return format_of_file(path).read == &read_las; }
+
+Crs read_crs(const Path& path) {
+  const PointFormat& format = format_of_file(path);
+  return format.read_crs == nullptr ? Crs() : format.read_crs(path);
 }
 
 Table read_points(const Path& path, const LasReadOptions& options) {

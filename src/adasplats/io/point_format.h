@@ -28,6 +28,7 @@ struct PointFormat {
   ExtensionMeans means = ExtensionMeans::points;
   std::string_view remark;  ///< behind the last extension in messages
   Table (*read)(const std::filesystem::path& path, const LasReadOptions& options);
+  Crs (*read_crs)(const std::filesystem::path& path) = nullptr;  ///< null: the format says none
 };
 
 std::span<const PointFormat> point_formats();

@@ -2,8 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <string>
 
+#include "adasplats/core/maths/vec3.h"
+#include "adasplats/io/base/crs.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
@@ -49,6 +54,9 @@ Table read_las(const std::filesystem::path& path, const LasReadOptions& options 
 /// once more for the table, and 3 columns. Errors: no_input, io, data.
 Table read_e57(const std::filesystem::path& path);
 
+/// The text of `coordinateMetadata`. Errors: as read_e57().
+Crs read_e57_crs(const std::filesystem::path& path);
+
 /// Text: XYZ, PTS (a line with a count of points alone), CSV (comma, semicolon, tab or blank; a
 /// header line of names is understood, also as a comment; names are in lower case; an empty cell is
 /// NaN; `#` and `//` start comments). Without names: x y z; a 4th of 4 or 5 columns is intensity; 7
@@ -74,5 +82,24 @@ Table read_bin(const std::filesystem::path& path);
 /// not contradict each other.
 /// Errors: as theirs; an unknown format is ErrorKind::data naming what is understood.
 Table read_points(const std::filesystem::path& path, const LasReadOptions& options = {});
+
+/// The coordinate system that a file of points says, without reading the points. Errors: as theirs.
+Crs read_crs(const std::filesystem::path& path);
+
+/// Whether the file is LAS or LAZ, as read_points() takes it. Errors: as theirs.
+bool is_las(const std::filesystem::path& path);
+
+/// What a LAS or LAZ file says of itself before its points.
+struct LasFacts {
+  std::string version;           ///< "1.4"
+  std::size_t point_format = 0;  ///< 0 to 10
+  std::uint64_t points = 0;
+  Vec3d scale, offset;  ///< of the whole numbers that coordinates are stored as
+  std::string software;
+  Crs crs;
+};
+
+/// Errors: as read_las().
+LasFacts read_las_facts(const std::filesystem::path& path);
 
 }  // namespace adasplats

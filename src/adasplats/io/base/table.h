@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "adasplats/io/base/crs.h"
+
 namespace adasplats {
 
 /// One named field of all records of a file, in the type the file has it.
@@ -28,11 +30,13 @@ struct Column {
   double as_double(std::size_t row) const;
 };
 
-/// What a file of points holds: named columns of equal length, and its comments.
+/// What a file of points holds: named columns of equal length, its comments, and the system that it
+/// says its coordinates are in.
 struct Table {
   std::size_t rows = 0;
   std::vector<Column> columns;
   std::vector<std::string> comments;
+  Crs crs;
 
   const Column* find(std::string_view name) const;  ///< nullptr where there is none
 };

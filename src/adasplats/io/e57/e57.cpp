@@ -161,6 +161,7 @@ void tell_of_intensities(const std::vector<E57Scan>& scans, std::size_t beyond, 
 void add_comments(const E57Content& content, Table& table) {
   if (content.images > 0)
     table.comments.push_back("left out: " + std::to_string(content.images) + " images");
+  table.crs = crs_of_wkt(content.coordinate_system);
   if (const auto system = geographic_system_of_wkt(content.coordinate_system))
     table.comments.push_back("geographic: " + *system);
   if (const auto units = foreign_units_of_wkt(content.coordinate_system))
@@ -193,6 +194,11 @@ Table read_e57(const std::filesystem::path& path) {
   add_comments(content, table);
   tell_of_intensities(scans, beyond, table);
   return table;
+}
+
+Crs read_e57_crs(const std::filesystem::path& path) {
+  PagedFile file(path);
+  return crs_of_wkt(read_e57_content(file).coordinate_system);
 }
 
 }  // namespace adasplats

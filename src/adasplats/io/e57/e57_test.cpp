@@ -310,6 +310,9 @@ TEST(E57, WhatTheFileSaysBesideItsPoints) {
   EXPECT_EQ(
       comments("<coordinateMetadata><![CDATA[GEOGCS[\"WGS 84\",DATUM[]]]]></coordinateMetadata>"),
       std::vector<std::string>{"geographic: GEOGCS[\"WGS 84\""});
+  EXPECT_EQ(read_composed(composer.file("<coordinateMetadata>PROJCS[\"a\"]</coordinateMetadata>"))
+                .crs.wkt,
+            "PROJCS[\"a\"]");
   EXPECT_EQ(comments("<images2D><vectorChild/><vectorChild/></images2D>"),
             std::vector<std::string>{"left out: 2 images"});
 }

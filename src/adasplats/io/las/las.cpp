@@ -6,6 +6,7 @@
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/io/las/las_header.h"
 #include "adasplats/io/las/las_table.h"
+#include "adasplats/io/las/las_vlrs.h"
 #include "adasplats/io/las/laz.h"
 
 namespace adasplats {
@@ -39,6 +40,20 @@ Table read_las(const std::filesystem::path& path, const LasReadOptions& options)
     file.skip(count * header.record_bytes);
   }
   return table.finish();
+}
+
+LasFacts read_las_facts(const std::filesystem::path& path) {
+  InputFile file(path);
+  const LasHeader header = read_las_header(file);
+  LasFacts facts;
+  facts.version = "1." + std::to_string(header.minor_version);
+  facts.point_format = header.format;
+  facts.points = header.points;
+  facts.scale = header.scale;
+  facts.offset = header.offset;
+  facts.software = header.software;
+  facts.crs = read_las_description(path, header).crs;
+  return facts;
 }
 
 }  // namespace adasplats

@@ -34,6 +34,14 @@ class HeaderBytes {
   Vec3d vector_at(std::size_t offset) const {
     return {at<double>(offset), at<double>(offset + 8), at<double>(offset + 16)};
   }
+  /// Up to the first zero; what is no printed letter of ASCII is '?'.
+  std::string text_at(std::size_t offset, std::size_t bytes) const {
+    std::string text(reinterpret_cast<const char*>(bytes_.subspan(offset, bytes).data()), bytes);
+    text.erase(std::min(text.find('\0'), text.size()));
+    std::ranges::replace_if(
+        text, [](char c) { return c < ' ' || c > '~'; }, '?');
+    return text;
+  }
   Error error(std::size_t offset, const std::string& message) const {
     return data_error({file_.path(), offset, {}}, message);
   }
@@ -116,11 +124,19 @@ LasHeader read_las_header(InputFile& file) {
   }
   const HeaderBytes bytes(file, file.peek(least_bytes));
   LasHeader header;
+  header.minor_version = static_cast<unsigned>(minor);
+  header.software = bytes.text_at(58, 32);
   header.header_bytes = header_bytes;
   // Reserved before 1.2, and zero there.
-  header.has_adjusted_times = (bytes.at<std::uint16_t>(6) & 1U) != 0;
+  const auto encoding = bytes.at<std::uint16_t>(6);
+  header.has_adjusted_times = (encoding & 1U) != 0;
+  header.has_wkt = (encoding & 1U << 4) != 0;
   header.vlr_count = bytes.at<std::uint32_t>(100);
   header.points_offset_bytes = bytes.at<std::uint32_t>(96);
+  if (minor == 4) {
+    header.evlrs_offset_bytes = bytes.at<std::uint64_t>(235);
+    header.evlr_count = bytes.at<std::uint32_t>(243);
+  }
   const std::uint8_t format = bytes.at<std::uint8_t>(104);
   // LASzip marks compressed files in the two upper bits of the format.
   header.is_compressed = (format & 0xc0) != 0;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/io/base/input_file.h"
@@ -12,17 +13,25 @@ namespace adasplats {
 
 /// Bytes of a variable length record before its content.
 inline constexpr std::size_t kVlrHeaderBytes = 54;
+/// Likewise of an extended one.
+inline constexpr std::size_t kEvlrHeaderBytes = 60;
 
 /// The public header block of a LAS or LAZ file (ASPRS, "LAS specification 1.4 - R15", table 3).
 struct LasHeader {
-  std::size_t format = 0;  ///< point data record format, 0-10
+  unsigned minor_version = 0;  ///< of version 1
+  std::size_t format = 0;      ///< point data record format, 0-10
+  std::string software;        ///< that wrote the file; empty: not said
   /// Times are adjusted GPS time (less 1e9 s), else seconds of the GPS week: bit 0 of the global
   /// encoding.
   bool has_adjusted_times = false;
+  /// The coordinate system is a well-known text, else GeoTIFF keys: bit 4 of the global encoding.
+  bool has_wkt = false;
   bool is_compressed = false;
   std::size_t record_bytes = 0;
   std::size_t header_bytes = 0;
-  std::uint64_t vlr_count = 0;  ///< variable length records between the header and the points
+  std::uint64_t vlr_count = 0;   ///< variable length records between the header and the points
+  std::uint64_t evlr_count = 0;  ///< extended ones, as a rule behind the points...
+  std::uint64_t evlrs_offset_bytes = 0;  ///< ...from here on
   std::uint64_t points_offset_bytes = 0;
   std::uint64_t points = 0;
   Vec3d scale;

@@ -105,6 +105,7 @@ Table LasTable::finish() {
   append_extra_fields(table);
   columns_.drop_withheld(table);
   for (std::string& comment : description_.comments()) table.comments.push_back(std::move(comment));
+  table.crs = description_.crs;
   if (found < header_.points) {
     table.comments.push_back("salvaged " + std::to_string(found) + " of " +
                              std::to_string(header_.points) + " records");

@@ -232,6 +232,85 @@ TEST(Las, UnitsThatAreNoMetresAreSaid) {
             "not metres: x and y in ft (0.3048 m), by the WKT");
 }
 
+const std::string kZone32 = "PROJCS[\"WGS 84 / UTM zone 32N\",AUTHORITY[\"EPSG\",\"32632\"]]";
+const std::string kZone33 = "PROJCS[\"WGS 84 / UTM zone 33N\",AUTHORITY[\"EPSG\",\"32633\"]]";
+
+std::string utm_keys(int code) {
+  std::string directory;
+  for (const int value : {1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, code, 0, 0, 0, 0})
+    directory += bytes_of(static_cast<std::uint16_t>(value));
+  return las_vlr("LASF_Projection", 34735, directory);
+}
+
+// Oracle: table 4 of the specification, bit 4.
+TEST(Las, TheCoordinateSystemIsTheTextOrTheKeys) {
+  const std::string text = las_vlr("LASF_Projection", 2112, kZone32 + std::string(3, '\0'));
+  EXPECT_TRUE(read(las_with(las_vlr("other", 2112, kZone32), 1, 0)).crs.empty());
+  EXPECT_TRUE(read(las_with(las_vlr("LASF_Projection", 2112, " \n"), 1, 0)).crs.empty());
+  EXPECT_EQ(read(las_with(text, 1, 0)).crs.wkt, kZone32);
+  EXPECT_EQ(read(las_with(utm_keys(32633), 1, 0)).crs.name(), "EPSG:32633");
+  std::string both = las_with(text + utm_keys(32633), 2, 0);
+  EXPECT_EQ(read(both).crs.name(), "EPSG:32633");
+  // Three keys of four numbers each and those of the whole; padding is none.
+  EXPECT_EQ(read(both).crs.keys.directory.size(), 12U);
+  put(both, 6, std::uint16_t{1 << 4});
+  EXPECT_EQ(read(both).crs.name(), "EPSG:32632 (WGS 84 / UTM zone 32N)");
+  const std::string doubles = las_vlr("LASF_Projection", 34736, bytes_of(9.5) + bytes_of(1.0));
+  const std::string ascii = las_vlr("LASF_Projection", 34737, std::string("grid|\0\0", 7));
+  const Crs crs = read(las_with(utm_keys(32767) + doubles + ascii, 3, 0)).crs;
+  EXPECT_EQ(crs.keys.doubles, (Doubles{9.5, 1}));
+  EXPECT_EQ(crs.keys.ascii, "grid|");
+}
+
+/// An extended record behind a file of LAS 1.4 that has one point.
+std::string las_with_extended(const std::string& user, std::uint16_t number,
+                              const std::string& content) {
+  std::string file = las_header(4, 6, 30, 1) + las_record(30, 1, 2, 3);
+  put(file, 390, std::uint8_t{0});
+  put(file, 235, std::uint64_t{file.size()});
+  put(file, 243, std::uint32_t{1});
+  std::string start(60, '\0');
+  for (std::size_t k = 0; k < user.size(); ++k) start[2 + k] = user[k];
+  put(start, 18, number);
+  put(start, 20, std::uint64_t{content.size()});
+  return file + start + content;
+}
+
+TEST(Las, ExtendedRecordsAreRead) {
+  const std::string file = las_with_extended("LASF_Projection", 2112, kZone33);
+  EXPECT_EQ(read(file).crs.wkt, kZone33);
+  EXPECT_TRUE(read(file).comments.empty());
+  EXPECT_TRUE(read(las_with_extended("other", 2112, kZone33)).crs.empty());
+  const std::vector<std::string> said = {
+      "left out: extended records that reach beyond the file's end"};
+  for (const std::size_t cut : {1U, 30U, 130U}) {
+    SCOPED_TRACE(cut);
+    const Table table = read(file.substr(0, file.size() - cut));
+    EXPECT_EQ(table.rows, 1U);
+    EXPECT_EQ(table.comments, said);
+  }
+  std::string far = file;
+  put(far, 235, ~std::uint64_t{0});
+  EXPECT_EQ(read(far).comments, said);
+  std::string large = las_with_extended("LASF_Projection", 2112, std::string(17 << 20, 'x'));
+  expect_data_error(large, {"2112", "LASF_Projection", "bytes"});
+}
+
+TEST(Las, WhatTheHeaderSays) {
+  const TemporaryFolder folder;
+  std::string content = las_with_extended("LASF_Projection", 2112, kZone33);
+  for (std::size_t k = 0; k < 7; ++k) content[58 + k] = "so\x01 ft\x00"[k];
+  const LasFacts facts = read_las_facts(folder.file("a.las", content));
+  EXPECT_EQ(facts.version, "1.4");
+  EXPECT_EQ(facts.point_format, 6U);
+  EXPECT_EQ(facts.points, 1U);
+  EXPECT_EQ(facts.software, "so? ft");
+  EXPECT_TRUE(facts.scale == (Vec3d{0.01, 0.01, 0.01}));
+  EXPECT_TRUE(facts.offset == (Vec3d{0, 1000, 2000}));
+  EXPECT_EQ(read_crs(folder.path() / "a.las").wkt, kZone33);
+  EXPECT_TRUE(is_las(folder.path() / "a.las"));
+}
+
 TEST(Las, NoPointsIsAnEmptyTable) {
   const Table table = read(las_header(2, 3, 34, 0));
   EXPECT_EQ(table.rows, 0U);

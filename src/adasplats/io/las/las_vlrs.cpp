@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "adasplats/io/base/records.h"
 #include "adasplats/io/base/wkt_units.h"
@@ -17,7 +18,7 @@ namespace {
 // Record numbers of the specification, and of GeoTIFF 1.0 (keys and their values).
 constexpr std::uint16_t kExtraBytesRecord = 4;
 constexpr std::uint16_t kWktRecord = 2112;
-constexpr std::uint16_t kGeoKeysRecord = 34735;
+constexpr std::uint16_t kGeoKeysRecord = 34735, kGeoDoublesRecord = 34736, kGeoTextRecord = 34737;
 constexpr std::uint16_t kModelTypeKey = 1024;
 constexpr std::uint16_t kModelTypeGeographic = 2;
 constexpr std::uint16_t kLinearUnitsKey = 3076;
@@ -106,15 +107,124 @@ std::optional<std::string> foreign_units_of_directory(std::string_view record) {
   return std::nullopt;
 }
 
-void take_projection(std::uint16_t number, std::string_view record, LasDescription& description) {
-  if (number == kGeoKeysRecord) {
-    if (is_geographic_directory(record)) description.geographic = "GTModelType 2, geographic";
-    if (const auto units = foreign_units_of_directory(record)) description.not_metres = units;
+template <class T>
+std::vector<T> values_of(std::string_view record) {
+  std::vector<T> values(record.size() / sizeof(T));
+  std::memcpy(values.data(), record.data(), values.size() * sizeof(T));
+  return values;
+}
+
+/// Collects what records say.
+class Descriptor {
+ public:
+  Descriptor(const LasHeader& header, LasDescription& description)
+      : header_(header), description_(description) {}
+
+  /// Whether a record says something of the points.
+  static bool is_wanted(std::string_view user, std::uint16_t number) {
+    if (user == "LASF_Spec") return number == kExtraBytesRecord;
+    return user == "LASF_Projection" && (number == kWktRecord || number == kGeoKeysRecord ||
+                                         number == kGeoDoublesRecord || number == kGeoTextRecord);
   }
-  if (number == kWktRecord) {
-    if (const auto system = geographic_system_of_wkt(record)) description.geographic = system;
-    if (const auto units = foreign_units_of_wkt(record)) description.not_metres = units;
+
+  void take(std::uint16_t number, std::string_view record) {
+    switch (number) {
+      case kExtraBytesRecord: description_.extra_fields = extra_fields_of(record, header_); break;
+      case kGeoKeysRecord:
+        if (is_geographic_directory(record)) description_.geographic = "GTModelType 2, geographic";
+        if (const auto units = foreign_units_of_directory(record)) description_.not_metres = units;
+        keys_.directory = values_of<std::uint16_t>(record);
+        break;
+      case kGeoDoublesRecord: keys_.doubles = values_of<double>(record); break;
+      case kGeoTextRecord: keys_.ascii = record; break;
+      default:
+        if (const auto system = geographic_system_of_wkt(record)) description_.geographic = system;
+        if (const auto units = foreign_units_of_wkt(record)) description_.not_metres = units;
+        wkt_ = crs_of_wkt(record);
+    }
   }
+
+  void finish() {
+    // The directory says how many keys it has; what follows them is none.
+    constexpr std::size_t kCountAt = 3, kKeyNumbers = 4;
+    std::vector<std::uint16_t>& directory = keys_.directory;
+    if (directory.size() > kCountAt)
+      directory.resize(std::min(directory.size() / kKeyNumbers * kKeyNumbers,
+                                kKeyNumbers + kKeyNumbers * directory[kCountAt]));
+    // Writers end the text with zeros, too.
+    keys_.ascii.erase(keys_.ascii.find_last_not_of('\0') + 1);
+    const Crs keys = {{}, std::move(keys_)};
+    const bool takes_wkt = header_.has_wkt ? !wkt_.empty() : keys.empty();
+    if (takes_wkt)
+      description_.crs = std::move(wkt_);
+    else if (!keys.empty())
+      description_.crs = keys;
+  }
+
+ private:
+  const LasHeader& header_;
+  LasDescription& description_;
+  Crs wkt_;
+  GeoKeys keys_;
+};
+
+/// What a record is, of the ordinary kind or an extended one.
+struct RecordStart {
+  std::string user;
+  std::uint16_t number = 0;
+  std::uint64_t bytes = 0;
+};
+
+RecordStart record_start(InputFile& file, bool is_extended) {
+  const std::size_t bytes = is_extended ? kEvlrHeaderBytes : kVlrHeaderBytes;
+  const std::string_view start(reinterpret_cast<const char*>(file.peek(bytes).data()), bytes);
+  RecordStart record{
+      text_at(start, 2, 16), value_at<std::uint16_t>(start, 18),
+      is_extended ? value_at<std::uint64_t>(start, 20) : value_at<std::uint16_t>(start, 20)};
+  file.skip(bytes);
+  return record;
+}
+
+/// Takes the record where `file` stands, and moves on behind it.
+void take_record(InputFile& file, const RecordStart& record, Descriptor& descriptor) {
+  // The longest text that there is has some 10 kB; of extra bytes there are less than 64 kB.
+  constexpr std::uint64_t kMostBytes = std::uint64_t{16} << 20;
+  if (record.bytes > 0 && Descriptor::is_wanted(record.user, record.number)) {
+    if (record.bytes > kMostBytes)
+      throw file.error_here("found " + std::to_string(record.bytes) + " bytes of record " +
+                            std::to_string(record.number) + " of '" + record.user +
+                            "', expected at most " + std::to_string(kMostBytes));
+    const auto bytes = static_cast<std::size_t>(record.bytes);
+    descriptor.take(record.number, {reinterpret_cast<const char*>(file.peek(bytes).data()), bytes});
+  }
+  file.skip(record.bytes);
+}
+
+void read_vlrs(const std::filesystem::path& path, const LasHeader& header, Descriptor& descriptor) {
+  InputFile file(path);
+  file.skip(header.header_bytes);
+  for (std::uint64_t k = 0; k < header.vlr_count; ++k) {
+    if (file.offset() + kVlrHeaderBytes > header.points_offset_bytes) break;
+    const RecordStart record = record_start(file, false);
+    if (file.offset() + record.bytes > header.points_offset_bytes) break;
+    take_record(file, record, descriptor);
+  }
+}
+
+/// Gives whether all of them are in the file.
+bool read_evlrs(const std::filesystem::path& path, const LasHeader& header,
+                Descriptor& descriptor) {
+  if (header.evlr_count == 0) return true;
+  InputFile file(path);
+  if (header.evlrs_offset_bytes > file.size_bytes()) return false;
+  file.skip(header.evlrs_offset_bytes);
+  for (std::uint64_t k = 0; k < header.evlr_count; ++k) {
+    if (file.remaining() < kEvlrHeaderBytes) return false;
+    const RecordStart record = record_start(file, true);
+    if (file.remaining() < record.bytes) return false;
+    take_record(file, record, descriptor);
+  }
+  return true;
 }
 
 }  // namespace
@@ -124,30 +234,17 @@ std::vector<std::string> LasDescription::comments() const {
   if (geographic) comments.push_back("geographic: " + *geographic);
   if (not_metres) comments.push_back("not metres: " + *not_metres);
   if (has_adjusted_times) comments.push_back("adjusted GPS time");
+  if (is_cut) comments.push_back("left out: extended records that reach beyond the file's end");
   return comments;
 }
 
 LasDescription read_las_description(const std::filesystem::path& path, const LasHeader& header) {
   LasDescription description;
   description.has_adjusted_times = header.has_adjusted_times;
-  InputFile file(path);
-  file.skip(header.header_bytes);
-  for (std::uint64_t k = 0; k < header.vlr_count; ++k) {
-    if (file.offset() + kVlrHeaderBytes > header.points_offset_bytes) break;
-    const std::string_view start(reinterpret_cast<const char*>(file.peek(kVlrHeaderBytes).data()),
-                                 kVlrHeaderBytes);
-    const std::string user = text_at(start, 2, 16);
-    const auto number = value_at<std::uint16_t>(start, 18);
-    const std::size_t length = value_at<std::uint16_t>(start, 20);
-    file.skip(kVlrHeaderBytes);
-    if (file.offset() + length > header.points_offset_bytes) break;
-    if (length == 0) continue;
-    const std::string_view record(reinterpret_cast<const char*>(file.peek(length).data()), length);
-    if (user == "LASF_Spec" && number == kExtraBytesRecord)
-      description.extra_fields = extra_fields_of(record, header);
-    if (user == "LASF_Projection") take_projection(number, record, description);
-    file.skip(length);
-  }
+  Descriptor descriptor(header, description);
+  read_vlrs(path, header, descriptor);
+  description.is_cut = !read_evlrs(path, header, descriptor);
+  descriptor.finish();
   return description;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/io/base/crs.h"
 #include "adasplats/io/base/table.h"
 #include "adasplats/io/las/las_header.h"
 
@@ -33,12 +34,18 @@ struct LasDescription {
   /// Where a length of the coordinates is no metre: which, its unit and what says so.
   std::optional<std::string> not_metres;
   bool has_adjusted_times = false;  ///< as LasHeader has it
+  /// What the coordinates are in: the text, or the keys, by what the header says where there are
+  /// both.
+  Crs crs;
+  /// Whether extended records reach beyond the file's end, and were not read.
+  bool is_cut = false;
 
   /// What of it whoever reads the points must know, as comments of the table (read_las()).
   std::vector<std::string> comments() const;
 };
 
-/// Reads the records between the header and the points, as far as they are whole. Errors: io.
+/// Reads the records between the header and the points, and the extended ones, as far as they are
+/// whole. Errors: io; data (a coordinate system that is longer than any).
 LasDescription read_las_description(const std::filesystem::path& path, const LasHeader& header);
 
 }  // namespace adasplats

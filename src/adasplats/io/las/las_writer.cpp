@@ -30,8 +30,10 @@ constexpr std::size_t kHeaderBytes = 375;       // table 3
 constexpr std::size_t kExtraRecordBytes = 192;  // table 24
 constexpr std::uint16_t kExtraRecordId = 4;
 constexpr std::size_t kMostReturns = 15;
-// Point formats 6 to 10 must set it (table 4): a coordinate system, if any, is reported as WKT.
+// Point formats 6 to 10 should set it (table 4): a coordinate system, if any, is reported as WKT.
 constexpr std::uint16_t kWktBit = 1 << 4;
+constexpr std::uint16_t kWktRecordId = 2112;
+constexpr std::uint16_t kGeoKeysId = 34735, kGeoDoublesId = 34736, kGeoTextId = 34737;
 
 template <class T>
 void put(char* record, std::size_t offset, T value) {
@@ -164,6 +166,8 @@ class Grid {
   }
   double scale() const { return options_.scale_m; }
   Vec3d offset() const { return options_.offset_m; }
+  /// Whether the coordinate system is GeoTIFF keys.
+  bool has_keys() const { return !options_.crs.empty() && options_.crs.wkt.empty(); }
   const std::filesystem::path& path() const { return path_; }
 
  private:
@@ -210,34 +214,77 @@ std::uint8_t extra_type(ColumnType type) {
   throw std::logic_error("write_las: no such type");
 }
 
-/// The variable length record that describes the extra bytes; nothing where there are none.
-std::string extra_record(std::span<const ColumnView> extras) {
-  if (extras.empty()) return "";
-  std::string record(kVlrHeaderBytes + extras.size() * kExtraRecordBytes, '\0');
-  put_text(record.data(), 2, "LASF_Spec");
-  put(record.data(), 18, kExtraRecordId);
-  put(record.data(), 20, static_cast<std::uint16_t>(extras.size() * kExtraRecordBytes));
+/// Variable length records, one behind the other.
+struct Records {
+  std::string bytes;
+  std::uint32_t count = 0;
+
+  void add(const std::filesystem::path& path, std::string_view user, std::uint16_t number,
+           std::string_view content) {
+    if (content.size() > std::numeric_limits<std::uint16_t>::max())
+      throw Error(ErrorKind::data, path.string() + ": record " + std::to_string(number) + " of '" +
+                                       std::string(user) + "' has " +
+                                       std::to_string(content.size()) +
+                                       " bytes, LAS has room for 65535");
+    std::string start(kVlrHeaderBytes, '\0');
+    put_text(start.data(), 2, user);
+    put(start.data(), 18, number);
+    put(start.data(), 20, static_cast<std::uint16_t>(content.size()));
+    bytes += start;
+    bytes += content;
+    ++count;
+  }
+};
+
+/// What describes the extra bytes.
+std::string extra_descriptions(std::span<const ColumnView> extras) {
+  std::string record(extras.size() * kExtraRecordBytes, '\0');
   for (std::size_t k = 0; k < extras.size(); ++k) {
-    char* const entry = record.data() + kVlrHeaderBytes + k * kExtraRecordBytes;
+    char* const entry = record.data() + k * kExtraRecordBytes;
     put(entry, 2, extra_type(extras[k].type));
     put_text(entry, 4, extras[k].name);
   }
   return record;
 }
 
+template <class T>
+std::string_view bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+void add_crs(const std::filesystem::path& path, const Crs& crs, Records& records) {
+  if (crs.empty()) return;
+  const auto add = [&](std::uint16_t number, std::string_view content) {
+    records.add(path, "LASF_Projection", number, content);
+  };
+  if (!crs.wkt.empty()) return add(kWktRecordId, {crs.wkt.c_str(), crs.wkt.size() + 1});
+  add(kGeoKeysId, bytes_of(crs.keys.directory));
+  if (!crs.keys.doubles.empty()) add(kGeoDoublesId, bytes_of(crs.keys.doubles));
+  if (!crs.keys.ascii.empty()) add(kGeoTextId, {crs.keys.ascii.c_str(), crs.keys.ascii.size() + 1});
+}
+
+/// All that stands between the header and the points.
+Records records_of(const std::filesystem::path& path, std::span<const ColumnView> extras,
+                   const Crs& crs) {
+  Records records;
+  add_crs(path, crs, records);
+  if (!extras.empty()) records.add(path, "LASF_Spec", kExtraRecordId, extra_descriptions(extras));
+  return records;
+}
+
 std::string header_of(std::size_t rows, const Summary& summary, const Grid& grid,
-                      std::size_t record_bytes, std::size_t vlr_bytes) {
+                      std::size_t record_bytes, const Records& records) {
   std::string header(kHeaderBytes, '\0');
   char* const bytes = header.data();
   put_text(bytes, 0, "LASF");
-  put(bytes, 6, kWktBit);
+  put(bytes, 6, grid.has_keys() ? std::uint16_t{0} : kWktBit);
   put(bytes, 24, std::uint8_t{1});
   put(bytes, 25, std::uint8_t{4});
   put_text(bytes, 26, "OTHER");  // System Identifier, table 5: neither sensor nor merge
   put_text(bytes, 58, "adasplats");
   put(bytes, 94, static_cast<std::uint16_t>(kHeaderBytes));
-  put(bytes, 96, static_cast<std::uint32_t>(kHeaderBytes + vlr_bytes));
-  put(bytes, 100, static_cast<std::uint32_t>(vlr_bytes > 0 ? 1 : 0));
+  put(bytes, 96, static_cast<std::uint32_t>(kHeaderBytes + records.bytes.size()));
+  put(bytes, 100, records.count);
   put(bytes, 104, static_cast<std::uint8_t>(kPointFormat));
   put(bytes, 105, static_cast<std::uint16_t>(record_bytes));
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -261,9 +308,9 @@ void put_las(ByteSink& file, const std::filesystem::path& path, std::size_t rows
   const std::size_t fixed_bytes = las_format(kPointFormat).least_bytes;
   std::size_t record_bytes = fixed_bytes;
   for (const ColumnView& extra : points.extras()) record_bytes += type_bytes(extra.type);
-  const std::string extras = extra_record(points.extras());
-  file.write(header_of(rows, summary, grid, record_bytes, extras.size()));
-  file.write(extras);
+  const Records records = records_of(path, points.extras(), options.crs);
+  file.write(header_of(rows, summary, grid, record_bytes, records));
+  file.write(records.bytes);
   write_records(file, rows, points.extras(), fixed_bytes, [&](std::size_t row, char* record) {
     std::memset(record, 0, fixed_bytes);
     const auto steps = grid.steps(points.position(row), row);

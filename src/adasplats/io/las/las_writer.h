@@ -8,6 +8,7 @@
 
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/io/base/byte_sink.h"
+#include "adasplats/io/base/crs.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
@@ -15,6 +16,10 @@ namespace adasplats {
 struct LasWriteOptions {
   double scale_m = 0.001;  ///< of the whole numbers that coordinates are stored as
   Vec3d offset_m;          ///< coordinates within 2^31 * scale of it can be stored
+  /// What the coordinates are in. A text is written as record 2112, as the specification wants it
+  /// of point format 6; GeoTIFF keys, which cannot be made one, as they came (records 34735 to
+  /// 34737, bit 4 of the global encoding 0), which readers take all the same.
+  Crs crs;
 };
 
 /// Writes LAS 1.4, point format 6 (ASPRS, "LAS specification 1.4 - R15"). Columns by name:
@@ -26,7 +31,7 @@ struct LasWriteOptions {
 ///   describes it (table 24); names of at most 31 bytes.
 /// The same columns give the same bytes: no date is written. Atomic. Throws std::logic_error for a
 /// column of a wrong type or name. Errors: data (a coordinate that is not finite or out of reach, a
-/// return number out of range, with the point's number).
+/// return number out of range, with the point's number; a coordinate system of 64 KiB or more).
 void write_las(const std::filesystem::path& path, std::size_t rows,
                std::span<const ColumnView> columns, const LasWriteOptions& options = {});
 

@@ -130,6 +130,35 @@ TEST(LasWriter, OffsetKeepsLargeCoordinates) {
   EXPECT_EQ(values_of(table, "number_of_returns")[1], 1);
 }
 
+// Oracles: our reader; table 4 of the specification, bit 4.
+TEST(LasWriter, TheCoordinateSystemIsKept) {
+  const TemporaryFolder folder;
+  const Points points;
+  const auto path = folder.path() / "a.las";
+  LasWriteOptions options;
+  options.crs = crs_of_wkt("PROJCS[\"UTM\",AUTHORITY[\"EPSG\",\"32632\"]]");
+  write_las(path, 3, points.columns(), options);
+  std::string bytes = read_file(path);
+  EXPECT_EQ(at<std::uint16_t>(bytes, 6), 16);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 100), 2U);
+  EXPECT_EQ(bytes.substr(375 + 2, 16), std::string("LASF_Projection\0", 16));
+  EXPECT_EQ(at<std::uint16_t>(bytes, 375 + 18), 2112);
+  EXPECT_EQ(bytes.substr(375 + 54, at<std::uint16_t>(bytes, 375 + 20)),
+            options.crs.wkt + std::string(1, '\0'));
+  EXPECT_EQ(read_las(path).crs, options.crs);
+  EXPECT_EQ(values_of(read_las(path), "label"), doubles(points.label));
+  options.crs = {{}, {{1, 1, 0, 2, 3072, 0, 1, 26910, 3078, 34736, 1, 1}, {0.5, 2}, "site|"}};
+  write_las(path, 3, points.columns(), options);
+  bytes = read_file(path);
+  EXPECT_EQ(at<std::uint16_t>(bytes, 6), 0);
+  EXPECT_EQ(at<std::uint32_t>(bytes, 100), 4U);
+  EXPECT_EQ(read_las(path).crs, options.crs);
+  EXPECT_EQ(values_of(read_las(path), "label"), doubles(points.label));
+  options.crs = crs_of_wkt(std::string(70000, 'x'));
+  expect_error(ErrorKind::data, {"a.las", "2112", "70001"},
+               [&] { write_las(path, 3, points.columns(), options); });
+}
+
 TEST(LasWriter, NoPointsAndNoExtraBytes) {
   const TemporaryFolder folder;
   const ColumnView columns[] = {{"x", ColumnType::f32, nullptr, 4},

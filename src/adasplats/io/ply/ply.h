@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "adasplats/io/base/byte_sink.h"
+#include "adasplats/io/base/crs.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
 
 /// Reads the `vertex` element of a PLY file: ASCII or binary, either byte order, any scalar
 /// properties, other elements before and after skipped by their layout.
+/// The coordinate system is that of crs_comments() among the comments.
 /// The counts are checked against the file's size before anything is allocated. Memory: binary 1x
 /// the file's size; ASCII at most 4x (doubles of one digit), usually below 1x.
 /// Errors: no_input, io, data (with line or byte offset).
@@ -27,6 +29,9 @@ MeshTable read_ply_mesh(const std::filesystem::path& path);
 
 /// True where the file's header declares a `face` element with records.
 bool ply_has_faces(const std::filesystem::path& path);
+
+/// The system among the comments of a header. Errors: as read_ply().
+Crs read_ply_crs(const std::filesystem::path& path);
 
 /// Writes one `vertex` element, binary little-endian, `rows` records. Atomic (see AtomicFile).
 /// Columns may be i8..i32, u8..u32, f32, f64 (PLY has no 64-bit integers: std::logic_error).

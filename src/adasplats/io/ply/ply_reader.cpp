@@ -95,6 +95,7 @@ Table read_ply(const std::filesystem::path& path) {
       continue;
     }
     Table table = body.read(element).scalars;
+    table.crs = crs_of_comments(path, header.comments);
     table.comments = std::move(header.comments);
     return table;
   }
@@ -129,8 +130,15 @@ MeshTable read_ply_mesh(const std::filesystem::path& path) {
   check_repeated_size(file, *face_element, fans.face_of_triangle.size());
   mesh.faces = repeat_rows(faces.scalars, fans.face_of_triangle);
   mesh.triangle_vertices = std::move(fans.triangle_vertices);
+  mesh.vertices.crs = crs_of_comments(path, header.comments);
   mesh.vertices.comments = std::move(header.comments);
   return mesh;
+}
+
+Crs read_ply_crs(const std::filesystem::path& path) {
+  InputFile file(path);
+  LineReader lines(file);
+  return crs_of_comments(path, read_ply_header(lines).comments);
 }
 
 bool ply_has_faces(const std::filesystem::path& path) {
