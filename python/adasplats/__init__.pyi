@@ -414,6 +414,7 @@ class PointCloud:
         origin_kinds: ArrayLike | None = None,
         scan_indices: ArrayLike | None = None,
         origin: ArrayLike | None = None,
+        crs_wkt: str = "",
     ) -> None: ...
     def __len__(self) -> int: ...
     @property
@@ -443,6 +444,12 @@ class PointCloud:
     @property
     def origin(self) -> NDArray[np.float64]:
         """(3,) float64, world coordinates of the local origin, m."""
+    @property
+    def crs(self) -> str:
+        """The coordinate system by codes and names, as the files said it; empty: none is said."""
+    @property
+    def crs_wkt(self) -> str:
+        """The coordinate system as well-known text; empty: none is said, or as GeoTIFF keys."""
     @property
     def world_positions(self) -> NDArray[np.float64]:
         """(N, 3) float64, origin + positions: a new array."""
@@ -674,6 +681,12 @@ class Model:
     def origin(self) -> NDArray[np.float64]:
         """(3,) float64, world coordinates of the local origin, m."""
     @property
+    def crs(self) -> str:
+        """The coordinate system by codes and names, as the files said it; empty: none is said."""
+    @property
+    def crs_wkt(self) -> str:
+        """The coordinate system as well-known text; empty: none is said, or as GeoTIFF keys."""
+    @property
     def bounds(self) -> NDArray[np.float64]:
         """(2, 3) float64: least and greatest world coordinates of the disks."""
     @property
@@ -721,6 +734,12 @@ class Mesh:
     @property
     def origin(self) -> NDArray[np.float64]:
         """(3,) float64, world coordinates of the local origin, m."""
+    @property
+    def crs(self) -> str:
+        """The coordinate system by codes and names, as the files said it; empty: none is said."""
+    @property
+    def crs_wkt(self) -> str:
+        """The coordinate system as well-known text; empty: none is said, or as GeoTIFF keys."""
     @property
     def labels(self) -> str:
         """Name or path of the label scheme; empty where there is none."""

@@ -6,6 +6,7 @@
 
 #include "adasplats/pipeline/output/output_check.h"
 #include "bindings.h"
+#include "crs.h"
 #include "pickles.h"
 #include "work.h"
 
@@ -14,6 +15,7 @@ namespace adasplats {
 template <class Archive>
 void fields(Archive& archive, PointCloud& cloud) {
   archive("origin", cloud.origin);
+  archive("crs", cloud.crs);
   archive("positions", cloud.positions);
   for_each_attribute([&](const auto& attribute) { archive(attribute.name, attribute.of(cloud)); });
   archive("scan_poses", cloud.scan_poses);
@@ -48,7 +50,8 @@ constexpr const char* kCloudDoc =
     "origin_kinds: (N,), how each is known: 0 not, 1 guessed (turns normals alone), 2 stated, 3\n"
     "measured, which all are where it is None.\n"
     "scan_indices: (N,). origin: (3,), what positions are kept relative to as float32; chosen by\n"
-    "their extents where it is None. Raises ValueError with the first row that is not finite.\n"
+    "their extents where it is None. crs_wkt: the coordinate system of the world as well-known\n"
+    "text, which models and files keep. Raises ValueError with the first row that is not finite.\n"
     "The arrays are read-only views without a copy; an attribute that the cloud lacks is None.";
 
 void take_read(Keywords& keywords, LoadOptions& load, WorkOptions& work) {
@@ -81,8 +84,10 @@ std::vector<Vec3f> relative(const Rows& world, Vec3d origin) {
 std::shared_ptr<PointCloud> make_cloud(py::handle positions, py::handle classes,
                                        py::handle instances, py::handle intensities,
                                        py::handle sensor_positions, py::handle origin_kinds,
-                                       py::handle scan_indices, py::handle origin) {
+                                       py::handle scan_indices, py::handle origin,
+                                       const std::string& crs_wkt) {
   auto cloud = std::make_shared<PointCloud>();
+  cloud->crs = crs_of_wkt(crs_wkt);
   LocalVectors local = local_vectors(Rows(positions, 3, "positions"), origin);
   cloud->origin = local.origin;
   cloud->positions = std::move(local.vectors);
@@ -227,14 +232,14 @@ void bind_clouds(py::module_& module) {
   const std::string init_doc = documented(
       "__init__",
       "self, positions, *, classes=None, instances=None, intensities=None, sensor_positions=None, "
-      "origin_kinds=None, scan_indices=None, origin=None",
+      "origin_kinds=None, scan_indices=None, origin=None, crs_wkt=''",
       "See the class.");
   CloudClass type(module, "PointCloud", kCloudDoc);
   type.def(py::init(&make_cloud), py::arg("positions"), py::kw_only(),
            py::arg("classes") = py::none(), py::arg("instances") = py::none(),
            py::arg("intensities") = py::none(), py::arg("sensor_positions") = py::none(),
            py::arg("origin_kinds") = py::none(), py::arg("scan_indices") = py::none(),
-           py::arg("origin") = py::none(), init_doc.c_str())
+           py::arg("origin") = py::none(), py::arg("crs_wkt") = "", init_doc.c_str())
       .def("__len__", &PointCloud::size)
       .def("__repr__",
            [](const PointCloud& cloud) {
@@ -255,6 +260,7 @@ void bind_clouds(py::module_& module) {
               .c_str());
 
   bind_attributes(type);
+  add_crs(type, [](const PointCloud& cloud) -> const Crs& { return cloud.crs; });
   add_pickling<PointCloud>(type, "PointCloud");
 
   const std::string read_doc = documented(

@@ -8,6 +8,7 @@
 #include "adasplats/scene/mesh_model.h"
 #include "bindings.h"
 #include "clouds.h"
+#include "crs.h"
 #include "pickles.h"
 
 namespace adasplats {
@@ -15,6 +16,7 @@ namespace adasplats {
 template <class Archive>
 void fields(Archive& archive, MeshModel& model) {
   archive("origin", model.origin);
+  archive("crs", model.crs);
   archive("vertices", model.mesh.vertices);
   archive("triangles", model.mesh.triangles);
   archive("classes", model.mesh.classes);
@@ -127,6 +129,7 @@ void bind_meshes(py::module_& module) {
           "(3,) float64, world coordinates of the local origin, m.")
       .def_readonly("labels", &MeshModel::label_scheme,
                     "Name or path of the label scheme; empty where there is none.");
+  add_crs(type, [](const MeshModel& m) -> const Crs& { return m.crs; });
   add_pickling<MeshModel>(type, "Mesh");
 }
 

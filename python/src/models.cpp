@@ -12,6 +12,7 @@
 #include "adasplats/pipeline/model/unused_settings.h"
 #include "adasplats/pipeline/output/output_check.h"
 #include "clouds.h"
+#include "crs.h"
 #include "json.h"
 #include "pickles.h"
 #include "work.h"
@@ -43,6 +44,7 @@ void fields(Archive& archive, Calibration& calibration) {
 template <class Archive>
 void fields(Archive& archive, SplatModel& model) {
   archive("origin", model.origin);
+  archive("crs", model.crs);
   archive("disks", model.disks);
   archive("classes", model.classes);
   archive("groups", model.groups);
@@ -317,6 +319,7 @@ void bind_models(py::module_& module) {
           .c_str());
   add_arrays(type);
   add_properties(type);
+  add_crs(type, [](const ModelObject& o) -> const Crs& { return o.model.crs; });
   add_pickling<ModelObject>(type, "Model");
   const std::string doc = documented(
       "model", "points",

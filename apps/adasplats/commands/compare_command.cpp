@@ -109,7 +109,7 @@ class CompareCommand final : public Command {
     OptionSet& group = app.add_group("Data", "instead of what is found in DATA");
     group
         .add_option("--labels", job_.labels,
-                    "semantickitti, paris-carla-3d, pandaset, nuscenes or a TOML file")
+                    "semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML file")
         ->type_name("SCHEME");
     add_scan_range(group, "--scans", job_.scans, "Which scans of a sequence");
     add_path(group, "--trajectory", job_.trajectory, "Poses of the recording");

@@ -35,10 +35,11 @@ class ExportCommand final : public Command {
     add_choice<std::optional<ExportFormat>>(app, "--format", job_.format,
                                             choices_of_optional(kExportFormats),
                                             "Of the file; else what its ending says");
-    app.add_option("--labels", job_.labels,
-                   "What classes mean: semantickitti, paris-carla-3d, pandaset, nuscenes or a TOML "
-                   "file; the default is "
-                   "what the model says")
+    app.add_option(
+           "--labels", job_.labels,
+           "What classes mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
+           "file; the default is "
+           "what the model says")
         ->type_name("SCHEME");
     add_choice<std::optional<ExportColor>>(app, "--color", job_.color,
                                            choices_of_optional(kExportColors),

@@ -84,9 +84,9 @@ class InfoCommand final : public Command {
            "Files, sequence folders and recordings; without any: as --devices")
         ->type_name("PATH");
     app.add_flag("--devices", devices_, "List the GPUs of this machine, or why there are none");
-    app.add_option(
-           "--labels", labels_,
-           "Names the classes: semantickitti, paris-carla-3d, pandaset, nuscenes or a TOML file")
+    app.add_option("--labels", labels_,
+                   "Names the classes: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or "
+                   "a TOML file")
         ->type_name("SCHEME");
     add_load_options(app, load_);
   }

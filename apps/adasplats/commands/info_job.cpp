@@ -17,6 +17,7 @@
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/recording.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/pipeline/model/make_model.h"
 #include "adasplats/pipeline/session/inputs.h"
@@ -98,17 +99,60 @@ std::string fields_of(const Table& table) {
   return fields;
 }
 
-FileFacts cloud_facts(const fs::path& input, const std::optional<LabelScheme>& scheme,
+/// Which system, of what says one or not.
+void describe_crs(const Crs& crs, FileFacts& facts) {
+  const std::string name = crs.name();
+  facts.rows.emplace_back("coordinate system", name.empty() ? "not said" : name);
+  facts.json["crs"] = name;
+  if (!crs.wkt.empty()) facts.json["crs_wkt"] = crs.wkt;
+}
+
+void describe_las(const LasFacts& las, FileFacts& facts) {
+  const auto numbers = [](Vec3d v) {
+    return exact_text(v.x) + ", " + exact_text(v.y) + ", " + exact_text(v.z) + " m";
+  };
+  facts.rows.emplace_back("format", "LAS " + las.version + ", point format " +
+                                        std::to_string(las.point_format) +
+                                        (las.software.empty() ? "" : ", by " + las.software));
+  facts.rows.emplace_back("scale", numbers(las.scale));
+  facts.rows.emplace_back("offset", numbers(las.offset));
+  facts.json["las"] = {{"version", las.version},
+                       {"point_format", las.point_format},
+                       {"software", las.software},
+                       {"scale", {las.scale.x, las.scale.y, las.scale.z}},
+                       {"offset", {las.offset.x, las.offset.y, las.offset.z}}};
+}
+
+/// Whether a file's classes are those of the specification of LAS, as far as that can be told: ours
+/// have the ids of any scheme.
+bool has_las_classes(const LasFacts& las, const Table& table, const std::string& label_field) {
+  if (!label_field.empty() && label_field != "classification") return false;
+  return las.software != "adasplats" && table.find("label") == nullptr &&
+         table.find("class") == nullptr;
+}
+
+/// What a file says before its points are loaded; `scheme` becomes that of LAS where it is.
+void describe_file(const fs::path& input, const LoadOptions& options,
+                   std::optional<LabelScheme>& scheme, FileFacts& facts, Session& session) {
+  const Table table = read_points(input, {options.salvage, &session.executor});
+  if (is_las(input)) {
+    const LasFacts las = read_las_facts(input);
+    describe_las(las, facts);
+    if (!scheme && has_las_classes(las, table, options.label_field)) scheme = asprs_labels();
+  }
+  const std::string fields = fields_of(table);
+  facts.rows.emplace_back("fields", fields);
+  facts.json["fields"] = fields;
+}
+
+FileFacts cloud_facts(const fs::path& input, std::optional<LabelScheme> scheme,
                       const LoadOptions& options, Session& session) {
   FileFacts facts;
   facts.kind = "point cloud";
-  if (fs::is_regular_file(input)) {
-    const std::string fields = fields_of(read_points(input, {options.salvage, &session.executor}));
-    facts.rows.emplace_back("fields", fields);
-    facts.json["fields"] = fields;
-  }
+  if (fs::is_regular_file(input)) describe_file(input, options, scheme, facts, session);
   const auto [cloud, report] =
       load_cloud(std::span(&input, 1), options, session.executor, session.progress);
+  describe_crs(cloud.crs, facts);
   Survey survey;
   for (std::size_t i = 0; i < cloud.size(); ++i) survey.add(cloud.world(i));
   for (const std::uint16_t id : cloud.classes) survey.add_class(id);
@@ -137,6 +181,7 @@ FileFacts model_facts(const fs::path& input, std::optional<LabelScheme> scheme) 
   if (!model.label_scheme.empty()) facts.rows.emplace_back("labels", model.label_scheme);
   if (!model.network_sha256.empty())
     facts.rows.emplace_back("SHA-256 of the network that gave classes", model.network_sha256);
+  describe_crs(model.crs, facts);
   Survey survey;
   std::vector<float> radii;
   for (const Disk& disk : model.disks) {
@@ -161,6 +206,7 @@ FileFacts mesh_facts(const fs::path& input, std::optional<LabelScheme> scheme) {
   const TriangleMesh& mesh = model.mesh;
   FileFacts facts;
   facts.kind = "mesh";
+  describe_crs(model.crs, facts);
   if (!model.method.empty()) facts.rows.emplace_back("method", model.method);
   if (!model.label_scheme.empty()) facts.rows.emplace_back("labels", model.label_scheme);
   double area_m2 = 0;
@@ -213,6 +259,7 @@ void describe_drive(const DriveFacts& drive, FileFacts& facts) {
   add("not checked", "unchecked", drive.unchecked);
   add("intensities", "intensities", drive.intensities);
   add("left out", "left_out", drive.left_out);
+  if (!drive.crs.empty()) describe_crs(drive.crs, facts);
 }
 
 /// What the points are taken for: who measured them, and from where.

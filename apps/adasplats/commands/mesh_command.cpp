@@ -37,10 +37,11 @@ class MeshCommand final : public Command {
                        recording_format_names() + ", PCAP)")
                 ->type_name("PATH"));
     require(writes(add_path(app, "-o,--output", output_, "Mesh to write, PLY"), {".ply"}));
-    app.add_option("--labels", job_.labels,
-                   "What labels mean: semantickitti, paris-carla-3d, pandaset, nuscenes or a TOML "
-                   "file; the default is "
-                   "semantickitti for sequence folders, else none")
+    app.add_option(
+           "--labels", job_.labels,
+           "What labels mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
+           "file; the default is "
+           "semantickitti for sequence folders, else none")
         ->type_name("SCHEME");
     add_removal_option(app, job_.remove);
     add_settings(app, job_);

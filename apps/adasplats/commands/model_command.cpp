@@ -66,10 +66,11 @@ class ModelCommand final : public Command {
                        recording_format_names() + ", PCAP)")
                 ->type_name("PATH"));
     require(writes(add_path(app, "-o,--output", job_.output, "Model to write, PLY"), {".ply"}));
-    app.add_option("--labels", job_.labels,
-                   "What labels mean: semantickitti, paris-carla-3d, pandaset, nuscenes or a TOML "
-                   "file; the default is "
-                   "semantickitti for sequence folders, else none")
+    app.add_option(
+           "--labels", job_.labels,
+           "What labels mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
+           "file; the default is "
+           "semantickitti for sequence folders, else none")
         ->type_name("SCHEME");
     add_settings(app, job_.segment);
     add_settings(app, recipe_);

@@ -35,10 +35,11 @@ class RenderCommand final : public Command {
                    "Splat models, triangle meshes (PLY, OBJ), point files, sequence folders")
                 ->type_name("PATH"));
     require(writes(add_path(app, "-o,--output", job_.output, "Picture to write, PNG"), {".png"}));
-    app.add_option("--labels", job_.labels,
-                   "What classes mean: semantickitti, paris-carla-3d, pandaset, nuscenes or a TOML "
-                   "file; the default is "
-                   "what the model says")
+    app.add_option(
+           "--labels", job_.labels,
+           "What classes mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
+           "file; the default is "
+           "what the model says")
         ->type_name("SCHEME");
     add_choice<std::optional<ImageColor>>(
         app, "--color", job_.color,

@@ -40,10 +40,11 @@ class SimulateCommand final : public Command {
                    "CSV of rays")
         ->capture_default_str()
         ->type_name("NAME|FILE");
-    app.add_option("--labels", job_.labels,
-                   "What classes mean: semantickitti, paris-carla-3d, pandaset, nuscenes or a TOML "
-                   "file; the default is "
-                   "what the model says")
+    app.add_option(
+           "--labels", job_.labels,
+           "What classes mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
+           "file; the default is "
+           "what the model says")
         ->type_name("SCHEME");
     add_drive_options(app);
     add_settings(app, job_.scan);

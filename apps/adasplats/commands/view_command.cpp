@@ -37,10 +37,11 @@ class ViewCommand final : public Command {
     app.add_option("--mount-height", job_.mount_height_m,
                    "Of the sensor above the ground where no pose tells, m")
         ->capture_default_str();
-    app.add_option("--labels", job_.labels,
-                   "What classes mean: semantickitti, paris-carla-3d, pandaset, nuscenes or a TOML "
-                   "file; the default is "
-                   "what the model says")
+    app.add_option(
+           "--labels", job_.labels,
+           "What classes mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
+           "file; the default is "
+           "what the model says")
         ->type_name("SCHEME");
     app.add_option("--port", job_.port, "Of the page; 0: any free one")->capture_default_str();
     app.add_option("--address", job_.address,

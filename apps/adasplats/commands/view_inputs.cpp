@@ -117,6 +117,7 @@ class Loading {
     ViewScene& scene = view_.scene;
     scene.model = view_.model.get();
     set_place(view_.model->origin(), view_.model->middle_box());
+    crs_.add(sorted_.model, view_.model->crs());
     if (view_.model->labels() != nullptr) scene.labels = *view_.model->labels();
     scene.command = {"adasplats", "simulate", sorted_.model.string()};
     session_.progress.begin_step("levels of detail", 0);
@@ -129,6 +130,7 @@ class Loading {
     const PointCloud cloud =
         load_cloud(std::span(&path, 1), job_.load, session_.executor, session_.progress).first;
     if (cloud.empty()) throw Error(ErrorKind::data, path.string() + ": no points");
+    crs_.add(path, cloud.crs);
     add_points(name_of(path), cloud, {});
   }
 
@@ -158,6 +160,8 @@ class Loading {
 
   void finish() {
     ViewScene& scene = view_.scene;
+    if (const std::string warning = crs_.warning(); !warning.empty())
+      session_.progress.warn(warning);
     scene.name = name_of(job_.input);
     scene.sensor = job_.sensor;
     scene.device = device_word(session_.device.kind);
@@ -168,6 +172,7 @@ class Loading {
   const Sorted& sorted_;
   Session& session_;
   LoadedView view_;
+  SharedCrs crs_;  ///< of the model and the clouds
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace py = pybind11;
 /// `fields(archive, object)`, which is called to write and to read.
 
 /// Of all classes together: to be raised where the fields of one change.
-inline constexpr int kPickleVersion = 7;
+inline constexpr int kPickleVersion = 8;
 
 /// Throws ValueError.
 [[noreturn]] void wrong_pickle(const std::string& type, const std::string& what);

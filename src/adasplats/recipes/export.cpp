@@ -149,6 +149,7 @@ std::optional<LabelScheme> labels_of(const SplatModel& model, const std::string&
 PointCloud centers_of(SplatModel& model) {
   PointCloud cloud;
   cloud.origin = model.origin;
+  cloud.crs = model.crs;
   cloud.positions.reserve(model.size());
   for (const Disk& disk : model.disks) cloud.positions.push_back(disk.center);
   cloud.classes = std::move(model.classes);

@@ -122,6 +122,7 @@ class MeshMaker {
         "normals", 1, [&] { return normals_of(cloud, options_.normals, session_, result); });
     MeshModel model;
     model.origin = cloud.origin;
+    model.crs = cloud.crs;
     model.method = std::string(word_of(options_.method, kMeshMethods));
     if (scheme_) model.label_scheme = scheme_reference(options_.labels, *scheme_);
     model.mesh = steps.run(model.method, programs_ ? 0 : 1, [&] {

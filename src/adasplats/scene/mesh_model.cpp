@@ -103,6 +103,7 @@ MeshModel to_model(const std::filesystem::path& path, MeshTable table) {
   set_vertices(model, path, table.vertices);
   model.label_scheme = comment_value(table.vertices, kLabelsComment);
   model.method = comment_value(table.vertices, kMethodComment);
+  model.crs = std::move(table.vertices.crs);
   table.vertices = {};  // large meshes: not kept twice
   model.mesh.classes = classes_of(path, table.faces);
   const std::vector<std::uint32_t>& corners = table.triangle_vertices;
@@ -140,6 +141,7 @@ void save_mesh(const std::filesystem::path& path, const MeshModel& model) {
   if (!model.method.empty()) comments.push_back(std::string(kMethodComment) + model.method);
   if (!model.label_scheme.empty())
     comments.push_back(std::string(kLabelsComment) + model.label_scheme);
+  for (std::string& comment : crs_comments(model.crs)) comments.push_back(std::move(comment));
   static_assert(sizeof(mesh.triangles[0]) == 3 * sizeof(std::uint32_t));
   const std::uint32_t* const corners =
       mesh.triangles.empty() ? nullptr : mesh.triangles.front().data();

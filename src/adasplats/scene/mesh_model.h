@@ -6,6 +6,7 @@
 #include <string>
 
 #include "adasplats/core/maths/vec3.h"
+#include "adasplats/io/base/crs.h"
 #include "adasplats/scene/scene.h"
 
 namespace adasplats {
@@ -14,6 +15,7 @@ namespace adasplats {
 /// procedural street, or any mesh of a user's.
 struct MeshModel {
   Vec3d origin;              ///< world coordinates of the local origin, m
+  Crs crs;                   ///< of the world coordinates
   TriangleMesh mesh;         ///< relative to `origin`
   std::string label_scheme;  ///< name or path as load_label_scheme takes it; may be empty
   std::string method;        ///< how it was made; may be empty
@@ -22,8 +24,8 @@ struct MeshModel {
   SceneView view() const { return {{}, &mesh}; }
 };
 
-/// Writes a PLY: vertices, faces with the property `class` where the mesh has classes; the scheme
-/// and the method as comments. Atomic.
+/// Writes a PLY: vertices, faces with the property `class` where the mesh has classes; the scheme,
+/// the method and the coordinate system (crs_comments()) as comments. Atomic.
 void save_mesh(const std::filesystem::path& path, const MeshModel& model);
 
 /// Reads a triangle mesh: PLY (faces; classes from the face property class, label, semantic or

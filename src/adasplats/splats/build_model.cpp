@@ -273,6 +273,7 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
     report_beyond(report.points_noise, report.points_in, reach_m, progress);
   }
   model.origin = cloud.origin;
+  model.crs = cloud.crs;
   model.method = std::string(word_of(method, kSplatMethods));
   if (!cloud.classes.empty() && labels != nullptr) model.label_scheme = labels->name();
 

@@ -52,9 +52,9 @@ class EvaluateC2cCommand final : public Command {
     app.add_flag("--by-class", by_class_, "Also by semantic class");
     app.add_flag("--nearest-classes", nearest_classes_,
                  "A simulated point is of the class of the nearest original one, whatever its own");
-    app.add_option(
-           "--labels", job_.labels,
-           "Names the classes: semantickitti, paris-carla-3d, pandaset, nuscenes or a TOML file")
+    app.add_option("--labels", job_.labels,
+                   "Names the classes: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or "
+                   "a TOML file")
         ->type_name("SCHEME");
     writes(add_path(
                app, "--picture", job_.picture,

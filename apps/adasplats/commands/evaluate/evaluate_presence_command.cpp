@@ -27,10 +27,11 @@ class EvaluatePresenceCommand final : public Command {
     require(add_path(app, "MODEL", job_.model, "Splat model or triangle mesh"));
     require(
         add_path(app, "POINTS", job_.points, "Point file with sensor positions, or a sequence"));
-    app.add_option("--labels", job_.labels,
-                   "What labels mean: semantickitti, paris-carla-3d, pandaset, nuscenes or a TOML "
-                   "file; the default is "
-                   "semantickitti for sequence folders, else none")
+    app.add_option(
+           "--labels", job_.labels,
+           "What labels mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
+           "file; the default is "
+           "semantickitti for sequence folders, else none")
         ->type_name("SCHEME");
     app.add_option("--within", job_.options.within_m,
                    "Of a point, along the ray that measured it, m")

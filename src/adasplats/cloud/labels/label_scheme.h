@@ -65,6 +65,9 @@ const LabelScheme& pandaset_labels();
 /// kNuscenesUnlabeled, which no file of it has: points of sweeps, which have no labels.
 const LabelScheme& nuscenes_labels();
 inline constexpr std::uint16_t kNuscenesUnlabeled = 255;
+/// ASPRS, "LAS specification 1.4 - R15", table 17: the standard classes of point formats 6 to 10,
+/// which those of formats 0 to 5 are among. Ids that users define (from 64 on) are none of it.
+const LabelScheme& asprs_labels();
 /// All of these.
 std::span<const LabelScheme* const> known_label_schemes();
 

@@ -55,6 +55,16 @@ TEST(LabelScheme, PandaSetAndNuscenesAsPublished) {
   }
 }
 
+// Oracle: ASPRS, "LAS specification 1.4 - R15", table 17.
+TEST(LabelScheme, ClassesOfLas) {
+  EXPECT_EQ(asprs_labels().classes().size(), 23U);
+  EXPECT_EQ(asprs_labels().find(std::uint16_t{2})->name, "ground");
+  EXPECT_EQ(asprs_labels().find("high vegetation")->id, 5);
+  EXPECT_EQ(asprs_labels().find("bridge deck")->id, 17);
+  EXPECT_EQ(asprs_labels().find("temporal exclusion")->id, 22);
+  EXPECT_EQ(asprs_labels().find(std::uint16_t{64}), nullptr);
+}
+
 // Oracle: the examples of paper section "Adaptive Splatting" for each group.
 TEST(LabelScheme, GroupsOfThePaper) {
   for (const char* name : {"road", "sidewalk"}) {

@@ -20,6 +20,7 @@
 #include "adasplats/cloud/origins/track.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/recording.h"
+#include "adasplats/io/base/point_files.h"
 
 namespace adasplats {
 namespace {
@@ -125,6 +126,14 @@ bool has_timed_frames(const std::filesystem::path& folder) {
 
 namespace {
 
+/// What files in world coordinates say. Errors: those of SharedCrs.
+Crs crs_of_files(const std::vector<std::filesystem::path>& files, ProgressSink& progress) {
+  SharedCrs crs;
+  for (const std::filesystem::path& file : files) crs.add(file, read_crs(file));
+  if (const std::string warning = crs.warning(); !warning.empty()) progress.warn(warning);
+  return crs.crs();
+}
+
 /// A folder of files, one a scan.
 std::optional<KittiSequence> open_files(const FrameDrive& drive, const Executor& executor,
                                         ProgressSink& progress) {
@@ -137,7 +146,9 @@ std::optional<KittiSequence> open_files(const FrameDrive& drive, const Executor&
     frames.vehicle = read_trajectory(drive.trajectory);
     for (TimedPose& pose : frames.vehicle) pose.time_s -= drive.time_offset_s.value_or(0);
     frames.poses_file = drive.trajectory;
-    return open_world_frames(drive, frames, executor, progress);
+    auto sequence = open_world_frames(drive, frames, executor, progress);
+    if (sequence) sequence->facts.crs = crs_of_files(files, progress);
+    return sequence;
   };
   if (files.size() < 2 && drive.points_in != PointsIn::sensor) return std::nullopt;
   if (drive.points_in == PointsIn::world) {

@@ -131,9 +131,16 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Source
     throw usage("a sensor position is given, but every input has its own");
 }
 
-std::vector<CloudPart> read_parts(std::span<const Source> sources, const LoadOptions& options,
-                                  const Executor& executor, ProgressSink& progress) {
+/// What is read, and the one coordinate system of all.
+struct ReadParts {
   std::vector<CloudPart> parts;
+  Crs crs;
+};
+
+ReadParts read_parts(std::span<const Source> sources, const LoadOptions& options,
+                     const Executor& executor, ProgressSink& progress) {
+  std::vector<CloudPart> parts;
+  SharedCrs crs;
   std::size_t points = 0;
   std::uint32_t scans = 0;
   for (const Source& source : sources) {
@@ -145,13 +152,15 @@ std::vector<CloudPart> read_parts(std::span<const Source> sources, const LoadOpt
     } else {
       parts.push_back(read_file_part(path, options, progress, &executor));
     }
+    crs.add(path, parts.back().cloud.crs);
     if (source.input.is_sequence) scans += static_cast<std::uint32_t>(parts.back().runs.size());
     points += parts.back().size();
     if (points > std::numeric_limits<std::uint32_t>::max())
       throw Error(ErrorKind::data,
                   path.string() + ": with it the cloud has more than 4294967295 points");
   }
-  return parts;
+  if (const std::string warning = crs.warning(); !warning.empty()) progress.warn(warning);
+  return {std::move(parts), crs.crs()};
 }
 
 /// Tells the parts of loading apart.
@@ -476,7 +485,8 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   const PointOrigins origins(options);
   LoadReport report;
   LoadClock clock(report.seconds);
-  Gathered gathered{read_parts(sources, options, executor, progress)};
+  auto [parts, crs] = read_parts(sources, options, executor, progress);
+  Gathered gathered{std::move(parts)};
   const std::optional<PlacedByTimes> placed =
       place_by_times(gathered.parts, options, executor, progress);
   const bool any_drive =
@@ -508,6 +518,7 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
     if (!input.is_sequence) check_origins(clouds.back(), input.path, options, executor);
   }
   PointCloud cloud = joined(std::move(clouds), origin, std::move(scan_poses), progress);
+  cloud.crs = std::move(crs);
   clock.end("place");
   // Before any point is taken away: where one was, its beam did return.
   if (options.empty_beams) cloud.empty_beams = find_empty_beams(cloud, {}, executor);

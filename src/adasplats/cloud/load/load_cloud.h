@@ -212,20 +212,22 @@ struct LoadReport {
 /// require_points. World coordinates; the origin depends on the extents alone. Inputs with and
 /// without an attribute together lose it, with a warning; but sensor positions stay, and points
 /// without one (not finite, or of an input that has none) have OriginKind::none. Scans are numbered
-/// from 0 over all sequences, which must not begin at the very same pose (require_one_world). Files
-/// (names in any case): intensity from the first of intensity, reflectance, remission,
-/// reflectivity, luma and their scalar_ twins; classes are the low 16 bits of the label column,
-/// instances its high 16 bits or the column `instance`; `scan_index` as save_cloud_ply writes it.
-/// Points with times and a trajectory with times: TimedOrigins; their scans are pieces of 0.1 s,
-/// numbered behind those of sequences. Memory: sequences 1.1x the cloud; files the reader's plus 24
-/// bytes a point, with times and a trajectory 60. Whichever scans of a
-/// sequence are chosen, up to five are read to recognise its sensor and up to eight to check its
-/// poses (require_poses_that_fit), without labels; there one that cannot be read is skipped. What
-/// is dropped is reported as warnings. Errors: those of the readers; data for sensor positions that
-/// are impossible (usage for options that state one); data for too much dropped (max_dropped) and
-/// for longitudes and latitudes instead of metres (require_metres); usage for options that fit
-/// nothing and for named columns that are not there; data for labels that are no whole numbers from
-/// 0 to 2^32 - 1.
+/// from 0 over all sequences, which must not begin at the very same pose (require_one_world). The
+/// cloud's coordinate system is the one that the inputs say; one that says none, or none of
+/// heights, beside others that do is taken to be in theirs, with a warning. Files (names in any
+/// case): intensity from the first of intensity, reflectance, remission, reflectivity, luma and
+/// their scalar_ twins; classes are the low 16 bits of the label column, instances its high 16 bits
+/// or the column `instance`; `scan_index` as save_cloud_ply writes it. Points with times and a
+/// trajectory with times: TimedOrigins; their scans are pieces of 0.1 s, numbered behind those of
+/// sequences. Memory: sequences 1.1x the cloud; files the reader's plus 24 bytes a point, with
+/// times and a trajectory 60. Whichever scans of a sequence are chosen, up to five are read to
+/// recognise its sensor and up to eight to check its poses (require_poses_that_fit), without
+/// labels; there one that cannot be read is skipped. What is dropped is reported as warnings.
+/// Errors: those of the readers; data for sensor positions that are impossible (usage for options
+/// that state one); data for inputs of different coordinate systems, with both files and both
+/// systems; data for too much dropped (max_dropped) and for longitudes and latitudes instead of
+/// metres (require_metres); usage for options that fit nothing and for named columns that are not
+/// there; data for labels that are no whole numbers from 0 to 2^32 - 1.
 std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
                                              const LoadOptions& options, const Executor& executor,
                                              ProgressSink& progress);
@@ -233,7 +235,7 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
 /// Writes a cloud as PLY with the columns x, y, z, x_lidar_position, y_lidar_position,
 /// z_lidar_position, origin_kind (OriginKind; where not all are measured), intensity, label,
 /// instance, scan_index, as far as it has them (the layout of Paris-CARLA-3D), and `more`, a value
-/// a point. Doubles where the origin is not zero.
+/// a point. Doubles where the origin is not zero. The coordinate system as crs_comments().
 void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
                     std::span<const ColumnView> more = {});
 

@@ -274,6 +274,39 @@ TEST(LoadCloud, LongitudesAndLatitudesAreNoMetres) {
   EXPECT_EQ(load({folder.write("one.xyz", "2.34 48.84 35\n")}).first.size(), 1U);
 }
 
+/// A PLY of two points whose comments say a coordinate system, or none.
+std::string ply_in(const std::string& crs) {
+  return "ply\nformat ascii 1.0\n" +
+         (crs.empty() ? "" : "comment adasplats.crs_wkt " + crs + "\n") +
+         "element vertex 2\nproperty double x\nproperty double y\nproperty double z\n"
+         "end_header\n500000 5000000 10\n500001 5000000 10\n";
+}
+
+TEST(LoadCloud, CoordinateSystemsAreKeptAndNotMixed) {
+  const TemporaryFolder folder;
+  const auto a = folder.write("a.ply", ply_in("EPSG:32632"));
+  const auto b = folder.write("b.ply", ply_in("EPSG:32633"));
+  const auto none = folder.write("none.ply", ply_in(""));
+  EXPECT_EQ(load({a}).first.crs.name(), "EPSG:32632");
+  EXPECT_TRUE(load({none}).first.crs.empty());
+  expect_error(ErrorKind::data, {"b.ply", "EPSG:32633", "a.ply", "EPSG:32632"}, [&] {
+    load({a, none, b});
+  });
+  Listener listener;
+  const std::vector both = {none, a};
+  const PointCloud cloud = load_cloud(both, {}, Executor(1), listener).first;
+  EXPECT_EQ(cloud.crs.name(), "EPSG:32632");
+  ASSERT_EQ(listener.warnings.size(), 1U);
+  EXPECT_NE(listener.warnings[0].find("none.ply of 2 inputs say no coordinate system"),
+            std::string::npos);
+  // What is saved says it again.
+  const auto saved = folder.path() / "saved.ply";
+  save_cloud_ply(saved, cloud);
+  EXPECT_EQ(load({saved}).first.crs, cloud.crs);
+  const std::vector<std::uint32_t> first = {0};
+  EXPECT_EQ(gather(cloud, first).crs, cloud.crs);
+}
+
 // A LAS 1.2 file of one point of format 0 with GeoTIFF keys.
 TEST(LoadCloud, LasInFeetAndWithheldPoints) {
   const TemporaryFolder folder;

@@ -236,6 +236,7 @@ CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
   for (const std::string& comment : table.comments) take_comment(file, comment, progress);
 
   CloudPart part;
+  part.cloud.crs = table.crs;
   part.runs.push_back({0, table.rows, path, {}});
   part.world_positions = read_positions(file);
   part.world_sensors = read_sensor_positions(file, options);

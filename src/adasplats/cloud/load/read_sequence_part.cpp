@@ -223,6 +223,7 @@ CloudPart read_sequence_part(const KittiSequence& sequence, const LoadOptions& o
   part.beams = sequence.beams;
   constexpr double kStill_m = 0.02;
   if (part.beams.unknown_sweep_m > kStill_m) progress.warn(unknown_motion_text(sequence));
+  part.cloud.crs = sequence.facts.crs;
   if (sequence.reader)
     read_with_reader(sequence, chosen, part, executor, progress);
   else

@@ -57,7 +57,7 @@ void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
     }
   });
   columns.insert(columns.end(), more.begin(), more.end());
-  write_ply(path, cloud.size(), columns);
+  write_ply(path, cloud.size(), columns, crs_comments(cloud.crs));
 }
 
 }  // namespace adasplats

@@ -85,6 +85,7 @@ std::string describe_origins(const OriginCounts& counts) {
 PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indices) {
   PointCloud result;
   result.origin = cloud.origin;
+  result.crs = cloud.crs;
   result.scan_poses = cloud.scan_poses;
   result.empty_beams = cloud.empty_beams;
   result.positions = gathered(cloud.positions, indices);

@@ -14,6 +14,7 @@
 #include "adasplats/cloud/points/origin_kind.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/maths/vec3.h"
+#include "adasplats/io/base/crs.h"
 
 namespace adasplats {
 
@@ -21,6 +22,7 @@ namespace adasplats {
 /// position: double at the border, float inside. An attribute is empty or as long as `positions`.
 struct PointCloud {
   Vec3d origin;                          ///< world coordinates of the local origin, m
+  Crs crs;                               ///< of the world coordinates, as the files say it
   std::vector<Vec3f> positions;          ///< relative to `origin`, m; finite
   std::vector<Vec3f> sensor_positions;   ///< of the LiDAR when it measured the point, as positions
   std::vector<OriginKind> origin_kinds;  ///< of sensor_positions; empty: all are measured
@@ -104,7 +106,8 @@ PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> indice
 
 /// Adds `other` behind `cloud`. Both need the same origin and the same set of attributes
 /// (std::logic_error otherwise; an empty `cloud` takes all from `other`). The poses of other's
-/// scans follow; where one of them has none, there are none.
+/// scans follow; where one of them has none, there are none. The coordinate system is that of
+/// `cloud`: whoever joins files compares them (SharedCrs).
 void append(PointCloud& cloud, PointCloud&& other);
 
 /// The origin for coordinates within [low, high]: zero where floats hold them to 0.1 mm (1 km

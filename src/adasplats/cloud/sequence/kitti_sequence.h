@@ -11,6 +11,7 @@
 
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/cloud/sequence/scan_beams.h"
+#include "adasplats/io/base/crs.h"
 
 namespace adasplats {
 
@@ -26,6 +27,7 @@ struct DriveFacts {
   /// Of the tree of a data set: how intensities were scaled, which scans have labels, and which
   /// points of the files are of none of the scans.
   std::string intensities, labels, left_out;
+  Crs crs;  ///< of the world, where files in it say theirs
 };
 
 /// Reads scans that are not in KITTI's layout.

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/load/one_crs.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/pipeline/provenance/metrics_json.h"
 #include "adasplats/pipeline/session/inputs.h"
@@ -45,6 +46,8 @@ CloudPair load_clouds(const CloudFiles& files, Session& session) {
   pair.labels = label_scheme_for(files.labels, inputs);
   pair.simulated = load(0);
   pair.original = load(1);
+  require_one_crs({{inputs[0], pair.simulated.crs}, {inputs[1], pair.original.crs}},
+                  session.progress);
   return pair;
 }
 

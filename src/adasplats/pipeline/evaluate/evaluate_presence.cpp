@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "adasplats/cloud/load/one_crs.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/pipeline/scene/model_scene.h"
@@ -20,6 +21,7 @@ PresenceResult evaluate_presence(const PresenceJob& job, Session& session) {
     throw Error(ErrorKind::usage, "`labels` has no effect: the points have no labels");
   }
   const ModelScene scene(job.model, "", session);
+  require_one_crs({{job.model, scene.crs()}, {job.points, cloud.crs}}, session.progress);
   const SplatModel* const splats = scene.splats();
   if (splats != nullptr && !splats->calibration.empty() &&
       !apply(splats->calibration, cloud, session.executor))

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "adasplats/cloud/load/one_crs.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/session/inputs.h"
 
@@ -27,6 +28,7 @@ TruthResult evaluate_truth(const TruthJob& job, Session& session) {
   const MeshModel truth = load_mesh(job.truth);
   const std::optional<LabelScheme> labels = labels_of(job, truth);
   const ModelScene scene(job.model, "", session);
+  require_one_crs({{job.model, scene.crs()}, {job.truth, truth.crs}}, session.progress);
   return compare_with_truth(scene.tracer(), scene.origin(), truth, labels ? &*labels : nullptr,
                             sensor, poses, job.options, session.executor, session.progress);
 }

@@ -49,7 +49,7 @@ class ModelMaker {
     if (!scheme_ && method_of(options_.build.recipe) == SplatMethod::semantic) {
       throw Error(ErrorKind::usage,
                   "the method semantic needs labels (semantickitti, paris-carla-3d, pandaset, "
-                  "nuscenes or a file), or "
+                  "nuscenes, asprs or a file), or "
                   "`segment`, with which a network gives the points classes");
     }
   }

@@ -45,6 +45,7 @@ class ModelScene {
   SceneView view() const { return view_of(place_); }
   /// World coordinates of the view's local origin, m.
   Vec3d origin() const { return origin_of(place_); }
+  const Crs& crs() const { return crs_of(place_); }
   const Tracer& tracer() const { return gpu_ ? gpu_->tracer() : *tracer_; }
   /// Of the place without its objects.
   const ScanCaster& scan_caster() const { return gpu_ ? gpu_->scan_caster() : *caster_; }

@@ -97,6 +97,7 @@ void save_labelled_las(const std::filesystem::path& file, const LabelledPoints& 
   columns.insert(columns.end(), found.columns.begin(), found.columns.end());
   LasWriteOptions options;
   options.offset_m = cloud.origin;
+  options.crs = cloud.crs;
   write_las(file, cloud.size(), columns, options);
 }
 

@@ -89,11 +89,12 @@ void write_gaussian_ply(const std::filesystem::path& path, const SplatModel& mod
   for (std::size_t i = 0; i < model.size(); ++i)
     gaussians.push_back(gaussian_of(model.disks[i], colors[i]));
   const Vec3d o = model.origin;
-  const std::string comment = std::string("adasplats.origin ") + exact_text(o.x) + " " +
-                              exact_text(o.y) + " " + exact_text(o.z);
+  std::vector<std::string> comments = crs_comments(model.crs);
+  comments.insert(comments.begin(), std::string("adasplats.origin ") + exact_text(o.x) + " " +
+                                        exact_text(o.y) + " " + exact_text(o.z));
   const Gaussian none{};
   write_ply(path, gaussians.size(), columns_of(gaussians.empty() ? &none : gaussians.data(), kind),
-            std::span(&comment, 1));
+            comments);
 }
 
 }  // namespace adasplats

@@ -29,6 +29,9 @@ inline SceneView view_of(const Place& place) {
 inline Vec3d origin_of(const Place& place) {
   return std::visit([](const auto& model) { return model.origin; }, place);
 }
+inline const Crs& crs_of(const Place& place) {
+  return std::visit([](const auto& model) -> const Crs& { return model.crs; }, place);
+}
 inline const std::string& label_scheme_of(const Place& place) {
   return std::visit([](const auto& model) -> const std::string& { return model.label_scheme; },
                     place);

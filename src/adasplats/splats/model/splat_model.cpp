@@ -253,6 +253,7 @@ void save_model(const std::filesystem::path& path, const SplatModel& model) {
   if (!model.method.empty()) comments.push_back(kMethodComment + model.method);
   if (!model.label_scheme.empty()) comments.push_back(kLabelsComment + model.label_scheme);
   if (!model.network_sha256.empty()) comments.push_back(kNetworkComment + model.network_sha256);
+  for (std::string& comment : crs_comments(model.crs)) comments.push_back(std::move(comment));
   add_response_comments(model.response, comments);
   add_calibration_comments(model.calibration, comments);
   write_ply(path, model.size(), columns, comments);
@@ -266,6 +267,7 @@ SplatModel load_model(const std::filesystem::path& path) {
       &required(table, path, "nx"), &required(table, path, "ny"), &required(table, path, "nz")};
   const Column& radius = required(table, path, "radius");
   SplatModel model;
+  model.crs = table.crs;
   const auto [low, high] = extent_of(position, table.rows);
   if (!is_finite(low) || !is_finite(high))
     throw data_error({path, {}, {}}, "a splat's center is not finite");

@@ -11,6 +11,7 @@
 #include "adasplats/calibrate/calibration.h"
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/core/maths/vec3.h"
+#include "adasplats/io/base/crs.h"
 #include "adasplats/scene/scene.h"
 #include "adasplats/splats/reflectance/reflectance.h"
 
@@ -19,6 +20,7 @@ namespace adasplats {
 /// A place as oriented disks: what the paper calls the splatted environment.
 struct SplatModel {
   Vec3d origin;                        ///< world coordinates of the local origin, m
+  Crs crs;                             ///< of the world coordinates, as the points had it
   std::vector<Disk> disks;             ///< relative to `origin`
   std::vector<std::uint16_t> classes;  ///< semantic class of the seed point; empty without labels
   std::vector<SemanticGroup> groups;   ///< one a splat; empty for basic splats
@@ -40,7 +42,8 @@ std::pair<Vec3f, Vec3f> bounds(const SplatModel& model);
 
 /// Writes a PLY, one vertex a splat: x y z nx ny nz radius [class] [group] [intensity] (x y z as
 /// doubles in world coordinates where the origin is not zero). The rest is in comments
-/// "adasplats.KEY VALUE", the scheme in "labels"; the response in "response_ranges_m",
+/// "adasplats.KEY VALUE", the coordinate system in crs_comments(), the scheme in "labels"; the
+/// response in "response_ranges_m",
 /// "response_range_gains", "response_cosines" and "response_cosine_gains"; the calibration in
 /// "calibration_range_offsets_m", "calibration_elevation_offsets_rad", "calibration_mount"
 /// (rotation vector, shift), "calibration_smooth_s" and, one a scan, "calibration_pose": time,
