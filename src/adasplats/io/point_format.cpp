@@ -3,6 +3,7 @@
 #include "adasplats/io/point_format.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "adasplats/io/base/input_file.h"
@@ -86,6 +87,22 @@ std::string understood_extensions() {
   return text;
 }
 
+/// Columns of coordinates have their names in any case.
+void keep_rows_within(const Extent& extent, const Path& path, Table& table) {
+  std::array<const Column*, 3> axes{};
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    for (const Column& column : table.columns)
+      if (lower_case(column.name) == std::string_view("xyz").substr(axis, 1)) axes[axis] = &column;
+    if (axes[axis] == nullptr)
+      throw data_error({path, {}, {}}, "has no columns x, y and z, which `extent` is about");
+  }
+  std::vector<bool> kept(table.rows);
+  for (std::size_t row = 0; row < table.rows; ++row)
+    kept[row] = extent.contains(
+        {axes[0]->as_double(row), axes[1]->as_double(row), axes[2]->as_double(row)});
+  keep_rows(kept, table);
+}
+
 }  // namespace
 
 std::span<const PointFormat> point_formats() { return kFormats; }
@@ -125,8 +142,20 @@ Crs read_crs(const Path& path) {
   return format.read_crs == nullptr ? Crs() : format.read_crs(path);
 }
 
+void require_no_levels(const Path& path, const PointSelection& selection) {
+  if (!selection.asks_levels()) return;
+  throw Error(ErrorKind::usage, path.string() + ": `" + (selection.level ? "level" : "resolution") +
+                                    "` is for files with levels of detail (COPC), this one has "
+                                    "none");
+}
+
 Table read_points(const Path& path, const LasReadOptions& options) {
-  return format_of_file(path).read(path, options);
+  const PointFormat& format = format_of_file(path);
+  if (format.read == &read_las) return read_las(path, options);
+  require_no_levels(path, options.selection);
+  Table table = format.read(path, options);
+  if (options.selection.extent) keep_rows_within(*options.selection.extent, path, table);
+  return table;
 }
 
 }  // namespace adasplats

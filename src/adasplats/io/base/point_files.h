@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "adasplats/core/maths/extent.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/io/base/crs.h"
 #include "adasplats/io/base/table.h"
@@ -21,12 +23,30 @@ class Executor;
 /// that, and a packed byte unpacks to at most 88.
 Table read_pcd(const std::filesystem::path& path);
 
+/// Which points of a file are wanted.
+struct PointSelection {
+  /// Those in it, in the coordinates of the file.
+  std::optional<Extent> extent;
+  /// Of a file with levels of detail (COPC) those of the levels 0 to this, each of which has about
+  /// twice as many points a metre as the one before, or as many levels as points so far apart
+  /// need, m; where both are given the fewer.
+  std::optional<std::uint32_t> level;
+  std::optional<double> resolution_m;
+
+  bool asks_levels() const { return level || resolution_m; }
+  bool is_all() const { return !extent && !asks_levels(); }
+};
+
+/// Throws usage where levels are asked for of a file that has none.
+void require_no_levels(const std::filesystem::path& path, const PointSelection& selection);
+
 struct LasReadOptions {
   /// Read the whole records of a truncated file instead of failing; the table's comments say
   /// "salvaged N of M records".
   bool salvage = false;
   /// Unpacks the chunks of LAZ on these threads, else on the caller's.
   const Executor* executor = nullptr;
+  PointSelection selection = {};
 };
 
 /// LAS and LAZ 1.0-1.4, point formats 0-10, with scale and offset applied: x, y, z (f64), intensity
@@ -36,9 +56,10 @@ struct LasReadOptions {
 /// Comments: "geographic: WHAT SAYS SO" where x and y are longitude and latitude, "not metres: X IN
 /// UNIT, WHAT SAYS SO" where coordinates are in feet, say, "withheld: N of M points": points that
 /// are flagged as withheld are deleted, and left out. LAZ: items of versions 1 to 4 (LASzip 1.0
-/// to 3.5); COPC reads as the LAZ that it is. Memory: at most 2x the file's size (LAS), what the
-/// points take (LAZ; one that has no chunks twice its size, too) and 10 MB a thread. Errors:
-/// no_input, io, data.
+/// to 3.5); COPC reads as the LAZ that it is, a selection of it without unpacking the rest.
+/// Memory: at most 2x the file's size (LAS), what the points take (LAZ; one that has no chunks
+/// twice its size, too) and 10 MB a thread. Errors: no_input, io, data; usage (levels of a file
+/// without).
 Table read_las(const std::filesystem::path& path, const LasReadOptions& options = {});
 
 /// E57 1.x (ASTM E2807): the points of all its scans in world coordinates (each through its pose):
@@ -79,8 +100,10 @@ Table read_kitti_bin(const std::filesystem::path& path);
 Table read_bin(const std::filesystem::path& path);
 
 /// Any of the formats above and PLY, by the file's extension (any case) and first bytes, which must
-/// not contradict each other.
-/// Errors: as theirs; an unknown format is ErrorKind::data naming what is understood.
+/// not contradict each other. What is not selected is left out: of LAS and LAZ as it is read, of
+/// others when all is there.
+/// Errors: as theirs; an unknown format is ErrorKind::data naming what is understood; usage (levels
+/// are asked for, and the file has none).
 Table read_points(const std::filesystem::path& path, const LasReadOptions& options = {});
 
 /// The coordinate system that a file of points says, without reading the points. Errors: as theirs.
@@ -94,7 +117,8 @@ struct LasFacts {
   std::string version;           ///< "1.4"
   std::size_t point_format = 0;  ///< 0 to 10
   std::uint64_t points = 0;
-  Vec3d scale, offset;  ///< of the whole numbers that coordinates are stored as
+  Vec3d scale, offset;     ///< of the whole numbers that coordinates are stored as
+  Vec3d box_min, box_max;  ///< of the points, by the header
   std::string software;
   Crs crs;
 };

@@ -20,4 +20,17 @@ const Column* Table::find(std::string_view name) const {
   return found == columns.end() ? nullptr : &*found;
 }
 
+void keep_rows(const std::vector<bool>& kept, Table& table) {
+  for (Column& column : table.columns)
+    std::visit(
+        [&kept](auto& values) {
+          std::size_t end = 0;
+          for (std::size_t row = 0; row < values.size(); ++row)
+            if (kept[row]) values[end++] = values[row];
+          values.resize(end);
+        },
+        column.values);
+  table.rows = static_cast<std::size_t>(std::ranges::count(kept, true));
+}
+
 }  // namespace adasplats

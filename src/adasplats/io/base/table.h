@@ -41,6 +41,9 @@ struct Table {
   const Column* find(std::string_view name) const;  ///< nullptr where there is none
 };
 
+/// Leaves the rows that have a flag.
+void keep_rows(const std::vector<bool>& kept, Table& table);
+
 /// Triangles as a file holds them: `vertices` (x, y, z, ...) and three vertex indices a triangle;
 /// `faces` has the properties of each triangle (e.g. class); polygons are fanned.
 struct MeshTable {

@@ -30,12 +30,13 @@ Table read_las(const std::filesystem::path& path, const LasReadOptions& options)
   InputFile file(path);
   const LasHeader header = read_las_header(file);
   if (header.is_compressed) return read_laz(path, options);
+  require_no_levels(path, options.selection);
   file.skip(header.points_offset_bytes);
   const auto rows = static_cast<std::size_t>(records_to_read(file, header, options.salvage));
-  LasTable table(path, header, rows);
+  LasTable table(path, header, options.selection.extent, rows);
   const std::size_t chunk_rows = std::max<std::size_t>(1, kLasChunkBytes / header.record_bytes);
-  while (table.rows() < rows) {
-    const std::size_t count = std::min(chunk_rows, rows - table.rows());
+  while (table.records() < rows) {
+    const std::size_t count = std::min(chunk_rows, rows - table.records());
     table.take(file.peek(count * header.record_bytes).data(), count);
     file.skip(count * header.record_bytes);
   }
@@ -51,6 +52,8 @@ LasFacts read_las_facts(const std::filesystem::path& path) {
   facts.points = header.points;
   facts.scale = header.scale;
   facts.offset = header.offset;
+  facts.box_min = header.box_min;
+  facts.box_max = header.box_max;
   facts.software = header.software;
   facts.crs = read_las_description(path, header).crs;
   return facts;

@@ -39,6 +39,12 @@ struct LasHeader {
   Vec3d box_min;
   Vec3d box_max;
 
+  /// Where points can lie: the box with a hundredth of it and ten steps to spare, since writers
+  /// round.
+  Vec3d plausible_low() const { return box_min - slack(); }
+  Vec3d plausible_high() const { return box_max + slack(); }
+  Vec3d slack() const { return 0.01 * (box_max - box_min) + 10.0 * scale; }
+
   Vec3d position(std::int32_t x, std::int32_t y, std::int32_t z) const {
     return {x * scale.x + offset.x, y * scale.y + offset.y, z * scale.z + offset.z};
   }

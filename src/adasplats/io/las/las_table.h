@@ -3,37 +3,36 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
-#include <span>
-#include <vector>
+#include <optional>
 
+#include "adasplats/core/maths/extent.h"
+#include "adasplats/io/las/las_columns.h"
 #include "adasplats/io/las/las_header.h"
-#include "adasplats/io/las/las_records.h"
-#include "adasplats/io/las/las_vlrs.h"
 
 namespace adasplats {
 
 /// Makes the table that read_las() describes of point records as LAS files have them.
 class LasTable {
  public:
-  /// `expected_rows` is what memory is taken for at once.
-  LasTable(const std::filesystem::path& path, const LasHeader& header, std::size_t expected_rows);
+  /// `expected_rows` is what memory is taken for at once, where all points are wanted.
+  LasTable(const std::filesystem::path& path, const LasHeader& header,
+           const std::optional<Extent>& extent, std::size_t expected_rows);
+  LasTable(const LasTable&) = delete;  // columns look into the schema
+  LasTable& operator=(const LasTable&) = delete;
 
   /// Takes the next `count` records of header.record_bytes.
-  void take(const std::byte* records, std::size_t count);
-  std::size_t rows() const { return columns_.size(); }
-  /// The table; says so where it has fewer rows than the header has points. Leaves this empty.
+  void take(const std::byte* records, std::size_t count) { columns_.take(records, count); }
+  /// Columns for records that come next, to be filled elsewhere and added.
+  LasColumns make_columns() const { return LasColumns(schema_); }
+  void add(LasColumns&& columns) { columns_.append(std::move(columns)); }
+  std::size_t records() const { return columns_.records(); }
+  /// The table; says so where it is of fewer records than the header has points. Leaves this empty.
   Table finish();
 
  private:
-  void take_extra_fields(const std::byte* records, std::size_t first, std::size_t count);
-  void append_extra_fields(Table& table);
-
-  LasHeader header_;
-  LasDescription description_;
+  LasSchema schema_;
   LasColumns columns_;
-  std::vector<Column> extra_columns_;  // a field of the description's
 };
 
 }  // namespace adasplats

@@ -283,7 +283,7 @@ TEST(Las, ExtendedRecordsAreRead) {
   EXPECT_TRUE(read(las_with_extended("other", 2112, kZone33)).crs.empty());
   const std::vector<std::string> said = {
       "left out: extended records that reach beyond the file's end"};
-  for (const std::size_t cut : {1U, 30U, 130U}) {
+  for (const std::size_t cut : {1U, 30U, 110U}) {
     SCOPED_TRACE(cut);
     const Table table = read(file.substr(0, file.size() - cut));
     EXPECT_EQ(table.rows, 1U);

@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "adasplats/core/executor.h"
+#include "adasplats/core/maths/extent.h"
+#include "adasplats/io/las/copc.h"
+#include "adasplats/io/las/las_columns.h"
 #include "adasplats/io/las/las_table.h"
 #include "adasplats/io/las/laz_layout.h"
 #include "adasplats/io/laz/packed_chunk.h"
@@ -18,21 +23,19 @@ namespace adasplats {
 namespace {
 
 // Records that one chunk has unpacked at once: all of an ordinary chunk (50,000 points).
-constexpr std::size_t kUnpackedBytes = std::size_t{4} << 20;
+constexpr std::size_t kUnpackedBytes = std::size_t{2} << 20;
 // Of all chunks that are unpacked at a time; a byte of a record has a model of its own at most.
 constexpr std::size_t kModelBytes = std::size_t{256} << 20;
 constexpr std::size_t kBytesPerModel = 2560;
 
-/// How many records from the first lie in the header's box, with a hundredth of it and ten steps to
-/// spare: broken data decode to anything, writers round. A box of zeros was never filled in.
+/// How many records from the first lie in the header's box, with something to spare: broken data
+/// decode to anything. A box of zeros was never filled in.
 class PlausibleRecords {
  public:
   explicit PlausibleRecords(const LasHeader& header)
-      : header_(header), has_box_(!(header.box_min == Vec3d{} && header.box_max == Vec3d{})) {
-    const Vec3d slack = 0.01 * (header.box_max - header.box_min) + 10.0 * header.scale;
-    low_ = header.box_min - slack;
-    high_ = header.box_max + slack;
-  }
+      : header_(header),
+        has_box_(!(header.box_min == Vec3d{} && header.box_max == Vec3d{})),
+        box_{header.plausible_low(), header.plausible_high()} {}
 
   std::size_t count(const std::byte* records, std::size_t limit) const {
     if (!has_box_) return limit;
@@ -43,16 +46,14 @@ class PlausibleRecords {
 
  private:
   bool contains(const std::byte* record) const {
-    const Vec3d at =
-        header_.position(load_value<std::int32_t>(record), load_value<std::int32_t>(record + 4),
-                         load_value<std::int32_t>(record + 8));
-    return at.x >= low_.x && at.y >= low_.y && at.z >= low_.z && at.x <= high_.x &&
-           at.y <= high_.y && at.z <= high_.z;
+    return box_.contains(header_.position(load_value<std::int32_t>(record),
+                                          load_value<std::int32_t>(record + 4),
+                                          load_value<std::int32_t>(record + 8)));
   }
 
   const LasHeader& header_;
   bool has_box_;
-  Vec3d low_, high_;
+  Extent box_;
 };
 
 /// A chunk that is being unpacked.
@@ -64,13 +65,16 @@ struct OpenChunk {
   std::vector<std::byte> records;     // the next of them, unpacked
   std::size_t wanted = 0, sound = 0;  // how many those should be, and are from the first
   bool is_cut_short = false;          // the packed bytes end too early
+  std::optional<LasColumns> columns;  // of the records
 };
 
 /// Gives the file's records in their order; unpacks some chunks at a time, in parallel.
 class LazReader {
  public:
-  LazReader(const std::filesystem::path& path, const LazLayout& layout, const Executor* executor)
-      : layout_(layout),
+  LazReader(const std::filesystem::path& path, const LazLayout& layout, const Executor* executor,
+            LasTable& table)
+      : table_(table),
+        layout_(layout),
         executor_(executor),
         file_(path),
         plausible_(layout.header),
@@ -83,12 +87,12 @@ class LazReader {
                                          std::max<std::size_t>(1, affordable));
   }
 
-  /// Hands all records to `table`, until there is a fault.
-  void read(LasTable& table) {
+  /// Hands all records to the table, until there is a fault.
+  void read() {
     while (fault_.empty() && (unread_ > 0 || !open_.empty())) {
       while (unread_ > 0 && open_.size() < most_open_) open_next();
       unpack();
-      while (!open_.empty() && open_.front().wanted > 0 && fault_.empty()) hand_over(table);
+      while (!open_.empty() && open_.front().wanted > 0 && fault_.empty()) hand_over();
     }
   }
 
@@ -132,6 +136,8 @@ class LazReader {
       chunk.sound = plausible_.count(chunk.records.data(), whole);
       chunk.left -= chunk.wanted;
       if (chunk.sound < chunk.wanted) chunk.is_cut_short = whole < chunk.wanted;
+      chunk.columns.emplace(table_.make_columns());
+      chunk.columns->take(chunk.records.data(), chunk.sound);
     };
     if (executor_ != nullptr)
       executor_->for_chunks(open_.size(), 1, unpack_one);
@@ -139,9 +145,9 @@ class LazReader {
       for (std::size_t k = 0; k < open_.size(); ++k) unpack_one(k, k + 1);
   }
 
-  void hand_over(LasTable& table) {
+  void hand_over() {
     OpenChunk& chunk = open_.front();
-    table.take(chunk.records.data(), chunk.sound);
+    table_.add(std::move(*chunk.columns));
     if (chunk.sound < chunk.wanted) {
       fault_ = "the chunk at byte " + std::to_string(chunk.place.offset_bytes) +
                (chunk.is_cut_short ? " ends within a point"
@@ -153,6 +159,7 @@ class LazReader {
     open_.pop_front();
   }
 
+  LasTable& table_;
   const LazLayout& layout_;
   const Executor* executor_;
   InputFile file_;
@@ -169,17 +176,18 @@ class LazReader {
 }  // namespace
 
 Table read_laz(const std::filesystem::path& path, const LasReadOptions& options) {
-  const LazLayout layout = read_laz_layout(path, options.salvage);
+  LazLayout layout = read_laz_layout(path, options.salvage);
+  choose_chunks(path, options.selection, layout);
   const std::uint64_t points = layout.header.points;
   // The count is not to be believed before the points are there; a point of a sensor takes two
   // bytes or more.
   InputFile file(path);
-  LasTable table(path, layout.header,
+  LasTable table(path, layout.header, options.selection.extent,
                  static_cast<std::size_t>(std::min(points, file.size_bytes() / 2)));
-  LazReader reader(path, layout, options.executor);
-  reader.read(table);
+  LazReader reader(path, layout, options.executor, table);
+  reader.read();
   if (!reader.fault().empty() && !options.salvage) {
-    throw data_error({path, {}, {}}, "broken LAZ at point " + std::to_string(table.rows()) +
+    throw data_error({path, {}, {}}, "broken LAZ at point " + std::to_string(table.records()) +
                                          " of " + std::to_string(points) + ": " + reader.fault());
   }
   return table.finish();

@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/io/las/las_columns.h"
+
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "adasplats/io/base/records.h"
+#include "adasplats/io/las/las_records.h"
+#include "adasplats/io/laz/record_values.h"
+
+namespace adasplats {
+namespace {
+
+// Fields of all formats, and of formats 0 to 5 or 6 to 10 (tables 7 to 17 of the specification).
+constexpr std::size_t kIntensityAt = 12, kReturnsAt = 14, kUserDataAt = 17;
+constexpr std::size_t kClassAt = 15, kSourceAt = 18;
+constexpr std::size_t kExtendedFlagsAt = 15, kExtendedClassAt = 16, kExtendedSourceAt = 20;
+// Of formats 0 to 5 the upper three bits of the class are flags (synthetic, key point, withheld).
+constexpr unsigned kWithheld = 1U << 7, kClassBits = 0x1f;
+
+std::int32_t step_of(const std::byte* record, int axis) {
+  return load_value<std::int32_t>(record + 4 * static_cast<std::size_t>(axis));
+}
+
+/// Appends one value of each of `count` records, `stride` bytes apart.
+template <class Get>
+void add_values(Column& column, const std::byte* records, std::size_t stride, std::size_t count,
+                Get get) {
+  using T = decltype(get(records));
+  auto& values = std::get<std::vector<T>>(column.values);
+  const std::size_t first = values.size();
+  values.resize(first + count);
+  T* const to = values.data() + first;
+  for (std::size_t row = 0; row < count; ++row) to[row] = get(records + row * stride);
+}
+
+template <class T>
+auto field_at(std::size_t offset) {
+  return [offset](const std::byte* record) { return load_value<T>(record + offset); };
+}
+
+/// Bits of a byte.
+auto bits_at(std::size_t offset, unsigned shift, unsigned mask) {
+  return [=](const std::byte* record) {
+    return static_cast<std::uint8_t>(std::to_integer<unsigned>(record[offset]) >> shift & mask);
+  };
+}
+
+Column scaled(const LasExtraField& field, const Column& stored) {
+  std::vector<double> values(stored.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = field.scale * stored.as_double(i) + field.offset;
+  return {field.name, std::move(values)};
+}
+
+}  // namespace
+
+LasColumns::LasColumns(const LasSchema& schema) : schema_(schema) {
+  const LasFormat& format = las_format(schema.header.format);
+  const auto add = [this](const char* name, ColumnType type) {
+    columns_.push_back(make_column(name, type, 0));
+  };
+  for (const char* const name : {"x", "y", "z"}) add(name, ColumnType::f64);
+  add("intensity", ColumnType::u16);
+  for (const char* const name : {"classification", "return_number", "number_of_returns"})
+    add(name, ColumnType::u8);
+  if (format.gps_time_offset != 0) add("gps_time", ColumnType::f64);
+  if (format.colour_offset != 0)
+    for (const char* const name : {"red", "green", "blue"}) add(name, ColumnType::u16);
+  add("point_source_id", ColumnType::u16);
+  add("user_data", ColumnType::u8);
+  for (const LasExtraField& field : schema.description.extra_fields)
+    columns_.push_back(make_column(field.name, field.type, 0));
+}
+
+void LasColumns::reserve(std::size_t rows) {
+  for (Column& column : columns_)
+    std::visit([rows](auto& values) { values.reserve(rows); }, column.values);
+}
+
+void LasColumns::take(const std::byte* records, std::size_t count) {
+  records_ += count;
+  const std::byte* const kept = kept_records(records, count);
+  fill(kept, count);
+}
+
+bool LasColumns::is_kept(const std::byte* record) {
+  const LasHeader& header = schema_.header;
+  const bool is_extended = las_format(header.format).is_extended;
+  const auto flags = std::to_integer<unsigned>(record[is_extended ? kExtendedFlagsAt : kClassAt]);
+  if (schema_.extent && !schema_.extent->contains(header.position(
+                            step_of(record, 0), step_of(record, 1), step_of(record, 2))))
+    return false;
+  if ((flags & (is_extended ? kLasExtendedWithheld : kWithheld)) == 0) return true;
+  ++withheld_;
+  return false;
+}
+
+/// The records that stay, `count` of them then; where all do, those that are given.
+const std::byte* LasColumns::kept_records(const std::byte* records, std::size_t& count) {
+  const std::size_t bytes = schema_.header.record_bytes;
+  std::size_t row = 0;
+  while (row < count && is_kept(records + row * bytes)) ++row;
+  if (row == count) return records;
+  kept_.resize(count * bytes);
+  std::memcpy(kept_.data(), records, row * bytes);
+  std::size_t kept = row;
+  for (++row; row < count; ++row) {
+    const std::byte* const record = records + row * bytes;
+    if (is_kept(record)) std::memcpy(kept_.data() + bytes * kept++, record, bytes);
+  }
+  count = kept;
+  return kept_.data();
+}
+
+void LasColumns::fill(const std::byte* records, std::size_t count) {
+  const LasHeader& header = schema_.header;
+  const LasFormat& format = las_format(header.format);
+  const bool is_extended = format.is_extended;
+  auto column = columns_.begin();
+  const auto add = [&](auto get) {
+    add_values(*column++, records, header.record_bytes, count, get);
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    add([=, scale = header.scale[axis], offset = header.offset[axis]](const std::byte* record) {
+      return step_of(record, axis) * scale + offset;
+    });
+  add(field_at<std::uint16_t>(kIntensityAt));
+  if (is_extended)
+    add(field_at<std::uint8_t>(kExtendedClassAt));
+  else
+    add(bits_at(kClassAt, 0, kClassBits));
+  add(bits_at(kReturnsAt, 0, is_extended ? 0x0f : 0x07));
+  add(is_extended ? bits_at(kReturnsAt, 4, 0x0f) : bits_at(kReturnsAt, 3, 0x07));
+  if (format.gps_time_offset != 0) add(field_at<double>(format.gps_time_offset));
+  if (format.colour_offset != 0)
+    for (const std::size_t colour : {0U, 2U, 4U})
+      add(field_at<std::uint16_t>(format.colour_offset + colour));
+  add(field_at<std::uint16_t>(is_extended ? kExtendedSourceAt : kSourceAt));
+  add(field_at<std::uint8_t>(kUserDataAt));
+  for (const LasExtraField& field : schema_.description.extra_fields)
+    std::visit(
+        [&](auto& values) {
+          using T = typename std::decay_t<decltype(values)>::value_type;
+          add(field_at<T>(field.offset_bytes));
+        },
+        column->values);
+}
+
+void LasColumns::append(LasColumns&& other) {
+  records_ += other.records_;
+  withheld_ += other.withheld_;
+  for (std::size_t k = 0; k < columns_.size(); ++k)
+    std::visit(
+        [&](auto& values) {
+          const auto& more = std::get<std::decay_t<decltype(values)>>(other.columns_[k].values);
+          values.insert(values.end(), more.begin(), more.end());
+        },
+        columns_[k].values);
+}
+
+Table LasColumns::take_table() {
+  Table table;
+  table.rows = rows();
+  const auto& extras = schema_.description.extra_fields;
+  const std::size_t standard = columns_.size() - extras.size();
+  for (std::size_t k = 0; k < columns_.size(); ++k) {
+    const bool is_scaled = k >= standard && extras[k - standard].is_scaled;
+    table.columns.push_back(is_scaled ? scaled(extras[k - standard], columns_[k])
+                                      : std::move(columns_[k]));
+  }
+  columns_.clear();
+  return table;
+}
+
+}  // namespace adasplats
