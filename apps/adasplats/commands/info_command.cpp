@@ -127,10 +127,11 @@ class InfoCommand final : public Command {
         kinds.contains("recording") || kinds.contains("PandaSet sequence") ||
         kinds.contains("nuScenes scene"))
       return;
-    refuse({"--label-field", "--sensor-fields", "--viewpoint", "--trajectory", "--mount",
-            "--mount-rotation", "--time-offset", "--max-distance", "--beams-from-poses",
-            "--salvage", "--scene", "--topic", "--poses-topic"},
-           why);
+    refuse(
+        {"--label-field", "--sensor-fields", "--viewpoint", "--trajectory", "--mount",
+         "--mount-rotation", "--time-offset", "--max-distance", "--beams-from-poses", "--salvage",
+         "--scene", "--topic", "--poses-topic", "--extent", "--level", "--resolution"},
+        why);
     if (!kinds.contains("sequence")) refuse({"--scans", "--strict"}, why);
   }
 

@@ -134,7 +134,7 @@ bool has_las_classes(const LasFacts& las, const Table& table, const std::string&
 /// What a file says before its points are loaded; `scheme` becomes that of LAS where it is.
 void describe_file(const fs::path& input, const LoadOptions& options,
                    std::optional<LabelScheme>& scheme, FileFacts& facts, Session& session) {
-  const Table table = read_points(input, {options.salvage, &session.executor});
+  const Table table = read_points(input, {options.salvage, &session.executor, options.selection});
   if (is_las(input)) {
     const LasFacts las = read_las_facts(input);
     describe_las(las, facts);

@@ -164,6 +164,35 @@ void Keywords::take(const char* name, std::optional<Vec3d>& value) {
   value = vector_of(*given, name);
 }
 
+void Keywords::take(const char* name, std::optional<std::uint32_t>& value) {
+  const auto given = find(name, py::none());
+  if (!given) return;
+  if (given->is_none()) return value.reset();
+  if (!is_whole(*given)) wrong_type(name, "a whole number or None", *given);
+  const auto number = py::cast<std::int64_t>(*given);
+  if (number < 0 || number > std::numeric_limits<std::uint32_t>::max())
+    throw py::value_error(function_ + "(): " + name + " is out of range");
+  value = static_cast<std::uint32_t>(number);
+}
+
+void Keywords::take(const char* name, std::optional<Extent>& value) {
+  const auto given = find(name, py::none());
+  if (!given) return;
+  if (given->is_none()) return value.reset();
+  const std::string expected =
+      std::string(name) + ": expected x_min, y_min, x_max, y_max[, z_min, z_max]";
+  const auto numbers =
+      py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(*given);
+  if (!numbers || numbers.ndim() != 1 || (numbers.size() != 4 && numbers.size() != 6)) {
+    PyErr_Clear();
+    throw py::value_error(expected);
+  }
+  const Extent extent = extent_of({numbers.data(), static_cast<std::size_t>(numbers.size())});
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(extent.low[axis] <= extent.high[axis])) throw py::value_error(expected);
+  value = extent;
+}
+
 void Keywords::take(const char* name, std::vector<int>& value) {
   const auto given = find(name, py::none());
   if (!given || given->is_none()) return;

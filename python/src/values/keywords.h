@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/core/maths/extent.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/setting.h"
 #include "adasplats/pipeline/model/unused_settings.h"
@@ -49,7 +50,9 @@ class Keywords {
   void take(const char* name, Vec3d& value);
   void take(const char* name, std::optional<double>& value);
   void take(const char* name, std::optional<Vec3d>& value);
-  void take(const char* name, std::vector<int>& value);  ///< None: none
+  void take(const char* name, std::optional<std::uint32_t>& value);
+  void take(const char* name, std::optional<Extent>& value);  ///< four or six numbers
+  void take(const char* name, std::vector<int>& value);       ///< None: none
   void take(const char* name, py::object& value);
 
   template <class T>

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <span>
 
 namespace adasplats::app {
 namespace {
@@ -123,6 +124,23 @@ Option* add_vector(OptionSet& app, const std::string& name, Vec3d& target,
       ->type_name("X,Y,Z")
       ->default_str(short_number(target.x) + "," + short_number(target.y) + "," +
                     short_number(target.z));
+}
+
+Option* add_extent(OptionSet& app, const std::string& name, std::optional<Extent>& target,
+                   const std::string& help) {
+  const auto take = [&target, name](const std::string& text) {
+    const std::vector<std::string> parts = split(text, ',');
+    std::array<double, 6> n{};
+    bool good = parts.size() == 4 || parts.size() == n.size();
+    for (std::size_t i = 0; good && i < parts.size(); ++i)
+      good = parse_whole(parts[i], n[i]) && std::isfinite(n[i]);
+    if (!good || n[0] > n[2] || n[1] > n[3] || n[4] > n[5])
+      refuse_value(name, "expected XMIN,YMIN,XMAX,YMAX or XMIN,YMIN,XMAX,YMAX,ZMIN,ZMAX, found '" +
+                             text + "'");
+    target = extent_of(std::span(n).first(parts.size()));
+  };
+  return app.add_option_function<std::string>(name, take, help)
+      ->type_name("XMIN,YMIN,XMAX,YMAX[,ZMIN,ZMAX]");
 }
 
 Option* add_places(OptionSet& app, const std::string& name, std::vector<SensorPlace>& target,

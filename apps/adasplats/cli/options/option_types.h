@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/extent.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/words.h"
 #include "adasplats/pipeline/scene/placed_poses.h"
@@ -30,6 +31,9 @@ Option* add_path(OptionSet& app, const std::string& name, std::filesystem::path&
 Option* add_vector(OptionSet& app, const std::string& name, std::optional<Vec3d>& target,
                    const std::string& help);
 Option* add_vector(OptionSet& app, const std::string& name, Vec3d& target, const std::string& help);
+/// "XMIN,YMIN,XMAX,YMAX[,ZMIN,ZMAX]".
+Option* add_extent(OptionSet& app, const std::string& name, std::optional<Extent>& target,
+                   const std::string& help);
 /// Places "X,Y[,Z[,YAW_DEG]]", Z may be empty; may be given several times.
 Option* add_places(OptionSet& app, const std::string& name, std::vector<SensorPlace>& target,
                    const std::string& help);

@@ -49,6 +49,15 @@ void OptionsOfSettings::operator()(const Setting& setting, std::optional<Vec3d>&
   finish(setting, add_vector(app_, option_of(setting), value, setting.help));
 }
 
+void OptionsOfSettings::operator()(const Setting& setting,
+                                   std::optional<std::uint32_t>& value) const {
+  add_number(setting, value);
+}
+
+void OptionsOfSettings::operator()(const Setting& setting, std::optional<Extent>& value) const {
+  finish(setting, add_extent(app_, option_of(setting), value, setting.help));
+}
+
 void OptionsOfSettings::operator()(const Setting& setting, std::string& value) const {
   Option* option = app_.add_option(option_of(setting), value, setting.help);
   if (!value.empty()) option->capture_default_str();

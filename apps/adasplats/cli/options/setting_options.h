@@ -28,6 +28,8 @@ class OptionsOfSettings {
   void operator()(const Setting& setting, std::optional<double>& value) const;
   void operator()(const Setting& setting, Vec3d& value) const;
   void operator()(const Setting& setting, std::optional<Vec3d>& value) const;
+  void operator()(const Setting& setting, std::optional<std::uint32_t>& value) const;
+  void operator()(const Setting& setting, std::optional<Extent>& value) const;
   void operator()(const Setting& setting, std::string& value) const;
   void operator()(const Setting& setting, std::filesystem::path& value) const;
   void operator()(const Setting& setting, GroupScale& value) const;

@@ -27,6 +27,7 @@
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/point_files.h"
 #include "adasplats/io/packets/capture_reader.h"
 
 namespace adasplats {
@@ -104,6 +105,9 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Source
     throw usage("scans are chosen, but no input is a sequence folder");
   if ((!options.sensor_x_field.empty() || !options.label_field.empty()) && !any_file)
     throw usage("columns are named, but no input is a file of points");
+  if (!options.selection.is_all() && any_sequence)
+    throw usage(
+        "`extent`, `level` and `resolution` choose points of files, and an input is a drive");
   if (options.beams_from_poses && !any_sequence)
     throw usage("beams are to start at poses, but no input is a sequence folder");
   if (!options.boxes.empty() && !any_drive)
@@ -129,6 +133,31 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Source
   const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
   if (states_origins && !any_file)
     throw usage("a sensor position is given, but every input has its own");
+}
+
+std::string box_text(Vec3d low, Vec3d high) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(low[axis]) && !std::isfinite(high[axis])) continue;
+    text += (text.empty() ? "" : ", ") + std::string(1, "xyz"[axis]) + " " + exact_text(low[axis]) +
+            " .. " + exact_text(high[axis]);
+  }
+  return text;
+}
+
+/// Of an extent without points.
+Error nothing_within(std::span<const Source> sources, const LoadOptions& options) {
+  const std::filesystem::path& first = sources.front().input.path;
+  std::string message = "no point of " + first.string();
+  if (sources.size() > 1) message += " and " + std::to_string(sources.size() - 1) + " more inputs";
+  message += " lies in the extent " +
+             box_text(options.selection.extent->low, options.selection.extent->high);
+  if (is_las(first)) {
+    const LasFacts las = read_las_facts(first);
+    message +=
+        "; " + first.string() + " has " + box_text(las.box_min, las.box_max) + " by its header";
+  }
+  return {ErrorKind::data, message};
 }
 
 /// What is read, and the one coordinate system of all.
@@ -159,6 +188,7 @@ ReadParts read_parts(std::span<const Source> sources, const LoadOptions& options
       throw Error(ErrorKind::data,
                   path.string() + ": with it the cloud has more than 4294967295 points");
   }
+  if (points == 0 && options.selection.extent) throw nothing_within(sources, options);
   if (const std::string warning = crs.warning(); !warning.empty()) progress.warn(warning);
   return {std::move(parts), crs.crs()};
 }
@@ -521,7 +551,8 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   cloud.crs = std::move(crs);
   clock.end("place");
   // Before any point is taken away: where one was, its beam did return.
-  if (options.empty_beams) cloud.empty_beams = find_empty_beams(cloud, {}, executor);
+  if (options.empty_beams && options.selection.is_all())
+    cloud.empty_beams = find_empty_beams(cloud, {}, executor);
   clock.end("find empty beams");
   leave_out(cloud, std::move(moving), options, report, executor);
   report_own_body(name_of(inputs), report, options, progress);

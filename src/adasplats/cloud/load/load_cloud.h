@@ -17,6 +17,7 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/core/setting.h"
+#include "adasplats/io/base/point_files.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
@@ -39,6 +40,9 @@ struct LoadOptions : DriveSettings {
   std::size_t first_scan = 0;
   std::size_t scan_count = static_cast<std::size_t>(-1);
   std::size_t scan_stride = 1;
+  /// Which points of files are read. No beams without a return are looked for then: that no point
+  /// is there says nothing.
+  PointSelection selection;
   /// Points not finite are an error instead of being dropped and counted.
   bool strict = false;
   /// Read whole records of truncated LAS files.
@@ -137,6 +141,28 @@ void visit_settings(LoadOptions& load, Visit&& visit) {
               .group = kGroup},
       load.trajectory);
   visit_mount_settings(load, kGroup, visit);
+  visit(Setting{.name = "extent",
+                .help = "Points of files that lie in this box; of COPC no more is unpacked than "
+                        "that takes",
+                .group = kGroup},
+        load.selection.extent);
+  visit(Setting{.name = "level",
+                .help = "Of files with levels of detail (COPC) those from the coarsest, 0, to this",
+                .value = "N",
+                .group = kGroup,
+                .least = 0,
+                .most = 30},
+        load.selection.level);
+  visit(
+      Setting{.name = "resolution",
+              .help = "Of files with levels of detail (COPC) as many as points so far apart take, "
+                      "m",
+              .value = "M",
+              .key = "resolution_m",
+              .group = kGroup,
+              .least = 0,
+              .above_least = true},
+      load.selection.resolution_m);
   visit(Setting{.name = "boxes",
                 .help = "Boxes of objects by time (CSV: time,id,stationary,x,y,z,size_x,size_y,"
                         "size_z,yaw): what those that move hold is left out of scans with times",
@@ -225,7 +251,8 @@ struct LoadReport {
 /// labels; there one that cannot be read is skipped. What is dropped is reported as warnings.
 /// Errors: those of the readers; data for sensor positions that are impossible (usage for options
 /// that state one); data for inputs of different coordinate systems, with both files and both
-/// systems; data for too much dropped (max_dropped) and for longitudes and latitudes instead of
+/// systems, and where nothing lies in the extent; data for too much dropped (max_dropped) and for
+/// longitudes and latitudes instead of
 /// metres (require_metres); usage for options that fit nothing and for named columns that are not
 /// there; data for labels that are no whole numbers from 0 to 2^32 - 1.
 std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,

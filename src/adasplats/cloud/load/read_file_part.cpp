@@ -226,7 +226,7 @@ SaidClock said_clock_of(const PointFile& file) {
 CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& options,
                          ProgressSink& progress, const Executor* executor) {
   require_points(path);
-  return part_of_table(path, read_points(path, {.salvage = options.salvage, .executor = executor}),
+  return part_of_table(path, read_points(path, {options.salvage, executor, options.selection}),
                        options, progress);
 }
 
