@@ -1,0 +1,263 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Million points a second of reading LAS and LAZ files: read_las() as a whole (the file to columns)
+// and its decoder alone (chunks to records, LAZ only), with every number of threads, beside
+// LASzip's own reader where its library is on the machine (liblaszip8 of Debian 13; it has one
+// thread). All take turns, in rounds; files are in memory after the first, which is not counted.
+// LASzip has to find the same coordinates.
+//
+//   bench_laz FILE... [--threads A,B] [--rounds N] [--laszip LIBRARY] [--json FILE]
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/core/stopwatch.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/las/laz_layout.h"
+#include "adasplats/io/laz/packed_chunk.h"
+#include "adasplats/pipeline/provenance/provenance.h"
+
+namespace adasplats {
+namespace {
+
+struct Options {
+  std::vector<std::filesystem::path> files;
+  std::vector<int> threads = {1, 2};
+  int rounds = 5;
+  std::string laszip = "liblaszip.so.8";
+  std::string json;
+};
+
+/// The few functions of LASzip's interface that read; all give 0 where they succeed.
+class Laszip {
+ public:
+  /// Nothing where there is no such library.
+  static std::optional<Laszip> open(const std::string& library) {
+    void* const handle = ::dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (handle == nullptr) return std::nullopt;
+    return Laszip(handle);
+  }
+
+  /// Reads all points; gives the sum of their coordinates.
+  double read(const std::filesystem::path& file, std::uint64_t points) const {
+    void* reader = nullptr;
+    std::int32_t is_compressed = 0;
+    require(create_(&reader) == 0 && open_(reader, file.c_str(), &is_compressed) == 0, file);
+    double sum = 0;
+    double at[3] = {};
+    for (std::uint64_t i = 0; i < points; ++i) {
+      require(read_(reader) == 0 && coordinates_(reader, at) == 0, file);
+      sum += at[0] + at[1] + at[2];
+    }
+    close_(reader);
+    destroy_(reader);
+    return sum;
+  }
+
+ private:
+  explicit Laszip(void* handle) {
+    find(handle, "laszip_create", create_);
+    find(handle, "laszip_open_reader", open_);
+    find(handle, "laszip_read_point", read_);
+    find(handle, "laszip_get_coordinates", coordinates_);
+    find(handle, "laszip_close_reader", close_);
+    find(handle, "laszip_destroy", destroy_);
+  }
+  template <class Function>
+  static void find(void* handle, const char* name, Function*& function) {
+    function = reinterpret_cast<Function*>(::dlsym(handle, name));
+    if (function == nullptr) throw std::runtime_error(std::string("LASzip has no ") + name);
+  }
+  static void require(bool good, const std::filesystem::path& file) {
+    if (!good) throw std::runtime_error("LASzip cannot read " + file.string());
+  }
+
+  std::int32_t (*create_)(void**) = nullptr;
+  std::int32_t (*open_)(void*, const char*, std::int32_t*) = nullptr;
+  std::int32_t (*read_)(void*) = nullptr;
+  std::int32_t (*coordinates_)(void*, double*) = nullptr;
+  std::int32_t (*close_)(void*) = nullptr;
+  std::int32_t (*destroy_)(void*) = nullptr;
+};
+
+double sum_of(const Table& table) {
+  double sum = 0;
+  for (const char* const name : {"x", "y", "z"})
+    for (const double value : std::get<std::vector<double>>(table.find(name)->values)) sum += value;
+  return sum;
+}
+
+/// Unpacks every chunk into records, which are dropped; gives how many were whole.
+std::uint64_t unpack(const std::filesystem::path& file, const Executor& executor) {
+  const LazLayout layout = read_laz_layout(file, false);
+  const std::string bytes = read_file(file);
+  const std::span<const std::byte> all(reinterpret_cast<const std::byte*>(bytes.data()),
+                                       bytes.size());
+  return executor.sum_chunks(
+      layout.chunks.size(), 1, std::uint64_t{0}, [&](std::size_t begin, std::size_t end) {
+        std::uint64_t whole = 0;
+        for (std::size_t k = begin; k < end; ++k) {
+          const LazChunk& chunk = layout.chunks[k];
+          const auto points = static_cast<std::size_t>(chunk.points);
+          std::vector<std::byte> records(points * layout.packing.record_bytes);
+          const auto decoder = make_packed_chunk(
+              layout.packing, all.subspan(static_cast<std::size_t>(chunk.offset_bytes),
+                                          static_cast<std::size_t>(chunk.bytes)));
+          whole += decoder->decode(records.data(), points);
+        }
+        return whole;
+      });
+}
+
+/// One reader of a file, in turns with the others.
+struct Contender {
+  std::string name;
+  int threads;
+  std::function<void()> read;
+  std::vector<double> seconds = {};
+
+  double median_s() {
+    std::ranges::sort(seconds);
+    return seconds[seconds.size() / 2];
+  }
+};
+
+std::vector<Contender> contenders_of(const std::filesystem::path& file, const LasFacts& facts,
+                                     const std::vector<std::unique_ptr<Executor>>& executors,
+                                     const std::optional<Laszip>& laszip) {
+  std::vector<Contender> contenders;
+  const double expected = sum_of(read_las(file));
+  const bool is_packed = file.extension() == ".laz";
+  for (const auto& executor : executors) {
+    const Executor& threads = *executor;
+    contenders.push_back({"read_las", threads.threads(), [&file, &threads, points = facts.points] {
+                            LasReadOptions options;
+                            options.executor = &threads;
+                            if (read_las(file, options).rows > points)
+                              throw std::runtime_error("too many points");
+                          }});
+    if (!is_packed) continue;
+    contenders.push_back({"decoder", threads.threads(), [&file, &threads, points = facts.points] {
+                            if (unpack(file, threads) != points)
+                              throw std::runtime_error("points are missing");
+                          }});
+  }
+  if (laszip)
+    contenders.push_back({"LASzip", 1, [&file, &laszip, expected, points = facts.points] {
+                            const double sum = laszip->read(file, points);
+                            if (!(std::fabs(sum - expected) <= 1e-9 * std::fabs(expected)))
+                              throw std::runtime_error("LASzip finds other coordinates");
+                          }});
+  return contenders;
+}
+
+nlohmann::ordered_json measure(const std::filesystem::path& file, const Options& options,
+                               const std::vector<std::unique_ptr<Executor>>& executors,
+                               const std::optional<Laszip>& laszip) {
+  const LasFacts facts = read_las_facts(file);
+  std::vector<Contender> contenders = contenders_of(file, facts, executors, laszip);
+  // Small files are read again and again, so that a round takes a tenth of a second or more.
+  constexpr double kLeast_s = 0.1;
+  for (int round = -1; round < options.rounds; ++round)
+    for (Contender& contender : contenders) {
+      int times = 0;
+      const Stopwatch watch;
+      do {
+        contender.read();
+        ++times;
+      } while (watch.seconds() < kLeast_s);
+      if (round >= 0) contender.seconds.push_back(watch.seconds() / times);
+    }
+  nlohmann::ordered_json json = {{"file", file.filename().string()},
+                                 {"points", facts.points},
+                                 {"point_format", facts.point_format},
+                                 {"bytes", std::filesystem::file_size(file)},
+                                 {"million_points_per_second", nlohmann::ordered_json::object()}};
+  std::printf("%s: %llu points, format %zu\n", file.filename().c_str(),
+              static_cast<unsigned long long>(facts.points), facts.point_format);
+  for (Contender& contender : contenders) {
+    const double rate = 1e-6 * static_cast<double>(facts.points) / contender.median_s();
+    std::printf("  %-10s %d thread%s  %8.2f M points/s\n", contender.name.c_str(),
+                contender.threads, contender.threads == 1 ? " " : "s", rate);
+    json["million_points_per_second"][contender.name][std::to_string(contender.threads)] = rate;
+  }
+  return json;
+}
+
+void run(const Options& options) {
+  const std::optional<Laszip> laszip = Laszip::open(options.laszip);
+  if (!laszip) std::printf("LASzip: no %s, so not beside it\n", options.laszip.c_str());
+  std::vector<std::unique_ptr<Executor>> executors;
+  for (const int threads : options.threads)
+    executors.push_back(std::make_unique<Executor>(threads));
+  nlohmann::ordered_json files = nlohmann::ordered_json::array();
+  for (const std::filesystem::path& file : options.files)
+    files.push_back(measure(file, options, executors, laszip));
+  if (options.json.empty()) return;
+  const nlohmann::ordered_json result = {{"provenance", to_json(provenance_of(2))},
+                                         {"rounds", options.rounds},
+                                         {"laszip", laszip.has_value()},
+                                         {"files", files}};
+  write_file(options.json, result.dump(2) + "\n");
+}
+
+Options parse(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (!word.starts_with("--")) {
+      options.files.emplace_back(word);
+      continue;
+    }
+    if (i + 1 >= argc) throw std::runtime_error(word + " is unknown or needs a value");
+    const std::string value = argv[++i];
+    if (word == "--rounds") {
+      options.rounds = std::max(1, std::stoi(value));
+    } else if (word == "--threads") {
+      options.threads.clear();
+      std::istringstream numbers(value);
+      for (std::string number; std::getline(numbers, number, ',');)
+        options.threads.push_back(std::stoi(number));
+    } else if (word == "--laszip") {
+      options.laszip = value;
+    } else if (word == "--json") {
+      options.json = value;
+    } else {
+      throw std::runtime_error("unknown option " + word);
+    }
+  }
+  if (options.files.empty()) throw std::runtime_error("which files?");
+  return options;
+}
+
+}  // namespace
+}  // namespace adasplats
+
+int main(int argc, char** argv) {
+  try {
+    adasplats::run(adasplats::parse(argc, argv));
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_laz: %s\n", error.what());
+    return 1;
+  }
+}
