@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/io/las/las_columns.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <iterator>
@@ -9,6 +10,8 @@
 #include <utility>
 #include <variant>
 
+#include "adasplats/core/executor.h"
+#include "adasplats/core/large_vector.h"
 #include "adasplats/io/base/records.h"
 #include "adasplats/io/las/las_records.h"
 #include "adasplats/io/laz/record_values.h"
@@ -27,15 +30,12 @@ std::int32_t step_of(const std::byte* record, int axis) {
   return load_value<std::int32_t>(record + 4 * static_cast<std::size_t>(axis));
 }
 
-/// Appends one value of each of `count` records, `stride` bytes apart.
+/// Sets one value a row from `first` on, of records that are `stride` bytes apart.
 template <class Get>
-void add_values(Column& column, const std::byte* records, std::size_t stride, std::size_t count,
-                Get get) {
+void set_values(Column& column, std::size_t first, const std::byte* records, std::size_t stride,
+                std::size_t count, Get get) {
   using T = decltype(get(records));
-  auto& values = std::get<std::vector<T>>(column.values);
-  const std::size_t first = values.size();
-  values.resize(first + count);
-  T* const to = values.data() + first;
+  T* const to = std::get<std::vector<T>>(column.values).data() + first;
   for (std::size_t row = 0; row < count; ++row) to[row] = get(records + row * stride);
 }
 
@@ -60,6 +60,28 @@ Column scaled(const LasExtraField& field, const Column& stored) {
 
 }  // namespace
 
+KeptRecords keep_wanted(const LasSchema& schema, std::byte* records, std::size_t count) {
+  const LasHeader& header = schema.header;
+  const std::size_t bytes = header.record_bytes;
+  const bool is_extended = las_format(header.format).is_extended;
+  const std::size_t flags_at = is_extended ? kExtendedFlagsAt : kClassAt;
+  const unsigned withheld = is_extended ? kLasExtendedWithheld : kWithheld;
+  KeptRecords kept;
+  for (std::size_t row = 0; row < count; ++row) {
+    std::byte* const record = records + row * bytes;
+    if (schema.extent && !schema.extent->contains(header.position(
+                             step_of(record, 0), step_of(record, 1), step_of(record, 2))))
+      continue;
+    if ((std::to_integer<unsigned>(record[flags_at]) & withheld) != 0) {
+      ++kept.withheld;
+      continue;
+    }
+    if (kept.rows != row) std::memcpy(records + kept.rows * bytes, record, bytes);
+    ++kept.rows;
+  }
+  return kept;
+}
+
 LasColumns::LasColumns(const LasSchema& schema) : schema_(schema) {
   const LasFormat& format = las_format(schema.header.format);
   const auto add = [this](const char* name, ColumnType type) {
@@ -80,51 +102,41 @@ LasColumns::LasColumns(const LasSchema& schema) : schema_(schema) {
 
 void LasColumns::reserve(std::size_t rows) {
   for (Column& column : columns_)
-    std::visit([rows](auto& values) { values.reserve(rows); }, column.values);
+    std::visit(
+        [rows](auto& values) {
+          values.reserve(rows);
+          prefer_large_pages(values.data(), values.capacity() * sizeof(values[0]));
+        },
+        column.values);
 }
 
-void LasColumns::take(const std::byte* records, std::size_t count) {
-  records_ += count;
-  const std::byte* const kept = kept_records(records, count);
-  fill(kept, count);
+void LasColumns::add_rows(std::size_t rows, const Executor* executor) {
+  const auto add = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      std::visit([rows](auto& values) { values.resize(values.size() + rows); }, columns_[k].values);
+  };
+  // Most of it is that the system gives the memory.
+  if (executor != nullptr)
+    executor->for_chunks(columns_.size(), 1, add);
+  else
+    add(0, columns_.size());
 }
 
-bool LasColumns::is_kept(const std::byte* record) {
-  const LasHeader& header = schema_.header;
-  const bool is_extended = las_format(header.format).is_extended;
-  const auto flags = std::to_integer<unsigned>(record[is_extended ? kExtendedFlagsAt : kClassAt]);
-  if (schema_.extent && !schema_.extent->contains(header.position(
-                            step_of(record, 0), step_of(record, 1), step_of(record, 2))))
-    return false;
-  if ((flags & (is_extended ? kLasExtendedWithheld : kWithheld)) == 0) return true;
-  ++withheld_;
-  return false;
+void LasColumns::fill(std::size_t first, const std::byte* records, std::size_t count) {
+  // Every column reads the records again: few enough to stay in the cache.
+  constexpr std::size_t kBlockRows = 1024;
+  for (std::size_t row = 0; row < count; row += kBlockRows)
+    fill_block(first + row, records + row * schema_.header.record_bytes,
+               std::min(kBlockRows, count - row));
 }
 
-/// The records that stay, `count` of them then; where all do, those that are given.
-const std::byte* LasColumns::kept_records(const std::byte* records, std::size_t& count) {
-  const std::size_t bytes = schema_.header.record_bytes;
-  std::size_t row = 0;
-  while (row < count && is_kept(records + row * bytes)) ++row;
-  if (row == count) return records;
-  kept_.resize(count * bytes);
-  std::memcpy(kept_.data(), records, row * bytes);
-  std::size_t kept = row;
-  for (++row; row < count; ++row) {
-    const std::byte* const record = records + row * bytes;
-    if (is_kept(record)) std::memcpy(kept_.data() + bytes * kept++, record, bytes);
-  }
-  count = kept;
-  return kept_.data();
-}
-
-void LasColumns::fill(const std::byte* records, std::size_t count) {
+void LasColumns::fill_block(std::size_t first, const std::byte* records, std::size_t count) {
   const LasHeader& header = schema_.header;
   const LasFormat& format = las_format(header.format);
   const bool is_extended = format.is_extended;
   auto column = columns_.begin();
   const auto add = [&](auto get) {
-    add_values(*column++, records, header.record_bytes, count, get);
+    set_values(*column++, first, records, header.record_bytes, count, get);
   };
   for (int axis = 0; axis < 3; ++axis)
     add([=, scale = header.scale[axis], offset = header.offset[axis]](const std::byte* record) {
@@ -150,18 +162,6 @@ void LasColumns::fill(const std::byte* records, std::size_t count) {
           add(field_at<T>(field.offset_bytes));
         },
         column->values);
-}
-
-void LasColumns::append(LasColumns&& other) {
-  records_ += other.records_;
-  withheld_ += other.withheld_;
-  for (std::size_t k = 0; k < columns_.size(); ++k)
-    std::visit(
-        [&](auto& values) {
-          const auto& more = std::get<std::decay_t<decltype(values)>>(other.columns_[k].values);
-          values.insert(values.end(), more.begin(), more.end());
-        },
-        columns_[k].values);
 }
 
 Table LasColumns::take_table() {

@@ -13,6 +13,8 @@
 
 namespace adasplats {
 
+class Executor;
+
 /// How the records of a file are read, and which points of it are wanted.
 struct LasSchema {
   LasHeader header;
@@ -20,34 +22,35 @@ struct LasSchema {
   std::optional<Extent> extent;  ///< none: all
 };
 
-/// Point records as the columns that read_las() describes: of a file, or of a part of it that
-/// another thread unpacks. Points that are withheld or beyond the extent are left out.
+/// How many of some records stay, and how many were withheld.
+struct KeptRecords {
+  std::size_t rows = 0, withheld = 0;
+};
+
+/// Moves the records that stay, neither withheld nor beyond the extent, to the front.
+KeptRecords keep_wanted(const LasSchema& schema, std::byte* records, std::size_t count);
+
+/// Point records as the columns that read_las() describes. Rows are made first and filled then, so
+/// that threads can fill some each.
 class LasColumns {
  public:
   /// The schema has to outlive this.
   explicit LasColumns(const LasSchema& schema);
 
   void reserve(std::size_t rows);
-  /// Takes the next `count` records of header.record_bytes.
-  void take(const std::byte* records, std::size_t count);
-  /// Takes what another has, which was made with the same schema.
-  void append(LasColumns&& other);
-
-  std::size_t records() const { return records_; }    ///< that were taken
-  std::size_t withheld() const { return withheld_; }  ///< of those
   std::size_t rows() const { return columns_.front().size(); }
+  /// As many rows more, on the threads of `executor` where there is one.
+  void add_rows(std::size_t rows, const Executor* executor);
+  /// Fills rows from `first` on; other threads may fill others.
+  void fill(std::size_t first, const std::byte* records, std::size_t count);
   /// The columns; leaves this empty.
   Table take_table();
 
  private:
-  bool is_kept(const std::byte* record);
-  const std::byte* kept_records(const std::byte* records, std::size_t& count);
-  void fill(const std::byte* records, std::size_t count);
+  void fill_block(std::size_t first, const std::byte* records, std::size_t count);
 
   const LasSchema& schema_;
-  std::vector<Column> columns_;  ///< in the order of fill()
-  std::vector<std::byte> kept_;  ///< records that stay of some that do not all
-  std::size_t records_ = 0, withheld_ = 0;
+  std::vector<Column> columns_;  ///< in the order of fill_block()
 };
 
 }  // namespace adasplats

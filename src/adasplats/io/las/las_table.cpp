@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "adasplats/core/executor.h"
+
 namespace adasplats {
 
 LasTable::LasTable(const std::filesystem::path& path, const LasHeader& header,
@@ -13,10 +15,34 @@ LasTable::LasTable(const std::filesystem::path& path, const LasHeader& header,
   if (!extent) columns_.reserve(expected_rows);
 }
 
+void LasTable::take(const std::byte* records, std::size_t count) {
+  buffer_.assign(records, records + count * schema_.header.record_bytes);
+  const WantedRecords part = {buffer_.data(), count, keep_wanted(schema_, buffer_.data(), count)};
+  add({&part, 1}, nullptr);
+}
+
+void LasTable::add(std::span<const WantedRecords> parts, const Executor* executor) {
+  std::vector<std::size_t> first(1, columns_.rows());
+  for (const WantedRecords& part : parts) {
+    first.push_back(first.back() + part.kept.rows);
+    records_ += part.count;
+    withheld_ += part.kept.withheld;
+  }
+  columns_.add_rows(first.back() - first.front(), executor);
+  const auto fill = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      columns_.fill(first[k], parts[k].records, parts[k].kept.rows);
+  };
+  if (executor != nullptr)
+    executor->for_chunks(parts.size(), 1, fill);
+  else
+    fill(0, parts.size());
+}
+
 Table LasTable::finish() {
   Table table = columns_.take_table();
-  if (columns_.withheld() > 0)
-    table.comments.push_back("withheld: " + std::to_string(columns_.withheld()) + " of " +
+  if (withheld_ > 0)
+    table.comments.push_back("withheld: " + std::to_string(withheld_) + " of " +
                              std::to_string(records()) + " points");
   for (std::string& comment : schema_.description.comments())
     table.comments.push_back(std::move(comment));

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <deque>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "adasplats/core/executor.h"
@@ -23,7 +21,7 @@ namespace adasplats {
 namespace {
 
 // Records that one chunk has unpacked at once: all of an ordinary chunk (50,000 points).
-constexpr std::size_t kUnpackedBytes = std::size_t{2} << 20;
+constexpr std::size_t kUnpackedBytes = std::size_t{4} << 20;
 // Of all chunks that are unpacked at a time; a byte of a record has a model of its own at most.
 constexpr std::size_t kModelBytes = std::size_t{256} << 20;
 constexpr std::size_t kBytesPerModel = 2560;
@@ -65,7 +63,7 @@ struct OpenChunk {
   std::vector<std::byte> records;     // the next of them, unpacked
   std::size_t wanted = 0, sound = 0;  // how many those should be, and are from the first
   bool is_cut_short = false;          // the packed bytes end too early
-  std::optional<LasColumns> columns;  // of the records
+  KeptRecords kept;                   // of the records
 };
 
 /// Gives the file's records in their order; unpacks some chunks at a time, in parallel.
@@ -92,7 +90,7 @@ class LazReader {
     while (fault_.empty() && (unread_ > 0 || !open_.empty())) {
       while (unread_ > 0 && open_.size() < most_open_) open_next();
       unpack();
-      while (!open_.empty() && open_.front().wanted > 0 && fault_.empty()) hand_over();
+      hand_over();
     }
   }
 
@@ -136,8 +134,7 @@ class LazReader {
       chunk.sound = plausible_.count(chunk.records.data(), whole);
       chunk.left -= chunk.wanted;
       if (chunk.sound < chunk.wanted) chunk.is_cut_short = whole < chunk.wanted;
-      chunk.columns.emplace(table_.make_columns());
-      chunk.columns->take(chunk.records.data(), chunk.sound);
+      chunk.kept = keep_wanted(table_.schema(), chunk.records.data(), chunk.sound);
     };
     if (executor_ != nullptr)
       executor_->for_chunks(open_.size(), 1, unpack_one);
@@ -145,18 +142,26 @@ class LazReader {
       for (std::size_t k = 0; k < open_.size(); ++k) unpack_one(k, k + 1);
   }
 
+  /// Hands over what is unpacked without a gap before it.
   void hand_over() {
-    OpenChunk& chunk = open_.front();
-    table_.add(std::move(*chunk.columns));
-    if (chunk.sound < chunk.wanted) {
-      fault_ = "the chunk at byte " + std::to_string(chunk.place.offset_bytes) +
-               (chunk.is_cut_short ? " ends within a point"
-                                   : " has a point far outside the header's box");
+    std::vector<WantedRecords> parts;
+    for (const OpenChunk& chunk : open_) {
+      if (chunk.wanted == 0 || !fault_.empty()) break;
+      parts.push_back({chunk.records.data(), chunk.sound, chunk.kept});
+      if (chunk.sound < chunk.wanted)
+        fault_ = "the chunk at byte " + std::to_string(chunk.place.offset_bytes) +
+                 (chunk.is_cut_short ? " ends within a point"
+                                     : " has a point far outside the header's box");
+      if (chunk.left > 0) break;  // its next records come first
     }
-    chunk.wanted = 0;
-    if (chunk.left > 0) return;
-    next_offset_ = chunk.place.offset_bytes + chunk.decoder->bytes();
-    open_.pop_front();
+    table_.add(parts, executor_);
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      OpenChunk& chunk = open_.front();
+      chunk.wanted = 0;
+      if (chunk.left > 0) return;
+      next_offset_ = chunk.place.offset_bytes + chunk.decoder->bytes();
+      open_.pop_front();
+    }
   }
 
   LasTable& table_;
