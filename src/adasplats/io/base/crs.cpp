@@ -285,6 +285,19 @@ constexpr std::string_view kKeysComment = "adasplats.crs_keys ";
 constexpr std::string_view kDoublesComment = "adasplats.crs_key_doubles ";
 constexpr std::string_view kAsciiComment = "adasplats.crs_key_text ";
 
+/// Adds `text` in lines that every reader takes: rply, which CloudCompare and Open3D have, refuses
+/// those of 1024 bytes and more.
+void add_parts(std::string_view key, std::string_view text, std::vector<std::string>& comments) {
+  constexpr std::size_t kPartBytes = 900;
+  while (!text.empty()) {
+    std::size_t size = std::min(kPartBytes, text.size());
+    // Readers drop blanks at the ends of a comment.
+    while (size > 1 && size < text.size() && (text[size - 1] == ' ' || text[size] == ' ')) --size;
+    comments.push_back(std::string(key) + std::string(text.substr(0, size)));
+    text.remove_prefix(size);
+  }
+}
+
 template <class T>
 std::vector<T> numbers_of(const std::filesystem::path& path, const std::string& text) {
   std::vector<T> numbers;
@@ -352,41 +365,41 @@ CrsMatch match(const Crs& a, const Crs& b) {
 }
 
 std::vector<std::string> crs_comments(const Crs& crs) {
-  if (crs.empty()) return {};
-  if (!crs.wkt.empty()) return {std::string(kWktComment) + one_line(crs.wkt)};
-  std::vector<std::string> comments(1, std::string(kKeysComment));
-  for (const std::uint16_t number : crs.keys.directory)
-    comments.back() += std::to_string(number) + " ";
-  comments.back().pop_back();
-  if (!crs.keys.doubles.empty()) {
-    comments.emplace_back(kDoublesComment);
-    for (const double number : crs.keys.doubles) comments.back() += exact_text(number) + " ";
-    comments.back().pop_back();
+  std::vector<std::string> comments;
+  if (crs.empty()) return comments;
+  if (!crs.wkt.empty()) {
+    add_parts(kWktComment, one_line(crs.wkt), comments);
+    return comments;
   }
-  if (!crs.keys.ascii.empty()) {
-    // Keys count from the text's beginning: no blank of it may go, hence the quotes.
-    std::string text = crs.keys.ascii;
-    for (char& c : text)
-      if (static_cast<unsigned char>(c) < ' ') c = '|';
-    comments.push_back(std::string(kAsciiComment) + '"' + text + '"');
+  std::string directory, doubles, text = crs.keys.ascii;
+  for (const std::uint16_t number : crs.keys.directory) directory += std::to_string(number) + " ";
+  for (const double number : crs.keys.doubles) doubles += exact_text(number) + " ";
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ') c = '|';
+  directory.pop_back();
+  add_parts(kKeysComment, directory, comments);
+  if (!doubles.empty()) {
+    doubles.pop_back();
+    add_parts(kDoublesComment, doubles, comments);
   }
+  // Keys count from the text's beginning: no blank of it may go, hence the quotes.
+  if (!text.empty()) add_parts(kAsciiComment, '"' + text + '"', comments);
   return comments;
 }
 
 Crs crs_of_comments(const std::filesystem::path& path, std::span<const std::string> comments) {
+  const auto value = [&comments](std::string_view key) {
+    std::string text;
+    for (const std::string& comment : comments)
+      if (comment.starts_with(key)) text += comment.substr(key.size());
+    return text;
+  };
   Crs crs;
-  for (const std::string& comment : comments) {
-    const auto value = [&comment](std::string_view key) {
-      return comment.starts_with(key) ? comment.substr(key.size()) : std::string();
-    };
-    if (const std::string wkt = value(kWktComment); !wkt.empty()) crs.wkt = wkt;
-    if (const std::string keys = value(kKeysComment); !keys.empty())
-      crs.keys.directory = numbers_of<std::uint16_t>(path, keys);
-    if (const std::string numbers = value(kDoublesComment); !numbers.empty())
-      crs.keys.doubles = numbers_of<double>(path, numbers);
-    if (const std::string text = value(kAsciiComment); text.size() > 2)
-      crs.keys.ascii = text.substr(1, text.size() - 2);
-  }
+  crs.wkt = value(kWktComment);
+  crs.keys.directory = numbers_of<std::uint16_t>(path, value(kKeysComment));
+  crs.keys.doubles = numbers_of<double>(path, value(kDoublesComment));
+  const std::string text = value(kAsciiComment);
+  if (text.size() > 2) crs.keys.ascii = text.substr(1, text.size() - 2);
   return crs;
 }
 

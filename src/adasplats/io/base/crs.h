@@ -51,7 +51,8 @@ enum class CrsMatch : std::uint8_t {
 CrsMatch match(const Crs& a, const Crs& b);
 
 /// A system as comments of a PLY: "adasplats.crs_wkt TEXT", or "adasplats.crs_keys NUMBERS",
-/// "adasplats.crs_key_doubles NUMBERS" and "adasplats.crs_key_text TEXT". None where none is said.
+/// "adasplats.crs_key_doubles NUMBERS" and "adasplats.crs_key_text "TEXT""; what is long goes on in
+/// further comments of the same beginning. None where none is said.
 std::vector<std::string> crs_comments(const Crs& crs);
 
 /// The system that those comments say; `path` is for messages. Errors: data (no numbers).

@@ -151,6 +151,22 @@ TEST(CoordinateSystem, CommentsBringItBack) {
   }
   for (const std::string& comment : crs_comments(wkt(mercator("two\nlines", "9"))))
     EXPECT_EQ(comment.find('\n'), std::string::npos);
+  // In lines that rply takes, whatever readers do with blanks at their ends.
+  for (std::size_t blanks = 0; blanks < 40; ++blanks) {
+    const std::string name = std::string(850, 'a') + std::string(blanks, ' ') + "b c d e f g h";
+    const Crs crs = wkt(mercator(name, "9"));
+    const std::vector<std::string> comments = crs_comments(crs);
+    ASSERT_GE(comments.size(), 2U);
+    for (const std::string& comment : comments) {
+      EXPECT_LT(comment.size(), 1000U);
+      EXPECT_NE(comment.back(), ' ');
+    }
+    EXPECT_EQ(crs_of_comments("a.ply", comments), crs);
+  }
+  GeoKeys many{{1, 1, 0, 100}, {}, std::string(2000, 'x')};
+  for (std::uint16_t k = 0; k < 400; ++k) many.directory.push_back(3072);
+  many.doubles.assign(200, 1.0 / 3);
+  EXPECT_EQ(crs_of_comments("a.ply", crs_comments({{}, many})).keys, many);
   const std::vector<std::string> broken = {"adasplats.crs_keys 1 1 x"};
   expect_error(ErrorKind::data, {"a.ply", "x"}, [&] { crs_of_comments("a.ply", broken); });
 }
