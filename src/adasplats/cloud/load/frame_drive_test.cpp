@@ -44,9 +44,13 @@ const RigidTransform kMount = {{}, {0, 0, 0}};
 /// Frames of a Pandar64 that drives through the hall, 10 a second, and the vehicle's poses.
 class Drive {
  public:
-  Drive() {
+  /// `crs_of_last`: what the last file says, the others say EPSG:32632; empty: none says any.
+  explicit Drive(const std::string& crs_of_last = "") {
     const LidarModel sensor = load_lidar_model("hesai-pandar64");
-    for (int scan = 0; scan < kScans; ++scan) write_scan(sensor, scan);
+    for (int scan = 0; scan < kScans; ++scan) {
+      const bool is_last = scan + 1 == kScans;
+      write_scan(sensor, scan, is_last || crs_of_last.empty() ? crs_of_last : "EPSG:32632");
+    }
     std::string poses = "time,x,y,z,qw,qx,qy,qz\n";
     for (int k = 0; k <= 10; ++k) {
       const double time_s = 0.1 * k;
@@ -67,7 +71,7 @@ class Drive {
   static constexpr int kScans = 6;
 
  private:
-  void write_scan(const LidarModel& sensor, int scan) {
+  void write_scan(const LidarModel& sensor, int scan, const std::string& crs) {
     const std::vector<Firing> firings = firings_of(sensor);
     std::vector<double> x, y, z, time;
     for (std::size_t i = 0; i < firings.size(); i += 7) {
@@ -87,7 +91,8 @@ class Drive {
     };
     const std::vector<ColumnView> columns = {view("x", x), view("y", y), view("z", z),
                                              view("time", time)};
-    write_ply(frames() / (std::to_string(scan) + ".ply"), x.size(), columns);
+    write_ply(frames() / (std::to_string(scan) + ".ply"), x.size(), columns,
+              crs_comments(crs_of_wkt(crs)));
   }
 
   TemporaryFolder folder_;
@@ -119,6 +124,19 @@ TEST(FrameDrive, BeamsBeginWhereTheSensorWasAtTheirTime) {
     of_laser += cloud.lasers[i] == firing.ring;
   }
   EXPECT_GT(of_laser, 480U);
+}
+
+TEST(FrameDrive, TheCoordinateSystemIsThatOfItsFiles) {
+  ProgressSink quiet;
+  const auto load = [&quiet](const Drive& drive) {
+    LoadOptions options;
+    options.trajectory = drive.poses();
+    const std::filesystem::path frames = drive.frames();
+    return load_cloud(std::span(&frames, 1), options, Executor(2), quiet).first;
+  };
+  EXPECT_EQ(load(Drive("EPSG:32632")).crs.name(), "EPSG:32632");
+  expect_error(ErrorKind::data, {"5.ply", "EPSG:32633", "0.ply", "EPSG:32632"},
+               [&] { load(Drive("EPSG:32633")); });
 }
 
 TEST(FrameDrive, AnotherClockIsAnError) {
