@@ -82,10 +82,10 @@ MappingPlan plan_mapping(const StreetScanOptions& options, double way_m, double 
 }
 
 void append_revolution(PointCloud& cloud, std::span<const Firing> firings,
-                       std::span<const Echo> echoes, const RigidTransform& recorded,
+                       std::span<const StreetEcho> echoes, const RigidTransform& recorded,
                        std::uint32_t scan) {
   const Vec3f sensor_position = vec_cast<float>(recorded.translation);
-  for (const Echo& echo : echoes) {
+  for (const StreetEcho& echo : echoes) {
     const Vec3d in_sensor =
         static_cast<double>(echo.range_m) * vec_cast<double>(firings[echo.ray].direction);
     cloud.positions.push_back(vec_cast<float>(recorded * in_sensor));
@@ -106,13 +106,13 @@ void reserve(PointCloud& cloud, std::size_t points) {
   cloud.scan_indices.reserve(points);
 }
 
-Scan to_scan(std::span<const Firing> firings, std::span<const Echo> echoes,
+Scan to_scan(std::span<const Firing> firings, std::span<const StreetEcho> echoes,
              const TimedPose& recorded) {
   Scan scan;
   scan.world_from_sensor = recorded.world_from_sensor;
   scan.time_s = recorded.time_s;
   scan.rays = firings.size();
-  for (const Echo& echo : echoes) {
+  for (const StreetEcho& echo : echoes) {
     const Firing& firing = firings[echo.ray];
     scan.positions.push_back(echo.range_m * firing.direction);
     scan.ranges_m.push_back(echo.range_m);
@@ -137,7 +137,7 @@ void drive_mapping(const Street& street, const StreetScanOptions& options,
   for (int pass = 0; pass < options.passes; ++pass) {
     for (const RecordedPose& pose :
          poses_of_pass(street, options, pass, plan.revolutions, vehicle_from_mapping_sensor())) {
-      const std::vector<Echo> echoes =
+      const std::vector<StreetEcho> echoes =
           caster.cast(plan.sensor, firings, pose.truth, options.seed, scan);
       append_revolution(recording.mapping, firings, echoes, pose.recorded.world_from_sensor, scan);
       recording.mapping_trajectory.push_back(pose.recorded);
@@ -163,7 +163,7 @@ void drive_driving(const Street& street, const StreetScanOptions& options,
       poses_of_pass(street, options, options.passes - 1, count, vehicle_from_driving_sensor());
   progress.begin_step("driving scans", count);
   for (std::size_t k = 0; k < count; ++k) {
-    const std::vector<Echo> echoes =
+    const std::vector<StreetEcho> echoes =
         caster.cast(sensor, firings, poses[k].truth, options.seed, kDrivingScans + k);
     on_driving_scan(k, to_scan(firings, echoes, poses[k].recorded));
     recording.driving_trajectory.push_back(poses[k].recorded);

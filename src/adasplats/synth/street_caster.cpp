@@ -103,9 +103,9 @@ StreetCaster::StreetCaster(const Street& street, double range_noise_m, const Exe
       executor_(executor),
       fixed_(make_cpu_tracer(SceneView{{}, &street.fixed}, executor)) {}
 
-std::vector<Echo> StreetCaster::cast(const LidarModel& sensor, std::span<const Firing> firings,
-                                     const TimedPose& pose, std::uint64_t seed,
-                                     std::uint64_t scan) const {
+std::vector<StreetEcho> StreetCaster::cast(const LidarModel& sensor,
+                                           std::span<const Firing> firings, const TimedPose& pose,
+                                           std::uint64_t seed, std::uint64_t scan) const {
   const BuiltMesh movers = movers_at(street_, pose.time_s, pose.world_from_sensor.translation);
   const std::vector<Ray> rays = rays_of(sensor, firings, pose.world_from_sensor, executor_);
   std::vector<Hit> fixed_hits(rays.size());
@@ -117,7 +117,7 @@ std::vector<Echo> StreetCaster::cast(const LidarModel& sensor, std::span<const F
   const Surfaces standing = {street_.fixed, street_.instances, street_.reflectances};
   const Surfaces moving = {movers.mesh, movers.instances, movers.reflectances};
   constexpr std::uint32_t kMiss = 0xffffffffU;
-  std::vector<Echo> echoes(rays.size());
+  std::vector<StreetEcho> echoes(rays.size());
   executor_.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const bool mover = moving_hits[i].t < fixed_hits[i].t;
@@ -138,7 +138,8 @@ std::vector<Echo> StreetCaster::cast(const LidarModel& sensor, std::span<const F
                    surfaces.reflectances[hit.primitive]};
     }
   });
-  std::erase_if(echoes, [](const Echo& echo) { return echo.ray == kMiss || echo.range_m <= 0; });
+  std::erase_if(echoes,
+                [](const StreetEcho& echo) { return echo.ray == kMiss || echo.range_m <= 0; });
   return echoes;
 }
 

@@ -19,7 +19,7 @@
 namespace adasplats {
 
 /// What came back of one ray.
-struct Echo {
+struct StreetEcho {
   std::uint32_t ray = 0;  ///< index into the firings
   float range_m = 0;      ///< measured: with noise
   float intensity = 0;    ///< 0..1
@@ -38,8 +38,8 @@ class StreetCaster {
   StreetCaster(const Street& street, double range_noise_m, const Executor& executor);
 
   /// The echoes of one revolution in the order of `firings`. Noise is drawn by (seed, scan, ray).
-  std::vector<Echo> cast(const LidarModel& sensor, std::span<const Firing> firings,
-                         const TimedPose& pose, std::uint64_t seed, std::uint64_t scan) const;
+  std::vector<StreetEcho> cast(const LidarModel& sensor, std::span<const Firing> firings,
+                               const TimedPose& pose, std::uint64_t seed, std::uint64_t scan) const;
 
   /// Share of rays that hit what does not move.
   double fixed_share(const LidarModel& sensor, std::span<const Firing> firings,

@@ -80,14 +80,14 @@ std::string seconds_text(double first_s, double last_s) {
 }
 
 /// The poses at given times. Errors: data where these are beyond the track or in its gaps.
-ScanPoses poses_at(const std::vector<double>& times_s, const Track& track, const std::string& from,
-                   const fs::path& trajectory) {
+PosesOfFiles poses_at(const std::vector<double>& times_s, const Track& track,
+                      const std::string& from, const fs::path& trajectory) {
   const TimeSpan covered = track.covered_s();
   const auto in_gap = [&](double time_s) {
     return std::ranges::any_of(
         track.gaps, [time_s](TimeSpan gap) { return time_s > gap.first && time_s < gap.last; });
   };
-  ScanPoses poses{{}, track.poses, "interpolated at " + from, true};
+  PosesOfFiles poses{{}, track.poses, "interpolated at " + from, true};
   for (const double time_s : times_s) {
     if (time_s < covered.first || time_s > covered.last)
       throw Error(ErrorKind::data,
@@ -121,8 +121,8 @@ void require_same_steps(const std::vector<double>& times_s, const Trajectory& po
                   "`scan_times` states the times");
 }
 
-ScanPoses poses_in_order(Trajectory given, const Track* track, std::string by, bool timed) {
-  ScanPoses poses;
+PosesOfFiles poses_in_order(Trajectory given, const Track* track, std::string by, bool timed) {
+  PosesOfFiles poses;
   if (track != nullptr) poses.track = track->poses;
   poses.of_scans = std::move(given);
   poses.by = std::move(by);
@@ -142,10 +142,10 @@ std::optional<Trajectory> poses_by_number(const std::vector<fs::path>& files,
   return matched;
 }
 
-std::optional<ScanPoses> poses_by_stamps(std::vector<double> times_s, const std::string& from,
-                                         const Trajectory& given, bool timed,
-                                         const fs::path& trajectory,
-                                         std::optional<double> time_offset_s, bool is_stated) {
+std::optional<PosesOfFiles> poses_by_stamps(std::vector<double> times_s, const std::string& from,
+                                            const Trajectory& given, bool timed,
+                                            const fs::path& trajectory,
+                                            std::optional<double> time_offset_s, bool is_stated) {
   for (double& time_s : times_s) time_s += time_offset_s.value_or(0);
   const bool one_each = given.size() == times_s.size();
   if (!timed) {  // the stamps are the times of the poses
@@ -241,9 +241,9 @@ std::vector<double> read_scan_times(const fs::path& file, std::size_t count) {
                                    ", expected 0.005 to 10 s");
 }
 
-std::optional<ScanPoses> poses_of_files(const std::vector<fs::path>& files,
-                                        const fs::path& trajectory, const fs::path& times_file,
-                                        std::optional<double> time_offset_s) {
+std::optional<PosesOfFiles> poses_of_files(const std::vector<fs::path>& files,
+                                           const fs::path& trajectory, const fs::path& times_file,
+                                           std::optional<double> time_offset_s) {
   const Trajectory given = read_trajectory(trajectory);
   const bool timed = has_times(trajectory);
   if (!times_file.empty())

@@ -27,7 +27,7 @@ std::vector<double> stamps_in_names(const std::vector<std::filesystem::path>& fi
 std::vector<double> read_scan_times(const std::filesystem::path& file, std::size_t count);
 
 /// The poses of scans.
-struct ScanPoses {
+struct PosesOfFiles {
   Trajectory of_scans;     ///< one a scan
   Trajectory track;        ///< between which it is interpolated; empty where times are not known
   std::string by;          ///< how they were found, for messages
@@ -39,9 +39,9 @@ struct ScanPoses {
 /// sequences, or one pose a scan in their order. Nothing where none of these fits. Errors: data
 /// where the stated times are not those of the poses, or stamps run otherwise than the poses'
 /// times.
-std::optional<ScanPoses> poses_of_files(const std::vector<std::filesystem::path>& files,
-                                        const std::filesystem::path& trajectory,
-                                        const std::filesystem::path& times_file,
-                                        std::optional<double> time_offset_s);
+std::optional<PosesOfFiles> poses_of_files(const std::vector<std::filesystem::path>& files,
+                                           const std::filesystem::path& trajectory,
+                                           const std::filesystem::path& times_file,
+                                           std::optional<double> time_offset_s);
 
 }  // namespace adasplats

@@ -23,7 +23,7 @@ namespace adasplats {
 struct SensorFrames {
   std::vector<std::filesystem::path> files;
   std::shared_ptr<const ScanSource> source = scans_in_files();  ///< which reads them
-  ScanPoses poses;                                              ///< of the frame of the points
+  PosesOfFiles poses;                                           ///< of the frame of the points
   PointTimes times;
   /// Of absolute times, first and last of each file, s in the clock of the poses.
   std::vector<TimeSpan> spans_s;

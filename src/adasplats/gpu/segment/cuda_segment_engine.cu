@@ -40,7 +40,7 @@ class CudaTileSegmenter final : public TileSegmenter {
     for_each(points.size(), stream, "take the points of a tile",
              [from = positions_.data(), of = indices.data(), to = points.data(),
               corner = tile.corner] __device__(std::uint64_t i) { to[i] = from[of[i]] - corner; });
-    DeviceCells cells = means_by_cell(points, task_.network.shape.cell_m, stream);
+    DeviceCellMeans cells = means_by_cell(points, task_.network.shape.cell_m, stream);
     const std::size_t count = cells.means.size();
     DeviceBuffer<float> features = features_of(cells, indices);
     const std::vector<DeviceLevel> levels =
@@ -57,7 +57,7 @@ class CudaTileSegmenter final : public TileSegmenter {
   }
 
   // What follows is public for the sake of nvcc, which takes kernels' bodies from nowhere else.
-  DeviceBuffer<float> features_of(const DeviceCells& cells,
+  DeviceBuffer<float> features_of(const DeviceCellMeans& cells,
                                   const DeviceBuffer<std::uint32_t>& indices) const {
     const cudaStream_t stream = stream_.get();
     const DeviceBuffer<float> heights = heights_above_ground(cells.means, stream);
@@ -83,7 +83,7 @@ class CudaTileSegmenter final : public TileSegmenter {
   }
 
   void take(std::size_t wanted, const DeviceBuffer<std::uint32_t>& indices,
-            const DeviceCells& cells, const DeviceBuffer<float>& logits) {
+            const DeviceCellMeans& cells, const DeviceBuffer<float>& logits) {
     for_each(wanted, stream_.get(), "give points classes",
              [of = indices.data(), cell_of = cells.cell_of.data(), logits = logits.data(),
               count = task_.network.classes.size(), classes = classes_.data(),

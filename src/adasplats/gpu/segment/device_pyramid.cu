@@ -238,8 +238,9 @@ DeviceBuffer<float> lowest_of_columns(const DeviceBuffer<Vec3f>& points, ColumnB
 
 }  // namespace
 
-DeviceCells means_by_cell(const DeviceBuffer<Vec3f>& points, float cell_m, cudaStream_t stream) {
-  DeviceCells cells;
+DeviceCellMeans means_by_cell(const DeviceBuffer<Vec3f>& points, float cell_m,
+                              cudaStream_t stream) {
+  DeviceCellMeans cells;
   DeviceBuffer<std::uint64_t> keys = keys_of(points, wide_grid(cell_m), stream);
   cells.order = sort_order(keys, stream, 0, kKeyBits);
   cells.begins = run_begins(keys.data(), keys.size(), stream);

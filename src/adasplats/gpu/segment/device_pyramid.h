@@ -16,11 +16,11 @@ namespace adasplats::gpu {
 
 /// CellMeans, and the points cell by cell: those of cell i are order[begins[i]] to
 /// order[begins[i + 1]].
-struct DeviceCells {
+struct DeviceCellMeans {
   DeviceBuffer<Vec3f> means;
   DeviceBuffer<std::uint32_t> cell_of, order, begins;
 };
-DeviceCells means_by_cell(const DeviceBuffer<Vec3f>& points, float cell_m, cudaStream_t stream);
+DeviceCellMeans means_by_cell(const DeviceBuffer<Vec3f>& points, float cell_m, cudaStream_t stream);
 
 /// PyramidLevel.
 struct DeviceLevel {

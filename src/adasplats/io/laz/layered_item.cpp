@@ -21,7 +21,7 @@ class Rgb14 final : public LayeredItem {
   std::size_t layers() const override { return 1; }
 
   void start(const std::byte* first, std::size_t channel, Layers layers, bool& broken) override {
-    layer_ = Layer(layers[0], broken);
+    layer_ = PackedLayer(layers[0], broken);
     channels_.start(channel, {}, load_value<Rgb>(first));
   }
 
@@ -32,7 +32,7 @@ class Rgb14 final : public LayeredItem {
   }
 
  private:
-  Layer layer_;
+  PackedLayer layer_;
   ScannerChannels<RgbModels, Rgb> channels_;
 };
 
@@ -42,8 +42,8 @@ class RgbNir14 final : public LayeredItem {
   std::size_t layers() const override { return 2; }
 
   void start(const std::byte* first, std::size_t channel, Layers layers, bool& broken) override {
-    rgb_ = Layer(layers[0], broken);
-    infrared_ = Layer(layers[1], broken);
+    rgb_ = PackedLayer(layers[0], broken);
+    infrared_ = PackedLayer(layers[1], broken);
     channels_.start(channel, {}, load_value<Last>(first));
   }
 
@@ -66,7 +66,7 @@ class RgbNir14 final : public LayeredItem {
   };
   static_assert(sizeof(Last) == 8);
 
-  Layer rgb_, infrared_;
+  PackedLayer rgb_, infrared_;
   ScannerChannels<Models, Last> channels_;
 };
 
@@ -76,7 +76,7 @@ class WavePacket14 final : public LayeredItem {
   std::size_t layers() const override { return 1; }
 
   void start(const std::byte* first, std::size_t channel, Layers layers, bool& broken) override {
-    layer_ = Layer(layers[0], broken);
+    layer_ = PackedLayer(layers[0], broken);
     channels_.start(channel, {}, load_value<WavePacket>(first));
   }
 
@@ -87,7 +87,7 @@ class WavePacket14 final : public LayeredItem {
   }
 
  private:
-  Layer layer_;
+  PackedLayer layer_;
   ScannerChannels<WavePacketModels, WavePacket> channels_;
 };
 
@@ -98,7 +98,7 @@ class ExtraBytes14 final : public LayeredItem {
   std::size_t layers() const override { return layers_.size(); }
 
   void start(const std::byte* first, std::size_t channel, Layers layers, bool& broken) override {
-    for (std::size_t k = 0; k < layers_.size(); ++k) layers_[k] = Layer(layers[k], broken);
+    for (std::size_t k = 0; k < layers_.size(); ++k) layers_[k] = PackedLayer(layers[k], broken);
     channels_.start(channel, std::vector<SymbolModel>(layers_.size(), SymbolModel(256)),
                     {first, first + layers_.size()});
   }
@@ -114,7 +114,7 @@ class ExtraBytes14 final : public LayeredItem {
   }
 
  private:
-  std::vector<Layer> layers_;
+  std::vector<PackedLayer> layers_;
   ScannerChannels<std::vector<SymbolModel>, std::vector<std::byte>> channels_;
 };
 

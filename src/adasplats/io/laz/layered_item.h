@@ -16,9 +16,9 @@
 namespace adasplats {
 
 /// The bytes of one attribute of a chunk; empty where all its points have that of the first.
-struct Layer {
-  Layer() = default;
-  Layer(std::span<const std::byte> bytes, bool& is_broken)
+struct PackedLayer {
+  PackedLayer() = default;
+  PackedLayer(std::span<const std::byte> bytes, bool& is_broken)
       : decoder(bytes.empty() ? RangeDecoder() : RangeDecoder(bytes, is_broken)),
         is_packed(!bytes.empty()) {}
 

@@ -57,7 +57,7 @@ class Point14Decoder {
   void decode_attributes(Channel& channel, unsigned changed);
 
   unsigned version_;
-  Layer returns_xy_, z_, classification_, flags_, intensity_, scan_angle_, user_data_,
+  PackedLayer returns_xy_, z_, classification_, flags_, intensity_, scan_angle_, user_data_,
       point_source_, gps_time_;
   std::array<std::unique_ptr<Channel>, 4> channels_;
   std::size_t current_ = 0;

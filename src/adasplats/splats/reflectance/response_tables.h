@@ -36,20 +36,20 @@ ADASPLATS_HD inline float place_among(const std::array<float, N>& nodes, float v
 }
 
 /// What place_among() put together.
-struct NodePlace {
+struct ResponsePlace {
   std::size_t below;
   float share;  ///< of the next node, 0..1
 };
 
 template <std::size_t N>
-ADASPLATS_HD inline NodePlace node_place(float place) {
+ADASPLATS_HD inline ResponsePlace node_place(float place) {
   const std::size_t below = std::min(static_cast<std::size_t>(place), N - 2);
   return {below, place - static_cast<float>(below)};
 }
 
 template <std::size_t N>
 ADASPLATS_HD inline float value_at(const std::array<float, N>& values, float place) {
-  const NodePlace at = node_place<N>(place);
+  const ResponsePlace at = node_place<N>(place);
   return values[at.below] + at.share * (values[at.below + 1] - values[at.below]);
 }
 
@@ -85,7 +85,7 @@ struct TableSums {
   }
   /// A ray with `intensity` = `factor` * table value at `place`; both from 0 to 1.
   ADASPLATS_HD void add(float place, double intensity, double factor) {
-    const NodePlace at = node_place<N>(place);
+    const ResponsePlace at = node_place<N>(place);
     const auto upper = static_cast<double>(at.share);
     const double low = (1 - upper) * factor, high = upper * factor;
     diagonal[at.below] += whole_units(low * low);

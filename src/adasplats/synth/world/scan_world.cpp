@@ -41,7 +41,7 @@ bool meets_own_body(Vec3f direction) {
 }
 
 /// Whether a return reaches the sensor at all.
-bool is_lost(const Echo& echo, Random& random) {
+bool is_lost(const StreetEcho& echo, Random& random) {
   if (random.uniform() < kLostAnywhere) return true;
   if (is_about(echo.reflectance, kDarkPane)) return random.uniform() < kLostOnWindows;
   if (is_about(echo.reflectance, kCarPane)) return random.uniform() < kLostOnCarGlass;
@@ -61,13 +61,13 @@ RigidTransform draw_mount(std::uint64_t seed) {
   return mount;
 }
 
-Scan scan_of(std::span<const Firing> firings, std::span<const Echo> echoes, const TimedPose& pose,
-             std::uint64_t seed, std::uint64_t number) {
+Scan scan_of(std::span<const Firing> firings, std::span<const StreetEcho> echoes,
+             const TimedPose& pose, std::uint64_t seed, std::uint64_t number) {
   Scan scan;
   scan.world_from_sensor = pose.world_from_sensor;
   scan.time_s = pose.time_s;
   scan.rays = firings.size();
-  for (const Echo& echo : echoes) {
+  for (const StreetEcho& echo : echoes) {
     Random random(seed ^ kDropStream, number, echo.ray);
     const Firing& firing = firings[echo.ray];
     if (meets_own_body(firing.direction) || is_lost(echo, random)) continue;
@@ -110,7 +110,7 @@ void scan_world(const SynthWorld& world, const WorldScanOptions& options,
     const double travelled = first_m + static_cast<double>(k) * options.spacing_m;
     TimedPose pose = {travelled / m_per_s, {}};
     pose.world_from_sensor = interpolate(world.drive, pose.time_s) * vehicle_from_sensor;
-    const std::vector<Echo> echoes = caster.cast(sensor, firings, pose, options.seed, k);
+    const std::vector<StreetEcho> echoes = caster.cast(sensor, firings, pose, options.seed, k);
     on_scan(k, scan_of(firings, echoes, pose, options.seed, k));
     progress.advance(k + 1);
   }
