@@ -36,10 +36,9 @@ const RecordingKind* kind_of_recording(const fs::path& path) {
   return nullptr;
 }
 
-std::string list_of_kinds(std::string_view RecordingKind::*part) {
+std::string list_of(const std::vector<std::string>& words) {
   std::string list;
-  for (const RecordingKind& kind : kRecordingKinds)
-    list += (list.empty() ? "" : ", ") + std::string(kind.*part);
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
   return list;
 }
 
@@ -49,8 +48,7 @@ std::unique_ptr<RecordingFile> open_recording_file(const fs::path& path) {
     return open_packed_recording(path, kind->open);
   if (kind != nullptr) return kind->open(path);
   throw data_error({path, {}, {}}, "unknown kind of recording " + shown(path.extension().string()) +
-                                       ", understood are " +
-                                       list_of_kinds(&RecordingKind::extension));
+                                       ", understood are " + list_of(recording_extensions()));
 }
 
 /// "value" of "  key: value", also in quotes; nothing of lines of other keys.
@@ -146,7 +144,17 @@ bool is_recording(const fs::path& path) {
   return std::string_view(reinterpret_cast<const char*>(bytes.data()), size) == kMetadataKey;
 }
 
-std::string recording_format_names() { return list_of_kinds(&RecordingKind::name); }
+std::vector<std::string> recording_extensions() {
+  std::vector<std::string> extensions;
+  for (const RecordingKind& kind : kRecordingKinds) extensions.emplace_back(kind.extension);
+  return extensions;
+}
+
+std::string recording_format_names() {
+  std::vector<std::string> names;
+  for (const RecordingKind& kind : kRecordingKinds) names.emplace_back(kind.name);
+  return list_of(names);
+}
 
 std::string short_type_name(std::string_view type) {
   constexpr std::string_view kMiddle = "/msg/";

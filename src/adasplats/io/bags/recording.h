@@ -74,6 +74,9 @@ class Recording {
 /// it, a folder with the metadata.yaml of a ROS 2 bag.
 bool is_recording(const std::filesystem::path& path);
 
+/// ".mcap", ".bag", ".db3".
+std::vector<std::string> recording_extensions();
+
 /// "MCAP, ROS 1 bag, ROS 2 bag", for help.
 std::string recording_format_names();
 

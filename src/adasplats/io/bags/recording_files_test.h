@@ -223,6 +223,27 @@ inline std::string bag_of(const std::vector<Said>& messages) {
   return bag_file(bag_chunk("none", records, static_cast<std::uint32_t>(records.size())));
 }
 
+/// What the packers of zstd, lz4 and bzip2 made of 1000 zeros.
+struct PackedZeros {
+  const char* packing;
+  std::string bytes;
+};
+inline const PackedZeros kPackedZeros[] = {
+    {"zstd",
+     std::string("\x28\xb5\x2f\xfd\x64\xe8\x02\x4d\x00\x00\x10\x00\x00\x01\x00\xe3\x2b\x80\x05\x5a"
+                 "\x07\x44\x79",
+                 23)},
+    {"lz4",
+     std::string("\x04\x22\x4d\x18\x68\x40\xe8\x03\x00\x00\x00\x00\x00\x00\xf1\x0e\x00\x00\x00\x1f"
+                 "\x00\x01\x00\xff\xff\xff\xd2\x50\x00\x00\x00\x00\x00\x00\x00\x00\x00",
+                 37)},
+    {"bz2",
+     std::string("\x42\x5a\x68\x39\x31\x41\x59\x26\x53\x59\x01\xe8\xd0\x60\x00\x00\x01\xc0\x01\xc0"
+                 "\x00\x00\x80\x00\x08\x20\x00\x20\xaa\x6d\x41\x98\xba\x83\xc5\xdc\x91\x4e\x14\x24"
+                 "\x00\x7a\x34\x18\x00",
+                 45)},
+};
+
 /// As SQLite 3 made it, in pages of 512 bytes: the messages (5 ns, /a, "first"), (7, /b, 30 times
 /// 'x'), (9, /a, ""), of pkg/msg/One and pkg/msg/Two.
 inline std::string small_db3() {

@@ -12,10 +12,12 @@
 namespace adasplats {
 namespace {
 
+using bags_test::kPackedZeros;
 using bags_test::mcap_chunk;
 using bags_test::mcap_file;
 using bags_test::mcap_of;
 using bags_test::mcap_records;
+using bags_test::PackedZeros;
 using bags_test::Said;
 using io_test::expect_error;
 using io_test::TemporaryFolder;
@@ -49,27 +51,6 @@ void expect_said(const std::filesystem::path& path, const std::vector<Said>& exp
     EXPECT_EQ(found[k].bytes, expected[k].bytes);
   }
 }
-
-// Oracle: what the packers of zstd, lz4 and bzip2 made of 1000 zeros.
-struct PackedZeros {
-  const char* packing;
-  std::string bytes;
-};
-const PackedZeros kPackedZeros[] = {
-    {"zstd",
-     std::string("\x28\xb5\x2f\xfd\x64\xe8\x02\x4d\x00\x00\x10\x00\x00\x01\x00\xe3\x2b\x80\x05\x5a"
-                 "\x07\x44\x79",
-                 23)},
-    {"lz4",
-     std::string("\x04\x22\x4d\x18\x68\x40\xe8\x03\x00\x00\x00\x00\x00\x00\xf1\x0e\x00\x00\x00\x1f"
-                 "\x00\x01\x00\xff\xff\xff\xd2\x50\x00\x00\x00\x00\x00\x00\x00\x00\x00",
-                 37)},
-    {"bz2",
-     std::string("\x42\x5a\x68\x39\x31\x41\x59\x26\x53\x59\x01\xe8\xd0\x60\x00\x00\x01\xc0\x01\xc0"
-                 "\x00\x00\x80\x00\x08\x20\x00\x20\xaa\x6d\x41\x98\xba\x83\xc5\xdc\x91\x4e\x14\x24"
-                 "\x00\x7a\x34\x18\x00",
-                 45)},
-};
 
 // Oracle: files put together by the letter of the specification.
 TEST(McapRecording, ChunksAndLooseRecordsGiveTheirMessages) {

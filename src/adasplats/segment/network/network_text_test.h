@@ -87,6 +87,28 @@ inline NetworkText pole_network_of_8_bits() {
   return network;
 }
 
+/// Every kind of layer, on two levels.
+inline NetworkText network_of_all_layers() {
+  NetworkText network;
+  const std::size_t first = network.weights(4, {1, 0, 0, 1, 0.5, 0, 0, 0.5}),
+                    strided = network.weights(4, {1, 0, 0, 1, 0.5, 0, 0, 0.5}),
+                    last = network.weights(4, {1, 0, 0, 1, 1, 0, 0, 1}),
+                    bias = network.weights(1, {0, 0.25});
+  const auto layer = [&](const char* kind, int level, int input, int output, json more) {
+    more.update({{"kind", kind}, {"level", level}, {"input", input}, {"output", output}});
+    network.header["layers"].push_back(more);
+  };
+  layer("convolution", 0, 0, 1, {{"weight", first}, {"bias", bias}, {"slope", 0.1}});
+  layer("convolution", 1, 1, 2, {{"weight", strided}, {"bias", bias}, {"strided", true}});
+  layer("largest", 1, 1, 3, json::object());
+  layer("add", 1, 2, 4, {{"second", 3}, {"slope", 0.1}});
+  layer("upsample", 0, 4, 5, json::object());
+  layer("join", 0, 5, 6, {{"second", 1}});
+  layer("unary", 0, 6, 7, {{"weight", last}, {"bias", bias}});
+  network.header["values"] = 8;
+  return network;
+}
+
 inline bool has_products() {
   try {
     require_products();
