@@ -6,7 +6,9 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -63,25 +65,26 @@ std::array<double, kCount> numbers_of(std::string_view line, const fs::path& fil
 
 /// "2011-09-26 13:02:25.964389445" as seconds since 1970.
 double seconds_of(std::string_view stamp, const fs::path& file, std::size_t number) {
-  const auto part = [&](std::size_t begin, std::size_t size) -> std::optional<double> {
+  const auto part = [&](std::size_t begin, std::size_t size) {
     return stamp.size() < begin + size ? std::nullopt
-                                       : parse_number<double>(stamp.substr(begin, size));
+                                       : parse_number<std::uint16_t>(stamp.substr(begin, size));
   };
   const auto year = part(0, 4), month = part(5, 2), day = part(8, 2), hour = part(11, 2),
              minute = part(14, 2);
-  const auto second = part(17, std::max<std::size_t>(stamp.size(), 19) - 17);
-  const bool is_stamp = year && month && day && hour && minute && second && stamp[4] == '-' &&
+  constexpr double kNone = -1;
+  const double second =
+      stamp.size() < 19 ? kNone : parse_number<double>(stamp.substr(17)).value_or(kNone);
+  const bool is_stamp = year && month && day && hour && minute && stamp[4] == '-' &&
                         stamp[7] == '-' && stamp[13] == ':' && stamp[16] == ':';
-  const std::chrono::year_month_day date(
-      std::chrono::year(static_cast<int>(year.value_or(0))),
-      std::chrono::month(static_cast<unsigned>(month.value_or(0))),
-      std::chrono::day(static_cast<unsigned>(day.value_or(0))));
-  if (!is_stamp || !date.ok() || !(*hour < 24) || !(*minute < 60) || !(*second < 61))
+  const std::chrono::year_month_day date{std::chrono::year(year.value_or(0)),
+                                         std::chrono::month(month.value_or(0)),
+                                         std::chrono::day(day.value_or(0))};
+  if (!is_stamp || !date.ok() || *hour > 23 || *minute > 59 || !(second >= 0 && second < 61))
     throw fault(file, "line " + std::to_string(number) + ": '" + std::string(stamp) +
                           "', expected a time such as 2011-09-26 13:02:25.964389445");
   constexpr double kDay_s = 86400;
   const auto days = std::chrono::sys_days(date).time_since_epoch().count();
-  return kDay_s * static_cast<double>(days) + 3600 * *hour + 60 * *minute + *second;
+  return kDay_s * static_cast<double>(days) + 3600.0 * *hour + 60.0 * *minute + second;
 }
 
 std::vector<double> read_stamps(const fs::path& file) {

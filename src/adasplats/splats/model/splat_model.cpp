@@ -53,7 +53,28 @@ Disk checked_disk(const std::filesystem::path& path, std::size_t row, Vec3d cent
   const double norm = length(normal);
   if (!(std::fabs(norm - 1.0) <= 1e-3))
     fail("normal has length " + std::to_string(norm) + ", expected 1");
-  return {vec_cast<float>(center), static_cast<float>(radius), vec_cast<float>(normal)};
+  const Disk disk = {vec_cast<float>(center), static_cast<float>(radius), vec_cast<float>(normal)};
+  if (!is_finite(disk.center)) fail("center is too far from the others");
+  if (!(disk.radius > 0.0F) || !std::isfinite(disk.radius))
+    fail("radius is no number of single precision");
+  return disk;
+}
+
+/// A whole number from 0 to `most` of each splat.
+template <class T>
+std::vector<T> whole_numbers(const std::filesystem::path& path, const Column& column,
+                             std::size_t rows, int most) {
+  std::vector<T> numbers;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double number = column.as_double(i);
+    if (!(number >= 0 && number <= most) || number != std::trunc(number))
+      throw data_error({path, {}, {}}, "splat " + std::to_string(i) + ", " + column.name +
+                                           ": found " + std::to_string(number) +
+                                           ", expected a whole number from 0 to " +
+                                           std::to_string(most));
+    numbers.push_back(static_cast<T>(number));
+  }
+  return numbers;
 }
 
 std::pair<Vec3d, Vec3d> extent_of(const std::array<const Column*, 3>& columns, std::size_t rows) {
@@ -280,15 +301,9 @@ SplatModel load_model(const std::filesystem::path& path) {
     model.disks.push_back(checked_disk(path, i, vec(position, i) - model.origin, vec(normal, i),
                                        radius.as_double(i)));
   if (const Column* classes = table.find("class"))
-    for (std::size_t i = 0; i < table.rows; ++i)
-      model.classes.push_back(static_cast<std::uint16_t>(classes->as_double(i)));
+    model.classes = whole_numbers<std::uint16_t>(path, *classes, table.rows, 0xffff);
   if (const Column* groups = table.find("group"))
-    for (std::size_t i = 0; i < table.rows; ++i) {
-      const double group = groups->as_double(i);
-      if (!(group >= 0 && group < kSemanticGroups))
-        throw data_error({path, {}, {}}, "splat " + std::to_string(i) + ": unknown group");
-      model.groups.push_back(static_cast<SemanticGroup>(group));
-    }
+    model.groups = whole_numbers<SemanticGroup>(path, *groups, table.rows, kSemanticGroups - 1);
   if (const Column* intensities = table.find("intensity"))
     for (std::size_t i = 0; i < table.rows; ++i)
       model.intensities.push_back(static_cast<float>(intensities->as_double(i)));

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/splats/model/splat_model.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "adasplats/core/temporary_folder_test.h"
+
+namespace adasplats {
+namespace {
+
+/// A splat at (4, 5, z) beside one that is good.
+std::string model_text(const std::string& z, const std::string& radius, const std::string& label,
+                       const std::string& group) {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex 2\n";
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "radius", "class", "group"})
+    text += std::string("property double ") + name + "\n";
+  return text + "end_header\n1 2 3 0 0 1 0.5 40 0\n4 5 " + z + " 1 0 0 " + radius + " " + label +
+         " " + group + "\n";
+}
+
+// Oracle: what a float, 16 bits and the groups can hold.
+TEST(SplatModel, ValuesThatASplatCannotHaveAreErrors) {
+  const TemporaryFolder folder;
+  const auto load = [&](const std::string& text) {
+    return load_model(folder.write("m.ply", text));
+  };
+  const SplatModel good = load(model_text("6", "0.1", "65535", "3"));
+  EXPECT_EQ(good.classes, (std::vector<std::uint16_t>{40, 65535}));
+  EXPECT_EQ(good.groups[1], SemanticGroup::non_surface);
+  const auto refused = [&](const std::string& text, const std::string& says) {
+    expect_error(ErrorKind::data, {"m.ply", "splat 1", says}, [&] { load(text); });
+  };
+  refused(model_text("7777777777777777777777777777777777777777777", "0.1", "50", "1"), "too far");
+  refused(model_text("6", "1e-300", "50", "1"), "radius");
+  refused(model_text("6", "1e300", "50", "1"), "radius");
+  for (const char* label : {"65536", "-1", "1.5", "nan"})
+    refused(model_text("6", "0.1", label, "1"), "class");
+  for (const char* group : {"4", "-1", "0.5", "nan"})
+    refused(model_text("6", "0.1", "50", group), "group");
+}
+
+}  // namespace
+}  // namespace adasplats
