@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
-#include "adasplats/sensors/sensor_overrides.h"
 
 namespace adasplats {
 namespace {
@@ -31,18 +30,6 @@ ScanSettings checked(ScanSettings settings) {
 }
 
 }  // namespace
-
-void check(const ScanSettings& settings) {
-  const LidarModel& sensor = settings.sensor;
-  check_settings(SensorOverrides{sensor.range_noise_m, sensor.min_range_m, {}, sensor.rotation_hz});
-  if (!(sensor.min_range_m < sensor.max_range_m))
-    throw Error(ErrorKind::usage, "min_range must be less than max_range");
-  if (settings.unit_offsets && sensor.range_offsets_m.empty())
-    throw Error(ErrorKind::usage, "`unit_offsets` has no effect: the sensor '" + sensor.name +
-                                      "' has no range_offsets_m");
-  check_beam(settings.beam, settings.sensor);
-  check_weather(settings.weather, settings.sensor);
-}
 
 bool is_ray_drop_file(const std::filesystem::path& choice) {
   return !choice.empty() && choice != "none";

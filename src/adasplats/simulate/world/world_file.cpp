@@ -7,16 +7,14 @@
 #include <algorithm>
 #include <limits>
 #include <locale>
-#include <map>
 #include <numbers>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
+#include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/scene/mesh_model.h"
-#include "adasplats/splats/model/splat_model.h"
 
 namespace adasplats {
 namespace {
@@ -194,29 +192,6 @@ WorldFileObject read_object(const WorldTable& table, std::size_t number) {
   return object;
 }
 
-std::uint16_t class_number(const WorldFile& file, const WorldFileObject& object,
-                           const LabelScheme& scheme) {
-  if (const auto* const number = std::get_if<std::uint16_t>(&*object.class_id)) return *number;
-  const std::string& name = std::get<std::string>(*object.class_id);
-  if (const SemanticClass* const found = scheme.find(name)) return found->id;
-  KeyNames names;
-  for (const SemanticClass& one : scheme.classes()) names.push_back(one.name);
-  throw line_error(
-      file.path, object.line,
-      "the labels '" + scheme.name() + "' have no class '" + name + "'" + suggestion(name, names));
-}
-
-Trajectory trajectory_of(const WorldFile& file, const WorldFileObject& object) {
-  if (object.trajectory.empty()) return {{0.0, object.placement}};
-  Trajectory trajectory = read_trajectory(object.trajectory);
-  if (object.only_during && trajectory.size() < 2)
-    throw line_error(file.path, object.line,
-                     "present is 'during', but " + object.trajectory.string() + " has one pose");
-  for (TimedPose& pose : trajectory)
-    pose.world_from_sensor = pose.world_from_sensor * object.placement;
-  return trajectory;
-}
-
 }  // namespace
 
 WorldFile read_world_file(const std::filesystem::path& path) {
@@ -237,28 +212,6 @@ WorldFile read_world_file(const std::filesystem::path& path) {
     file.objects.push_back(
         read_object(WorldTable(path, *object.as_table(), object_keys), file.objects.size() + 1));
   return file;
-}
-
-void add_objects(World& world, const WorldFile& file, const LabelScheme& scheme) {
-  std::map<std::filesystem::path, std::size_t> geometries;
-  for (const WorldFileObject& object : file.objects) {
-    WorldObject added;
-    added.name = object.name;
-    if (object.class_id) added.class_id = class_number(file, object, scheme);
-    added.instance = object.instance;
-    added.trajectory = trajectory_of(file, object);
-    added.only_during = object.only_during;
-    added.only_scan = object.only_scan;
-    added.scale = object.scale;
-    const auto known = geometries.find(object.geometry);
-    if (known != geometries.end()) {
-      added.geometry = known->second;
-    } else {
-      added.geometry = world.add_geometry(load_place(object.geometry));
-      geometries.emplace(object.geometry, added.geometry);
-    }
-    world.add_object(std::move(added));
-  }
 }
 
 }  // namespace adasplats
