@@ -164,7 +164,8 @@ std::string unknown_lidar_model(const std::string& name, const std::string& or_e
 LidarFile read_lidar(const std::string& name_or_path, int nesting) {
   if (auto known = read_library_lidar(name_or_path)) return std::move(*known);
   const fs::path path(name_or_path);
-  if (!names_a_format(path) && !fs::is_regular_file(path))
+  std::error_code ignored;  // a name that is too long is no file's, either
+  if (!names_a_format(path) && !fs::is_regular_file(path, ignored))
     throw Error(
         ErrorKind::usage,
         unknown_lidar_model(name_or_path,

@@ -153,7 +153,9 @@ std::optional<fs::path> firing_time_file(const fs::path& path) {
   for (const char* word : {"firetime", "Firetime", "FireTime"}) {
     std::string sibling = name;
     sibling.replace(at, 5, word);
-    if (fs::is_regular_file(path.parent_path() / sibling)) return path.parent_path() / sibling;
+    std::error_code ignored;  // a name that is too long is no file's, either
+    if (fs::is_regular_file(path.parent_path() / sibling, ignored))
+      return path.parent_path() / sibling;
   }
   return std::nullopt;
 }

@@ -344,6 +344,8 @@ TEST_F(LidarFiles, ASensorCanBeLikeAnother) {
 }
 
 TEST_F(LidarFiles, WrongLikenessIsRefusedWithItsLine) {
+  // Longer than the name of any file may be.
+  expect_contains(toml_failure("like = \"" + std::string(300, 'x') + "\"\n"), "neither a sensor");
   expect_contains(toml_failure("\nlike = \"velodyne-vlp-17\"\n"), "did you mean 'velodyne-vlp-16'");
   expect_contains(toml_failure("\nlike = \"nothing.toml\"\n"),
                   "bad.toml:2: like is 'nothing.toml'");

@@ -563,7 +563,8 @@ LidarFile read_base(const SensorTable& table, const std::filesystem::path& path,
   if (base.empty()) throw table.error("like", "is neither a sensor nor a file");
   if (auto known = read_library_lidar(base)) return std::move(*known);
   const std::filesystem::path beside = path.parent_path() / base;
-  if (!std::filesystem::is_regular_file(beside)) {
+  std::error_code ignored;  // a name that is too long is no file's, either
+  if (!std::filesystem::is_regular_file(beside, ignored)) {
     throw table.error("like", "is '" + base +
                                   "', which is neither a sensor nor a file beside this" +
                                   did_you_mean(base, lidar_model_names()));

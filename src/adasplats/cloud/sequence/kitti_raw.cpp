@@ -74,8 +74,8 @@ double seconds_of(std::string_view stamp, const fs::path& file, std::size_t numb
   constexpr double kNone = -1;
   const double second =
       stamp.size() < 19 ? kNone : parse_number<double>(stamp.substr(17)).value_or(kNone);
-  const bool is_stamp = year && month && day && hour && minute && stamp[4] == '-' &&
-                        stamp[7] == '-' && stamp[13] == ':' && stamp[16] == ':';
+  const bool is_stamp = stamp.size() >= 19 && year && month && day && hour && minute &&
+                        stamp[4] == '-' && stamp[7] == '-' && stamp[13] == ':' && stamp[16] == ':';
   const std::chrono::year_month_day date{std::chrono::year(year.value_or(0)),
                                          std::chrono::month(month.value_or(0)),
                                          std::chrono::day(day.value_or(0))};
@@ -112,8 +112,9 @@ RigidTransform read_imu_to_velodyne(const fs::path& drive) {
   fs::path file = drive / kName;
   // A trailing slash makes the last part of a path empty.
   const fs::path above = fs::absolute(drive / ".").lexically_normal().parent_path().parent_path();
-  if (!fs::exists(file)) file = above / kName;
-  if (!fs::exists(file))
+  std::error_code ignored;  // what cannot be looked at is not there
+  if (!fs::exists(file, ignored)) file = above / kName;
+  if (!fs::exists(file, ignored))
     throw Error(ErrorKind::no_input, drive.string() + ": " + kName + " is neither in it nor in " +
                                          above.string() +
                                          ", where KITTI's calibration of the day "
