@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "adasplats/cloud/load/file_kind.h"
+#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/moving_boxes.h"
+#include "adasplats/cloud/load/nuscenes_drive.h"
+#include "adasplats/cloud/load/nuscenes_scene.h"
+#include "adasplats/cloud/load/pandaset_drive.h"
+#include "adasplats/cloud/load/scan_stamps.h"
+#include "adasplats/cloud/poses/rotation.h"
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/cloud/sequence/kitti_raw.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/core/executor.h"
+#include "adasplats/core/progress.h"
+#include "fuzz_readers.h"
+
+namespace adasplats::fuzz {
+namespace {
+
+void require_sound(const Trajectory& trajectory) {
+  for (std::size_t k = 0; k < trajectory.size(); ++k) {
+    const TimedPose& pose = trajectory[k];
+    require(std::isfinite(pose.time_s) && is_finite(pose.world_from_sensor.translation),
+            "poses that are finite");
+    require(orthonormality_error(pose.world_from_sensor.rotation) < 1e-2, "rotations");
+    require(k == 0 || pose.time_s > trajectory[k - 1].time_s, "times that ascend");
+  }
+}
+
+void require_sound(const KittiSequence& sequence) {
+  require(sequence.trajectory.size() == sequence.scans.size(), "a pose a scan");
+  require_sound(sequence.trajectory);
+  for (std::size_t k = 0; k < sequence.scans.size(); ++k) {
+    const KittiScan scan = read_kitti_scan(sequence, k);
+    require(scan.intensities.empty() || scan.intensities.size() == scan.positions.size(),
+            "an intensity a point");
+    require(scan.classes.empty() || scan.classes.size() == scan.positions.size(),
+            "a class a point");
+  }
+}
+
+}  // namespace
+
+void read_pose_file(const Input& input) {
+  kind_of_file(input.file);
+  has_times(input.file);
+  trajectory_files(input.file);
+  require_sound(read_trajectory(input.file));
+}
+
+void read_times(const Input& input) {
+  constexpr std::size_t kCount = 3;
+  require(read_scan_times(input.file, kCount).size() == kCount, "as many as were asked for");
+}
+
+void read_boxes(const Input& input) {
+  const MovingBoxes boxes(input.file);
+  boxes.hold(0.5, {1, 2, 3});
+}
+
+void open_kitti(const Input& input) { require_sound(open_kitti_sequence(input.folder)); }
+
+void open_kitti_raw(const Input& input) { require_sound(open_kitti_raw_drive(input.folder)); }
+
+void open_pandaset(const Input& input) {
+  pandaset_class_names(input.folder);
+  FrameDrive drive;
+  drive.folder = input.folder;
+  ProgressSink quiet;
+  require_sound(open_pandaset_drive(drive, Executor(1), quiet));
+}
+
+void open_nuscenes(const Input& input) {
+  nuscenes_class_names(input.folder);
+  const NuscenesScene scene = read_nuscenes_scene(input.folder, "");
+  for (std::size_t k = 0; k < scene.scans.size(); ++k) {
+    const TimedPose& pose = scene.scans[k].pose;
+    require(is_finite(pose.world_from_sensor.translation), "poses that are finite");
+    require(k == 0 || pose.time_s > scene.scans[k - 1].pose.time_s, "times that ascend");
+  }
+}
+
+}  // namespace adasplats::fuzz

@@ -1,0 +1,409 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Writes FOLDER/TARGET/N: what the fuzz targets begin with, made by the writers of the library and
+// by what its tests put together.
+// usage: adasplats_fuzz_seeds FOLDER
+
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "adasplats/io/bags/recording_files_test.h"
+#include "adasplats/io/bags/ros_values.h"
+#include "adasplats/io/base/base64.h"
+#include "adasplats/io/packets/capture_samples_test.h"
+#include "adasplats/io/pickle/data_frame_writer.h"
+#include "adasplats/io/pickle/gzip.h"
+#include "adasplats/io/pickle/pickle_samples_test.h"
+#include "adasplats/io/small_files_test.h"
+#include "adasplats/segment/network/network_text_test.h"
+#include "adasplats/sensors/lidar_library.h"
+#include "adasplats/sensors/lidar_model.h"
+#include "adasplats/sensors/packet_encoder.h"
+#include "adasplats/sensors/ray_drop_model.h"
+
+namespace adasplats::fuzz {
+namespace {
+
+using bags_test::Said;
+using io_test::bytes_of;
+
+/// Seeds of one target after the other.
+class Seeds {
+ public:
+  explicit Seeds(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  void add(const std::string& target, const std::vector<std::string>& contents) {
+    for (const std::string& content : contents) {
+      const auto folder = folder_ / target;
+      std::filesystem::create_directories(folder);
+      io_test::write_bytes(folder / ("seed-" + std::to_string(numbers_[target]++)), content);
+    }
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::map<std::string, int> numbers_;
+};
+
+/// Files as targets with several split them.
+std::string joined(const std::vector<std::string>& files) {
+  std::string all;
+  for (std::size_t k = 0; k < files.size(); ++k) all += (k == 0 ? "" : "\n%%\n") + files[k];
+  return all;
+}
+
+void add_points(Seeds& seeds) {
+  const std::map<std::string, std::string> targets = {{".bin", "kitti-bin"}};
+  for (const io_test::Seed& seed : io_test::small_seeds()) {
+    const std::string extension = std::filesystem::path(seed.name).extension().string();
+    const auto other = targets.find(extension);
+    seeds.add(other == targets.end() ? extension.substr(1) : other->second, {seed.content});
+  }
+  const std::string points = "1 2 3\n4 5.5 -6e3\n";
+  for (const char* target : {"txt", "asc"}) seeds.add(target, {points, "// x y z i\n" + points});
+  std::string rings;
+  for (const float value : {1.0F, 2.0F, 3.0F, 17.0F, 5.0F, -1.0F, 2.0F, 3.0F, 255.0F, 31.0F})
+    rings += bytes_of(value);
+  seeds.add("nuscenes-bin", {rings});
+  seeds.add("kitti-label", {bytes_of(0x00010028U) + bytes_of(30U)});
+  seeds.add("e57-xml",
+            {"<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<e57Root type=\"Structure\" "
+             "xmlns=\"http://www.astm.org/COMMIT/E57/2010-e57-v1.0\"><!-- c --><a b='&lt;1&#65;'>"
+             "<![CDATA[x]]></a><n:v/></e57Root>"});
+  seeds.add("wkt", {"PROJCS[\"a\",GEOGCS[\"b\",UNIT[\"degree\",0.0174]],UNIT[\"US survey foot\","
+                    "0.3048006096],AXIS[\"x\",EAST]]",
+                    "COMPD_CS[\"c\",PROJCS[\"a\",GEOGCS[\"b\"],UNIT[\"metre\",1]],VERT_CS[\"h\","
+                    "UNIT[\"foot\",0.3048]]]",
+                    "GEOGCRS[\"WGS 84\",CS[ellipsoidal,2],ANGLEUNIT[\"degree\",0.0174]]"});
+  const std::vector<FrameColumn> columns = {{"x", std::vector<double>{1.5, -2}},
+                                            {"d", std::vector<std::int64_t>{0, 1}},
+                                            {"s", std::vector<std::string>{"a", "b"}},
+                                            {"b", std::vector<bool>{true, false}}};
+  const std::string frame = pickled_data_frame(columns);
+  seeds.add("pickle",
+            {frame, io_test::from_base64(io_test::kPandasFour),
+             io_test::from_base64(io_test::kPandasFive), io_test::from_base64(io_test::kPandasOld),
+             io_test::from_base64(io_test::kPandasMixed)});
+  seeds.add("gzip", {gzipped(frame), gzipped("a") + gzipped("")});
+}
+
+/// A frame of zstd that holds 256 to 65535 bytes as they are (RFC 8878, 3.1.1).
+std::string zstd_frame(const std::string& bytes) {
+  const auto size = static_cast<std::uint32_t>(bytes.size());
+  return bytes_of(0xFD2FB528U) + "\x60" + bytes_of(static_cast<std::uint16_t>(size - 256)) +
+         bytes_of(size << 3 | 1).substr(0, 3) + bytes;
+}
+
+std::string bag_of_poses(bool cdr) {
+  const std::vector<double> pose = {1, 2, 3, 0, 0, 0, 1}, later = {2, 2, 3, 0, 0, 0.6, 0.8};
+  bags_test::CloudWords words;
+  words.fields = {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"t", 12, 6}};
+  words.width = 2;
+  words.step = 16;
+  words.row_step = 32;
+  words.points.assign(32, '\0');
+  std::vector<Said> said;
+  for (int k = 0; k < 3; ++k) {
+    const std::int64_t time_ns = 1'000'000'000 + 100'000'000LL * k;
+    const auto recorded_ns = static_cast<std::uint64_t>(time_ns);
+    said.push_back(
+        {"/tf", "tf2_msgs/msg/TFMessage", recorded_ns,
+         bags_test::transforms_message(time_ns, "map", "lidar", k == 0 ? pose : later, cdr)});
+    said.push_back({"/odom", "nav_msgs/msg/Odometry", recorded_ns,
+                    bags_test::odometry_message(time_ns, "map", "base", pose, cdr)});
+    words.stamp_ns = time_ns;
+    if (k == 1)
+      said.push_back({"/points", "sensor_msgs/msg/PointCloud2", recorded_ns,
+                      bags_test::cloud_message(words, cdr)});
+  }
+  return bags_test::mcap_of(said);
+}
+
+void add_recordings(Seeds& seeds) {
+  const std::vector<Said> said = {{"/a", "pkg/msg/One", 5, "first"},
+                                  {"/b", "pkg/msg/Two", 7, std::string(30, 'x')},
+                                  {"/a", "pkg/msg/One", 9, ""}};
+  const auto& [zstd, lz4, bz2] = bags_test::kPackedZeros;
+  std::vector<std::string> topics;
+  const std::string records = bags_test::mcap_records(said, topics);
+  seeds.add("mcap", {bags_test::mcap_of(said), bags_test::mcap_file(records),
+                     bags_test::mcap_file(bags_test::mcap_chunk("zstd", zstd.bytes, 1000)),
+                     bags_test::mcap_file(bags_test::mcap_chunk("lz4", lz4.bytes, 1000))});
+  seeds.add("bag", {bags_test::bag_of(said),
+                    bags_test::bag_file(bags_test::bag_chunk("bz2", bz2.bytes, 1000)),
+                    bags_test::bag_file(bags_test::bag_chunk("lz4", lz4.bytes, 1000))});
+  seeds.add("mcap-zstd", {zstd_frame(bags_test::mcap_of(said))});
+  seeds.add("db3", {bags_test::small_db3()});
+  seeds.add("ros2-bag",
+            {joined({"rosbag2_bagfile_information:\n  version: 5\n  relative_file_paths:\n    - "
+                     "a.mcap\n  compression_format: \"\"\n  compression_mode: \"\"\n",
+                     bags_test::mcap_of(said)})});
+  const std::vector<double> pose = {1, 2, 3, 0, 0, 0, 1};
+  bags_test::CloudWords words;
+  words.fields = {{"x", 0, 7}, {"n", 4, 4, 2}, {"t", 8, 8}};
+  words.width = 1;
+  words.step = words.row_step = 16;
+  words.points.assign(16, '\1');
+  for (const bool cdr : {false, true}) {
+    const auto choice = [&](int type) { return std::string(1, static_cast<char>(2 * type + cdr)); };
+    seeds.add("ros-message", {choice(0) + bags_test::transforms_message(5, "map", "car", pose, cdr),
+                              choice(1) + bags_test::odometry_message(5, "map", "car", pose, cdr),
+                              choice(2) + bags_test::pose_message(5, "map", pose, cdr),
+                              choice(4) + bags_test::cloud_message(words, cdr)});
+  }
+  seeds.add("unpack", {std::string(1, '\0') + zstd.bytes, "\1" + lz4.bytes, "\2" + bz2.bytes,
+                       "\3" + zstd.bytes, "\4" + zstd.bytes});
+  seeds.add("clouds", {bag_of_poses(true)});
+}
+
+/// What a sensor sends of things 10 m away.
+std::string packet_of(const char* name) {
+  const PacketSensor sensor = packet_sensor(load_lidar_model(name));
+  std::vector<PacketReturn> returns(sensor.lasers());
+  for (PacketReturn& one : returns)
+    one = {static_cast<std::uint32_t>(10 / sensor.facts.quantum_m), 99};
+  std::vector<PacketColumn> columns;
+  for (std::size_t k = 0; k < sensor.facts.columns; ++k)
+    columns.push_back(
+        {1'700'000'000'000'000'000ULL + 55'000 * k, static_cast<std::uint32_t>(k), 3, returns});
+  return encode_packet(sensor, columns, 0);
+}
+
+void add_packets(Seeds& seeds) {
+  using namespace capture_test;
+  constexpr std::size_t kMost = 2000;
+  int choice = 0;
+  for (const char* name : {"velodyne-vlp-16", "velodyne-hdl-32e", "velodyne-hdl-64e-kitti",
+                           "velodyne-vls-128", "ouster-os1-64", "ouster-os1-128"})
+    seeds.add("packet",
+              {std::string(1, static_cast<char>(choice++)) + packet_of(name).substr(0, kMost)});
+  const std::string whole = udp_text(2368, "0123456789abcdef0123");
+  const std::vector<FrameSample> frames = {
+      {1'000'000'000, ip_frame(udp_text(2368, "one"), 1, 0)},
+      {1'000'100'000, ip_frame(whole.substr(16), 2, 2, 1)},
+      {1'000'200'000, ip_frame(whole.substr(0, 16), 2, 0x2000, 1)}};
+  for (const bool big : {false, true})
+    seeds.add("pcap", {pcap_of(frames, big, big), pcapng_of(frames, big)});
+  const std::string packet = packet_of("velodyne-vlp-16");
+  std::vector<FrameSample> sent;
+  for (std::uint16_t k = 0; k < 2; ++k)
+    sent.push_back(
+        {1'700'000'000'000'000'000ULL + 1'300'000ULL * k, ip_frame(udp_text(2368, packet), k, 0)});
+  seeds.add("capture", {pcap_of(sent, false, false)});
+}
+
+void add_meshes(Seeds& seeds) {
+  seeds.add("obj",
+            {"# o\nv 0 0 0\nv 1 0 0 1\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf -1/1 -2//2 \\\n-3/1/1 1\n"});
+  const std::string head =
+      "ply\nformat ascii 1.0\ncomment adasplats.labels semantickitti\nelement vertex 3\n"
+      "property float x\nproperty float y\nproperty float z\nelement face 1\n"
+      "property list uchar int vertex_indices\nproperty ushort class\nend_header\n";
+  seeds.add("mesh-ply", {head + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 40\n"});
+  std::string bytes;
+  for (const float value : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 2.F, 0.F, 0.F, 0.F, 3.F})
+    bytes += bytes_of(value);
+  bytes += std::string("\0\1\2\0\3\1", 6);
+  const std::string json =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"children":[1],)"
+      R"("scale":[1,2,1]},{"mesh":0,"translation":[1,2,3],"rotation":[0,0,0,1]}],"meshes":)"
+      R"([{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":4}]}],"accessors":)"
+      R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,)"
+      R"("componentType":5121,"count":6,"type":"SCALAR"}],"bufferViews":[{"buffer":0,)"
+      R"("byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":6}],"buffers":)"
+      R"([{"byteLength":54)";
+  seeds.add("gltf", {json + R"(,"uri":"data:application/octet-stream;base64,)" + to_base64(bytes) +
+                         R"("}]})",
+                     joined({json + R"(,"uri":"b.bin"}]})", bytes})});
+  std::string text = json + "}]}";
+  while (text.size() % 4 != 0) text += ' ';
+  bytes.resize(56);
+  const auto chunk = [](const std::string& content, std::uint32_t type) {
+    return bytes_of(static_cast<std::uint32_t>(content.size())) + bytes_of(type) + content;
+  };
+  const std::string chunks = chunk(text, 0x4e4f534a) + chunk(bytes, 0x004e4942);
+  seeds.add("glb", {"glTF" + bytes_of(2U) +
+                    bytes_of(static_cast<std::uint32_t>(12 + chunks.size())) + chunks});
+}
+
+void add_places(Seeds& seeds) {
+  add_meshes(seeds);
+  const std::string splats =
+      "ply\nformat ascii 1.0\ncomment adasplats.splats 1\ncomment adasplats.labels semantickitti\n"
+      "comment adasplats.method ours\ncomment adasplats.response_ranges_m 1 10\n"
+      "comment adasplats.response_range_gains 1 0.5\ncomment adasplats.response_cosines 0 1\n"
+      "comment adasplats.response_cosine_gains 0.5 1\n"
+      "comment adasplats.calibration_range_offsets_m 0.01 -0.01\n"
+      "comment adasplats.calibration_elevation_offsets_rad 0 0\n"
+      "comment adasplats.calibration_mount 0 0 0.01 0 0 0.1\n"
+      "comment adasplats.calibration_smooth_s 1\n"
+      "comment adasplats.calibration_pose 1.5 0 0 0 0 0 0.01 0 0 0\n"
+      "element vertex 2\nproperty double x\n"
+      "property double y\nproperty double z\nproperty float nx\nproperty float ny\n"
+      "property float nz\nproperty float radius\nproperty ushort class\nproperty uchar group\n"
+      "property float intensity\nend_header\n";
+  seeds.add("splats", {splats + "1 2 3 0 0 1 0.5 40 0 0.25\n4 5 6 1 0 0 0.1 50 1 0.5\n"});
+  seeds.add("world",
+            {joined({"[[object]]\ngeometry = \"car.ply\"\nclass = \"car\"\ninstance = 7\n"
+                     "position = [1, -3.5, 0]\nyaw_deg = 90\nscale = 2\ntrajectory = \"car.ply\"\n"
+                     "present = \"during\"\nscan = 3\nname = \"t\"\n",
+                     "ply"})});
+  seeds.add("network",
+            {network_test::pole_network().text(), network_test::pole_network_of_8_bits().text(),
+             network_test::network_of_all_layers().text()});
+}
+
+void add_poses(Seeds& seeds) {
+  const std::string rows = "1 0 0 1 0 1 0 2 0 0 1 3\n1 0 0 2 0 1 0 2 0 0 1 3\n";
+  const std::string calibration = "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n";
+  seeds.add("poses-kitti", {rows, joined({rows, calibration, "0\n0.1\n"})});
+  seeds.add("poses-csv",
+            {"time,x,y,z,qw,qx,qy,qz\n1,0,0,0,1,0,0,0\n2,1,0,0,0.8,0,0,0.6\n",
+             "#timestamp [ns]; p_RS_R_x [m]; p_RS_R_y [m]; p_RS_R_z [m]; q_RS_w []; q_RS_x []; "
+             "q_RS_y []; q_RS_z []\n1000;0;0;0;1;0;0;0\n",
+             "secs nsecs x y z qx qy qz qw\n1 5 0 0 0 0 0 0 1\n"});
+  seeds.add("poses-tum", {"1 0 0 0 0 0 0 1\n1.5 1 0 0 0 0 0.6 0.8\n"});
+  seeds.add("scan-times", {"0\n0.1\n0.2\n"});
+  seeds.add("boxes", {"time,id,stationary,x,y,z,size_x,size_y,size_z,yaw\n0,1,0,1,2,3,4,2,1.5,0.1\n"
+                      "1,1,0,2,2,3,4,2,1.5,3.1\n0.5,2,1,0,0,0,1,1,1,0\n"});
+  std::string scan;
+  for (const float value : {1.0F, 2.0F, 3.0F, 0.5F, -1.0F, 2.0F, 3.0F, 0.25F})
+    scan += bytes_of(value);
+  seeds.add("kitti", {joined({rows.substr(0, rows.find('\n')), calibration, "0\n", scan,
+                              bytes_of(40U) + bytes_of(0x0001000AU)})});
+}
+
+void add_drives(Seeds& seeds) {
+  const std::string day = "2011-09-26 13:02:";
+  seeds.add(
+      "kitti-raw",
+      {joined({"R: 1 0 0 0 1 0 0 0 1\nT: -0.8 0.3 -0.8\n",
+               day + "20.000000000\n" + day + "20.100000000\n", "5 1 -1 0.25\n6.5 0 0 0\n",
+               day + "20.05\n" + day + "20.09\n" + day + "20.15\n", "49 8.4 115.5 0 0 0.1 -1\n",
+               "49 8.40001 115.5 0 0 0.11\n", "49 8.40002 115.5 0 0 0.12\n"})});
+  const std::vector<FrameColumn> points = {
+      {"x", std::vector<double>{1.5, -2, 3}},       {"y", std::vector<double>{0, 1, 2}},
+      {"z", std::vector<double>{0, 1, 0.5}},        {"i", std::vector<double>{5, 6, 7}},
+      {"t", std::vector<double>{0.01, 0.02, 0.03}}, {"d", std::vector<std::int64_t>{0, 1, 0}}};
+  const std::vector<FrameColumn> classes = {{"class", std::vector<std::int64_t>{7, 8, 7}}};
+  seeds.add("pandaset",
+            {joined({R"([{"position":{"x":1,"y":2,"z":3},"heading":{"w":1,"x":0,"y":0,"z":0}}])",
+                     "[0.05]", gzipped(pickled_data_frame(points)), R"({"7":"Road","8":"Car"})",
+                     gzipped(pickled_data_frame(classes))})});
+  const std::string pose = R"("rotation":[1,0,0,0],"translation":[1,2,3]}])";
+  seeds.add(
+      "nuscenes",
+      {joined({R"([{"token":"A","name":"scene-0001"}])", R"([{"token":"s","scene_token":"A"}])",
+               R"([{"token":"d","sample_token":"s","ego_pose_token":"e",)"
+               R"("calibrated_sensor_token":"c","timestamp":1500000000000000,"is_key_frame":true,)"
+               R"("filename":"samples/LIDAR_TOP/0.pcd.bin"}])",
+               R"([{"token":"l","channel":"LIDAR_TOP"}])",
+               R"([{"token":"c","sensor_token":"l",)" + pose, R"([{"token":"e",)" + pose,
+               R"([{"sample_data_token":"d","filename":"lidarseg/0.bin"}])",
+               R"([{"name":"noise","index":0}])"})});
+}
+
+void add_settings(Seeds& seeds) {
+  for (const LibraryLidar& lidar : lidar_library())
+    if (lidar.toml.size() < 1500) seeds.add("sensor-toml", {std::string(lidar.toml)});
+  seeds.add("sensor-toml",
+            {"like = \"velodyne-vlp-16\"\nname = \"u\"\nrange_offsets_m = [0.01, -0.01]\n"
+             "rotation_hz = 20\n[body]\ncells = [[0, -10, 50, 1200, 3]]\n[drop]\n"
+             "usual_reflectance = 0.3\nweights = [0, 0, 0, 0, 0, 0, 0, 0]\n"});
+  seeds.add(
+      "sensor-json",
+      {R"({"beam_altitude_angles":[10,-10.5],"beam_azimuth_angles":[3,-1],"lidar_mode":)"
+       R"("512x20","lidar_origin_to_beam_origin_mm":15,"lidar_to_sensor_transform":)"
+       R"([-1,0,0,0,0,-1,0,0,0,0,1,36,0,0,0,1],"prod_line":"OS-0-128","prod_sn":"7"})",
+       R"({"beam_intrinsics":{"beam_altitude_angles":[10,-10.5],"beam_azimuth_angles":[3,-1],)"
+       R"("beam_to_lidar_transform":[1,0,0,15,0,1,0,0,0,0,1,0,0,0,0,1]},"config_params":)"
+       R"({"lidar_mode":"512x20","udp_profile_lidar":"RNG19_RFL8_SIG16_NIR16_DUAL"},)"
+       R"("sensor_info":{"prod_line":"OS-0-128"}})"});
+  seeds.add("sensor-yaml",
+            {"# mine\nlasers:\n- {dist_correction: 1.5, laser_id: 0, rot_correction: 0.1,\n"
+             "  vert_correction: -0.2, vert_offset_correction: 0.19}\n- laser_id: 1\n"
+             "  rot_correction: -0.05\n  vert_correction: 0.03 # up\nnum_lasers: 2\n"
+             "distance_resolution: 0.002\n"});
+  seeds.add("sensor-xml",
+            {"<?xml version=\"1.0\"?>\n<boost_serialization><DB><distLSB_>0.2</distLSB_>"
+             "<enabled_><item>1</item><item>1</item></enabled_>"
+             "<points_><item><px><id_>0</id_><rotCorrection_>-5.3</rotCorrection_>"
+             "<vertCorrection_>-7.1</vertCorrection_><distCorrection_>111</distCorrection_>"
+             "<vertOffsetCorrection_>19.7</vertOffsetCorrection_>"
+             "<horizOffsetCorrection_>2.6</horizOffsetCorrection_></px></item></points_></DB>"
+             "</boost_serialization>"});
+  const std::string angles = "Channel,Elevation,Azimuth\r\n1,5,-1.5\r\n2,-3,0\r\n3,0,2\r\n";
+  seeds.add(
+      "sensor-csv",
+      {angles, joined({angles, "Channel,fire time(us)\n3,-1\n1,-50\n2,-10.5\n"}),
+       joined(
+           {angles, "Operational State,0,0,2\nAzimuth State,0,1,0\n1,-,18,46\n2,6,-,6\n3,2,2,2\n"}),
+       "azimuth_deg,elevation_deg,time_s,ring\n0,1,0,0\n90,-1,0.01,1\n"});
+  RayDropModel drop;
+  drop.fitted_to = "s";
+  drop.edge_runs = {0.5, 0.25};
+  drop.blocked = {{0.1F, -1.0F, 1.5F}};
+  seeds.add("ray-drop", {ray_drop_toml(drop)});
+  seeds.add("labels",
+            {"name = \"mine\"\n[[class]]\nid = 1\nname = \"pole\"\ngroup = \"linear\"\n"
+             "mobility = \"movable\"\nrgb = [255, 240, 150]\n[[class]]\nid = 2\nname = \"r\"\n"
+             "group = \"ground\"\n"});
+  seeds.add("class-map", {"# c\nroad = 40 0 street\npole = 80\nunlabeled = 0 none\n"});
+}
+
+/// A masked frame, as browsers send them (RFC 6455, 5.2).
+std::string frame(int first_byte, const std::string& payload) {
+  std::string bytes = {static_cast<char>(first_byte), static_cast<char>(0x80 | payload.size())};
+  const std::string mask = "abcd";
+  bytes += mask;
+  for (std::size_t k = 0; k < payload.size(); ++k)
+    bytes += static_cast<char>(payload[k] ^ mask[k % 4]);
+  return bytes;
+}
+
+void add_server(Seeds& seeds) {
+  const std::string host = " HTTP/1.1\r\nHost: localhost:8123\r\n";
+  seeds.add("http",
+            {"GET /t/" + host + "\r\n", "GET /t/" + host + "\r\nHEAD /t/a%20b?q" + host + "\r\n",
+             "GET /t/throw" + host + "Connection: close\r\n\r\n",
+             "GET /t/live" + host +
+                 "Upgrade: websocket\r\nConnection: Upgrade\r\nOrigin: http://localhost:8123\r\n"
+                 "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n",
+             "POST /t/" + host + "Content-Length: 3\r\n\r\nabc"});
+  seeds.add("websocket", {frame(0x81, "{}"), frame(0x01, "a") + frame(0x80, "b") + frame(0x89, "p"),
+                          frame(0x82, "x"), frame(0x88, std::string("\x03\xe8") + "bye"),
+                          frame(0x81, "ok") + frame(0x88, "")});
+  seeds.add("request", {"/t/a%20b?q\nx", "localhost:8123\n", "http://[::1]:8123\n[::1]:8123",
+                        "192.168.1.2:8123\n"});
+  seeds.add(
+      "live-message",
+      {R"({"type":"pose","pose":[1,2,3,0,0,0,1],"velocity_m_s":[4,5,6],"yaw_rate_rad_s":0.5})",
+       R"({"type":"run","on":true})", R"({"type":"ready"})",
+       R"({"type":"pick","id":77,"origin":[0,0,1],"direction":[0,0,-2]})",
+       R"({"type":"sensor","name":"velodyne-vlp-16","settings":{"noise":false,)"
+       R"("max_range_m":40.5,"sub_rays":7,"returns":2,"rolling_shutter":true,)"
+       R"("fog_visibility_m":150,"rain_mm_h":0}})"});
+}
+
+}  // namespace
+}  // namespace adasplats::fuzz
+
+int main(int count, char** words) {
+  if (count != 2) {
+    std::cerr << "usage: adasplats_fuzz_seeds FOLDER\n";
+    return 64;
+  }
+  namespace fuzz = adasplats::fuzz;
+  fuzz::Seeds seeds(words[1]);
+  fuzz::add_points(seeds);
+  fuzz::add_recordings(seeds);
+  fuzz::add_packets(seeds);
+  fuzz::add_places(seeds);
+  fuzz::add_poses(seeds);
+  fuzz::add_drives(seeds);
+  fuzz::add_settings(seeds);
+  fuzz::add_server(seeds);
+}

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "adasplats/scene/gltf.h"
+#include "adasplats/scene/mesh_model.h"
+#include "adasplats/segment/network/network.h"
+#include "adasplats/simulate/world/world_file.h"
+#include "adasplats/splats/model/splat_model.h"
+#include "fuzz_readers.h"
+
+namespace adasplats::fuzz {
+
+void read_mesh(const Input& input) {
+  if (!is_mesh_file(input.file)) return;
+  const MeshModel model = load_mesh(input.file);
+  for (const auto& triangle : model.mesh.triangles)
+    for (const std::uint32_t index : triangle)
+      require(index < model.mesh.vertices.size(), "vertices that are there");
+  for (const Vec3f& vertex : model.mesh.vertices)
+    require(is_finite(vertex), "vertices that are finite");
+}
+
+void read_gltf(const Input& input) {
+  gltf_buffer_files(input.file);
+  require_sound(read_gltf_mesh(input.file));
+}
+
+void read_splat_model(const Input& input) {
+  const SplatModel model = load_model(input.file);
+  require(model.classes.empty() || model.classes.size() == model.size(), "a class a splat");
+  require(model.groups.empty() || model.groups.size() == model.size(), "a group a splat");
+  require(model.intensities.empty() || model.intensities.size() == model.size(),
+          "an intensity a splat");
+  for (const Disk& disk : model.disks)
+    require(is_finite(disk.center) && disk.radius > 0 && std::isfinite(disk.radius),
+            "disks that can be");
+}
+
+void read_world(const Input& input) {
+  for (const WorldFileObject& object : read_world_file(input.file).objects)
+    require(object.scale > 0 && is_finite(object.placement.translation), "objects that can be");
+}
+
+void read_network_bytes(const Input& input) {
+  const Network network = parse_network(input.bytes, "a.network");
+  for (const Weights& weights : network.weights)
+    require(weights.values.size() == weights.rows * weights.columns, "a value an element");
+  for (const Layer& layer : network.layers)
+    require(layer.input < network.values && layer.output < network.values, "values that are there");
+}
+
+}  // namespace adasplats::fuzz

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "adasplats/cloud/load/file_kind.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/base/wkt_units.h"
+#include "adasplats/io/e57/e57_file_test.h"
+#include "adasplats/io/e57/xml.h"
+#include "adasplats/io/pickle/data_frame.h"
+#include "adasplats/io/pickle/gzip.h"
+#include "adasplats/io/ply/ply.h"
+#include "fuzz_readers.h"
+
+namespace adasplats::fuzz {
+
+void require_sound(const Table& table, std::size_t input_bytes) {
+  for (const Column& column : table.columns)
+    require(column.size() == table.rows, "columns as long as the table");
+  require(table.rows <= 88 * input_bytes, "no more rows than the input has room for");
+}
+
+void require_sound(const MeshTable& mesh) {
+  for (const Table* const table : {&mesh.vertices, &mesh.faces})
+    for (const Column& column : table->columns)
+      require(column.size() == table->rows, "columns as long as the table");
+  require(mesh.triangle_vertices.size() == 3 * mesh.faces.rows, "three vertices a triangle");
+  for (const std::uint32_t index : mesh.triangle_vertices)
+    require(index < mesh.vertices.rows, "vertices that are there");
+}
+
+void read_point_file(const Input& input) {
+  require_sound(read_points(input.file, {.salvage = input.bytes.size() % 2 == 0}),
+                input.bytes.size());
+}
+
+void read_laz_file(const Input& input) {
+  const Table table = read_points(input.file, {.salvage = input.bytes.size() % 2 == 0});
+  for (const Column& column : table.columns)  // points that repeat take no byte
+    require(column.size() == table.rows, "columns as long as the table");
+}
+
+void read_ply_file(const Input& input) {
+  kind_of_file(input.file);
+  if (ply_has_faces(input.file)) require_sound(read_ply_mesh(input.file));
+  read_point_file(input);
+}
+
+/// Behind the checksums of pages, too, which tell nearly all that is broken.
+void read_e57_file(const Input& input) {
+  try {
+    read_point_file(input);
+    return;
+  } catch (const Error&) {
+  }
+  const std::string sealed = io_test::sealed_e57(std::string(input.bytes));
+  io_test::write_bytes(input.file, sealed);
+  require_sound(read_points(input.file), sealed.size());
+}
+
+void read_e57_xml(const Input& input) { parse_xml("a.xml", input.bytes); }
+
+void read_wkt(const Input& input) {
+  foreign_units_of_wkt(input.bytes);
+  geographic_system_of_wkt(input.bytes);
+}
+
+void read_text_file(const Input& input) {
+  kind_of_file(input.file);
+  read_point_file(input);
+}
+
+void read_pickle(const Input& input) {
+  require_sound(data_frame_of("a.pkl", std::string(input.bytes)), input.bytes.size());
+}
+
+void read_gzip(const Input& input) {
+  constexpr std::size_t kMost = std::size_t{16} << 20;
+  require(gunzipped("a.gz", input.bytes, kMost).size() <= kMost, "no more than was asked for");
+}
+
+void read_label_file(const Input& input) {
+  require(4 * read_kitti_labels(input.file).size() == input.bytes.size(), "four bytes a label");
+}
+
+}  // namespace adasplats::fuzz

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/recipes/segment/output_classes.h"
+#include "adasplats/sensors/lidar_model.h"
+#include "adasplats/sensors/ray_drop_model.h"
+#include "fuzz_readers.h"
+
+namespace adasplats::fuzz {
+
+void read_lidar_file(const Input& input) {
+  const LidarModel model = load_lidar_model(input.file.string());
+  require(model.max_range_m > model.min_range_m && model.rotation_hz > 0, "a sensor that can be");
+  for (const double elevation : model.elevations_rad)
+    require(std::isfinite(elevation), "elevations that are finite");
+}
+
+void read_ray_drop(const Input& input) {
+  for (const double weight : load_ray_drop(input.file).weights)
+    require(std::isfinite(weight), "weights that are finite");
+}
+
+void read_labels(const Input& input) {
+  const LabelScheme scheme = load_label_scheme(input.file.string());
+  for (std::size_t k = 1; k < scheme.classes().size(); ++k)
+    require(scheme.classes()[k].id > scheme.classes()[k - 1].id, "ids that ascend");
+}
+
+void read_classes_of_network(const Input& input) {
+  static const std::vector<std::string> kClasses = {"road", "pole"};
+  require(read_class_map(input.file, kClasses).of_network.size() == kClasses.size(),
+          "an entry a class of the network");
+}
+
+}  // namespace adasplats::fuzz
