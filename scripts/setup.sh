@@ -52,6 +52,9 @@ test  python3-venv         -             likewise
 test  python3-pytest       -             tests of the Python package
 maybe-test clang-format-14 clang-format-14  checks, as this version does
 maybe-test clang-tidy-14   clang-tidy-14 checks, as this version does
+maybe-test clang           clang++       the fuzz targets
+maybe-test libclang-rt-dev -             likewise (libFuzzer, the sanitizers)
+maybe-test llvm            llvm-symbolizer likewise (places of what they find, coverage)
 maybe-test python3-torch   -             the data set of examples/torch_dataset.py, tools/segmentation
 maybe-test libopenvdb-dev  -             IMLS meshes
 maybe-test libopen3d-dev   -             Poisson meshes

@@ -6,13 +6,14 @@
 # "N passed, N failed", where each check and each test program counts once. What skips itself must be
 # in tests/allowed_skips.tsv, and for the reason that stands there; all of it is printed at the end.
 # usage: scripts/test.sh [--help] [CHECK...]
-#   CHECK: names layers scripts format doxygen packages build tidy tests asan install (default: all)
-# The build folders are build/release and build/asan; logs of the checks are in build/test-logs.
+#   CHECK: names layers scripts format doxygen packages build tidy tests asan fuzz install
+#        (default: all)
+# The build folders are build/release, build/asan and build/fuzz; logs of the checks are in build/test-logs.
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 70
-readonly kChecks="names layers scripts format doxygen packages build tidy tests asan install"
+readonly kChecks="names layers scripts format doxygen packages build tidy tests asan fuzz install"
 readonly logs=$root/build/test-logs
 readonly skipped_checks=$logs/skipped_checks.tsv # name, tab, what the check said
 
@@ -26,7 +27,7 @@ failures=()
 only=" ${*:-$kChecks} "
 for word in $only; do
   if [[ " $kChecks " != *" $word "* ]]; then
-    sed -n '5,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+    sed -n '5,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
     exit 64
   fi
 done
@@ -169,6 +170,8 @@ else
     check paths tools/check_paths.py
     check shared-maths-self-test tools/check_shared_maths.py --self-test
     check shared-maths tools/check_shared_maths.py
+    check fuzzers-self-test tools/check_fuzzers.py --self-test
+    check fuzzers tools/check_fuzzers.py
   fi
   wanted scripts && check scripts check_scripts
   wanted format && check format tools/check_format.sh
@@ -187,6 +190,7 @@ else
     check one-definition tools/check_one_definition.py build/asan
     UBSAN_OPTIONS=print_stacktrace=1 run_tests asan build/asan
   fi
+  wanted fuzz && check fuzz scripts/fuzz.sh && sed -n '$s/^/         /p' "$logs/fuzz.log"
   check_skipped
 fi
 
