@@ -64,12 +64,13 @@ std::vector<Column> read_compressed(InputFile& file, const PcdHeader& header) {
       header.points == 0 ? std::vector<std::byte>() : unpack_body(file, header);
   const auto rows = static_cast<std::size_t>(header.points);
   std::vector<Column> columns;
-  const std::byte* block = body.data();
+  std::size_t block = 0;
   for (const PcdField& field : header.fields) {
     for (std::size_t k = 0; k < field.count && !field.is_padding(); ++k) {
       columns.push_back(make_column(field.value_name(k), field.type, rows));
-      gather_values(block + k * field.value_bytes, field.bytes(), field.value_bytes, false, rows,
-                    column_bytes(columns.back()));
+      if (rows == 0) continue;  // there is nothing to point into
+      gather_values(body.data() + block + k * field.value_bytes, field.bytes(), field.value_bytes,
+                    false, rows, column_bytes(columns.back()));
     }
     block += rows * field.bytes();
   }

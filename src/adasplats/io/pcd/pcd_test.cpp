@@ -86,7 +86,12 @@ TEST(Pcd, OldHeadersAndBodiesThatBeginWithANewline) {
 TEST(Pcd, NoPoints) {
   const std::string header = kFields + "WIDTH 0\nHEIGHT 1\nPOINTS 0\n";
   for (const char* encoding : {"ascii", "binary", "binary_compressed"})
-    EXPECT_EQ(read(header + "DATA " + encoding + "\n").rows, 0U);
+    for (const char* body : {"", "x"}) {
+      const Table table = read(header + "DATA " + encoding + "\n" + body);
+      EXPECT_EQ(table.rows, 0U);
+      ASSERT_EQ(table.columns.size(), 4U);
+      for (const Column& column : table.columns) EXPECT_EQ(column.size(), 0U);
+    }
 }
 
 TEST(Pcd, NaNPointsAreKept) {
