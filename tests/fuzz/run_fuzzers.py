@@ -115,13 +115,18 @@ def reached(target):
                     f"-max_len={target.most_bytes}", *folders],
                    check=True, capture_output=True, env=dict(os.environ, LLVM_PROFILE_FILE=profile))
     subprocess.run(["llvm-profdata", "merge", "-sparse", profile, "-o", merged], check=True)
-    sources = [ROOT / "src" / "adasplats" / source for source in target.sources]
     said = subprocess.run(["llvm-cov", "export", "-summary-only", program,
-                           f"-instr-profile={merged}", *sources],
+                           f"-instr-profile={merged}"],
                           check=True, capture_output=True, text=True).stdout
     profile.unlink()
-    total = json.loads(said)["data"][0]["totals"]
-    return tuple((total[kind]["covered"], total[kind]["count"]) for kind in ("lines", "regions"))
+    # Names of files are as the compiler was given them: of some relative to its folder.
+    files = [(pathlib.Path(os.path.normpath(COVERAGE / file["filename"])), file["summary"])
+             for file in json.loads(said)["data"][0]["files"]]
+    sources = [ROOT / "src" / "adasplats" / source for source in target.sources]
+    own = [summary for file, summary in files
+           if any(file == source or source in file.parents for source in sources)]
+    return tuple((sum(summary[kind]["covered"] for summary in own),
+                  sum(summary[kind]["count"] for summary in own)) for kind in ("lines", "regions"))
 
 
 def features_of(control):
@@ -186,6 +191,10 @@ def show(rows):
                         for k, (cell, width) in enumerate(zip(row, widths))))
 
 
+def output_of(*command):
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+
+
 def report(arguments, results, coverage):
     """For bench/results: figures with their commit, machine and command."""
     sys.path.insert(0, str(ROOT / "bench"))
@@ -197,8 +206,12 @@ def report(arguments, results, coverage):
         for kind, (done, there) in zip(("lines", "regions"), coverage.get(result.name, ())):
             entry |= {kind: there, f"{kind}_reached": done}
         targets[result.name] = entry
-    told = {"provenance": provenance.provenance_of(ROOT / "build/release/bin/adasplats"),
-            "seconds": arguments.seconds, "targets": targets}
+    told = provenance.provenance_of(ROOT / "build/release/bin/adasplats")
+    # That program tells the machine; what was fuzzed is these sources as Clang compiled them.
+    told["commit"] = output_of("git", "-C", ROOT, "rev-parse", "HEAD")
+    told["dirty"] = bool(output_of("git", "-C", ROOT, "status", "--porcelain"))
+    told["machine"]["compiler"] = output_of("clang++", "--version").splitlines()[0]
+    told = {"provenance": told, "seconds": arguments.seconds, "targets": targets}
     arguments.json.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
 
 
