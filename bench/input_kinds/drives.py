@@ -54,7 +54,7 @@ class Drives:
         yield "nuScenes scene", "KITTI", self.nuscenes, ["--scene", "scene-0061"]
         yield "PandaSet sequence", "PandaSet", self.pandaset, []
         yield ("LAS with GPS times and a trajectory", "PandaSet", self.timed,
-               ["--trajectory", self.panda / "vehicle_trajectory.csv", "--mount", "0,0,0"])
+               ["--trajectory", self.panda / "vehicle_trajectory.csv", "--mount", "0.019,0.725,1.887"])
         yield "KITTI raw drive", "simulated", lambda: self.simulated("kitti-raw", "*/*_sync"), []
         capture = out / "pcap"
         yield ("PCAP", "simulated", lambda: self.simulated("pcap", "drive.pcap"),

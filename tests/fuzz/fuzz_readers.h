@@ -10,6 +10,7 @@ namespace adasplats::fuzz {
 
 // points.cpp
 void read_point_file(const Input& input);
+void read_copc_file(const Input& input);
 void read_laz_file(const Input& input);
 void read_ply_file(const Input& input);
 void read_e57_file(const Input& input);

@@ -14,6 +14,7 @@
 #include "adasplats/io/bags/recording_files_test.h"
 #include "adasplats/io/bags/ros_values.h"
 #include "adasplats/io/base/base64.h"
+#include "adasplats/io/las/copc_file_test.h"
 #include "adasplats/io/packets/capture_samples_test.h"
 #include "adasplats/io/pickle/data_frame_writer.h"
 #include "adasplats/io/pickle/gzip.h"
@@ -62,6 +63,7 @@ void add_points(Seeds& seeds) {
     const auto other = targets.find(extension);
     seeds.add(other == targets.end() ? extension.substr(1) : other->second, {seed.content});
   }
+  seeds.add("copc", {laz_test::CopcFile().bytes()});
   const std::string points = "1 2 3\n4 5.5 -6e3\n";
   for (const char* target : {"txt", "asc"}) seeds.add(target, {points, "// x y z i\n" + points});
   std::string rings;

@@ -44,6 +44,17 @@ void read_laz_file(const Input& input) {
     require(column.size() == table.rows, "columns as long as the table");
 }
 
+void read_copc_file(const Input& input) {
+  LasReadOptions options;
+  options.selection.level = static_cast<std::uint32_t>(input.bytes.size() % 4);
+  const LasFacts facts = read_las_facts(input.file);
+  if (input.bytes.size() % 8 < 4)
+    options.selection.extent = {facts.box_min, 0.5 * (facts.box_min + facts.box_max)};
+  const Table table = read_points(input.file, options);
+  for (const Column& column : table.columns)
+    require(column.size() == table.rows, "columns as long as the table");
+}
+
 void read_ply_file(const Input& input) {
   kind_of_file(input.file);
   if (ply_has_faces(input.file)) require_sound(read_ply_mesh(input.file));
@@ -67,6 +78,10 @@ void read_e57_xml(const Input& input) { parse_xml("a.xml", input.bytes); }
 void read_wkt(const Input& input) {
   foreign_units_of_wkt(input.bytes);
   geographic_system_of_wkt(input.bytes);
+  const Crs crs = crs_of_wkt(input.bytes);
+  require(match(crs, crs) == CrsMatch::same, "a system is itself");
+  require(crs_of_comments("a.ply", crs_comments(crs)).name() == crs.name(),
+          "comments say the system");
 }
 
 void read_text_file(const Input& input) {
