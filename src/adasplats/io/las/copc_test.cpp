@@ -12,6 +12,7 @@
 #include "adasplats/io/base/mutator_test.h"
 #include "adasplats/io/base/test_files.h"
 #include "adasplats/io/las/copc_file_test.h"
+#include "adasplats/io/laz/laz_samples_test.h"
 
 namespace adasplats {
 namespace {
@@ -24,6 +25,8 @@ using io_test::TemporaryFolder;
 using io_test::values_of;
 using laz_test::CopcFile;
 using laz_test::entry;
+using laz_test::kLazSamples;
+using laz_test::laz_file;
 
 Table read(const std::string& bytes, const PointSelection& selection = {},
            const Executor* executor = nullptr) {
