@@ -260,7 +260,12 @@ INPUT_KINDS = [("written by", "written_by", "text"), ("other reader", "other_rea
                ("points", "points", "0,000"), ("largest difference", "shown", "text")]
 INPUT_DRIVES = [("scans of", "scans_of", "text"), ("held-out beams", "rays", "0,000"),
                 ("median", "median_m", "0.00 cm"), ("within 10 cm", "within_10cm", "0.0 %"),
-                ("no hit", "no_hit", "0.0 %")]
+                ("no hit", "no_hit", "0.0 %"), ("C2C", "c2c_m", "0.00 cm")]
+LAZ_SPEED = [("points", "points", "0,000"), ("format", "point_format", "0"), *(
+    (title, f"million_points_per_second/{key}", "0.0") for title, key in (
+        ("1 thread", "read_las/1"), ("2 threads", "read_las/2"), ("16 threads", "read_las/16"),
+        ("LASzip, 1 thread", "LASzip/1"), ("unpacking alone, 1 thread", "decoder/1"),
+        ("2 threads", "decoder/2")))]
 THIN_THINGS = [column for column in COMPARISON if column[0] in ("primitives", *THIN)]
 # Name: (the rows' key where the document gives none, columns). A column that no row fills is left
 # out.
@@ -276,7 +281,7 @@ TABLES = {"comparison": ("competitors", COMPARISON), "models": (None, MODELS),
           "realism_statistics": ("rows", REALISM_STATISTICS), "foretold": ("rows", FORETOLD),
           "unfolding": ("rows", UNFOLDING),
           "transfer": ("ways", TRANSFER), "input_kinds": ("kinds", INPUT_KINDS),
-          "input_drives": ("drives", INPUT_DRIVES), "thin": ("competitors", THIN_THINGS)}
+          "input_drives": ("drives", INPUT_DRIVES), "laz": ("files", LAZ_SPEED), "thin": ("competitors", THIN_THINGS)}
 
 
 def rows_of(data, key):
@@ -284,7 +289,7 @@ def rows_of(data, key):
     rows = value_at(data, key)
     if isinstance(rows, dict):
         rows = [{"title": name, **entry} for name, entry in rows.items()]
-    return [(row.get("title", row.get("name")), row) for row in rows or []]
+    return [(row.get("title", row.get("name", row.get("file"))), row) for row in rows or []]
 
 
 def table_of(kind, data, key):

@@ -54,7 +54,8 @@ class Drives:
         yield "nuScenes scene", "KITTI", self.nuscenes, ["--scene", "scene-0061"]
         yield "PandaSet sequence", "PandaSet", self.pandaset, []
         yield ("LAS with GPS times and a trajectory", "PandaSet", self.timed,
-               ["--trajectory", self.panda / "vehicle_trajectory.csv", "--mount", "0.019,0.725,1.887"])
+               ["--trajectory", out / "part.csv", "--mount", "0.019,0.725,1.887"])
+        yield "PTX stations", "KITTI", self.stations, []
         yield "KITTI raw drive", "simulated", lambda: self.simulated("kitti-raw", "*/*_sync"), []
         capture = out / "pcap"
         yield ("PCAP", "simulated", lambda: self.simulated("pcap", "drive.pcap"),
@@ -83,9 +84,21 @@ class Drives:
     def timed(self):
         """Two files, of the even and of the odd frames: points with times have no scans to choose."""
         parts = [recordings.pandaset_frame(file) for file in self.frames()]
+        begin_s, end_s = parts[0][1].min(), parts[-1][1].max()
+        head, *rows = (self.panda / "vehicle_trajectory.csv").read_text(encoding="ascii").split()
+        near = [r for r in rows if begin_s - 0.15 < float(r.split(",")[0]) < end_s + 0.15]
+        (self.out / "part.csv").write_text("\n".join([head, *near]) + "\n", encoding="ascii")
         return tuple(recordings.write_las_with_times(
             *(np.concatenate(p) for p in zip(*parts[first::2])), self.out / name)
             for first, name in enumerate(("even.las", "odd.las")))
+
+    def stations(self):
+        """Every other scan as that of a station; the scans between are on the way (`--at`)."""
+        for k in range(0, SCANS, 2):
+            recordings.write_station(self.kitti, k, self.out / f"station{k}.ptx")
+        judged = recordings.write_station(self.kitti, 5, self.out / "station5.ptx")
+        place = recordings.kitti_poses(self.kitti)[5][:3, 3]
+        return [self.out / f"station{k}.ptx" for k in range(0, SCANS, 2)], judged, place
 
     def simulated(self, form, place):
         """What an HDL-64E measures along a metre a scan of a model of the drive."""
@@ -114,18 +127,36 @@ class Drives:
         """The command line, and what it says of the held-out scans."""
         model, report = self.out / "m.ply", self.out / "held_out.json"
         model.unlink(missing_ok=True)
-        paths, scans = (path, path), (["--scans", f"0:{SCANS}:2"], ["--scans", f"1:{SCANS}:2"])
         if isinstance(path, tuple):
-            paths, scans = path, ([], [])
-        first = ["model", paths[0], *options, *scans[0], "-o", model]
-        second = ["evaluate", "resimulate", model, paths[1], *options, *scans[1], "--report", report]
-        for words in (first, second):
-            self.run(words)
-        found = json.loads(report.read_text(encoding="utf-8"))
-        line = " && ".join(shlex.join(["adasplats", *map(str, w)]) for w in (first, second))
-        return {"command": line.replace(f"{self.out}/", "").replace(f"{self.panda}/", ""),
-                "rays": found["rays"], "median_m": found["range_error_m"]["median"],
+            return self.judged_by_simulation(path, options, model, report)
+        commands = [["model", path, *options, "--scans", f"0:{SCANS}:2", "-o", model],
+                    ["evaluate", "resimulate", model, path, *options, "--scans", f"1:{SCANS}:2",
+                     "--report", report]]
+        line, found = self.measured(commands, report)
+        return {"command": line, "rays": found["rays"],
+                "median_m": found["range_error_m"]["median"],
                 "within_10cm": found["within"]["0.10"], "no_hit": found["no_hit"]}
+
+    def judged_by_simulation(self, paths, options, model, report):
+        """Points whose beams nobody can tell: scans that are simulated along the way, against the
+        other file's points."""
+        scans = self.out / f"simulated{len(paths)}"
+        if len(paths) == 3:  # stations
+            inputs = paths[0]
+            way = ["--at", ",".join(f"{v:.3f}" for v in paths[2]), "--sensor",
+                   "velodyne-hdl-64e-kitti"]
+        else:
+            inputs, way = [paths[0]], [*options, "--sensor", "hesai-pandar64"]
+        commands = [["model", *inputs, *options, "-o", model], ["simulate", model, *way, "-o", scans],
+                    ["evaluate", "c2c", scans / "sequences" / "00", paths[1], "--report", report]]
+        line, found = self.measured(commands, report)
+        return {"command": line, "c2c_m": found["c2c_m"]}
+
+    def measured(self, commands, report):
+        for words in commands:
+            self.run(words)
+        line = " && ".join(shlex.join(["adasplats", *map(str, w)]) for w in commands)
+        return line.replace(f"{self.out}/", ""), json.loads(report.read_text(encoding="utf-8"))
 
 
 def main():
@@ -144,13 +175,17 @@ def main():
             continue
         try:
             row = drives.judged(make(), options)
-            print(f"| {kind} | {scans} | {row['rays']:,} | {100 * row['median_m']:.2f} cm | "
-                  f"{row['within_10cm']:.1%} | {row['no_hit']:.1%} |", flush=True)
+            if "rays" in row:
+                print(f"| {kind} | {scans} | {row['rays']:,} | {100 * row['median_m']:.2f} cm | "
+                      f"{row['within_10cm']:.1%} | {row['no_hit']:.1%} |", flush=True)
+            else:
+                print(f"| {kind} | {scans} | C2C {100 * row['c2c_m']:.2f} cm |", flush=True)
         except Exception as error:  # Every kind is tried; what failed is told in its row.
             row = {"error": f"{type(error).__name__}: {error}"}
             print(f"| {kind} | {scans} | {row['error']} |", flush=True)
         rows.append({"name": kind, "scans_of": scans, **row})
-    report = {"drives": rows, "provenance": provenance_of(words.program)}
+    provenance = {**provenance_of(words.program), "command": "drives.py PROGRAM REAL_DATA OUT"}
+    report = {"drives": rows, "provenance": provenance}
     (words.out / "drives.json").write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
     return 1 if any("error" in row for row in rows) else 0
 

@@ -331,7 +331,9 @@ def main():
         rows.append({"name": name, "written_by": writer, "other_reader": reader, **row})
         print("| " + " | ".join((name, writer, reader, *shown(row))) + " |", flush=True)
     good = sum(row["equal"] for row in rows)
-    report = {"kinds": rows, "provenance": provenance_of(words.build / "bin" / "adasplats")}
+    provenance = provenance_of(words.build / "bin" / "adasplats")
+    provenance["command"] = "input_kinds.py BUILD REAL_DATA FORMATS OUT"
+    report = {"kinds": rows, "provenance": provenance}
     (words.out / "input_kinds.json").write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
     print(f"{good} of {len(rows)} kinds are read as their other readers read them, or refused as "
           "wanted")

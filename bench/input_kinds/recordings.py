@@ -78,6 +78,21 @@ def write_ptx(points, path):
     return path
 
 
+def write_station(sequence, scan, path):
+    """A scan as what a scanner measured that stood at its pose."""
+    pose = kitti_poses(sequence)[scan]
+    points = float_rows(sequence / "velodyne" / f"{scan:06d}.bin", 4)
+    with open(path, "w", encoding="ascii") as file:
+        print(len(points), 1, sep="\n", file=file)
+        print(*map(repr, pose[:3, 3].tolist()), file=file)
+        for axis in pose[:3, :3].T:
+            print(*map(repr, axis.tolist()), file=file)
+        for row in pose.T:
+            print(*map(repr, row.tolist()), file=file)
+        np.savetxt(file, np.hstack([points, np.full((len(points), 1), 0.5)]), fmt="%.5f")
+    return path
+
+
 def write_mesh(points, path):
     """A fan of triangles over the first points."""
     import open3d
