@@ -253,6 +253,7 @@ FanDistances fan_distances(const KittiSequence& sequence, std::size_t index, Vec
 bool says_motion_of_sweeps(const Trajectory& poses) {
   constexpr double kMostApart_s = 5 * kRevolution_s;
   std::vector<double> apart_s;
+  apart_s.reserve(poses.size());
   for (std::size_t k = 1; k < poses.size(); ++k)
     apart_s.push_back(poses[k].time_s - poses[k - 1].time_s);
   return !apart_s.empty() && median_of_all(std::move(apart_s)) <= kMostApart_s;
@@ -269,6 +270,7 @@ void find_raw_motions(const KittiSequence& sequence, const std::vector<Vec3d>& s
     beams.raw_motions.clear();
   }
   std::vector<double> lengths_m;
+  lengths_m.reserve(sweeps_m.size());
   for (const Vec3d sweep_m : sweeps_m) lengths_m.push_back(length(sweep_m));
   beams.unknown_sweep_m = median_of_all(std::move(lengths_m));
 }
