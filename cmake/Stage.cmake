@@ -19,8 +19,9 @@ adasplats_host_options(
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   adasplats_host_options(-Wno-psabi)
   if(CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
-    # gcc 13 and 14 see writes past the end in std::vector::insert, for sizes that cannot occur.
-    adasplats_host_options(-Wno-stringop-overflow)
+    # gcc 13 and 14 see writes past the end in std::vector::insert, and vectors of more than all
+    # memory, for sizes that cannot occur.
+    adasplats_host_options(-Wno-stringop-overflow -Wno-alloc-size-larger-than)
   else()
     # gcc 12 sees overlaps in "text" + std::string (its bug 105651).
     adasplats_host_options(-Wno-restrict)

@@ -146,6 +146,15 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual((result.returncode, result.stderr), (0, ""), arguments)
         return result
 
+    def run_warned(self, says, *arguments, **options):
+        """Runs the program, which must succeed with one warning that holds `says`."""
+        result = run(*arguments, **options)
+        self.assertEqual(result.returncode, 0, (arguments, result.stderr))
+        self.assertTrue(result.stderr.startswith("adasplats: warning: "), result.stderr)
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        self.assertIn(says, result.stderr)
+        return result
+
     def run_bad(self, code, *arguments, says=(), **options):
         """Runs the program, which must fail with the code and one line that holds all of `says`."""
         result = run(*arguments, **options)

@@ -81,14 +81,19 @@ class Examples(ProgramTest):
             self.assertIn(name, self.sensors, f"{where}: no such sensor")
 
     def check_command(self, command, where):
-        words = shlex.split(command, comments=True)[1:]
+        words = shlex.split(command, comments=True)
+        if "&&" in words:  # one after the other on a line
+            place = words.index("&&")
+            self.check_command(shlex.join(words[:place]), where)
+            return self.check_command(shlex.join(words[place + 1:]), where)
+        words = words[1:]
         for end in [word for word in (">", "|") if word in words]:
             words = words[:words.index(end)]
         if not words or words[0].startswith("-"):
-            return
+            return None
         subcommand = subcommand_of(words)
         if words[0] in GROUPS and (len(words) == 1 or words[1].startswith("-")):
-            return  # a sentence about all of them
+            return None  # a sentence about all of them
         self.assertIn(subcommand, SUBCOMMANDS + ABOUT, f"{where}: {command}")
         options = self.options_of(subcommand)
         rest = words[len(subcommand):]
@@ -106,6 +111,7 @@ class Examples(ProgramTest):
         if subcommand == ["sensors"]:
             for name in [word for word in rest if not word.startswith("-")][:1]:
                 self.check_sensor(name, f"{where}: {command}")
+        return None
 
     def test_of_every_help_text(self):
         checked = 0
@@ -131,6 +137,7 @@ class Examples(ProgramTest):
     def test_what_is_wrong_is_found(self):
         for command in ["adasplats simulate m.ply --sensor vlp-16", "adasplats sensors vlp-16",
                         "adasplats simulate m.ply --formt npy", "adasplats simulat m.ply",
+                        "adasplats info m.ply && adasplats simulate m.ply --formt npy",
                         "adasplats simulate m.ply --format nyp -o scans"]:
             with self.assertRaises(AssertionError, msg=command):
                 self.check_command(command, "test")

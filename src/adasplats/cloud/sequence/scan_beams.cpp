@@ -266,8 +266,10 @@ void find_raw_motions(const KittiSequence& sequence, const std::vector<Vec3d>& s
   if (says_motion_of_sweeps(sequence.trajectory)) {
     set_raw_motions(beams, sequence.trajectory,
                     with_motion_continued(sequence.trajectory, kRevolution_s));
-    if (weigh_sweeps(sequence, beams, executor).confirms()) return;
+    const SweepEvidence evidence = weigh_sweeps(sequence, beams, executor);
+    if (evidence.confirms()) return;
     beams.raw_motions.clear();
+    if (evidence.at_rest()) return;
   }
   std::vector<double> lengths_m;
   lengths_m.reserve(sweeps_m.size());

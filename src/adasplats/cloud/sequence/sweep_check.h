@@ -14,9 +14,13 @@ struct SweepEvidence {
   std::size_t points = 0;  ///< on walls, of the later scans of the pairs
   double still_m = 0;  ///< median distance from the earlier scan's walls, were the sensor at rest
   double moved_m = 0;  ///< with the motion during each revolution taken out
+  double reversed_m = 0;  ///< with its reverse
 
-  /// Whether the motion that was taken out is seen to be the right one.
+  /// Whether the motion is seen to be the right one. Poses of another place on the vehicle can make
+  /// it seem so, too, but not bring walls onto each other.
   bool confirms() const;
+  /// Whether the sensor is seen to have been at rest during each revolution, as simulated ones can.
+  bool at_rest() const;
 };
 
 /// Judges the motions (ScanBeams::raw_motions) of up to four pairs of scans 3 to 15 m apart. Walls

@@ -47,7 +47,8 @@ double distance_to_facade_m(double along_m, double azimuth_rad) {
   return far_m;
 }
 
-/// What scan `scan` has in its file; `sense` -1: of a sensor that turns the other way.
+/// What scan `scan` has in its file; `sense` -1: of a sensor that turns the other way;
+/// 0: of one that is at rest during each revolution.
 std::vector<float> scan_of(std::size_t scan, double sense) {
   constexpr std::size_t kFirings = 1000;
   std::vector<float> values;
@@ -133,6 +134,15 @@ TEST(SweepCheck, WhatPointsContradictIsNotTakenOut) {
   EXPECT_NEAR(beams.unknown_sweep_m, kSpeed_mps * kRevolution_s, 1e-3);
 }
 
+TEST(SweepCheck, ScansOfASensorAtRestStayAsTheyAre) {
+  const TemporaryFolder folder;
+  const KittiSequence sequence = write_drive(folder, 0);
+  const ScanBeams beams = recognize_beams(sequence, Executor(2));
+  EXPECT_TRUE(beams.raw_motions.empty());
+  EXPECT_EQ(beams.unknown_sweep_m, 0);  // nothing to warn of
+  EXPECT_LT(from_facades_m(loaded(folder)), 1e-3);
+}
+
 TEST(SweepCheck, EvidenceHasTheFigures) {
   const TemporaryFolder folder;
   const KittiSequence sequence = write_drive(folder, 1);
@@ -141,10 +151,15 @@ TEST(SweepCheck, EvidenceHasTheFigures) {
   EXPECT_TRUE(evidence.confirms());
   EXPECT_GT(evidence.points, 1000U);
   EXPECT_LT(evidence.moved_m, 0.5 * evidence.still_m);
+  EXPECT_GT(evidence.reversed_m, evidence.still_m);
+  EXPECT_FALSE(evidence.at_rest());
   for (SweepMotion& motion : beams.raw_motions)
     std::swap(motion.frame_from_begin, motion.frame_from_end);
   EXPECT_FALSE(weigh_sweeps(sequence, beams, Executor(2)).confirms());
   EXPECT_FALSE(SweepEvidence{}.confirms());
+  EXPECT_FALSE(SweepEvidence{}.at_rest());
+  // A wrong mount, too, is mended by some of the motion.
+  EXPECT_FALSE((SweepEvidence{100000, 0.125, 0.107, 0.155}.confirms()));
 }
 
 // Poses too far apart say too little of a tenth of a second.
