@@ -58,11 +58,10 @@ py::array render(SceneObject& object, const py::kwargs& kwargs) {
     const py::gil_scoped_release released;
     const auto lock = object.lock();
     const ModelScene& scene = *object.scene;
-    const auto [low, high] = scene.middle_box();
     ImageOptions options;
     options.color = arguments.color.value_or(scene.default_color());
     options.samples_per_axis = arguments.samples;
-    image = scene.render(camera_of(arguments.view, low, high), options);
+    image = scene.render(camera_of(arguments.view, scene.shown_part()), options);
   }
   return owned_array(std::move(image.pixels), {image.height, image.width, 3});
 }

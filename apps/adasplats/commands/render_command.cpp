@@ -47,15 +47,15 @@ class RenderCommand final : public Command {
          {"semantic", ImageColor::semantic},
          {"normal", ImageColor::normal},
          {"intensity", ImageColor::intensity},
-         {"range", ImageColor::range}},
-        "What colours show; semantic where the model has it, else shading; points: else "
-        "intensity or height");
+         {"range", ImageColor::range},
+         {"height", ImageColor::height}},
+        "What colours show; without it classes where most have one, else intensity, else height");
     app.add_option("--width", job_.view.width, "Pixels, of one model's part")
         ->capture_default_str();
     app.add_option("--height", job_.view.height, "Pixels")->capture_default_str();
     add_settings(app, job_);
-    app.add_option("--fov", job_.view.horizontal_fov_deg, "Horizontal field of view, degrees")
-        ->capture_default_str();
+    app.add_option("--fov", job_.view.horizontal_fov_deg,
+                   "Horizontal field of view, degrees; 45 from afar, else 70");
     add_vector(app, "--eye", job_.view.eye, "Where the camera is, world coordinates");
     add_vector(app, "--target", job_.view.target, "What it looks at; the middle of the model");
     app.add_flag("--birds-eye", job_.view.birds_eye, "From straight above, north up");

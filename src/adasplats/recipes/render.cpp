@@ -16,6 +16,7 @@
 #include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/simulate/image/class_colors.h"
 #include "adasplats/simulate/image/point_colors.h"
 
 namespace adasplats {
@@ -48,9 +49,9 @@ Subject load_subject(const RenderJob& job, const std::filesystem::path& input, S
   return subject;
 }
 
-std::pair<Vec3d, Vec3d> middle_box_of(const Subject& subject) {
-  return subject.model ? subject.model->middle_box()
-                       : middle_box(subject.cloud.positions, subject.cloud.origin);
+ShownPart shown_part_of(const Subject& subject) {
+  return subject.model ? subject.model->shown_part()
+                       : shown_part(subject.cloud.positions, subject.cloud.origin);
 }
 
 /// Copies `part` into `picture` at column `left`.
@@ -88,8 +89,12 @@ Image image_of(const Subject& subject, const Camera& camera, const RenderJob& jo
                Session& session) {
   if (subject.model) return image_of(*subject.model, camera, job);
   const PointCloud& cloud = subject.cloud;
-  const std::vector<Rgb> colors = point_colors(cloud, subject.labels ? &*subject.labels : nullptr,
-                                               job.color, camera.world_from_camera.translation);
+  const LabelScheme* labels = subject.labels ? &*subject.labels : nullptr;
+  const ImageColor color = job.color.value_or(default_color(cloud, labels));
+  std::vector<Rgb> colors =
+      point_colors(cloud, labels, color, camera.world_from_camera.translation);
+  if (color == ImageColor::semantic)
+    std::transform(colors.begin(), colors.end(), colors.begin(), muted);
   return draw_points(cloud.positions, cloud.origin, colors, camera, {}, session.executor);
 }
 
@@ -133,10 +138,7 @@ RenderResult run_render(const RenderJob& job, Session& session) {
   RenderResult result;
   for (std::size_t k = 0; k < job.models.size(); ++k) {
     const Subject subject = load_subject(job, job.models[k], session);
-    if (!camera) {
-      const auto [low, high] = middle_box_of(subject);
-      camera = camera_of(job.view, low, high);
-    }
+    if (!camera) camera = camera_of(job.view, shown_part_of(subject));
     const auto [image, seconds] = timed_image(subject, *camera, job, session);
     paste(picture, image, job.view.width * static_cast<int>(k));
     result.seconds_rendered += seconds;

@@ -32,9 +32,8 @@ void write_distance_picture(const std::filesystem::path& file, const PointCloud&
   for (const float distance_m : distances_to(simulated, original, session.executor)) {
     colors.push_back(scale.at(static_cast<double>(distance_m) / kFar_m));
   }
-  const auto [low, high] = middle_box(original.positions, original.origin);
   Image image = draw_points(simulated.positions, simulated.origin, colors,
-                            camera_of(view, low, high), {}, session.executor);
+                            camera_of(view, shown_part(original.positions, original.origin)), {}, session.executor);
   draw_color_bar(image, scale, {{{0, "0"}, {0.5, "10"}, {1, ">20 cm"}}, {}});
   write(file, image);
   session.progress.end_step();

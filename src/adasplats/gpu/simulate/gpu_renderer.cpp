@@ -17,6 +17,8 @@ namespace gpu {
 struct RenderSlot {
   Stream stream;
   DeviceBuffer<Hit> hits;
+  DeviceBuffer<FramePixel> frame_pixels;
+  DeviceBuffer<std::uint16_t> frame_hits;
   DeviceBuffer<std::uint8_t> device_pixels;
   PinnedBuffer<std::uint8_t> pixels;
 };
@@ -89,7 +91,8 @@ void GpuRenderer::Impl::launch(RenderSlot& slot, const Camera& camera) const {
   const auto rays =
       static_cast<std::uint64_t>(source.columns) * static_cast<std::uint64_t>(source.rows);
   part_.scene->cast(source, rays, 1, slot.hits.data(), stream);
-  gpu::queue_shading(tables_, source, slot.hits.data(), camera.width, camera.height,
+  gpu::queue_shading(tables_, Developer(camera, options_), source, slot.hits.data(), camera.width,
+                     camera.height, {slot.frame_pixels.data(), slot.frame_hits.data()},
                      slot.device_pixels.data(), stream);
   const std::size_t bytes =
       3 * static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
@@ -118,6 +121,8 @@ void GpuRenderer::Impl::render_all(std::span<const Camera> cameras, GpuRenderer:
     slot->stream.wait("prepare pictures on the GPU");  // what an exception left there
     if (slot->hits.size() < rays) slot->hits = gpu::DeviceBuffer<Hit>(rays, slot->stream.get());
     if (slot->pixels.size() < bytes) {
+      slot->frame_pixels = gpu::DeviceBuffer<FramePixel>(bytes / 3, slot->stream.get());
+      slot->frame_hits = gpu::DeviceBuffer<std::uint16_t>(bytes / 3, slot->stream.get());
       slot->device_pixels = gpu::DeviceBuffer<std::uint8_t>(bytes, slot->stream.get());
       slot->pixels = gpu::PinnedBuffer<std::uint8_t>(bytes);
     }

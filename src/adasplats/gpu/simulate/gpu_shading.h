@@ -7,13 +7,22 @@
 #include <cstdint>
 
 #include "adasplats/gpu/trace/ray_source.h"
+#include "adasplats/simulate/image/developing.h"
 #include "adasplats/simulate/image/shading_maths.h"
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: queues the colouring of a picture. `source` is what the hits were cast from
-/// (kind image), `pixels` 8-bit RGB, rows from the top. Tables point to device memory.
-void queue_shading(const ShadingTables& tables, const RaySource& source, const Hit* hits, int width,
-                   int height, std::uint8_t* pixels, cudaStream_t stream);
+/// Private to gpu/: a frame in device memory, of as many pixels as a picture has.
+struct DeviceFrame {
+  FramePixel* pixels = nullptr;
+  std::uint16_t* hits = nullptr;
+};
+
+/// Private to gpu/: queues the making of a picture of width x height pixels. `source` is what the
+/// hits were cast from (kind image); `frame` is written and read; `out` gets 8-bit RGB, rows from the
+/// top. Tables point to device memory.
+void queue_shading(const ShadingTables& tables, const Developer& developer, const RaySource& source,
+                   const Hit* hits, int width, int height, DeviceFrame frame, std::uint8_t* out,
+                   cudaStream_t stream);
 
 }  // namespace adasplats::gpu

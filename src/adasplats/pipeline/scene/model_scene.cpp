@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/scene/view_choice.h"
 #include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/simulate/image/class_colors.h"
 
 namespace adasplats {
 
@@ -116,8 +116,10 @@ ImageScene ModelScene::image_scene() const {
 
 ImageColor ModelScene::default_color() const {
   const ImageScene scene = image_scene();
-  const bool bare = scene.attributes.classes.empty() && scene.groups.empty();
-  return bare ? ImageColor::shading : ImageColor::semantic;
+  if (share_with_class_colors(scene.attributes.classes, scene.labels) >= kMostHaveClasses)
+    return ImageColor::semantic;
+  if (!scene.attributes.intensities.empty()) return ImageColor::intensity;
+  return scene.groups.empty() ? ImageColor::height : ImageColor::semantic;
 }
 
 Image ModelScene::render(const Camera& camera, const ImageOptions& options) const {
@@ -134,11 +136,21 @@ Image ModelScene::render(const Camera& camera, const ImageOptions& options) cons
 std::pair<Vec3d, Vec3d> ModelScene::middle_box() const {
   if (const auto* mesh = std::get_if<MeshModel>(&place_))
     return adasplats::middle_box(mesh->mesh.vertices, origin());
+  return adasplats::middle_box(disk_centers(), origin());
+}
+
+ShownPart ModelScene::shown_part() const {
+  if (const auto* mesh = std::get_if<MeshModel>(&place_))
+    return adasplats::shown_part(mesh->mesh.vertices, origin());
+  return adasplats::shown_part(disk_centers(), origin());
+}
+
+std::vector<Vec3f> ModelScene::disk_centers() const {
   const auto& model = std::get<SplatModel>(place_);
   std::vector<Vec3f> centers;
   centers.reserve(model.size());
   for (const Disk& disk : model.disks) centers.push_back(disk.center);
-  return adasplats::middle_box(centers, origin());
+  return centers;
 }
 
 }  // namespace adasplats

@@ -8,9 +8,11 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "adasplats/core/function_ref.h"
 #include "adasplats/gpu/simulate/gpu_scene.h"
+#include "adasplats/pipeline/scene/shown_part.h"
 #include "adasplats/pipeline/session/session.h"
 #include "adasplats/simulate/image/image.h"
 #include "adasplats/simulate/scan/scan_caster.h"
@@ -64,18 +66,22 @@ class ModelScene {
   const LabelScheme* labels() const { return labels_ ? &*labels_ : nullptr; }
   /// For pictures: geometry, attributes and the colours of the classes.
   ImageScene image_scene() const;
-  /// By class where the model has classes or groups, else by shape.
+  /// By class where most of the model has one with a colour, else by intensity, by the paper's
+  /// groups, by height: the first that it has.
   ImageColor default_color() const;
   /// A picture of image_scene().
   Image render(const Camera& camera, const ImageOptions& options) const;
   /// World box of the middle 98 % of the splats or vertices along each axis: far outliers must not
   /// decide what a picture shows.
   std::pair<Vec3d, Vec3d> middle_box() const;
+  /// What a picture of it should show.
+  ShownPart shown_part() const;
 
  private:
   void prepare(const std::string& name, Session& session);
   void make_tracers(Session& session);
   PrimitiveAttributes place_attributes() const;
+  std::vector<Vec3f> disk_centers() const;
 
   const Executor& executor_;
   Place place_;

@@ -5,18 +5,19 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
-#include <span>
-#include <utility>
 
+#include "adasplats/pipeline/scene/shown_part.h"
 #include "adasplats/sensors/camera.h"
 
 namespace adasplats {
 
-/// Where a picture is seen from: one of the places below, or from above a corner of what it shows.
+/// Where a picture is seen from: one of the places below, or from above, from the side from which
+/// what it shows appears largest (overview()).
 struct ViewChoice {
   int width = 2560;
   int height = 1440;
-  double horizontal_fov_deg = 70;
+  /// Else 45 from afar, 70 from `eye` and from a pose.
+  std::optional<double> horizontal_fov_deg;
   std::optional<Vec3d> eye;
   std::optional<Vec3d> target;  ///< with `eye`; else the middle of what the picture shows
   bool birds_eye = false;
@@ -27,12 +28,8 @@ struct ViewChoice {
 /// Errors: usage (sizes and angles out of range, several places).
 void check(const ViewChoice& view);
 
-/// The camera for what lies in the world box [low, high]. Errors: those of the trajectory's file;
-/// usage (a pose that it does not have).
-Camera camera_of(const ViewChoice& view, Vec3d low, Vec3d high);
-
-/// World box of the middle 98 % of points along each axis: far outliers must not decide what a
-/// picture shows. `positions` (one or more) are relative to `origin`.
-std::pair<Vec3d, Vec3d> middle_box(std::span<const Vec3f> positions, Vec3d origin);
+/// The camera for a part of a place. Errors: those of the trajectory's file; usage (a pose that it
+/// does not have).
+Camera camera_of(const ViewChoice& view, const ShownPart& part);
 
 }  // namespace adasplats

@@ -8,6 +8,14 @@
 
 namespace adasplats {
 
+std::array<std::uint8_t, 3> rgb_of(Vec3f color) {
+  std::array<std::uint8_t, 3> rgb{};
+  for (int channel = 0; channel < 3; ++channel)
+    rgb[static_cast<std::size_t>(channel)] =
+        static_cast<std::uint8_t>(std::lround(255.0F * color[channel]));
+  return rgb;
+}
+
 ValueRange quantile_range(std::span<const float> values, double low_quantile,
                           double high_quantile) {
   std::vector<float> finite;

@@ -17,6 +17,9 @@ ADASPLATS_HD inline Vec3f color_of(std::array<std::uint8_t, 3> rgb) {
           static_cast<float>(rgb[2]) / 255.0F};
 }
 
+/// 8 bits a channel, to the nearest.
+std::array<std::uint8_t, 3> rgb_of(Vec3f color);
+
 /// From dark violet over green to yellow with even steps of lightness, also in greyscale and for
 /// the colour-blind: Smith and van der Walt's "viridis" (2015, CC0) at 9 places, straight between
 /// them. `share` is clamped to 0..1; NaN gives the first colour.
@@ -39,6 +42,8 @@ ADASPLATS_HD inline Vec3f viridis(float share) {
 struct ValueRange {
   float low = 0.0F;
   float high = 1.0F;
+
+  friend bool operator==(const ValueRange&, const ValueRange&) = default;
 };
 ValueRange quantile_range(std::span<const float> values, double low_quantile, double high_quantile);
 

@@ -9,6 +9,9 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
+#include "adasplats/simulate/image/developing.h"
+#include "adasplats/simulate/image/frame.h"
+#include "adasplats/simulate/image/pixel_sum.h"
 #include "adasplats/simulate/image/shading.h"
 
 namespace adasplats {
@@ -50,27 +53,25 @@ class Renderer {
         shading_(scene, options) {}
 
   Image render() const {
-    Image image{camera_.width, camera_.height, {}};
-    image.pixels.resize(static_cast<std::size_t>(image.width) *
-                        static_cast<std::size_t>(image.height) * 3);
+    Frame frame(camera_.width, camera_.height);
     const int tile_pixels = kTile / options_.samples_per_axis;
-    const int tile_columns = (image.width + tile_pixels - 1) / tile_pixels;
-    const int tile_rows = (image.height + tile_pixels - 1) / tile_pixels;
+    const int tile_columns = (frame.width + tile_pixels - 1) / tile_pixels;
+    const int tile_rows = (frame.height + tile_pixels - 1) / tile_pixels;
     const auto tiles = static_cast<std::size_t>(tile_columns) * static_cast<std::size_t>(tile_rows);
     const ProgressPass pass(executor_, tiles);
     executor_.for_chunks(tiles, 1, [&](std::size_t tile, std::size_t) {
       const auto index = static_cast<int>(tile);
       render_tile({index % tile_columns * tile_pixels, index / tile_columns * tile_pixels},
-                  tile_pixels, image);
+                  tile_pixels, frame);
     });
-    return image;
+    return develop(frame, Developer(camera_, options_), executor_);
   }
 
  private:
-  void render_tile(Sample corner, int tile_pixels, Image& image) const {
+  void render_tile(Sample corner, int tile_pixels, Frame& frame) const {
     const int axis = options_.samples_per_axis;
-    const int right = std::min(corner.x + tile_pixels, image.width);
-    const int bottom = std::min(corner.y + tile_pixels, image.height);
+    const int right = std::min(corner.x + tile_pixels, frame.width);
+    const int bottom = std::min(corner.y + tile_pixels, frame.height);
     const std::vector<Sample> samples =
         samples_of_tile({corner.x * axis, corner.y * axis}, right * axis, bottom * axis);
     std::vector<Ray> rays;
@@ -81,31 +82,25 @@ class Renderer {
     tracer_.nearest(rays, hits, executor_);
 
     const int width = (right - corner.x) * axis;
-    std::vector<Vec3f> colors(samples.size());  // row by row
-    const auto place = [width](int x, int y) {
-      return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-             static_cast<std::size_t>(x);
-    };
+    std::vector<std::uint32_t> ray_at(samples.size());  // row by row
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const int x = samples[i].x - corner.x * axis, y = samples[i].y - corner.y * axis;
-      colors[place(x, y)] = shade(shading_.tables(), rays[i], hits[i]);
+      ray_at[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+             static_cast<std::size_t>(x)] = static_cast<std::uint32_t>(i);
     }
-    for (int y = corner.y; y < bottom; ++y)
-      for (int x = corner.x; x < right; ++x)
-        store(
-            &colors[place((x - corner.x) * axis, (y - corner.y) * axis)], width,
-            &image.pixels[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                               static_cast<std::size_t>(x))]);
-  }
-
-  /// The mean of a pixel's samples, added row by row as on a GPU.
-  void store(const Vec3f* first, int width, std::uint8_t* pixel) const {
-    const int axis = options_.samples_per_axis;
-    Vec3f sum;
-    for (int v = 0; v < axis; ++v)
-      for (int u = 0; u < axis; ++u) sum = sum + first[v * width + u];
-    const float weight = 1.0F / static_cast<float>(axis * axis);
-    for (int channel = 0; channel < 3; ++channel) pixel[channel] = to_byte(weight * sum[channel]);
+    for (int y = corner.y; y < bottom; ++y) {
+      for (int x = corner.x; x < right; ++x) {
+        PixelSum sum;
+        const int first = (y - corner.y) * axis * width + (x - corner.x) * axis;
+        for (int v = 0; v < axis; ++v)
+          for (int u = 0; u < axis; ++u) {
+            const std::uint32_t i = ray_at[static_cast<std::size_t>(first + v * width + u)];
+            sum.add(shading_.tables(), camera_rays_, rays[i], hits[i]);
+          }
+        frame.pixels[frame.at(x, y)] = sum.pixel;
+        frame.hits[frame.at(x, y)] = sum.hits;
+      }
+    }
   }
 
   const Tracer& tracer_;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/sensors/camera.h"
+#include "adasplats/simulate/image/color_map.h"
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/trace/tracer.h"
 
@@ -23,6 +25,7 @@ enum class ImageColor : std::uint8_t {
   normal,     ///< surface normal turned to the camera as RGB
   intensity,  ///< measured intensity, 2nd to 98th percentile; grey where there is none
   range,      ///< distance, on a logarithmic scale from 1 m to 100 m
+  height,     ///< world z, 2nd to 98th percentile
 };
 
 /// 8-bit RGB, rows from the top.
@@ -35,8 +38,14 @@ struct Image {
 struct ImageOptions {
   ImageColor color = ImageColor::semantic;
   int samples_per_axis = 1;  ///< rays a pixel: the square of this
-  std::array<std::uint8_t, 3> background = {255, 255, 255};
-  bool sky = true;  ///< above the horizon the background turns into a light blue
+  std::array<std::uint8_t, 3> background = {238, 240, 243};
+  bool sky = true;  ///< from the horizon up the background turns into a light blue, down into grey
+  /// Corners and edges are darker, neighbouring splats of one surface run into each other, and
+  /// gaps in a surface are dark. Without it every sample has its own colour alone.
+  bool relief = true;
+  /// What the ends of the colours of intensities (heights: m from the scene's origin) stand for;
+  /// else shown_range().
+  std::optional<ValueRange> range;
 
   friend bool operator==(const ImageOptions&, const ImageOptions&) = default;
 };
@@ -49,6 +58,10 @@ struct ImageScene {
   const LabelScheme* labels = nullptr;
   Vec3d origin;
 };
+
+/// What the ends of the scale of a colour stand for in a scene: the 2nd and 98th percentile of
+/// intensities, or of heights relative to the scene's origin, m; {0, 1} for other colours.
+ValueRange shown_range(const ImageScene& scene, ImageColor color);
 
 /// Casts rays through every pixel. Both sides of a surface are lit. The same bytes for any number
 /// of threads. Errors: usage (width, height or samples below 1, a field of view outside (0, pi)).

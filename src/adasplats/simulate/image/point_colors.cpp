@@ -5,28 +5,21 @@
 #include <cmath>
 
 #include "adasplats/core/error.h"
+#include "adasplats/simulate/image/class_colors.h"
 #include "adasplats/simulate/image/color_map.h"
 
 namespace adasplats {
 namespace {
 
 constexpr Rgb kNeutral = {184, 184, 184};
-constexpr Rgb kBlack = {0, 0, 0};  // label schemes give it to what has no class
 
-Rgb viridis_rgb(float share) {
-  const Vec3f color = viridis(share);
-  Rgb rgb{};
-  for (int channel = 0; channel < 3; ++channel)
-    rgb[static_cast<std::size_t>(channel)] =
-        static_cast<std::uint8_t>(std::lround(255.0F * color[channel]));
-  return rgb;
-}
+Rgb viridis_rgb(float share) { return rgb_of(viridis(share)); }
 
 std::vector<Rgb> by_class(const PointCloud& cloud, const LabelScheme& labels) {
   std::vector<Rgb> of_class;
   for (const SemanticClass& known : labels.classes()) {
     if (known.id >= of_class.size()) of_class.resize(known.id + std::size_t{1}, kNeutral);
-    if (known.rgb != kBlack) of_class[known.id] = known.rgb;
+    if (known.rgb != kNoClassColor) of_class[known.id] = known.rgb;
   }
   std::vector<Rgb> colors(cloud.size(), kNeutral);
   for (std::size_t i = 0; i < cloud.classes.size(); ++i)
@@ -72,11 +65,7 @@ std::vector<Rgb> by_range(const PointCloud& cloud, Vec3d eye) {
 
 std::vector<Rgb> point_colors(const PointCloud& cloud, const LabelScheme* labels,
                               std::optional<ImageColor> color, Vec3d eye) {
-  if (!color) {
-    if (labels != nullptr && !cloud.classes.empty()) return by_class(cloud, *labels);
-    return cloud.intensities.empty() ? by_height(cloud) : by_intensity(cloud);
-  }
-  switch (*color) {
+  switch (color.value_or(default_color(cloud, labels))) {
     case ImageColor::shading: return std::vector<Rgb>(cloud.size(), kNeutral);
     case ImageColor::semantic:
       if (labels == nullptr || cloud.classes.empty())
@@ -86,8 +75,15 @@ std::vector<Rgb> point_colors(const PointCloud& cloud, const LabelScheme* labels
     case ImageColor::normal: throw Error(ErrorKind::usage, "a point cloud has no normals to show");
     case ImageColor::intensity: return by_intensity(cloud);
     case ImageColor::range: return by_range(cloud, eye);
+    case ImageColor::height: return by_height(cloud);
   }
   return {};
+}
+
+ImageColor default_color(const PointCloud& cloud, const LabelScheme* labels) {
+  if (share_with_class_colors(cloud.classes, labels) >= kMostHaveClasses)
+    return ImageColor::semantic;
+  return cloud.intensities.empty() ? ImageColor::height : ImageColor::intensity;
 }
 
 }  // namespace adasplats

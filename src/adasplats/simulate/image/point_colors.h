@@ -11,8 +11,11 @@
 
 namespace adasplats {
 
-/// A colour for each point of a cloud, to be drawn by draw_points. Without `color`: by class where
-/// the cloud has classes and `labels` knows them, else by intensity, else by height.
+/// What the colours of a cloud show where nothing else is said: classes where most points have one
+/// with a colour in `labels` (may be null), else intensity, else height.
+ImageColor default_color(const PointCloud& cloud, const LabelScheme* labels);
+
+/// A colour for each point of a cloud, to be drawn by draw_points. Without `color`: default_color().
 /// - semantic: the class's colour, grey where it has none or black.
 /// - intensity: 2nd to 98th percentile; grey where the cloud has none.
 /// - range: distance from `eye` (world), on a logarithmic scale from 1 m to 100 m.

@@ -13,23 +13,20 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
+#include "adasplats/simulate/image/color_map.h"
+#include "adasplats/simulate/image/developing.h"
+#include "adasplats/simulate/image/frame.h"
 
 namespace adasplats {
 namespace {
 
 constexpr std::size_t kPointsPerChunk = 1 << 14;
-constexpr std::size_t kRowsPerChunk = 16;
 constexpr double kNearest_m = 0.05;  // nearer to a pinhole, a point would fill the picture
 
 /// What a pixel shows: the depth's bits above the point's index, so the smallest is the nearest
 /// point, and of equally near ones the first. Bits of positive floats sort as they do.
 using PixelKey = std::uint64_t;
 constexpr PixelKey kNothing = ~PixelKey{0};
-
-float depth_of(PixelKey key) {
-  return key == kNothing ? std::numeric_limits<float>::infinity()
-                         : std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32));
-}
 
 /// A point in the picture.
 struct Projected {
@@ -97,46 +94,25 @@ class Canvas {
         put(keys_[at(x, y)], key);
   }
 
-  Image image(std::span<const Rgb> colors, const Executor& executor) const {
-    Image image{width_, height_, std::vector<std::uint8_t>(3 * keys_.size())};
-    executor.for_chunks(static_cast<std::size_t>(height_), kRowsPerChunk,
-                        [&](std::size_t begin, std::size_t end) {
-                          for (std::size_t y = begin; y < end; ++y)
-                            for (int x = 0; x < width_; ++x)
-                              color_pixel(x, static_cast<int>(y), colors, image);
-                        });
-    return image;
+  /// What the pixels show: one sample each.
+  Frame frame(std::span<const Rgb> colors, bool parallel, const Executor& executor) const {
+    Frame frame(width_, height_);
+    executor.for_chunks(keys_.size(), kPointsPerChunk, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (keys_[i] == kNothing) continue;
+        const float depth_m = std::bit_cast<float>(static_cast<std::uint32_t>(keys_[i] >> 32));
+        frame.pixels[i] = {color_of(colors[static_cast<std::uint32_t>(keys_[i])]),
+                           parallel ? -depth_m : 1.0F / depth_m};
+        frame.hits[i] = 1;
+      }
+    });
+    return frame;
   }
 
  private:
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(x);
-  }
-
-  void color_pixel(int x, int y, std::span<const Rgb> colors, Image& image) const {
-    const PixelKey key = keys_[at(x, y)];
-    const Rgb rgb = key == kNothing ? options_.background : colors[static_cast<std::uint32_t>(key)];
-    const float light = key == kNothing || !options_.relief ? 1.0F : light_at(x, y);
-    for (std::size_t channel = 0; channel < 3; ++channel)
-      image.pixels[3 * at(x, y) + channel] =
-          static_cast<std::uint8_t>(std::lround(light * static_cast<float>(rgb[channel])));
-  }
-
-  /// Christian Boucheny 2009, "Eye-dome lighting": a pixel is the darker the deeper it lies behind
-  /// those around it.
-  float light_at(int x, int y) const {
-    constexpr int kReach_px = 2;
-    constexpr float kStrength = 12.0F;
-    const float depth = depth_of(keys_[at(x, y)]);
-    float shadow = 0.0F;
-    for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
-      const int nx = x + kReach_px * dx;
-      const int ny = y + kReach_px * dy;
-      if (nx < 0 || ny < 0 || nx >= width_ || ny >= height_) continue;
-      shadow += std::max(0.0F, 1.0F - depth_of(keys_[at(nx, ny)]) / depth);
-    }
-    return std::max(0.35F, 1.0F / (1.0F + kStrength * shadow));
   }
 
   int width_, height_;
@@ -170,7 +146,13 @@ Image draw_points(std::span<const Vec3f> positions, Vec3d origin, std::span<cons
       if (const std::optional<Projected> point = project(positions[i]))
         canvas.draw(*point, static_cast<std::uint32_t>(i));
   });
-  return canvas.image(colors, executor);
+  ImageOptions look;
+  look.background = options.background;
+  look.sky = options.sky;
+  look.relief = options.relief;
+  Developer developer(camera, look);
+  developer.hole_px = 0;  // between points there are gaps everywhere
+  return develop(canvas.frame(colors, developer.parallel, executor), developer, executor);
 }
 
 }  // namespace adasplats

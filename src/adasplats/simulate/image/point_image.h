@@ -19,8 +19,9 @@ struct PointImageOptions {
   double point_size_m = 0.06;  ///< side of the square that stands for a point
   int least_px = 2;            ///< the square's bounds in the picture
   int most_px = 8;
-  Rgb background = {255, 255, 255};
-  bool relief = true;  ///< darkens pixels beside nearer ones, so that shapes show
+  Rgb background = ImageOptions{}.background;
+  bool sky = true;     ///< as ImageOptions has them
+  bool relief = true;
 };
 
 /// Draws points as squares that face the camera; the nearest to the camera wins, of equally near

@@ -32,12 +32,18 @@ std::size_t count(const Image& image, Rgb rgb) {
   return found;
 }
 
+PointImageOptions on_white(PointImageOptions options = {}) {
+  options.background = kWhite;
+  options.sky = false;
+  return options;
+}
+
 /// Every point is one pixel, without relief: what is where can be said exactly.
 PointImageOptions single_pixels() {
-  PointImageOptions options;
+  PointImageOptions options = on_white();
   options.least_px = options.most_px = 1;
   options.relief = false;
-  return options;
+  return on_white(options);
 }
 
 Camera camera_of(int width, int height) {
@@ -85,7 +91,7 @@ TEST(DrawPoints, SquaresShrinkWithDistanceWithinTheirBounds) {
   Camera camera = look_at(kOrigin, kOrigin + Vec3d{1, 0, 0});
   camera.width = camera.height = 100;
   camera.horizontal_fov_rad = 2 * std::atan(0.5);
-  PointImageOptions options;
+  PointImageOptions options = on_white();
   options.relief = false;
   options.point_size_m = 0.4;
   options.most_px = 1000;
@@ -108,8 +114,8 @@ TEST(DrawPoints, WhatIsBehindOrNotFiniteOrFarOutsideIsNotDrawn) {
                                      {5, 0, nan},   {infinity, 0, 0}, {5, -infinity, 0},
                                      {1, 1e30F, 0}, {1, 0, -100},     {1e-20F, 1e20F, 1e20F}};
   const std::vector<Rgb> colors(points.size(), kRed);
-  EXPECT_EQ(count(draw(points, colors, camera, {}), kWhite), 2500U);
-  EXPECT_EQ(count(draw({}, {}, camera, {}), kWhite), 2500U);
+  EXPECT_EQ(count(draw(points, colors, camera, on_white()), kWhite), 2500U);
+  EXPECT_EQ(count(draw({}, {}, camera, on_white()), kWhite), 2500U);
 }
 
 TEST(DrawPoints, SameBytesForAnyThreads) {
@@ -122,17 +128,17 @@ TEST(DrawPoints, SameBytesForAnyThreads) {
     colors.push_back({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i >> 8), 7});
   }
   const Camera camera = camera_of(160, 90);
-  const Image one = draw(points, colors, camera, {}, 1);
+  const Image one = draw(points, colors, camera, on_white(), 1);
   EXPECT_LT(count(one, kWhite), 160U * 90U / 2);
   for (const int threads : {2, 3})
-    EXPECT_EQ(one.pixels, draw(points, colors, camera, {}, threads).pixels);
+    EXPECT_EQ(one.pixels, draw(points, colors, camera, on_white(), threads).pixels);
 }
 
 // Analytic: far pixels beside near ones are darker, near ones and flat parts are not.
 TEST(DrawPoints, ReliefDarkensWhatLiesBehind) {
   Camera camera = look_at(kOrigin, kOrigin + Vec3d{1, 0, 0});
   camera.width = camera.height = 60;
-  PointImageOptions options;
+  PointImageOptions options = on_white();
   options.least_px = options.most_px = 60;
   const Rgb grey = {200, 200, 200};
   EXPECT_EQ(count(draw({{10, 0, 0}}, {grey}, camera, options), grey), 3600U);

@@ -5,12 +5,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "adasplats/simulate/image/class_colors.h"
+
 namespace adasplats {
 
 namespace {
 
-/// Label schemes give black to what has no class; a black surface would show no shape.
-constexpr std::array<std::uint8_t, 3> kUnlabelled = {0, 0, 0};
 constexpr Vec3f kNoColor = {-1, -1, -1};
 
 void check_size(std::size_t values, std::size_t primitives, const char* name) {
@@ -24,6 +24,18 @@ const T* data_or_null(std::span<const T> values) {
 }
 
 }  // namespace
+
+ValueRange shown_range(const ImageScene& scene, ImageColor color) {
+  constexpr double kLow = 0.02, kHigh = 0.98;
+  if (color == ImageColor::intensity)
+    return quantile_range(scene.attributes.intensities, kLow, kHigh);
+  if (color != ImageColor::height) return {};
+  std::vector<float> heights;
+  for (const Disk& disk : scene.view.disks) heights.push_back(disk.center.z);
+  if (scene.view.mesh != nullptr)
+    for (const Vec3f& vertex : scene.view.mesh->vertices) heights.push_back(vertex.z);
+  return quantile_range(heights, kLow, kHigh);
+}
 
 Shading::Shading(const ImageScene& scene, const ImageOptions& options) {
   const std::size_t primitives = scene.view.primitive_count();
@@ -40,15 +52,12 @@ Shading::Shading(const ImageScene& scene, const ImageOptions& options) {
   tables_.groups = data_or_null(scene.groups);
   tables_.intensities = data_or_null(scene.attributes.intensities);
   tables_.color = options.color;
-  tables_.background = color_of(options.background);
-  tables_.sky = options.sky;
-  if (options.color == ImageColor::intensity)
-    tables_.intensity_range = quantile_range(scene.attributes.intensities, 0.02, 0.98);
+  tables_.range = options.range.value_or(shown_range(scene, options.color));
   if (scene.labels == nullptr) return;
   for (const SemanticClass& known : scene.labels->classes()) {
-    if (known.rgb == kUnlabelled) continue;
+    if (known.rgb == kNoClassColor) continue;
     if (known.id >= class_colors_.size()) class_colors_.resize(known.id + std::size_t{1}, kNoColor);
-    class_colors_[known.id] = color_of(known.rgb);
+    class_colors_[known.id] = color_of(muted(known.rgb));
   }
   tables_.class_colors = class_colors_.data();
   tables_.class_color_count = static_cast<std::uint32_t>(class_colors_.size());

@@ -28,9 +28,7 @@ struct ShadingTables {
   const Vec3f* class_colors = nullptr;  ///< by class id; negative: none
   std::uint32_t class_color_count = 0;
   ImageColor color = ImageColor::semantic;
-  ValueRange intensity_range;
-  Vec3f background;
-  bool sky = true;
+  ValueRange range;  ///< of intensities or heights, m relative to the scene's origin
 };
 
 namespace shading {
@@ -86,12 +84,15 @@ ADASPLATS_HD inline Vec3f semantic_color(const ShadingTables& tables, std::uint3
   return tables.groups == nullptr ? kNeutral : color_of(tables.groups[primitive]);
 }
 
+ADASPLATS_HD inline Vec3f color_in(ValueRange range, float value) {
+  return viridis((value - range.low) / (range.high - range.low));
+}
+
 ADASPLATS_HD inline Vec3f intensity_color(const ShadingTables& tables, std::uint32_t primitive) {
   if (tables.intensities == nullptr) return kNeutral;
   const float intensity = tables.intensities[primitive];
   if (!(intensity - intensity == 0.0F)) return kNeutral;  // not finite
-  return viridis((intensity - tables.intensity_range.low) /
-                 (tables.intensity_range.high - tables.intensity_range.low));
+  return color_in(tables.range, intensity);
 }
 
 /// log10(x) of a normal number above 0, to a few units in the last place of a float. The library's
@@ -109,18 +110,10 @@ ADASPLATS_HD inline float log10_anywhere(float x) {
   return static_cast<float>((k * kLn2 + ln_m) / kLn10);
 }
 
-ADASPLATS_HD inline Vec3f background_color(const ShadingTables& tables, Vec3f direction) {
-  if (!tables.sky || !(direction.z > 0.0F)) return tables.background;
-  constexpr Vec3f kZenith = {0.52F, 0.71F, 0.91F};
-  const float share = std::sqrt(direction.z);  // most of the change is near the horizon
-  return (1.0F - share) * tables.background + share * kZenith;
-}
-
 }  // namespace shading
 
-/// THE colour that a ray sees, for every backend: 0..1, or above.
+/// THE colour of a surface that a ray hit, for every backend: 0..1, or above.
 ADASPLATS_HD inline Vec3f shade(const ShadingTables& tables, const Ray& ray, const Hit& hit) {
-  if (!hit.valid()) return shading::background_color(tables, ray.direction);
   const Vec3f normal = shading::normal_towards(tables, ray, hit.primitive);
   switch (tables.color) {
     case ImageColor::shading:
@@ -132,15 +125,12 @@ ADASPLATS_HD inline Vec3f shade(const ShadingTables& tables, const Ray& ray, con
       // The colour itself is the message: only a hint of the shape.
       return (0.5F + 0.5F * shading::light(normal, ray.direction)) *
              shading::intensity_color(tables, hit.primitive);
+    case ImageColor::height:
+      return (0.5F + 0.5F * shading::light(normal, ray.direction)) *
+             shading::color_in(tables.range, ray.origin.z + hit.t * ray.direction.z);
     case ImageColor::range: return viridis(1.0F - 0.5F * shading::log10_anywhere(hit.t));
   }
   return shading::kNeutral;
-}
-
-/// A channel of a pixel: 0..1 to 0..255, to the nearest.
-ADASPLATS_HD inline std::uint8_t to_byte(float value) {
-  const float clamped = value > 0.0F ? (value < 1.0F ? value : 1.0F) : 0.0F;
-  return static_cast<std::uint8_t>(std::lround(255.0F * clamped));
 }
 
 }  // namespace adasplats

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/core/maths/vec3.h"
+#include "adasplats/simulate/image/image.h"
+
+namespace adasplats {
+
+/// What the samples of a pixel met, before it is developed (developing.h).
+struct FramePixel {
+  Vec3f color;  ///< sum over the samples that hit something, 0..1 each
+  /// Of the nearest hit; kNothingNear where no sample hit. Pinhole: 1 / depth along the view, 1/m;
+  /// parallel rays: -depth, m. Either is linear in the picture over a plane.
+  float nearness = -std::numeric_limits<float>::infinity();
+  float splat_px = 0;  ///< its radius in the picture where it is a splat, else 0
+};
+inline constexpr float kNothingNear = -std::numeric_limits<float>::infinity();
+
+/// A picture's pixels before they are developed, rows from the top. Pointers are memory of the
+/// device that reads them.
+struct FrameView {
+  const FramePixel* pixels = nullptr;
+  const std::uint16_t* hits = nullptr;  ///< samples of the pixel that hit something
+  std::int32_t width = 0, height = 0;
+};
+
+/// Owns what a FrameView shows.
+struct Frame {
+  Frame(int columns, int rows)
+      : width(columns),
+        height(rows),
+        pixels(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)),
+        hits(pixels.size(), 0) {}
+
+  FrameView view() const { return {pixels.data(), hits.data(), width, height}; }
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
+  }
+
+  int width, height;
+  std::vector<FramePixel> pixels;
+  std::vector<std::uint16_t> hits;
+};
+
+struct Developer;
+
+/// The picture that a frame becomes: develop_pixel() for every pixel. The same bytes for any number
+/// of threads.
+Image develop(const Frame& frame, const Developer& developer, const Executor& executor);
+
+}  // namespace adasplats
