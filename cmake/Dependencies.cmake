@@ -34,6 +34,17 @@ foreach(library ZSTD LZ4 BZip2 SQLite3)
   endif()
 endforeach()
 
+# Films (stage recipes).
+find_package(WebP QUIET MODULE)
+set(missing "")
+if(WebP_FOUND)
+  set(ADASPLATS_WEBP_TARGET WebP::mux)
+  set(ADASPLATS_WEBP_DEFINE ADASPLATS_HAVE_WEBP)
+else()
+  set(missing "no libwebp (libwebp-dev), .mp4 needs a program ffmpeg")
+endif()
+adasplats_part(- "films as WebP" "${missing}" "libwebp" ADASPLATS_WEBP)
+
 # Meshes of the comparison. OpenVDB: grid and surface of IMLS. Open3D: screened Poisson, only in a
 # program of its own (apps/poisson), as it brings hundreds of libraries.
 find_package(OpenVDB 9 QUIET MODULE)

@@ -33,6 +33,9 @@ maybe libzstd-dev          -             packed recordings (MCAP, ROS 2 bags)
 maybe liblz4-dev           -             likewise (MCAP, ROS 1 bags)
 maybe libbz2-dev           -             likewise (ROS 1 bags)
 maybe libsqlite3-dev       -             ROS 2 bags of SQLite
+maybe libwebp-dev          -             films (WebP)
+maybe libstb-dev           -             text in pictures
+maybe fonts-dejavu-core    -             likewise
 maybe nodejs               node          the viewer's page
 maybe npm                  npm           likewise
 test  git                  git           lists the files to check

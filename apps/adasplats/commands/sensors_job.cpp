@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "adasplats/core/words.h"
-#include "adasplats/simulate/image/color_bar.h"
+#include "adasplats/simulate/captions/color_bar.h"
 #include "adasplats/simulate/image/color_map.h"
 #include "cli/text_table.h"
 
@@ -172,7 +172,8 @@ Image draw_whole(std::span<const Firing> firings, const SensorFacts& facts) {
   draw_firings(firings, panel, 0, std::max(facts.last_time_s, 1e-9),
                firings.size() > 30'000 ? 1 : 2, image);
   draw_color_bar(image, time_scale(),
-                 {{{0, "0"}, {1, fixed(1e3 * facts.last_time_s, 1) + " ms"}},
+                 {"time",
+                  {{0, "0"}, {1, fixed(1e3 * facts.last_time_s, 1) + " ms"}},
                   {{kGrid, fixed(panel.grid_deg, 1) + " degrees a line"}}});
   return image;
 }
@@ -213,7 +214,8 @@ Image draw_front(const LidarModel& sensor, std::span<const Firing> firings,
   const double last_s = std::max(static_cast<double>(last.time_s), first_s + 1e-9);
   draw_firings(front, panel, first_s, last_s, 4, image);
   draw_color_bar(image, time_scale(),
-                 {{{0, "0"}, {1, fixed(1e3 * (last_s - first_s), 2) + " ms"}},
+                 {"time",
+                  {{0, "0"}, {1, fixed(1e3 * (last_s - first_s), 2) + " ms"}},
                   {{kGrid, fixed(panel.grid_deg, 1) + " degrees a line"}}});
   return image;
 }

@@ -37,6 +37,8 @@ const std::initializer_list<std::string_view> kClassNames = {"label", "class", "
                                                              "scalar_class"};
 const std::initializer_list<std::string_view> kIntensityNames = {"intensity", "scalar_intensity"};
 
+const std::initializer_list<std::string_view> kSplatNames = {"splat", "scalar_splat"};
+
 const Column* first_of(const Table& table, std::initializer_list<std::string_view> names) {
   for (const std::string_view name : names)
     for (const Column& column : table.columns)
@@ -62,6 +64,17 @@ std::uint16_t class_at(const Column& column, std::size_t row, const std::filesys
                                      std::to_string(row) + " is " + std::to_string(value) +
                                      ", expected a whole number from 0 to 4294967295");
   return static_cast<std::uint16_t>(static_cast<std::uint32_t>(value) & 0xffffU);
+}
+
+/// -1: none.
+std::uint32_t splat_at(const Column& column, std::size_t row, const std::filesystem::path& path) {
+  const double value = column.as_double(row);
+  if (value == -1) return Hit::kNone;
+  if (!(value >= 0 && value < 0x1p31 && std::trunc(value) == value))
+    throw Error(ErrorKind::data, path.string() + ": column '" + column.name + "' of point " +
+                                     std::to_string(row) + " is " + std::to_string(value) +
+                                     ", expected a whole number, -1 or more");
+  return static_cast<std::uint32_t>(value);
 }
 
 bool is_place(Vec3d p) {
@@ -130,6 +143,8 @@ ErrorPoints beam_points(const Tracer& tracer, const SceneView& scene, Vec3d scen
     const RigidTransform& world_from_sensor = sequence.trajectory[index].world_from_sensor;
     for (const Vec3f p : scan.measured) places.push_back(world_from_sensor * vec_cast<double>(p));
     points.errors_m.insert(points.errors_m.end(), scan.errors_m.begin(), scan.errors_m.end());
+    points.primitives.insert(points.primitives.end(), scan.primitives.begin(),
+                             scan.primitives.end());
     progress.advance(index + 1);
   }
   progress.end_step();
@@ -139,11 +154,11 @@ ErrorPoints beam_points(const Tracer& tracer, const SceneView& scene, Vec3d scen
   return points;
 }
 
-void write_error_points(const std::filesystem::path& path, const PointCloud& cloud,
-                        std::span<const float> errors_m) {
+void write_error_points(const std::filesystem::path& path, const ErrorPoints& points) {
+  const PointCloud& cloud = points.cloud;
   const auto fits = [&](std::size_t size) { return size == 0 || size == cloud.size(); };
-  if (errors_m.size() != cloud.size() || !fits(cloud.classes.size()) ||
-      !fits(cloud.intensities.size()))
+  if (points.errors_m.size() != cloud.size() || !fits(cloud.classes.size()) ||
+      !fits(cloud.intensities.size()) || !fits(points.primitives.size()))
     throw std::logic_error("write_error_points: an attribute of another size than the points");
   const bool far = !(cloud.origin == Vec3d{});
   std::vector<Vec3d> world;
@@ -161,11 +176,15 @@ void write_error_points(const std::filesystem::path& path, const PointCloud& clo
   add_axis("x", &Vec3f::x, &Vec3d::x);
   add_axis("y", &Vec3f::y, &Vec3d::y);
   add_axis("z", &Vec3f::z, &Vec3d::z);
-  columns.push_back({kErrorName, ColumnType::f32, errors_m.data(), sizeof(float)});
+  columns.push_back({kErrorName, ColumnType::f32, points.errors_m.data(), sizeof(float)});
   if (!cloud.intensities.empty())
     columns.push_back({"intensity", ColumnType::f32, cloud.intensities.data(), sizeof(float)});
   if (!cloud.classes.empty())
     columns.push_back({"label", ColumnType::u16, cloud.classes.data(), sizeof(std::uint16_t)});
+  // The bits of Hit::kNone are those of -1.
+  if (!points.primitives.empty())
+    columns.push_back(
+        {"splat", ColumnType::i32, points.primitives.data(), sizeof(std::uint32_t)});
   write_ply(path, cloud.size(), columns);
 }
 
@@ -203,6 +222,8 @@ ErrorPoints read_error_points(const std::filesystem::path& path) {
   if (const Column* const intensities = first_of(table, kIntensityNames))
     for (const std::uint32_t i : rows)
       points.cloud.intensities.push_back(finite(intensities->as_double(i)));
+  if (const Column* const splats = first_of(table, kSplatNames))
+    for (const std::uint32_t i : rows) points.primitives.push_back(splat_at(*splats, i, path));
   return points;
 }
 

@@ -22,6 +22,8 @@ namespace adasplats {
 struct ErrorPoints {
   PointCloud cloud;             ///< positions, and classes and intensities where they are known
   std::vector<float> errors_m;  ///< one a point; NaN: not known (a beam that hit nothing)
+  /// What each beam hit of the model; Hit::kNone: nothing. Empty where that is not known.
+  std::vector<std::uint32_t> primitives;
   std::size_t dropped = 0;      ///< points of the file that are not finite or far from all others
 };
 
@@ -37,18 +39,17 @@ ErrorPoints beam_points(const Tracer& tracer, const SceneView& scene, Vec3d scen
                         const ResimulateOptions& options, const Executor& executor,
                         ProgressSink& progress);
 
-/// Writes a PLY: x y z error_m [intensity] [label] (x y z as doubles where the origin is not zero),
-/// which load_cloud reads as a cloud, too. Atomic. Throws std::logic_error where an attribute has
-/// another size than the points.
-void write_error_points(const std::filesystem::path& path, const PointCloud& cloud,
-                        std::span<const float> errors_m);
+/// Writes a PLY: x y z error_m [intensity] [label] [splat] (x y z as doubles where the origin is not
+/// zero; splat: the primitive, -1 for none), which load_cloud reads as a cloud, too. Atomic. Throws
+/// std::logic_error where an attribute has another size than the points.
+void write_error_points(const std::filesystem::path& path, const ErrorPoints& points);
 
 /// Whether a file is a PLY whose points have errors, by its header alone. Errors: as read_ply's for
 /// headers; a file that is no PLY by its name is none.
 bool has_error_points(const std::filesystem::path& path);
 
 /// Reads any file of points with x, y, z and error_m (or CloudCompare's scalar_error_m and
-/// scalar_C2C_absolute_distances), and where they are there intensity, and label or class. Drops
+/// scalar_C2C_absolute_distances), and where they are there intensity, label or class, and splat. Drops
 /// and counts points that are not finite or farther than 100 km from the median of all; errors that
 /// are not finite become NaN. Memory: the reader's, and 48 bytes a point. Errors: those of
 /// read_points; data (a column is missing; a class that is no whole number from 0 to 2^32 - 1, of

@@ -33,7 +33,7 @@ TEST(ErrorPoints, RoundTrip) {
   for (const Vec3d origin : {Vec3d{}, Vec3d{452'000, 5'411'000, 0}}) {
     const PointCloud cloud = three_points(origin);
     const auto file = folder.path() / "a b.ply";
-    write_error_points(file, cloud, errors_m);
+    write_error_points(file, {cloud, errors_m, {7, Hit::kNone, 0}});
     EXPECT_TRUE(has_error_points(file));
     const ErrorPoints read = read_error_points(file);
     ASSERT_EQ(read.cloud.size(), 3U);
@@ -43,6 +43,7 @@ TEST(ErrorPoints, RoundTrip) {
     EXPECT_EQ(read.errors_m[0], 0.25F);
     EXPECT_TRUE(std::isnan(read.errors_m[1]));
     EXPECT_EQ(read.errors_m[2], -1.5F);
+    EXPECT_EQ(read.primitives, (std::vector<std::uint32_t>{7, Hit::kNone, 0}));
     EXPECT_EQ(read.cloud.classes, cloud.classes);
     EXPECT_EQ(read.cloud.intensities, cloud.intensities);
     // It is a cloud to everything else.
@@ -60,15 +61,18 @@ TEST(ErrorPoints, WithoutAttributesAndWithoutPoints) {
   cloud.classes.clear();
   cloud.intensities.clear();
   const auto file = folder.path() / "p.ply";
-  write_error_points(file, cloud, std::vector<float>(3, 1));
+  write_error_points(file, {cloud, std::vector<float>(3, 1), {}});
   const ErrorPoints plain = read_error_points(file);
   EXPECT_TRUE(plain.cloud.classes.empty());
   EXPECT_TRUE(plain.cloud.intensities.empty());
-  write_error_points(file, {}, {});
+  EXPECT_TRUE(plain.primitives.empty());
+  write_error_points(file, {});
   const ErrorPoints none = read_error_points(file);
   EXPECT_TRUE(none.cloud.empty());
   EXPECT_TRUE(none.errors_m.empty());
-  EXPECT_THROW(write_error_points(file, cloud, std::vector<float>(2, 1)), std::logic_error);
+  EXPECT_THROW(write_error_points(file, {cloud, std::vector<float>(2, 1), {}}), std::logic_error);
+  EXPECT_THROW(write_error_points(file, {cloud, std::vector<float>(3, 1), {1, 2}}),
+               std::logic_error);
 }
 
 TEST(ErrorPoints, ReadsOtherProgramsFiles) {

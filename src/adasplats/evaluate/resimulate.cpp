@@ -24,6 +24,7 @@ constexpr float kLeastUp = static_cast<float>(EmptyBeamOptions{}.least_up);
 /// What is kept of a beam until the end.
 struct Beam {
   float error_m = kNoHitError;
+  std::uint32_t primitive = Hit::kNone;
   std::uint8_t range_bin = 0;
   std::uint8_t incidence_bin = 0;  ///< meaningless without a hit
   std::int8_t elevation_deg = 0;   ///< rounded down
@@ -160,6 +161,7 @@ CastScan cast_scan(const CastPlace& setting, const KittiSequence& sequence, std:
     if (!hits[k].valid()) continue;
     const double predicted_m = static_cast<double>(hits[k].t);
     beam.error_m = static_cast<float>(predicted_m - range_m);
+    beam.primitive = hits[k].primitive;
     beam.incidence_bin =
         setting.incidences.bin_of(incidence_deg(setting.scene, rays[k], hits[k].primitive));
     result.predicted.positions.push_back(vec_cast<float>(
@@ -288,8 +290,11 @@ ScanErrors resimulate_scan(const Tracer& tracer, const SceneView& scene, Vec3d s
   const CastPlace setting{
       tracer, scene, scene_origin, labels, options, range_bins(options), incidence_bins()};
   CastScan scan = cast_scan(setting, sequence, index, executor);
-  ScanErrors result{std::move(scan.measured.positions), {}};
-  for (const Beam& beam : scan.beams) result.errors_m.push_back(beam.error_m);
+  ScanErrors result{std::move(scan.measured.positions), {}, {}};
+  for (const Beam& beam : scan.beams) {
+    result.errors_m.push_back(beam.error_m);
+    result.primitives.push_back(beam.primitive);
+  }
   return result;
 }
 

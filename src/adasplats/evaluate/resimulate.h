@@ -68,6 +68,7 @@ ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d 
 struct ScanErrors {
   std::vector<Vec3f> measured;  ///< sensor frame, m
   std::vector<float> errors_m;  ///< predicted - measured range; NaN: no hit
+  std::vector<std::uint32_t> primitives;  ///< that they hit; Hit::kNone: none
 };
 
 /// The beams of one scan that `resimulate` takes. Errors: as resimulate's.

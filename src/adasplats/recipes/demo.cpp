@@ -7,7 +7,7 @@
 #include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
 #include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/provenance/metrics_json.h"
-#include "adasplats/recipes/render.h"
+#include "adasplats/recipes/pictures/render.h"
 #include "adasplats/recipes/synth_street.h"
 
 namespace adasplats {

@@ -25,7 +25,7 @@ CloudComparison run_cloud_comparison(const CloudComparisonJob& job, Session& ses
   if (!job.errors.empty()) {
     const ErrorPoints points =
         distance_points(std::move(clouds.simulated), clouds.original, session.executor);
-    write_error_points(job.errors, points.cloud, points.errors_m);
+    write_error_points(job.errors, points);
   }
   return comparison;
 }
@@ -53,7 +53,7 @@ HeldOutResult run_resimulate(const ResimulateJob& job, Session& session) {
   if (!job.errors.empty()) {
     const ErrorPoints points = beam_points(scene.tracer(), scene.view(), scene.origin(), sequence,
                                            labels, job.options, session.executor, session.progress);
-    write_error_points(job.errors, points.cloud, points.errors_m);
+    write_error_points(job.errors, points);
   }
   return result;
 }

@@ -7,7 +7,7 @@
 
 #include "adasplats/evaluate/cloud_metrics.h"
 #include "adasplats/io/arrays/png.h"
-#include "adasplats/simulate/image/color_bar.h"
+#include "adasplats/simulate/captions/color_bar.h"
 #include "adasplats/simulate/image/point_image.h"
 
 namespace adasplats::app {
@@ -34,7 +34,7 @@ void write_distance_picture(const std::filesystem::path& file, const PointCloud&
   }
   Image image = draw_points(simulated.positions, simulated.origin, colors,
                             camera_of(view, shown_part(original.positions, original.origin)), {}, session.executor);
-  draw_color_bar(image, scale, {{{0, "0"}, {0.5, "10"}, {1, ">20 cm"}}, {}});
+  draw_color_bar(image, scale, {"distance to the points", {{0, "0"}, {0.5, "10"}, {1, ">20 cm"}}, {}});
   write(file, image);
   session.progress.end_step();
 }
@@ -59,7 +59,9 @@ void write_beam_picture(const std::filesystem::path& file, const ScanErrors& sca
   options.relief = false;  // rings of a scan hang in the air: every one would be a step
   Image image = draw_points(scan.measured, {}, colors, camera, options, session.executor);
   draw_color_bar(image, scale,
-                 {{{0, "early 50"}, {0.5, "0"}, {1, "50 cm late"}}, {{kNoHit, "no hit"}}});
+                 {"predicted less measured range, cm",
+                  {{0, "-50 early"}, {0.5, "0"}, {1, "late +50"}},
+                  {{kNoHit, "no hit"}}});
   write(file, image);
   session.progress.end_step();
 }

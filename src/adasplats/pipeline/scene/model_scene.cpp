@@ -133,6 +133,14 @@ Image ModelScene::render(const Camera& camera, const ImageOptions& options) cons
   return renderer_->render(camera);
 }
 
+Image ModelScene::render(const Camera& camera, const ImageOptions& options,
+                         std::span<const float> values) const {
+  ImageScene scene = image_scene();
+  scene.attributes.intensities = values;
+  if (gpu_) return gpu_->render(scene, camera, options);
+  return render_image(*tracer_, scene, camera, options, executor_);
+}
+
 std::pair<Vec3d, Vec3d> ModelScene::middle_box() const {
   if (const auto* mesh = std::get_if<MeshModel>(&place_))
     return adasplats::middle_box(mesh->mesh.vertices, origin());

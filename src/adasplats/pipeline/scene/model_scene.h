@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -59,6 +60,7 @@ class ModelScene {
   const World* world() const { return world_ ? &*world_ : nullptr; }
   /// Null where it is a mesh.
   const SplatModel* splats() const { return std::get_if<SplatModel>(&place_); }
+  const Executor& executor() const { return executor_; }
   bool on_gpu() const { return gpu_.has_value(); }
   /// Null where it is on the CPU.
   const GpuScene* gpu() const { return gpu_ ? &*gpu_ : nullptr; }
@@ -71,6 +73,9 @@ class ModelScene {
   ImageColor default_color() const;
   /// A picture of image_scene().
   Image render(const Camera& camera, const ImageOptions& options) const;
+  /// The same with other values (one a primitive) in the place of intensities.
+  Image render(const Camera& camera, const ImageOptions& options,
+               std::span<const float> values) const;
   /// World box of the middle 98 % of the splats or vertices along each axis: far outliers must not
   /// decide what a picture shows.
   std::pair<Vec3d, Vec3d> middle_box() const;

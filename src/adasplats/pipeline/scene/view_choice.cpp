@@ -15,15 +15,17 @@ constexpr int kMostPixels = 1 << 28;
 
 constexpr double kFromAfar_deg = 45, kFromWithin_deg = 70;
 
-Camera camera_at_pose(const ViewChoice& view) {
+RigidTransform pose_of(const ViewChoice& view) {
   const Trajectory trajectory = load_trajectory(view.trajectory);
   if (view.pose >= trajectory.size()) {
     throw Error(ErrorKind::usage, "`pose` " + std::to_string(view.pose) + ": the trajectory has " +
                                       std::to_string(trajectory.size()) + " poses");
   }
-  Camera camera;
-  camera.world_from_camera = trajectory[view.pose].world_from_sensor;
-  return camera;
+  return trajectory[view.pose].world_from_sensor;
+}
+
+double fov_within_rad(const ViewChoice& view) {
+  return view.horizontal_fov_deg.value_or(kFromWithin_deg) * kRadiansPerDegree;
 }
 
 }  // namespace
@@ -44,18 +46,24 @@ void check(const ViewChoice& view) {
   }
 }
 
+Camera camera_at(const ViewChoice& view, const RigidTransform& world_from_camera) {
+  Camera camera;
+  camera.world_from_camera = world_from_camera;
+  camera.width = view.width;
+  camera.height = view.height;
+  camera.horizontal_fov_rad = fov_within_rad(view);
+  return camera;
+}
+
 Camera camera_of(const ViewChoice& view, const ShownPart& part) {
   if (view.birds_eye) return birds_eye(part.low, part.high, view.width, view.height);
   if (view.trajectory.empty() && !view.eye)
     return overview(part, view.width, view.height,
                     view.horizontal_fov_deg.value_or(kFromAfar_deg) * kRadiansPerDegree);
-  Camera camera = view.eye ? look_at(*view.eye, view.target.value_or(part.middle()))
-                           : camera_at_pose(view);
-  camera.width = view.width;
-  camera.height = view.height;
-  camera.horizontal_fov_rad =
-      view.horizontal_fov_deg.value_or(kFromWithin_deg) * kRadiansPerDegree;
-  return camera;
+  return camera_at(view,
+                   view.eye ? look_at(*view.eye, view.target.value_or(part.middle()))
+                                  .world_from_camera
+                            : pose_of(view));
 }
 
 }  // namespace adasplats

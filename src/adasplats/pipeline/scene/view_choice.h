@@ -28,6 +28,9 @@ struct ViewChoice {
 /// Errors: usage (sizes and angles out of range, several places).
 void check(const ViewChoice& view);
 
+/// The camera at a pose, looking ahead.
+Camera camera_at(const ViewChoice& view, const RigidTransform& world_from_camera);
+
 /// The camera for a part of a place. Errors: those of the trajectory's file; usage (a pose that it
 /// does not have).
 Camera camera_of(const ViewChoice& view, const ShownPart& part);

@@ -37,6 +37,20 @@ ADASPLATS_HD inline Vec3f viridis(float share) {
   return (1.0F - weight) * color(before) + weight * color(before + 1);
 }
 
+/// From blue over white to red: errors with a sign. `share` as in viridis().
+ADASPLATS_HD inline Vec3f signed_color(float share) {
+  constexpr int kPlaces = 5;
+  constexpr std::uint8_t kColors[kPlaces][3] = {
+      {30, 70, 220}, {110, 160, 255}, {255, 255, 255}, {255, 150, 110}, {225, 30, 30}};
+  const float clamped = share > 0.0F ? (share < 1.0F ? share : 1.0F) : 0.0F;  // NaN: 0
+  const float place = clamped * static_cast<float>(kPlaces - 1);
+  const int floor = static_cast<int>(place);
+  const int before = floor < kPlaces - 2 ? floor : kPlaces - 2;
+  const float weight = place - static_cast<float>(before);
+  const auto color = [&](int k) { return color_of({kColors[k][0], kColors[k][1], kColors[k][2]}); };
+  return (1.0F - weight) * color(before) + weight * color(before + 1);
+}
+
 /// The values at two quantiles of what is finite in `values`; {0, 1} where nothing is, and high >
 /// low always.
 struct ValueRange {

@@ -26,6 +26,7 @@ enum class ImageColor : std::uint8_t {
   intensity,  ///< measured intensity, 2nd to 98th percentile; grey where there is none
   range,      ///< distance, on a logarithmic scale from 1 m to 100 m
   height,     ///< world z, 2nd to 98th percentile
+  error,      ///< the intensities are errors with a sign: blue, white, red; grey where not known
 };
 
 /// 8-bit RGB, rows from the top.
@@ -62,6 +63,9 @@ struct ImageScene {
 /// What the ends of the scale of a colour stand for in a scene: the 2nd and 98th percentile of
 /// intensities, or of heights relative to the scene's origin, m; {0, 1} for other colours.
 ValueRange shown_range(const ImageScene& scene, ImageColor color);
+
+/// Checks what render_image() is asked for. Errors: usage.
+void check_image(const Camera& camera, const ImageOptions& options);
 
 /// Casts rays through every pixel. Both sides of a surface are lit. The same bytes for any number
 /// of threads. Errors: usage (width, height or samples below 1, a field of view outside (0, pi)).

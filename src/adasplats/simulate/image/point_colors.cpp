@@ -27,9 +27,8 @@ std::vector<Rgb> by_class(const PointCloud& cloud, const LabelScheme& labels) {
   return colors;
 }
 
-/// By one value a point, from the 2nd to the 98th percentile of those that are finite.
-std::vector<Rgb> by_value(const std::vector<float>& values) {
-  const ValueRange range = quantile_range(values, 0.02, 0.98);
+/// By one value a point; grey where it is not finite.
+std::vector<Rgb> by_value(const std::vector<float>& values, ValueRange range) {
   std::vector<Rgb> colors;
   colors.reserve(values.size());
   for (const float value : values)
@@ -39,16 +38,16 @@ std::vector<Rgb> by_value(const std::vector<float>& values) {
   return colors;
 }
 
-std::vector<Rgb> by_intensity(const PointCloud& cloud) {
+std::vector<Rgb> by_intensity(const PointCloud& cloud, ValueRange range) {
   if (cloud.intensities.empty()) return std::vector<Rgb>(cloud.size(), kNeutral);
-  return by_value(cloud.intensities);
+  return by_value(cloud.intensities, range);
 }
 
-std::vector<Rgb> by_height(const PointCloud& cloud) {
+std::vector<float> heights_of(const PointCloud& cloud) {
   std::vector<float> heights;
   heights.reserve(cloud.size());
   for (const Vec3f p : cloud.positions) heights.push_back(p.z);
-  return by_value(heights);
+  return heights;
 }
 
 std::vector<Rgb> by_range(const PointCloud& cloud, Vec3d eye) {
@@ -64,8 +63,11 @@ std::vector<Rgb> by_range(const PointCloud& cloud, Vec3d eye) {
 }  // namespace
 
 std::vector<Rgb> point_colors(const PointCloud& cloud, const LabelScheme* labels,
-                              std::optional<ImageColor> color, Vec3d eye) {
-  switch (color.value_or(default_color(cloud, labels))) {
+                              std::optional<ImageColor> color, Vec3d eye,
+                              std::optional<ValueRange> range) {
+  const ImageColor shown = color.value_or(default_color(cloud, labels));
+  const ValueRange ends = range.value_or(shown_range(cloud, shown));
+  switch (shown) {
     case ImageColor::shading: return std::vector<Rgb>(cloud.size(), kNeutral);
     case ImageColor::semantic:
       if (labels == nullptr || cloud.classes.empty())
@@ -73,11 +75,19 @@ std::vector<Rgb> point_colors(const PointCloud& cloud, const LabelScheme* labels
                     "points can be coloured by class only with classes and a label scheme");
       return by_class(cloud, *labels);
     case ImageColor::normal: throw Error(ErrorKind::usage, "a point cloud has no normals to show");
-    case ImageColor::intensity: return by_intensity(cloud);
+    case ImageColor::intensity: return by_intensity(cloud, ends);
     case ImageColor::range: return by_range(cloud, eye);
-    case ImageColor::height: return by_height(cloud);
+    case ImageColor::height: return by_value(heights_of(cloud), ends);
+    case ImageColor::error: throw Error(ErrorKind::usage, "a point cloud has no errors to show");
   }
   return {};
+}
+
+ValueRange shown_range(const PointCloud& cloud, ImageColor color) {
+  constexpr double kLow = 0.02, kHigh = 0.98;
+  if (color == ImageColor::intensity) return quantile_range(cloud.intensities, kLow, kHigh);
+  return color == ImageColor::height ? quantile_range(heights_of(cloud), kLow, kHigh)
+                                     : ValueRange{};
 }
 
 ImageColor default_color(const PointCloud& cloud, const LabelScheme* labels) {

@@ -18,10 +18,15 @@ ImageColor default_color(const PointCloud& cloud, const LabelScheme* labels);
 /// A colour for each point of a cloud, to be drawn by draw_points. Without `color`: default_color().
 /// - semantic: the class's colour, grey where it has none or black.
 /// - intensity: 2nd to 98th percentile; grey where the cloud has none.
+/// `range`: what the ends of the scale stand for, else shown_range().
 /// - range: distance from `eye` (world), on a logarithmic scale from 1 m to 100 m.
 /// - shading: one grey, for the relief of draw_points.
 /// Errors: usage (normal: points have none; semantic without labels).
 std::vector<Rgb> point_colors(const PointCloud& cloud, const LabelScheme* labels,
-                              std::optional<ImageColor> color, Vec3d eye);
+                              std::optional<ImageColor> color, Vec3d eye,
+                              std::optional<ValueRange> range = {});
+
+/// What the ends of the scale of a colour stand for: as shown_range() of a scene.
+ValueRange shown_range(const PointCloud& cloud, ImageColor color);
 
 }  // namespace adasplats

@@ -10,7 +10,6 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/random.h"
-#include "adasplats/simulate/image/color_bar.h"
 #include "adasplats/simulate/image/point_colors.h"
 
 namespace adasplats {
@@ -193,31 +192,6 @@ TEST(PointColors, AsTold) {
   EXPECT_TRUE(point_colors({}, nullptr, {}, {}).empty());
   EXPECT_THROW(point_colors(cloud, nullptr, ImageColor::normal, {}), Error);
   EXPECT_THROW(point_colors(cloud, nullptr, ImageColor::semantic, {}), Error);
-}
-
-TEST(ColorScale, PlacesMiddlesAndBounds) {
-  const ColorScale scale = {{{0, 0, 0}, {100, 50, 0}, {200, 0, 250}}};
-  EXPECT_EQ(scale.at(0), (Rgb{0, 0, 0}));
-  EXPECT_EQ(scale.at(0.25), (Rgb{50, 25, 0}));
-  EXPECT_EQ(scale.at(0.5), (Rgb{100, 50, 0}));
-  EXPECT_EQ(scale.at(1), (Rgb{200, 0, 250}));
-  EXPECT_EQ(scale.at(7), scale.at(1));
-  EXPECT_EQ(scale.at(-7), scale.at(0));
-  EXPECT_EQ(scale.at(std::numeric_limits<double>::quiet_NaN()), scale.at(0));
-}
-
-TEST(ColorBar, ShowsTheScaleAndStaysInThePicture) {
-  const ColorBarText text = {{{0, "0"}, {1, "20 cm"}}, {{kGreen, "no hit"}}};
-  for (const auto& [width, height] : {std::pair{1, 1}, {30, 500}, {1280, 720}, {400, 20}}) {
-    Image image{width, height,
-                std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * height), 77)};
-    draw_color_bar(image, distance_scale(), text);
-    if (width < 1000) continue;
-    EXPECT_GT(count(image, distance_scale().at(0)), 5U);
-    EXPECT_GT(count(image, distance_scale().at(1)), 5U);
-    EXPECT_GT(count(image, kGreen), 30U);
-    EXPECT_EQ(pixel(image, 0, 0), (Rgb{77, 77, 77}));
-  }
 }
 
 }  // namespace

@@ -23,7 +23,4 @@ class Shading {
   std::vector<Vec3f> class_colors_;  ///< by class id; negative: none
 };
 
-/// Checks what render_image() is asked for. Errors: usage.
-void check_image(const Camera& camera, const ImageOptions& options);
-
 }  // namespace adasplats

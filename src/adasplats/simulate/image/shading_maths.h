@@ -95,6 +95,13 @@ ADASPLATS_HD inline Vec3f intensity_color(const ShadingTables& tables, std::uint
   return color_in(tables.range, intensity);
 }
 
+ADASPLATS_HD inline Vec3f error_color(const ShadingTables& tables, std::uint32_t primitive) {
+  constexpr Vec3f kNotKnown = {0.59F, 0.59F, 0.59F};
+  const float error = tables.intensities == nullptr ? 0.0F : tables.intensities[primitive];
+  if (!(error - error == 0.0F)) return kNotKnown;  // not finite
+  return signed_color((error - tables.range.low) / (tables.range.high - tables.range.low));
+}
+
 /// log10(x) of a normal number above 0, to a few units in the last place of a float. The library's
 /// has other last bits on a GPU. x = m * 2^k with m around 1, and with s = (m - 1) / (m + 1)
 /// ln(m) = 2 (s + s^3 / 3 + s^5 / 5 + ...).
@@ -128,6 +135,9 @@ ADASPLATS_HD inline Vec3f shade(const ShadingTables& tables, const Ray& ray, con
     case ImageColor::height:
       return (0.5F + 0.5F * shading::light(normal, ray.direction)) *
              shading::color_in(tables.range, ray.origin.z + hit.t * ray.direction.z);
+    case ImageColor::error:
+      return (0.5F + 0.5F * shading::light(normal, ray.direction)) *
+             shading::error_color(tables, hit.primitive);
     case ImageColor::range: return viridis(1.0F - 0.5F * shading::log10_anywhere(hit.t));
   }
   return shading::kNeutral;

@@ -20,17 +20,19 @@ struct ColorScale {
 
 /// Dark blue over light blue and yellow to red: distances that should be small.
 const ColorScale& distance_scale();
+/// viridis() of color_map.h: values.
+const ColorScale& viridis_scale();
 /// Blue over white to red: errors with a sign.
 const ColorScale& signed_scale();
 
 /// What is written on a colour bar: texts under places (0..1), and further colours beside it.
 struct ColorBarText {
+  std::string title;  ///< above the bar; may be empty
   std::vector<std::pair<double, std::string>> marks;
   std::vector<std::pair<Rgb, std::string>> keys;
 };
 
-/// Draws a colour bar into the lower left corner of a picture, on a light plate. Texts hold digits,
-/// lower-case letters and "+-.>< ", anything else is left blank.
+/// Draws a colour bar into the lower left corner of a picture, on a light plate.
 void draw_color_bar(Image& image, const ColorScale& scale, const ColorBarText& text);
 
 }  // namespace adasplats

@@ -2,17 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "adasplats/core/setting.h"
 #include "adasplats/pipeline/scene/view_choice.h"
 #include "adasplats/pipeline/session/session.h"
-#include "adasplats/simulate/image/image.h"
+#include "adasplats/recipes/pictures/panel.h"
 
 namespace adasplats {
+
+/// A picture, or a film of many.
+enum class Film : std::uint8_t {
+  none,
+  turntable,  ///< once around what is shown
+  drive,      ///< along the trajectory, looking ahead
+};
 
 /// One or several models (splats or meshes) or point clouds from the same camera, side by side in
 /// one picture.
@@ -20,10 +27,15 @@ struct RenderJob {
   std::vector<std::filesystem::path> models;
   std::filesystem::path output;
   std::string labels;  ///< scheme of the classes; empty: what the models say
-  /// Else by class where the model has classes or groups, and points by intensity or height.
-  std::optional<ImageColor> color;
+  /// Errors of held-out beams (evaluate resimulate --errors) to colour the splats of one model by.
+  std::filesystem::path errors;
   ViewChoice view;  ///< width and height are those of one model's part of the picture
-  int samples_per_axis = 2;
+  PanelLook look;
+  /// Instead of two models side by side: how much farther the second is along the view.
+  bool difference = false;
+  Film film = Film::none;
+  double seconds = 12;      ///< of a film
+  double frames_per_s = 24;
   int repeat = 1;  ///< renders so often, for the median of the time
 };
 
@@ -37,7 +49,17 @@ void visit_settings(RenderJob& job, Visit&& visit) {
   visit(
       Setting{
           .name = "samples", .help = "Rays a pixel: the square of this", .least = 1, .most = 64},
-      job.samples_per_axis);
+      job.look.samples_per_axis);
+  visit(Setting{.name = "captions", .help = "Title, legend, scale and north"}, job.look.captions);
+  visit(Setting{.name = "difference",
+                .help = "Of two models: how much farther the second is along the view, by colour"},
+        job.difference);
+  visit(Setting{.name = "seconds", .help = "Length of a film", .value = "S", .least = 0,
+                .most = 3600, .above_least = true},
+        job.seconds);
+  visit(Setting{.name = "frames_per_s", .help = "Pictures a second of a film", .value = "N",
+                .least = 1, .most = 120},
+        job.frames_per_s);
   visit(Setting{.name = "repeat",
                 .help = "Render so often and report the median of the time",
                 .value = "N",
@@ -48,7 +70,8 @@ void visit_settings(RenderJob& job, Visit&& visit) {
 /// Whether one of the inputs is a model or a mesh; the others are points. Errors: no_input.
 bool draws_a_model(const RenderJob& job);
 
-/// Renders and writes a PNG. Errors: usage (sizes or settings out of range), those of the inputs.
+/// Renders and writes a PNG, or a film (film_writer.h). Errors: usage (sizes or settings out of
+/// range; what cannot be drawn together), those of the inputs and of check_film().
 RenderResult run_render(const RenderJob& job, Session& session);
 
 }  // namespace adasplats

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/recipes/pictures/difference.h"
+
+#include <vector>
+
+#include "adasplats/simulate/captions/color_bar.h"
+#include "adasplats/simulate/image/color_map.h"
+#include "adasplats/simulate/image/developing.h"
+#include "adasplats/simulate/image/frame.h"
+
+namespace adasplats {
+namespace {
+
+constexpr float kMost_m = 0.2F;
+constexpr Rgb kOnlyFirst = {120, 190, 90}, kOnlySecond = {190, 110, 200};
+constexpr std::size_t kRowsPerChunk = 16;
+
+/// The colour of a pixel in which at least one of them is hit.
+Vec3f pixel_color(const Hit& first, const Hit& second) {
+  if (!second.valid()) return color_of(kOnlyFirst);
+  if (!first.valid()) return color_of(kOnlySecond);
+  return signed_color(0.5F + 0.5F * (second.t - first.t) / kMost_m);
+}
+
+}  // namespace
+
+Image draw_difference(const ModelScene& first, const ModelScene& second, const Camera& camera,
+                      const Executor& executor) {
+  ImageOptions options;
+  check_image(camera, options);
+  const Developer developer(camera, options);
+  Frame frame(camera.width, camera.height);
+  const auto width = static_cast<std::size_t>(camera.width);
+  // Each scene has an origin of its own: the same rays, relative to each.
+  const CameraRays rays_of[2] = {camera.rays(first.origin()), camera.rays(second.origin())};
+  const Tracer* const tracers[2] = {&first.tracer(), &second.tracer()};
+  for (std::size_t begin = 0; begin < static_cast<std::size_t>(camera.height);
+       begin += kRowsPerChunk) {
+    const std::size_t end =
+        std::min(begin + kRowsPerChunk, static_cast<std::size_t>(camera.height));
+    std::vector<Ray> rays((end - begin) * width);
+    std::vector<Hit> hits[2] = {std::vector<Hit>(rays.size()), std::vector<Hit>(rays.size())};
+    for (int k = 0; k < 2; ++k) {
+      for (std::size_t i = 0; i < rays.size(); ++i)
+        rays[i] = rays_of[k].ray(static_cast<double>(i % width) + 0.5,
+                                 static_cast<double>(begin + i / width) + 0.5);
+      tracers[k]->nearest(rays, hits[k], executor);
+    }
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Hit& shown = hits[0][i].valid() ? hits[0][i] : hits[1][i];
+      if (!shown.valid()) continue;
+      FramePixel& pixel = frame.pixels[begin * width + i];
+      pixel.color = pixel_color(hits[0][i], hits[1][i]);
+      pixel.nearness = nearness_of(rays_of[0], rays[i], shown.t);
+      frame.hits[begin * width + i] = 1;
+    }
+  }
+  return develop(frame, developer, executor);
+}
+
+void write_difference_legend(Image& image, const std::string& first, const std::string& second) {
+  draw_color_bar(image, signed_scale(),
+                 {second + " less " + first + ", along the view, cm",
+                  {{0, "-20 nearer"}, {0.5, "0"}, {1, "farther +20"}},
+                  {{kOnlyFirst, "only in " + first}, {kOnlySecond, "only in " + second}}});
+}
+
+}  // namespace adasplats

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/simulate/image/image.h"
+
+namespace adasplats {
+
+/// What a camera sees of the first model, coloured by how much farther along each ray the second
+/// is: blue where it is nearer, red where farther, beyond 20 cm at the end of the scale; where only
+/// one of them is, a colour of its own.
+Image draw_difference(const ModelScene& first, const ModelScene& second, const Camera& camera,
+                      const Executor& executor);
+
+void write_difference_legend(Image& image, const std::string& first, const std::string& second);
+
+}  // namespace adasplats

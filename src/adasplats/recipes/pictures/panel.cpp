@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/recipes/pictures/panel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/core/error.h"
+#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/recipes/pictures/panel_legend.h"
+#include "adasplats/simulate/captions/captions.h"
+#include "adasplats/simulate/captions/color_bar.h"
+#include "adasplats/simulate/captions/plate.h"
+#include "adasplats/simulate/image/class_colors.h"
+#include "adasplats/simulate/image/point_colors.h"
+
+namespace adasplats {
+namespace {
+
+/// Errors beyond it have the colour at the end of the scale.
+constexpr float kWrong_m = 0.5F;
+constexpr Rgb kHole = {255, 170, 0};
+constexpr Rgb kNotChecked = {150, 150, 150};
+
+bool has_values(ImageColor color) {
+  return color == ImageColor::intensity || color == ImageColor::height;
+}
+
+std::vector<Rgb> error_colors(std::span<const float> errors_m) {
+  std::vector<Rgb> colors;
+  colors.reserve(errors_m.size());
+  for (const float error_m : errors_m)
+    colors.push_back(std::isnan(error_m)
+                         ? kHole
+                         : signed_scale().at(0.5 + 0.5 * static_cast<double>(error_m / kWrong_m)));
+  return colors;
+}
+
+/// Where a point is in the picture: column, row and distance; nothing where it is outside.
+std::optional<Vec3d> in_picture(const Camera& camera, Vec3d world) {
+  const Vec3d p = camera.world_from_camera.inverse() * world;
+  if (!(p.x > 0.1)) return std::nullopt;
+  const double px_per_m = camera.orthographic_width_m > 0
+                              ? camera.width / camera.orthographic_width_m
+                              : 0.5 * camera.width / std::tan(0.5 * camera.horizontal_fov_rad) / p.x;
+  const Vec3d at = {0.5 * camera.width - px_per_m * p.y, 0.5 * camera.height - px_per_m * p.z, p.x};
+  if (!(at.x >= 0 && at.y >= 0 && at.x < camera.width && at.y < camera.height)) return std::nullopt;
+  return at;
+}
+
+}  // namespace
+
+bool is_model_file(const std::filesystem::path& input) {
+  return std::filesystem::is_regular_file(input) && (is_mesh_file(input) || is_splat_model(input));
+}
+
+Panel::Panel(const std::filesystem::path& input, const std::string& labels, Session& session) {
+  if (is_model_file(input)) {
+    model_ = std::make_unique<ModelScene>(input, labels, session);
+    return;
+  }
+  const std::filesystem::path resolved = resolve_cloud_input(input);
+  const std::span inputs(&resolved, 1);
+  labels_ = label_scheme_for(labels, inputs);
+  if (std::filesystem::is_regular_file(resolved) && has_error_points(resolved)) {
+    ErrorPoints points = read_error_points(resolved);
+    cloud_ = std::move(points.cloud);
+    point_errors_m_ = std::move(points.errors_m);
+  } else {
+    cloud_ = load_cloud(inputs, {}, session.executor, session.progress).first;
+  }
+  if (cloud_.empty()) throw Error(ErrorKind::data, input.string() + ": no points");
+}
+
+void Panel::show_errors(const std::filesystem::path& errors) {
+  if (!model_ || model_->splats() == nullptr)
+    throw Error(ErrorKind::usage, "errors are shown on splat models; draw " + errors.string() +
+                                      " by itself to see its points");
+  const ErrorPoints points = read_error_points(errors);
+  splat_errors_m_ = splat_errors(points, model_->splats()->size(), errors);
+  for (std::size_t i = 0; i < points.cloud.size(); ++i)
+    if (std::isnan(points.errors_m[i])) holes_.push_back(points.cloud.world(i));
+}
+
+ShownPart Panel::shown_part() const {
+  return model_ ? model_->shown_part() : adasplats::shown_part(cloud_.positions, cloud_.origin);
+}
+
+double Panel::origin_z() const { return model_ ? model_->origin().z : cloud_.origin.z; }
+
+void Panel::prepare(const PanelLook& look, SharedRange& range) {
+  if (!splat_errors_m_.empty()) {
+    color_ = ImageColor::error;
+    range_ = ValueRange{-kWrong_m, kWrong_m};
+    return;
+  }
+  color_ = look.color.value_or(model_ ? model_->default_color()
+                                      : default_color(cloud_, labels_ ? &*labels_ : nullptr));
+  if (!has_values(color_) || !point_errors_m_.empty()) return;
+  const float lift = color_ == ImageColor::height ? static_cast<float>(origin_z()) : 0.0F;
+  if (!range) {
+    const ValueRange own =
+        model_ ? shown_range(model_->image_scene(), color_) : shown_range(cloud_, color_);
+    range = ValueRange{own.low + lift, own.high + lift};
+  }
+  range_ = ValueRange{range->low - lift, range->high - lift};
+}
+
+Image Panel::draw_model(const Camera& camera, const PanelLook& look) const {
+  ImageOptions options;
+  options.color = color_;
+  options.samples_per_axis = look.samples_per_axis;
+  options.range = range_;
+  if (splat_errors_m_.empty()) return model_->render(camera, options);
+  Image image = model_->render(camera, options, splat_errors_m_);
+  mark_holes(image, camera);
+  return image;
+}
+
+Image Panel::draw_cloud(const Camera& camera, const Executor& executor) const {
+  PointImageOptions options;
+  if (!point_errors_m_.empty()) {
+    options.background = {22, 22, 26};  // what is right is white
+    options.sky = options.relief = false;
+    return draw_points(cloud_.positions, cloud_.origin, error_colors(point_errors_m_), camera,
+                       options, executor);
+  }
+  std::vector<Rgb> colors =
+      point_colors(cloud_, labels_ ? &*labels_ : nullptr, color_,
+                   camera.world_from_camera.translation, range_);
+  if (color_ == ImageColor::semantic)
+    std::transform(colors.begin(), colors.end(), colors.begin(), muted);
+  return draw_points(cloud_.positions, cloud_.origin, colors, camera, options, executor);
+}
+
+Image Panel::draw(const Camera& camera, const PanelLook& look, const Executor& executor) const {
+  return model_ ? draw_model(camera, look) : draw_cloud(camera, executor);
+}
+
+/// Dots where beams fell through the model and nothing of it is in front.
+void Panel::mark_holes(Image& image, const Camera& camera) const {
+  constexpr double kNearer_m = 0.3;
+  std::vector<Ray> rays;
+  std::vector<Vec3d> places;
+  for (const Vec3d& hole : holes_) {
+    const std::optional<Vec3d> at = in_picture(camera, hole);
+    if (!at) continue;
+    rays.push_back(camera.ray(at->x, at->y, model_->origin()));
+    places.push_back(*at);
+  }
+  std::vector<Hit> hits(rays.size());
+  model_->tracer().nearest(rays, hits, model_->executor());
+  const Vec3d forward = camera.world_from_camera.rotation * Vec3d{1, 0, 0};
+  const double size_px = std::max(3.0, image.height / 300.0);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const double depth = static_cast<double>(hits[i].t) *
+                         dot(vec_cast<double>(rays[i].direction), forward);
+    if (hits[i].valid() && depth < places[i].z - kNearer_m) continue;
+    draw_line(image, places[i], places[i], size_px, kHole);
+  }
+}
+
+void Panel::write_legend(Image& image) const {
+  if (!splat_errors_m_.empty() || !point_errors_m_.empty()) {
+    ColorBarText text{"predicted less measured range, m",
+                      {{0, "-0.5 early"}, {0.5, "0"}, {1, "late +0.5"}},
+                      {{kHole, "hole: the beam hit nothing"}}};
+    if (!splat_errors_m_.empty()) text.keys.push_back({kNotChecked, "no held-out beam hit it"});
+    draw_color_bar(image, signed_scale(), text);
+    return;
+  }
+  if (color_ == ImageColor::semantic) {
+    draw_classes(image, model_ ? legend_of(model_->image_scene())
+                               : legend_of(cloud_.classes, labels_ ? &*labels_ : nullptr));
+  } else if (has_values(color_) && range_) {
+    const double lift = color_ == ImageColor::height ? origin_z() : 0;
+    draw_color_bar(image, viridis_scale(),
+                   {color_ == ImageColor::height ? "height, m" : "intensity",
+                    {{0, short_number(range_->low + lift)}, {1, short_number(range_->high + lift)}},
+                    {}});
+  } else if (color_ == ImageColor::range) {
+    draw_color_bar(image, viridis_scale(),
+                   {"range, m", {{0, "100"}, {0.5, "10"}, {1, "1"}}, {}});
+  }
+}
+
+void Panel::write_captions(Image& image, const Camera& camera, const std::string& title,
+                           std::optional<Vec3d> middle) const {
+  write_legend(image);
+  write_place(image, camera, title, middle);
+}
+
+void Panel::write_place(Image& image, const Camera& camera, const std::string& title,
+                        std::optional<Vec3d> middle) const {
+  draw_title(image, title);
+  draw_north(image, camera, crs().empty() ? "y" : "N");
+  if (!middle) return;
+  const bool parallel = camera.orthographic_width_m > 0;
+  const Vec3d forward = camera.world_from_camera.rotation * Vec3d{1, 0, 0};
+  const double depth_m = dot(forward, *middle - camera.world_from_camera.translation);
+  if (!parallel && !(depth_m > 0)) return;
+  const double px_per_m =
+      parallel ? camera.width / camera.orthographic_width_m
+               : 0.5 * camera.width / std::tan(0.5 * camera.horizontal_fov_rad) / depth_m;
+  draw_scale_bar(image, scale_bar(px_per_m, image.width / 6), parallel ? "" : "at the middle");
+}
+
+}  // namespace adasplats

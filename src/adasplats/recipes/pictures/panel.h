@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/evaluate/error_points.h"
+#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/pipeline/session/session.h"
+#include "adasplats/simulate/image/image.h"
+
+namespace adasplats {
+
+/// How the panels of a picture are drawn.
+struct PanelLook {
+  std::optional<ImageColor> color;  ///< else what tells most of each panel
+  int samples_per_axis = 2;
+  bool captions = true;  ///< title, legend, scale and north
+};
+
+/// Values that the ends of a colour scale stand for, in the world: panels of one picture share
+/// them.
+using SharedRange = std::optional<ValueRange>;
+
+/// Whether a file is a splat model or a mesh; other inputs are points.
+bool is_model_file(const std::filesystem::path& input);
+
+/// One part of a picture: a model, points, or points with errors.
+class Panel {
+ public:
+  /// `labels` as load_label_scheme takes it; empty: what the input says. Errors: those of the
+  /// input; data (no points).
+  Panel(const std::filesystem::path& input, const std::string& labels, Session& session);
+
+  /// Colours the splats of a model by what held-out beams say of them (evaluate resimulate
+  /// --errors); beams that fell through it become dots. Errors: usage (no splat model); data (the
+  /// errors are of another model).
+  void show_errors(const std::filesystem::path& errors);
+
+  ShownPart shown_part() const;
+  /// Chooses the panel's scale: `range` where it is there and what it shows is the same.
+  void prepare(const PanelLook& look, SharedRange& range);
+  /// Without captions.
+  Image draw(const Camera& camera, const PanelLook& look, const Executor& executor) const;
+  /// `title`: may be empty. `middle`: where the scale holds; none is drawn without.
+  void write_captions(Image& image, const Camera& camera, const std::string& title,
+                      std::optional<Vec3d> middle) const;
+  /// Title, scale and north alone.
+  void write_place(Image& image, const Camera& camera, const std::string& title,
+                   std::optional<Vec3d> middle) const;
+  /// Null where it is no model.
+  const ModelScene* model() const { return model_.get(); }
+
+ private:
+  Image draw_model(const Camera& camera, const PanelLook& look) const;
+  Image draw_cloud(const Camera& camera, const Executor& executor) const;
+  void mark_holes(Image& image, const Camera& camera) const;
+  void write_legend(Image& image) const;
+  double origin_z() const;
+  const Crs& crs() const { return model_ ? model_->crs() : cloud_.crs; }
+
+  std::unique_ptr<ModelScene> model_;
+  PointCloud cloud_;
+  std::optional<LabelScheme> labels_;      ///< of the cloud
+  std::vector<float> point_errors_m_;      ///< of the cloud's points, where it has them
+  std::vector<float> splat_errors_m_;      ///< of the model's splats; NaN: no beam hit it
+  std::vector<Vec3d> holes_;               ///< world: measured where beams hit nothing
+  ImageColor color_ = ImageColor::shading;
+  std::optional<ValueRange> range_;        ///< in the panel's own coordinates
+};
+
+}  // namespace adasplats

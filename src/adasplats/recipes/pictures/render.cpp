@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/recipes/pictures/render.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/core/progress_meter.h"
+#include "adasplats/core/stopwatch.h"
+#include "adasplats/io/arrays/png.h"
+#include "adasplats/pipeline/output/output_folder.h"
+#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/recipes/pictures/camera_paths.h"
+#include "adasplats/recipes/pictures/difference.h"
+#include "adasplats/recipes/pictures/film_writer.h"
+#include "adasplats/recipes/pictures/panel.h"
+
+namespace adasplats {
+namespace {
+
+constexpr int kMostPixels = 1 << 28;
+
+/// The panels of a picture side by side.
+class Panels {
+ public:
+  Panels(const RenderJob& job, Session& session) : job_(job), session_(session) {
+    SharedRange range;
+    for (const auto& input : job.models) {
+      Panel& panel = panels_.emplace_back(input, job.labels, session);
+      if (!job.errors.empty()) panel.show_errors(job.errors);
+      panel.prepare(job.look, range);
+    }
+    part_ = panels_.front().shown_part();  // the first decides where the camera stands
+    if (job.view.trajectory.empty()) middle_ = part_.middle();
+  }
+
+  const ShownPart& part() const { return part_; }
+  int columns() const { return job_.difference ? 1 : static_cast<int>(panels_.size()); }
+
+  /// One picture of all, with captions.
+  Image draw(const Camera& camera) {
+    Image picture{job_.view.width * columns(), job_.view.height, {}};
+    picture.pixels.resize(static_cast<std::size_t>(picture.width) *
+                          static_cast<std::size_t>(picture.height) * 3);
+    seconds_ = 0;
+    for (int k = 0; k < columns(); ++k) {
+      Image image = timed(camera, panels_[static_cast<std::size_t>(k)]);
+      if (job_.look.captions) write_captions(image, camera, static_cast<std::size_t>(k));
+      paste(picture, image, job_.view.width * k);
+    }
+    return picture;
+  }
+
+  /// Of the last picture without captions: the sum over the panels.
+  double seconds() const { return seconds_; }
+
+ private:
+  Image draw_once(const Camera& camera, const Panel& panel) const {
+    if (!job_.difference) return panel.draw(camera, job_.look, session_.executor);
+    return draw_difference(*panels_[0].model(), *panels_[1].model(), camera, session_.executor);
+  }
+
+  /// Draws a panel as often as is asked for, and takes the median of the time.
+  Image timed(const Camera& camera, const Panel& panel) {
+    std::vector<double> seconds;
+    Image image;
+    for (int i = 0; i < job_.repeat; ++i) {
+      const Stopwatch watch;
+      image = draw_once(camera, panel);
+      seconds.push_back(watch.seconds());
+    }
+    std::sort(seconds.begin(), seconds.end());
+    const std::size_t half = seconds.size() / 2;
+    seconds_ += seconds.size() % 2 == 1 ? seconds[half] : 0.5 * (seconds[half - 1] + seconds[half]);
+    return image;
+  }
+
+  void write_captions(Image& image, const Camera& camera, std::size_t k) const {
+    const auto name = [&](std::size_t i) { return job_.models[i].stem().string(); };
+    if (job_.difference) {
+      panels_[0].write_place(image, camera, name(1) + " against " + name(0), middle_);
+      write_difference_legend(image, name(0), name(1));
+    } else {
+      panels_[k].write_captions(image, camera, panels_.size() > 1 ? name(k) : "", middle_);
+    }
+  }
+
+  /// Copies `part` into `picture` at column `left`.
+  static void paste(Image& picture, const Image& part, int left) {
+    const std::size_t row_bytes = static_cast<std::size_t>(part.width) * 3;
+    for (int row = 0; row < part.height; ++row) {
+      const auto from = part.pixels.begin() +
+                        static_cast<std::ptrdiff_t>(row_bytes * static_cast<std::size_t>(row));
+      const std::size_t to =
+          (static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.width) +
+           static_cast<std::size_t>(left)) *
+          3;
+      std::copy(from, from + static_cast<std::ptrdiff_t>(row_bytes),
+                picture.pixels.begin() + static_cast<std::ptrdiff_t>(to));
+    }
+  }
+
+  const RenderJob& job_;
+  Session& session_;
+  std::vector<Panel> panels_;
+  ShownPart part_;
+  std::optional<Vec3d> middle_;
+  double seconds_ = 0;
+};
+
+void check(const RenderJob& job) {
+  check(job.view);
+  const auto parts = static_cast<int>(std::max<std::size_t>(job.models.size(), 1));
+  if (job.view.width > kMostPixels / job.view.height / parts) {
+    throw Error(ErrorKind::usage, "`width` and `height` are out of range");
+  }
+  check_settings(job);
+  if (!job.errors.empty() && job.models.size() != 1)
+    throw Error(ErrorKind::usage, "`errors` are of one model");
+  if (job.difference && !job.errors.empty())
+    throw Error(ErrorKind::usage, "give one of `errors` and `difference`");
+  if (job.film == Film::none) return;
+  check_film(job.output);
+  if (job.film == Film::drive && job.view.trajectory.empty())
+    throw Error(ErrorKind::usage, "`drive` needs `trajectory`");
+  if (job.film == Film::turntable &&
+      (job.view.birds_eye || job.view.eye || !job.view.trajectory.empty()))
+    throw Error(ErrorKind::usage, "a `turntable` chooses its own place of the camera");
+}
+
+void check_inputs(const RenderJob& job) {
+  for (const auto& model : job.models) require_input(model);
+  if (!job.errors.empty()) require_input(job.errors);
+  if (job.difference && (job.models.size() != 2 || !is_model_file(job.models[0]) ||
+                         !is_model_file(job.models[1])))
+    throw Error(ErrorKind::usage, "a `difference` is of two models or meshes");
+}
+
+/// As many cameras as the film has pictures.
+std::vector<Camera> cameras_of(const RenderJob& job, const ShownPart& part) {
+  const auto frames =
+      static_cast<std::size_t>(std::max(1.0, std::round(job.seconds * job.frames_per_s)));
+  if (job.film == Film::turntable) return turntable(job.view, part, frames);
+  return along_drive(job.view, frames);
+}
+
+RenderResult draw_film(const RenderJob& job, Panels& panels, Session& session) {
+  const std::vector<Camera> cameras = cameras_of(job, panels.part());
+  const std::unique_ptr<FilmWriter> film = make_film_writer(job.output, job.frames_per_s);
+  RenderResult result;
+  session.progress.begin_step("draw the film", cameras.size());
+  for (const Camera& camera : cameras) {
+    film->add(panels.draw(camera));
+    result.seconds_rendered += panels.seconds();
+    session.progress.advance(++result.images);
+  }
+  session.progress.end_step();
+  session.progress.begin_step("write the film", 0);
+  film->finish(session.progress);
+  session.progress.end_step();
+  return result;
+}
+
+}  // namespace
+
+bool draws_a_model(const RenderJob& job) {
+  for (const auto& model : job.models) require_input(model);
+  return std::any_of(job.models.begin(), job.models.end(), is_model_file);
+}
+
+RenderResult run_render(const RenderJob& job, Session& session) {
+  check(job);
+  check_output_file(job.output);
+  check_inputs(job);
+  Panels panels(job, session);
+  if (job.film != Film::none) return draw_film(job, panels, session);
+  session.progress.begin_step("render", 0);
+  const Image picture = panels.draw(camera_of(job.view, panels.part()));
+  session.progress.end_step();
+  write_png(job.output, picture.width, picture.height, picture.pixels);
+  return {static_cast<std::size_t>(panels.columns()), panels.seconds()};
+}
+
+}  // namespace adasplats

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+#include "adasplats/simulate/image/point_image.h"
+
+namespace adasplats {
+
+/// Text in pictures: DejaVu Sans where the library was built with it, else letters of dots. UTF-8; a
+/// letter that the font lacks is left blank.
+
+/// Width of a line, pixels. `height_px`: from the top of capitals to the bottom of a "g".
+int text_width(std::string_view text, int height_px);
+
+/// Writes a line whose box has its top left corner at (left, top); what is outside of the picture
+/// is cut off.
+void draw_text(Image& image, int left, int top, std::string_view text, int height_px, Rgb ink);
+
+}  // namespace adasplats
