@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """From points to numbers on a tiny place, end to end."""
 import json
+import pathlib
 import math
 import struct
 import unittest
@@ -235,11 +236,16 @@ class Pipeline(ProgramTest):
                              "25").stdout
         for word in ["basic", "descriptors", "semantic", "consistent", "thin C2C"]:
             self.assertIn(word, text)
-        pictures = [line.strip() for line in text.splitlines() if line.endswith(".png")]
-        self.assertEqual(len(pictures), 2 * 4)  # two views of every method
+        self.assertIn("adasplats view", text)
+        pictures = sorted(demo.glob("*.png"))
+        self.assertEqual(len(pictures), 2 * 4 + 1)  # two views of every method, and all in one
         for picture in pictures:
-            with open(picture, "rb") as file:
-                self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+            self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        page = (demo / "index.html").read_text(encoding="utf-8")
+        self.assertEqual(page.count("data:image/png"), len(pictures))
+        for line in text.splitlines():  # what it names is there
+            if line.startswith("  /"):
+                self.assertTrue(pathlib.Path(line.split("  ")[1]).is_file(), line)
 
 
 class ManyPlaces(ProgramTest):

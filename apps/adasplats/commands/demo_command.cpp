@@ -4,6 +4,7 @@
 
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/recipes/demo.h"
+#include "adasplats/recipes/demo_page.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/terminal.h"
@@ -55,10 +56,12 @@ class DemoCommand final : public Command {
                        grouped(result.street.driving_scans) + " held-out scans; " +
                        fixed(watch.seconds(), 1) + " s in all.\n\n" + table_of(result) +
                        "\nC2C is simulated to original; within 10 cm and early (by more than "
-                       "50 cm) are shares of the held-out beams.\nPictures:\n";
-    for (const std::filesystem::path& picture : result.pictures) {
-      text += "  " + (job_.output / picture).string() + "\n";
-    }
+                       "50 cm) are shares of the held-out beams.\n\n  " +
+                       (job_.output / result.picture).string() +
+                       "  all methods, and what held-out beams say of them\n  " +
+                       (job_.output / result.page).string() +
+                       "  the run with all its pictures\n\nLook around in it:\n  " +
+                       view_command(job_.output) + "\n";
     print(text);
   }
 

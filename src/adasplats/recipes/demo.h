@@ -37,11 +37,14 @@ struct DemoRow {
 struct DemoResult {
   StreetReport street;
   std::vector<DemoRow> rows;
-  std::vector<std::filesystem::path> pictures;  ///< relative to the output folder
+  // Relative to the output folder:
+  std::vector<std::filesystem::path> pictures;  ///< two of each method
+  std::filesystem::path picture;                ///< of all methods and their errors
+  std::filesystem::path page;                   ///< HTML
 };
 
 /// Street, then for each method: model, simulation on the shifted trajectory, C2C,
-/// re-simulation of the driving sequence, pictures.
+/// re-simulation of the driving sequence, pictures; then a picture of all and a page.
 DemoResult run_demo(const DemoJob& job, Session& session);
 
 /// The keys of a demo's --report: those of the single jobs by method.

@@ -10,6 +10,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/recipes/pictures/panel_legend.h"
+#include "adasplats/report/text_format.h"
 #include "adasplats/simulate/captions/captions.h"
 #include "adasplats/simulate/captions/color_bar.h"
 #include "adasplats/simulate/captions/plate.h"
@@ -75,11 +76,15 @@ Panel::Panel(const std::filesystem::path& input, const std::string& labels, Sess
 }
 
 void Panel::show_errors(const std::filesystem::path& errors) {
+  show_errors(read_error_points(errors), errors);
+}
+
+void Panel::show_errors(const ErrorPoints& points, const std::filesystem::path& name) {
   if (!model_ || model_->splats() == nullptr)
-    throw Error(ErrorKind::usage, "errors are shown on splat models; draw " + errors.string() +
+    throw Error(ErrorKind::usage, "errors are shown on splat models; draw " + name.string() +
                                       " by itself to see its points");
-  const ErrorPoints points = read_error_points(errors);
-  splat_errors_m_ = splat_errors(points, model_->splats()->size(), errors);
+  splat_errors_m_ = splat_errors(points, model_->splats()->size(), name);
+  holes_.clear();
   for (std::size_t i = 0; i < points.cloud.size(); ++i)
     if (std::isnan(points.errors_m[i])) holes_.push_back(points.cloud.world(i));
 }
@@ -178,7 +183,8 @@ void Panel::write_legend(Image& image) const {
     const double lift = color_ == ImageColor::height ? origin_z() : 0;
     draw_color_bar(image, viridis_scale(),
                    {color_ == ImageColor::height ? "height, m" : "intensity",
-                    {{0, short_number(range_->low + lift)}, {1, short_number(range_->high + lift)}},
+                    {{0, page::measure_text(range_->low + lift)},
+                     {1, page::measure_text(range_->high + lift)}},
                     {}});
   } else if (color_ == ImageColor::range) {
     draw_color_bar(image, viridis_scale(),

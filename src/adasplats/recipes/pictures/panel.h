@@ -41,6 +41,8 @@ class Panel {
   /// --errors); beams that fell through it become dots. Errors: usage (no splat model); data (the
   /// errors are of another model).
   void show_errors(const std::filesystem::path& errors);
+  /// The same of errors in memory; `name`: of them in messages.
+  void show_errors(const ErrorPoints& errors, const std::filesystem::path& name);
 
   ShownPart shown_part() const;
   /// Chooses the panel's scale: `range` where it is there and what it shows is the same.

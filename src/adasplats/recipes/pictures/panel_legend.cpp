@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "adasplats/core/error.h"
@@ -58,17 +57,6 @@ ClassLegend legend_of(const ImageScene& scene) {
   }
   for (const SemanticGroup group : scene.groups) ++entries[static_cast<std::size_t>(group)].count;
   return commonest(std::move(entries), scene.groups.size());
-}
-
-std::string short_number(double value) {
-  char text[32];
-  const int digits = std::fabs(value) >= 100 ? 0 : std::fabs(value) >= 10 ? 1 : 3;
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  std::string number = text;
-  if (number.find('.') == std::string::npos) return number;
-  number.erase(number.find_last_not_of('0') + 1);
-  if (number.back() == '.') number.pop_back();
-  return number == "-0" ? "0" : number;
 }
 
 std::vector<float> splat_errors(const ErrorPoints& points, std::size_t splats,

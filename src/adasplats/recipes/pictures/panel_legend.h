@@ -21,9 +21,6 @@ using ClassLegend = std::vector<std::pair<Rgb, std::string>>;
 ClassLegend legend_of(const ImageScene& scene);
 ClassLegend legend_of(std::span<const std::uint16_t> classes, const LabelScheme* labels);
 
-/// Three digits that count, without trailing zeros: "0.125", "34.5", "112".
-std::string short_number(double value);
-
 /// The mean error of each splat over the beams that hit it, m, early below 0; NaN where none did.
 /// Single beams count for at most half a metre. Errors: data (`path`'s beams are not said to have
 /// hit splats, or hit other ones than a model of `splats` has).

@@ -20,6 +20,7 @@
 #include "adasplats/recipes/pictures/camera_paths.h"
 #include "adasplats/recipes/pictures/difference.h"
 #include "adasplats/recipes/pictures/film_writer.h"
+#include "adasplats/recipes/pictures/mosaic.h"
 #include "adasplats/recipes/pictures/panel.h"
 
 namespace adasplats {
@@ -46,14 +47,12 @@ class Panels {
 
   /// One picture of all, with captions.
   Image draw(const Camera& camera) {
-    Image picture{job_.view.width * columns(), job_.view.height, {}};
-    picture.pixels.resize(static_cast<std::size_t>(picture.width) *
-                          static_cast<std::size_t>(picture.height) * 3);
+    Image picture = blank_image(job_.view.width * columns(), job_.view.height);
     seconds_ = 0;
     for (int k = 0; k < columns(); ++k) {
       Image image = timed(camera, panels_[static_cast<std::size_t>(k)]);
       if (job_.look.captions) write_captions(image, camera, static_cast<std::size_t>(k));
-      paste(picture, image, job_.view.width * k);
+      paste(picture, image, job_.view.width * k, 0);
     }
     return picture;
   }
@@ -89,21 +88,6 @@ class Panels {
       write_difference_legend(image, name(0), name(1));
     } else {
       panels_[k].write_captions(image, camera, panels_.size() > 1 ? name(k) : "", middle_);
-    }
-  }
-
-  /// Copies `part` into `picture` at column `left`.
-  static void paste(Image& picture, const Image& part, int left) {
-    const std::size_t row_bytes = static_cast<std::size_t>(part.width) * 3;
-    for (int row = 0; row < part.height; ++row) {
-      const auto from = part.pixels.begin() +
-                        static_cast<std::ptrdiff_t>(row_bytes * static_cast<std::size_t>(row));
-      const std::size_t to =
-          (static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.width) +
-           static_cast<std::size_t>(left)) *
-          3;
-      std::copy(from, from + static_cast<std::ptrdiff_t>(row_bytes),
-                picture.pixels.begin() + static_cast<std::ptrdiff_t>(to));
     }
   }
 

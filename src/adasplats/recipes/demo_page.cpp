@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/recipes/demo_page.h"
+
+#include <nlohmann/json.hpp>
+
+#include "adasplats/report/document.h"
+#include "adasplats/report/html_page.h"
+#include "adasplats/report/text_format.h"
+
+namespace adasplats {
+namespace {
+
+page::Cell number(double value, int digits, const char* unit) {
+  page::Cell cell;
+  cell.value = value;
+  cell.text = page::fixed_text(value, digits) + unit;
+  return cell;
+}
+
+page::Table table_of(const DemoResult& result) {
+  using page::Better;
+  page::Table table;
+  table.title = "Every method on the same street";
+  table.columns = {{"", "splats", Better::neither},
+                   {"", "model, s", Better::lower},
+                   {"simulated to original", "C2C, cm", Better::lower},
+                   {"simulated to original", "thin things, cm", Better::lower},
+                   {"held-out beams", "within 10 cm", Better::higher},
+                   {"held-out beams", "early", Better::lower}};
+  for (const DemoRow& row : result.rows) {
+    page::Row line;
+    line.title = row.method;
+    line.cells = {number(static_cast<double>(row.model.built.primitives), 0, ""),
+                  number(row.model.seconds, 2, ""),
+                  number(100 * row.comparison.distance.c2c_m, 2, ""),
+                  number(100 * row.thin_c2c_m, 2, ""),
+                  number(100 * row.held_out.all.within.at(0.10), 1, " %"),
+                  number(100 * row.held_out.all.early_50cm, 2, " %")};
+    table.rows.push_back(std::move(line));
+  }
+  table.definitions = {
+      {"C2C", "mean distance of simulated points to the nearest original one"},
+      {"thin things", "C2C of fences, poles and traffic signs"},
+      {"within 10 cm", "share of held-out beams whose range the model predicts so well"},
+      {"early", "share of held-out beams that the model stops more than 50 cm too early"}};
+  return page::with_best_marked(std::move(table));
+}
+
+}  // namespace
+
+std::string view_command(const std::filesystem::path& name) {
+  return "adasplats view " + (name / "consistent.ply").string() + " --sequence " +
+         (name / "street" / "sequences" / "00").string();
+}
+
+std::string demo_page(const DemoResult& result, const std::filesystem::path& folder,
+                      const std::filesystem::path& name) {
+  page::Document document;
+  document.title = "adasplats demo";
+  document.subtitle = "A procedural street of " + page::fixed_text(result.street.length_m, 0) +
+                      " m: " + page::whole_text(static_cast<double>(result.street.mapping_points)) +
+                      " points of a mapping drive become splat models; " +
+                      std::to_string(result.street.driving_scans) +
+                      " scans that no model has seen say how good they are.";
+  page::Section seen;
+  seen.id = "picture";
+  seen.title = "What the methods make of it";
+  seen.paragraphs = {
+      "Above each model by class, below the same view by what held-out beams say of each splat: "
+      "blue where the model stops them early, red where late, orange where they fell through it."};
+  seen.pictures = {{"All methods", {}, result.picture.string()}};
+  page::Section figures;
+  figures.id = "figures";
+  figures.title = "Figures";
+  figures.tables = {table_of(result)};
+  page::Section more;
+  more.id = "pictures";
+  more.title = "Each method";
+  for (const auto& picture : result.pictures)
+    more.pictures.push_back({picture.stem().string(), {}, picture.string()});
+  page::Section next;
+  next.id = "next";
+  next.title = "Go on";
+  next.commands = {
+      {"look around, drive a sensor", view_command(name)},
+      {"errors of held-out beams in the viewer",
+       "adasplats view " + (name / "consistent.ply").string() + " --errors " +
+           (name / "consistent-errors.ply").string()},
+      {"your own points", "adasplats model YOUR_POINTS -o model.ply && adasplats view model.ply"},
+      {"scans of another sensor", "adasplats simulate " + (name / "consistent.ply").string() +
+                                      " --sensor vlp-16 --trajectory " +
+                                      (name / "street" / "sequences" / "00").string() +
+                                      " -o scans"}};
+  document.sections = {std::move(seen), std::move(figures), std::move(more), std::move(next)};
+  return page::html_page(document, folder);
+}
+
+}  // namespace adasplats
