@@ -1056,9 +1056,12 @@ class Scene:
         pose: int = 0,
         width: int = 2560,
         height: int = 1440,
-        fov: float = 70.0,
-        color: Literal["auto", "semantic", "shading", "normal", "intensity", "range"] = "auto",
+        fov: float | None = None,
+        color: Literal[
+            "auto", "semantic", "shading", "normal", "intensity", "range", "height"
+        ] = "auto",
         samples: int = 2,
+        relief: bool = True,
     ) -> NDArray[np.uint8]: ...
     def cast_on_device(
         self,

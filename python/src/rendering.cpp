@@ -10,11 +10,12 @@ namespace {
 constexpr const char* kRenderingDoc =
     "A picture of the scene: (height, width, 3) uint8, RGB, rows from the top.\n\n"
     "eye, target: (3,) world coordinates, m; without target the middle of the scene, without eye\n"
-    "from above a corner of it. birds_eye: straight down, north up. trajectory (a path) and pose:\n"
-    "ahead from a pose of it. fov: horizontal, degrees. color: 'semantic', 'shading', 'normal',\n"
-    "'intensity', 'range', or 'auto' for semantic where the model has it, else shading. samples: "
-    "rays\n"
-    "a pixel, the square of this. Raises TypeError, ValueError, OSError.";
+    "from above, from the side that shows most. birds_eye: straight down, north up. trajectory (a path) and pose:\n"
+    "ahead from a pose of it. fov: horizontal, degrees; None: 45 from afar, else 70. color:\n"
+    "'semantic', 'shading', 'normal', 'intensity', 'range', 'height', or 'auto' for semantic where\n"
+    "most of the model has it, else intensity, else height. samples: rays a pixel, the square of\n"
+    "this. relief: corners and gaps are dark, splats run into each other; without it every sample\n"
+    "has its own colour alone. Raises TypeError, ValueError, OSError.";
 
 using Color = std::optional<ImageColor>;
 constexpr std::pair<std::string_view, Color> kColors[] = {{"auto", std::nullopt},
@@ -22,12 +23,14 @@ constexpr std::pair<std::string_view, Color> kColors[] = {{"auto", std::nullopt}
                                                           {"shading", ImageColor::shading},
                                                           {"normal", ImageColor::normal},
                                                           {"intensity", ImageColor::intensity},
-                                                          {"range", ImageColor::range}};
+                                                          {"range", ImageColor::range},
+                                                          {"height", ImageColor::height}};
 
 struct RenderArguments {
   ViewChoice view;
   Color color;
   int samples = 2;
+  bool relief = true;
 
   void take(Keywords& keywords) {
     keywords.take("eye", view.eye);
@@ -42,6 +45,7 @@ struct RenderArguments {
     keywords.take("fov", view.horizontal_fov_deg);
     keywords.take<Color>("color", color, kColors);
     keywords.take("samples", samples);
+    keywords.take("relief", relief);
   }
 };
 
@@ -61,6 +65,7 @@ py::array render(SceneObject& object, const py::kwargs& kwargs) {
     ImageOptions options;
     options.color = arguments.color.value_or(scene.default_color());
     options.samples_per_axis = arguments.samples;
+    options.relief = arguments.relief;
     image = scene.render(camera_of(arguments.view, scene.shown_part()), options);
   }
   return owned_array(std::move(image.pixels), {image.height, image.width, 3});

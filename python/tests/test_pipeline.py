@@ -291,6 +291,7 @@ VIEWS = [
     ({}, []),
     ({"eye": (0, 0, 20), "target": (30, 5, 0), "fov": 60, "color": "normal"},
      ["--eye", "0,0,20", "--target", "30,5,0", "--fov", 60, "--color", "normal"]),
+    ({"color": "height"}, ["--color", "height"]),
     ({"birds_eye": True, "color": "shading", "samples": 1},
      ["--birds-eye", "--color", "shading", "--samples", 1]),
 ]
@@ -300,14 +301,14 @@ VIEWS = [
 def test_render(street, scene, tmp_path, options, arguments):
     size = {"width": 64, "height": 40}
     run_program("render", street.model, "-o", tmp_path / "cli.png", "--width", 64, "--height", 40,
-                *arguments)
+                "--no-captions", *arguments)
     picture = scene.render(**size, **options)
     assert picture.shape == (40, 64, 3) and picture.dtype == np.uint8
     np.testing.assert_array_equal(picture, png_pixels(tmp_path / "cli.png"))
     if not options:
         ahead = scene.render(trajectory=street.sequence, pose=1, **size)
         run_program("render", street.model, "-o", tmp_path / "cli.png", "--width", 64, "--height",
-                    40, "--trajectory", street.sequence, "--pose", 1)
+                    40, "--trajectory", street.sequence, "--pose", 1, "--no-captions")
         np.testing.assert_array_equal(ahead, png_pixels(tmp_path / "cli.png"))
 
 

@@ -15,6 +15,7 @@
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/arrays/png.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/recipes/pictures/camera_paths.h"
@@ -110,7 +111,12 @@ void check(const RenderJob& job) {
     throw Error(ErrorKind::usage, "`errors` are of one model");
   if (job.difference && !job.errors.empty())
     throw Error(ErrorKind::usage, "give one of `errors` and `difference`");
-  if (job.film == Film::none) return;
+  if (job.film == Film::none) {
+    if (lower_case(job.output.extension().string()) != ".png")
+      throw Error(ErrorKind::usage, job.output.string() +
+                                        ": a picture is a .png; `turntable` and `drive` make films");
+    return;
+  }
   check_film(job.output);
   if (job.film == Film::drive && job.view.trajectory.empty())
     throw Error(ErrorKind::usage, "`drive` needs `trajectory`");

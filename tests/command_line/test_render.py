@@ -1,0 +1,87 @@
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures and films of 'adasplats render'."""
+
+import shutil
+import unittest
+
+from support import ProgramTest, write_cloud, tiny_place
+
+SMALL = ["--width", "96", "--height", "54"]
+
+
+class Render(ProgramTest):
+    def test_captions_are_on_top_of_the_same_picture(self):
+        model = self.model()
+        with_captions, without = self.folder / "with.png", self.folder / "without.png"
+        self.run_good("render", model, "-o", with_captions, *SMALL)
+        self.run_good("render", model, "-o", without, *SMALL, "--no-captions")
+        self.assertNotEqual(with_captions.read_bytes(), without.read_bytes())
+
+    def test_errors_of_held_out_beams(self):
+        demo = self.folder / "demo"
+        self.run_good("demo", "-o", demo, "--points", "5000", "--driving-spacing", "25")
+        errors, picture = demo / "consistent-errors.ply", self.folder / "p.png"
+        by_class = self.folder / "class.png"
+        self.run_good("render", demo / "consistent.ply", "--errors", errors, "-o", picture, *SMALL)
+        self.run_good("render", demo / "consistent.ply", "-o", by_class, *SMALL)
+        self.assertNotEqual(picture.read_bytes(), by_class.read_bytes())
+        self.run_good("render", errors, "-o", picture, *SMALL)  # its points alone
+        self.run_bad(65, "render", demo / "basic.ply", "--errors", demo / "street" / "mapping.ply",
+                     "-o", picture, *SMALL, says=["error_m"])
+        self.run_bad(64, "render", demo / "basic.ply", demo / "consistent.ply", "--errors", errors,
+                     "-o", picture, *SMALL, says=["--errors"])
+        few = self.folder / "few.ply"
+        write_cloud(self.folder / "few-points.ply", tiny_place())
+        self.run_good("model", self.folder / "few-points.ply", "-o", few, "--labels",
+                      "semantickitti")
+        self.run_bad(65, "render", few, "--errors", errors, "-o", picture, *SMALL,
+                     says=["another model"])
+
+    def test_difference(self):
+        model, picture = self.model(), self.folder / "p.png"
+        points = tiny_place()
+        write_cloud(self.folder / "half.ply", points[: len(points) // 2])
+        half = self.folder / "half-model.ply"
+        self.run_good("model", self.folder / "half.ply", "-o", half, "--labels", "semantickitti")
+        same = self.folder / "same.png"
+        self.run_good("render", model, model, "--difference", "-o", same, *SMALL, "--no-captions")
+        self.run_good("render", model, half, "--difference", "-o", picture, *SMALL, "--no-captions")
+        self.assertNotEqual(same.read_bytes(), picture.read_bytes())
+        self.run_bad(64, "render", model, "--difference", "-o", picture, says=["two models"])
+        self.run_bad(64, "render", model, self.folder / "half.ply", "--difference", "-o", picture,
+                     says=["two models"])
+
+    def test_films(self):
+        model = self.model()
+        film = self.folder / "around.webp"
+        short = ["--seconds", "0.5", "--frames-per-s", "4", *SMALL]
+        report = self.report("render", model, "-o", film, "--turntable", *short)
+        self.assertEqual(film.read_bytes()[:4], b"RIFF")
+        self.assertEqual(film.read_bytes()[8:12], b"WEBP")
+        self.assertEqual(film.read_bytes().count(b"ANMF"), 2)
+        self.assertGreater(report["images_per_second"], 0)
+        drive = self.folder / "drive.webp"
+        self.run_good("render", model, "-o", drive, "--drive", "--trajectory", self.poses, *short)
+        self.assertNotEqual(drive.read_bytes(), film.read_bytes())
+        self.run_bad(64, "render", model, "-o", self.folder / "a.png", "--turntable", *short,
+                     says=["webp"])
+        self.run_bad(64, "render", model, "-o", drive, "--drive", *short, says=["--trajectory"])
+        self.run_bad(64, "render", model, "-o", drive, *SMALL, says=["webp"])
+        self.run_bad(64, "render", model, "-o", self.folder / "a.png", "--seconds", "3", *SMALL,
+                     says=["--seconds"])
+        self.assertEqual([f.name for f in self.folder.glob(".*")], [], "nothing is left over")
+
+    def test_an_mp4_needs_ffmpeg(self):
+        model, film = self.model(), self.folder / "around.mp4"
+        options = ["--turntable", "--seconds", "0.5", "--frames-per-s", "4", *SMALL]
+        if shutil.which("ffmpeg"):
+            self.run_good("render", model, "-o", film, *options)
+            self.assertEqual(film.read_bytes()[4:8], b"ftyp")
+        else:
+            self.run_bad(69, "render", model, "-o", film, *options, says=["ffmpeg"])
+            self.assertFalse(film.exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
