@@ -10,9 +10,11 @@ namespace {
 constexpr const char* kRenderingDoc =
     "A picture of the scene: (height, width, 3) uint8, RGB, rows from the top.\n\n"
     "eye, target: (3,) world coordinates, m; without target the middle of the scene, without eye\n"
-    "from above, from the side that shows most. birds_eye: straight down, north up. trajectory (a path) and pose:\n"
+    "from above, from the side that shows most. birds_eye: straight down, north up. trajectory (a "
+    "path) and pose:\n"
     "ahead from a pose of it. fov: horizontal, degrees; None: 45 from afar, else 70. color:\n"
-    "'semantic', 'shading', 'normal', 'intensity', 'range', 'height', or 'auto' for semantic where\n"
+    "'semantic', 'shading', 'normal', 'intensity', 'range', 'height', or 'auto' for semantic "
+    "where\n"
     "most of the model has it, else intensity, else height. samples: rays a pixel, the square of\n"
     "this. relief: corners and gaps are dark, splats run into each other; without it every sample\n"
     "has its own colour alone. Raises TypeError, ValueError, OSError.";

@@ -37,7 +37,9 @@ class RenderCommand final : public Command {
                    },
                    "Splat models, triangle meshes (PLY, OBJ), point files, sequence folders")
                 ->type_name("PATH"));
-    require(writes(add_path(app, "-o,--output", job_.output, "Picture to write, PNG; a film: WebP or MP4"), {".png", ".webp", ".mp4"}));
+    require(writes(
+        add_path(app, "-o,--output", job_.output, "Picture to write, PNG; a film: WebP or MP4"),
+        {".png", ".webp", ".mp4"}));
     app.add_option(
            "--labels", job_.labels,
            "What classes mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
@@ -79,7 +81,8 @@ class RenderCommand final : public Command {
     if (turntable_ || drive_) {
       refuse({"--pose", "--repeat"}, "with a film");
       job_.film = turntable_ ? Film::turntable : Film::drive;
-      if (!is_given("--width") && !is_given("--height")) job_.view.width = 1280, job_.view.height = 720;
+      if (!is_given("--width") && !is_given("--height"))
+        job_.view.width = 1280, job_.view.height = 720;
     } else {
       refuse({"--seconds", "--frames-per-s"}, "without --turntable or --drive");
     }

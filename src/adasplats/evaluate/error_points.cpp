@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <initializer_list>
 #include <limits>
 #include <stdexcept>
@@ -26,6 +27,7 @@ namespace {
 
 constexpr float kNoError = std::numeric_limits<float>::quiet_NaN();
 constexpr const char* kErrorName = "error_m";
+constexpr std::string_view kCountComment = "adasplats.splats ";
 /// As load_cloud drops them: doubles no longer hold 0.1 mm; farther than this from the median.
 constexpr double kLargest_m = 1e12;
 constexpr double kFarthest_m = 100e3;
@@ -135,6 +137,7 @@ ErrorPoints beam_points(const Tracer& tracer, const SceneView& scene, Vec3d scen
                         const ResimulateOptions& options, const Executor& executor,
                         ProgressSink& progress) {
   ErrorPoints points;
+  points.primitive_count = scene.primitive_count();
   std::vector<Vec3d> places;
   progress.begin_step("errors of beams", sequence.scans.size());
   for (std::size_t index = 0; index < sequence.scans.size(); ++index) {
@@ -183,9 +186,11 @@ void write_error_points(const std::filesystem::path& path, const ErrorPoints& po
     columns.push_back({"label", ColumnType::u16, cloud.classes.data(), sizeof(std::uint16_t)});
   // The bits of Hit::kNone are those of -1.
   if (!points.primitives.empty())
-    columns.push_back(
-        {"splat", ColumnType::i32, points.primitives.data(), sizeof(std::uint32_t)});
-  write_ply(path, cloud.size(), columns);
+    columns.push_back({"splat", ColumnType::i32, points.primitives.data(), sizeof(std::uint32_t)});
+  std::vector<std::string> comments;
+  if (!points.primitives.empty())
+    comments.push_back(std::string(kCountComment) + std::to_string(points.primitive_count));
+  write_ply(path, cloud.size(), columns, comments);
 }
 
 bool has_error_points(const std::filesystem::path& path) {
@@ -224,6 +229,9 @@ ErrorPoints read_error_points(const std::filesystem::path& path) {
       points.cloud.intensities.push_back(finite(intensities->as_double(i)));
   if (const Column* const splats = first_of(table, kSplatNames))
     for (const std::uint32_t i : rows) points.primitives.push_back(splat_at(*splats, i, path));
+  for (const std::string& comment : table.comments)
+    if (comment.starts_with(kCountComment))
+      points.primitive_count = std::strtoull(comment.c_str() + kCountComment.size(), nullptr, 10);
   return points;
 }
 

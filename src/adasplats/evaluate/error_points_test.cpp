@@ -33,7 +33,7 @@ TEST(ErrorPoints, RoundTrip) {
   for (const Vec3d origin : {Vec3d{}, Vec3d{452'000, 5'411'000, 0}}) {
     const PointCloud cloud = three_points(origin);
     const auto file = folder.path() / "a b.ply";
-    write_error_points(file, {cloud, errors_m, {7, Hit::kNone, 0}});
+    write_error_points(file, {cloud, errors_m, {7, Hit::kNone, 0}, 8});
     EXPECT_TRUE(has_error_points(file));
     const ErrorPoints read = read_error_points(file);
     ASSERT_EQ(read.cloud.size(), 3U);
@@ -43,6 +43,7 @@ TEST(ErrorPoints, RoundTrip) {
     EXPECT_EQ(read.errors_m[0], 0.25F);
     EXPECT_TRUE(std::isnan(read.errors_m[1]));
     EXPECT_EQ(read.errors_m[2], -1.5F);
+    EXPECT_EQ(read.primitive_count, 8U);
     EXPECT_EQ(read.primitives, (std::vector<std::uint32_t>{7, Hit::kNone, 0}));
     EXPECT_EQ(read.cloud.classes, cloud.classes);
     EXPECT_EQ(read.cloud.intensities, cloud.intensities);

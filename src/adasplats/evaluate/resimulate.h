@@ -66,8 +66,8 @@ ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d 
 
 /// What single beams of one scan gave, for pictures.
 struct ScanErrors {
-  std::vector<Vec3f> measured;  ///< sensor frame, m
-  std::vector<float> errors_m;  ///< predicted - measured range; NaN: no hit
+  std::vector<Vec3f> measured;            ///< sensor frame, m
+  std::vector<float> errors_m;            ///< predicted - measured range; NaN: no hit
   std::vector<std::uint32_t> primitives;  ///< that they hit; Hit::kNone: none
 };
 

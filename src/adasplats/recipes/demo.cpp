@@ -56,8 +56,7 @@ class DemoMosaic {
       SharedRange range;
       panel.prepare({}, range);
       Image part = panel.draw(camera, {}, session.executor);
-      panel.write_captions(part, camera,
-                           row == 0 ? name : name + ": errors of held-out beams", {});
+      panel.write_captions(part, camera, row == 0 ? name : name + ": errors of held-out beams", {});
       paste(picture_, part, left_, view_.height * row);
     }
     left_ += view_.width;

@@ -33,8 +33,10 @@ void write_distance_picture(const std::filesystem::path& file, const PointCloud&
     colors.push_back(scale.at(static_cast<double>(distance_m) / kFar_m));
   }
   Image image = draw_points(simulated.positions, simulated.origin, colors,
-                            camera_of(view, shown_part(original.positions, original.origin)), {}, session.executor);
-  draw_color_bar(image, scale, {"distance to the points", {{0, "0"}, {0.5, "10"}, {1, ">20 cm"}}, {}});
+                            camera_of(view, shown_part(original.positions, original.origin)), {},
+                            session.executor);
+  draw_color_bar(image, scale,
+                 {"distance to the points", {{0, "0"}, {0.5, "10"}, {1, ">20 cm"}}, {}});
   write(file, image);
   session.progress.end_step();
 }

@@ -19,8 +19,8 @@ struct DeviceFrame {
 };
 
 /// Private to gpu/: queues the making of a picture of width x height pixels. `source` is what the
-/// hits were cast from (kind image); `frame` is written and read; `out` gets 8-bit RGB, rows from the
-/// top. Tables point to device memory.
+/// hits were cast from (kind image); `frame` is written and read; `out` gets 8-bit RGB, rows from
+/// the top. Tables point to device memory.
 void queue_shading(const ShadingTables& tables, const Developer& developer, const RaySource& source,
                    const Hit* hits, int width, int height, DeviceFrame frame, std::uint8_t* out,
                    cudaStream_t stream);

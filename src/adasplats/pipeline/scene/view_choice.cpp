@@ -60,10 +60,9 @@ Camera camera_of(const ViewChoice& view, const ShownPart& part) {
   if (view.trajectory.empty() && !view.eye)
     return overview(part, view.width, view.height,
                     view.horizontal_fov_deg.value_or(kFromAfar_deg) * kRadiansPerDegree);
-  return camera_at(view,
-                   view.eye ? look_at(*view.eye, view.target.value_or(part.middle()))
-                                  .world_from_camera
-                            : pose_of(view));
+  return camera_at(
+      view, view.eye ? look_at(*view.eye, view.target.value_or(part.middle())).world_from_camera
+                     : pose_of(view));
 }
 
 }  // namespace adasplats

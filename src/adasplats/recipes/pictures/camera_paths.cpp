@@ -28,8 +28,8 @@ std::vector<Camera> turntable(const ViewChoice& view, const ShownPart& part, std
   for (std::size_t i = 0; i < frames; ++i) {
     const double turned =
         azimuth + 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(frames);
-    const Vec3d direction = {std::cos(pitch) * std::cos(turned),
-                             std::cos(pitch) * std::sin(turned), -std::sin(pitch)};
+    const Vec3d direction = {std::cos(pitch) * std::cos(turned), std::cos(pitch) * std::sin(turned),
+                             -std::sin(pitch)};
     Camera camera = look_at(part.middle() - farthest * direction, part.middle());
     camera.width = view.width;
     camera.height = view.height;

@@ -77,8 +77,9 @@ std::optional<fs::path> needed_program(const fs::path& path) {
   const std::optional<fs::path> ffmpeg = find_on_path("ffmpeg");
   if (!ffmpeg)
     throw Error(ErrorKind::unavailable,
-                path.string() + ": there is no program ffmpeg (apt-get install ffmpeg); .webp needs "
-                                "none");
+                path.string() +
+                    ": there is no program ffmpeg (apt-get install ffmpeg); .webp needs "
+                    "none");
   return ffmpeg;
 }
 

@@ -17,10 +17,10 @@ void paste(Image& picture, const Image& part, int left, int top) {
   for (int row = 0; row < part.height; ++row) {
     const auto from = part.pixels.begin() +
                       static_cast<std::ptrdiff_t>(row_bytes * static_cast<std::size_t>(row));
-    const std::size_t to = (static_cast<std::size_t>(top + row) *
-                                static_cast<std::size_t>(picture.width) +
-                            static_cast<std::size_t>(left)) *
-                           3;
+    const std::size_t to =
+        (static_cast<std::size_t>(top + row) * static_cast<std::size_t>(picture.width) +
+         static_cast<std::size_t>(left)) *
+        3;
     std::copy(from, from + static_cast<std::ptrdiff_t>(row_bytes),
               picture.pixels.begin() + static_cast<std::ptrdiff_t>(to));
   }

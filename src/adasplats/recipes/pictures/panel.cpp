@@ -43,9 +43,10 @@ std::vector<Rgb> error_colors(std::span<const float> errors_m) {
 std::optional<Vec3d> in_picture(const Camera& camera, Vec3d world) {
   const Vec3d p = camera.world_from_camera.inverse() * world;
   if (!(p.x > 0.1)) return std::nullopt;
-  const double px_per_m = camera.orthographic_width_m > 0
-                              ? camera.width / camera.orthographic_width_m
-                              : 0.5 * camera.width / std::tan(0.5 * camera.horizontal_fov_rad) / p.x;
+  const double px_per_m =
+      camera.orthographic_width_m > 0
+          ? camera.width / camera.orthographic_width_m
+          : 0.5 * camera.width / std::tan(0.5 * camera.horizontal_fov_rad) / p.x;
   const Vec3d at = {0.5 * camera.width - px_per_m * p.y, 0.5 * camera.height - px_per_m * p.z, p.x};
   if (!(at.x >= 0 && at.y >= 0 && at.x < camera.width && at.y < camera.height)) return std::nullopt;
   return at;
@@ -132,9 +133,8 @@ Image Panel::draw_cloud(const Camera& camera, const Executor& executor) const {
     return draw_points(cloud_.positions, cloud_.origin, error_colors(point_errors_m_), camera,
                        options, executor);
   }
-  std::vector<Rgb> colors =
-      point_colors(cloud_, labels_ ? &*labels_ : nullptr, color_,
-                   camera.world_from_camera.translation, range_);
+  std::vector<Rgb> colors = point_colors(cloud_, labels_ ? &*labels_ : nullptr, color_,
+                                         camera.world_from_camera.translation, range_);
   if (color_ == ImageColor::semantic)
     std::transform(colors.begin(), colors.end(), colors.begin(), muted);
   return draw_points(cloud_.positions, cloud_.origin, colors, camera, options, executor);
@@ -160,8 +160,8 @@ void Panel::mark_holes(Image& image, const Camera& camera) const {
   const Vec3d forward = camera.world_from_camera.rotation * Vec3d{1, 0, 0};
   const double size_px = std::max(3.0, image.height / 300.0);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const double depth = static_cast<double>(hits[i].t) *
-                         dot(vec_cast<double>(rays[i].direction), forward);
+    const double depth =
+        static_cast<double>(hits[i].t) * dot(vec_cast<double>(rays[i].direction), forward);
     if (hits[i].valid() && depth < places[i].z - kNearer_m) continue;
     draw_line(image, places[i], places[i], size_px, kHole);
   }
@@ -187,8 +187,7 @@ void Panel::write_legend(Image& image) const {
                      {1, page::measure_text(range_->high + lift)}},
                     {}});
   } else if (color_ == ImageColor::range) {
-    draw_color_bar(image, viridis_scale(),
-                   {"range, m", {{0, "100"}, {0.5, "10"}, {1, "1"}}, {}});
+    draw_color_bar(image, viridis_scale(), {"range, m", {{0, "100"}, {0.5, "10"}, {1, "1"}}, {}});
   }
 }
 

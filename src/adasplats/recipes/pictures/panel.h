@@ -68,12 +68,12 @@ class Panel {
 
   std::unique_ptr<ModelScene> model_;
   PointCloud cloud_;
-  std::optional<LabelScheme> labels_;      ///< of the cloud
-  std::vector<float> point_errors_m_;      ///< of the cloud's points, where it has them
-  std::vector<float> splat_errors_m_;      ///< of the model's splats; NaN: no beam hit it
-  std::vector<Vec3d> holes_;               ///< world: measured where beams hit nothing
+  std::optional<LabelScheme> labels_;  ///< of the cloud
+  std::vector<float> point_errors_m_;  ///< of the cloud's points, where it has them
+  std::vector<float> splat_errors_m_;  ///< of the model's splats; NaN: no beam hit it
+  std::vector<Vec3d> holes_;           ///< world: measured where beams hit nothing
   ImageColor color_ = ImageColor::shading;
-  std::optional<ValueRange> range_;        ///< in the panel's own coordinates
+  std::optional<ValueRange> range_;  ///< in the panel's own coordinates
 };
 
 }  // namespace adasplats

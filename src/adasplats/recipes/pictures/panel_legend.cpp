@@ -63,9 +63,13 @@ std::vector<float> splat_errors(const ErrorPoints& points, std::size_t splats,
                                 const std::filesystem::path& path) {
   constexpr double kMost_m = 0.5;
   if (points.primitives.empty())
-    throw Error(ErrorKind::data,
-                path.string() + ": does not say which splats its beams hit (column 'splat'); "
-                                "write it anew with 'evaluate resimulate --errors'");
+    throw Error(ErrorKind::data, path.string() +
+                                     ": does not say which splats its beams hit (column 'splat'); "
+                                     "write it anew with 'evaluate resimulate --errors'");
+  if (points.primitive_count != splats)
+    throw Error(ErrorKind::data, path.string() + ": the errors are of another model, of " +
+                                     std::to_string(points.primitive_count) +
+                                     " splats; this one has " + std::to_string(splats));
   std::vector<double> sums(splats, 0);
   std::vector<std::uint32_t> counts(splats, 0);
   for (std::size_t i = 0; i < points.primitives.size(); ++i) {
@@ -73,8 +77,7 @@ std::vector<float> splat_errors(const ErrorPoints& points, std::size_t splats,
     if (splat == Hit::kNone || std::isnan(points.errors_m[i])) continue;
     if (splat >= splats)
       throw Error(ErrorKind::data, path.string() + ": a beam hit splat " + std::to_string(splat) +
-                                       ", but the model has " + std::to_string(splats) +
-                                       ": the errors are of another model");
+                                       " of " + std::to_string(splats));
     sums[splat] += std::clamp(static_cast<double>(points.errors_m[i]), -kMost_m, kMost_m);
     ++counts[splat];
   }

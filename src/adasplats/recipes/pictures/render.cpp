@@ -113,8 +113,9 @@ void check(const RenderJob& job) {
     throw Error(ErrorKind::usage, "give one of `errors` and `difference`");
   if (job.film == Film::none) {
     if (lower_case(job.output.extension().string()) != ".png")
-      throw Error(ErrorKind::usage, job.output.string() +
-                                        ": a picture is a .png; `turntable` and `drive` make films");
+      throw Error(
+          ErrorKind::usage,
+          job.output.string() + ": a picture is a .png; `turntable` and `drive` make films");
     return;
   }
   check_film(job.output);
@@ -128,8 +129,8 @@ void check(const RenderJob& job) {
 void check_inputs(const RenderJob& job) {
   for (const auto& model : job.models) require_input(model);
   if (!job.errors.empty()) require_input(job.errors);
-  if (job.difference && (job.models.size() != 2 || !is_model_file(job.models[0]) ||
-                         !is_model_file(job.models[1])))
+  if (job.difference &&
+      (job.models.size() != 2 || !is_model_file(job.models[0]) || !is_model_file(job.models[1])))
     throw Error(ErrorKind::usage, "a `difference` is of two models or meshes");
 }
 

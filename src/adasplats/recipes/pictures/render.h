@@ -34,7 +34,7 @@ struct RenderJob {
   /// Instead of two models side by side: how much farther the second is along the view.
   bool difference = false;
   Film film = Film::none;
-  double seconds = 12;      ///< of a film
+  double seconds = 12;  ///< of a film
   double frames_per_s = 24;
   int repeat = 1;  ///< renders so often, for the median of the time
 };
@@ -54,11 +54,18 @@ void visit_settings(RenderJob& job, Visit&& visit) {
   visit(Setting{.name = "difference",
                 .help = "Of two models: how much farther the second is along the view, by colour"},
         job.difference);
-  visit(Setting{.name = "seconds", .help = "Length of a film", .value = "S", .least = 0,
-                .most = 3600, .above_least = true},
+  visit(Setting{.name = "seconds",
+                .help = "Length of a film",
+                .value = "S",
+                .least = 0,
+                .most = 3600,
+                .above_least = true},
         job.seconds);
-  visit(Setting{.name = "frames_per_s", .help = "Pictures a second of a film", .value = "N",
-                .least = 1, .most = 120},
+  visit(Setting{.name = "frames_per_s",
+                .help = "Pictures a second of a film",
+                .value = "N",
+                .least = 1,
+                .most = 120},
         job.frames_per_s);
   visit(Setting{.name = "repeat",
                 .help = "Render so often and report the median of the time",

@@ -13,8 +13,8 @@ void blend(Image& image, int x, int y, Rgb rgb, double share) {
       &image.pixels[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                          static_cast<std::size_t>(x))];
   for (std::size_t channel = 0; channel < 3; ++channel)
-    pixel[channel] = static_cast<std::uint8_t>(
-        std::lround((1 - share) * pixel[channel] + share * rgb[channel]));
+    pixel[channel] =
+        static_cast<std::uint8_t>(std::lround((1 - share) * pixel[channel] + share * rgb[channel]));
 }
 
 }  // namespace
@@ -40,11 +40,14 @@ void draw_line(Image& image, Vec3d from, Vec3d to, double width_px, Rgb rgb) {
   const Vec3d along = {to.x - from.x, to.y - from.y, 0};
   const double square = std::max(dot(along, along), 1e-9);
   const auto bound = [&](double a, double b, int most, bool low) {
-    const double value = low ? std::floor(std::min(a, b) - half - 1) : std::ceil(std::max(a, b) + half + 1);
+    const double value =
+        low ? std::floor(std::min(a, b) - half - 1) : std::ceil(std::max(a, b) + half + 1);
     return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(most)));
   };
-  for (int y = bound(from.y, to.y, image.height, true); y < bound(from.y, to.y, image.height, false); ++y)
-    for (int x = bound(from.x, to.x, image.width, true); x < bound(from.x, to.x, image.width, false); ++x) {
+  for (int y = bound(from.y, to.y, image.height, true);
+       y < bound(from.y, to.y, image.height, false); ++y)
+    for (int x = bound(from.x, to.x, image.width, true);
+         x < bound(from.x, to.x, image.width, false); ++x) {
       const Vec3d here = {x + 0.5 - from.x, y + 0.5 - from.y, 0};
       const double at = std::clamp(dot(here, along) / square, 0.0, 1.0);
       const double distance = length(here - at * along);

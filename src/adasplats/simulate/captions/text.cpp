@@ -39,8 +39,9 @@ void stamp(Image& image, int left, int top, const Glyph& glyph, Rgb ink) {
     for (int x = 0; x < glyph.width; ++x) {
       const int column = left + glyph.left + x, row = top + glyph.top + y;
       if (column < 0 || row < 0 || column >= image.width || row >= image.height) continue;
-      const int share = glyph.ink[static_cast<std::size_t>(y) * static_cast<std::size_t>(glyph.width) +
-                                  static_cast<std::size_t>(x)];
+      const int share =
+          glyph.ink[static_cast<std::size_t>(y) * static_cast<std::size_t>(glyph.width) +
+                    static_cast<std::size_t>(x)];
       std::uint8_t* pixel =
           &image.pixels[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
                              static_cast<std::size_t>(column))];

@@ -8,8 +8,8 @@
 
 namespace adasplats {
 
-/// Text in pictures: DejaVu Sans where the library was built with it, else letters of dots. UTF-8; a
-/// letter that the font lacks is left blank.
+/// Text in pictures: DejaVu Sans where the library was built with it, else letters of dots. UTF-8;
+/// a letter that the font lacks is left blank.
 
 /// Width of a line, pixels. `height_px`: from the top of capitals to the bottom of a "g".
 int text_width(std::string_view text, int height_px);

@@ -36,9 +36,11 @@ Developer::Developer(const Camera& from, const ImageOptions& options)
   constexpr std::array<double, kScales> kRadii_px = {2, 7, 24};  // in a picture of 1440 rows
   const double size = from.height / 1440.0;
   for (int scale = 0; scale < kScales; ++scale) {
-    const double radius_px = std::max(kRadii_px[static_cast<std::size_t>(scale)] * size, scale + 1.0);
-    fill_pairs(scale, radius_px,
-               std::span(pairs).subspan(static_cast<std::size_t>(scale * kDirections), kDirections));
+    const double radius_px =
+        std::max(kRadii_px[static_cast<std::size_t>(scale)] * size, scale + 1.0);
+    fill_pairs(
+        scale, radius_px,
+        std::span(pairs).subspan(static_cast<std::size_t>(scale * kDirections), kDirections));
   }
   hole_px = std::max(2, static_cast<int>(std::lround(28 * size)));
 }

@@ -75,9 +75,9 @@ ADASPLATS_HD inline float rise_m(const Developer& with, float nearness, float be
 
 /// Light that a pair's rise keeps from the pixel between: 0..1, more the steeper.
 ADASPLATS_HD inline float shadow_of(float rise_m, float distance_m, bool finest) {
-  constexpr float kNoise_m = 0.02F;   // steps from splat to splat of one surface
-  constexpr float kNoise = 0.06F;     // and slopes
-  constexpr float kFarAbove = 2.0F;   // what rises more steeply stands before the pixel, not beside
+  constexpr float kNoise_m = 0.02F;  // steps from splat to splat of one surface
+  constexpr float kNoise = 0.06F;    // and slopes
+  constexpr float kFarAbove = 2.0F;  // what rises more steeply stands before the pixel, not beside
   const float slope = (rise_m - kNoise_m) / distance_m - kNoise;
   if (!(slope > 0.0F)) return 0.0F;
   const float shadow = slope / (1.0F + slope);
@@ -115,10 +115,11 @@ ADASPLATS_HD inline Surroundings look_around(const Developer& with, const FrameV
       const float blend = pixel.splat_px / (2.0F * pair.distance_px);
       if (blend > 0.1F && std::fabs(rise) < kSame_m + kSame * distance_m) {
         const float share = blend < 1.0F ? blend : 1.0F;
-        found.color =
-            found.color +
-            share / static_cast<float>(frame.hits[center - step]) * frame.pixels[center - step].color +
-            share / static_cast<float>(frame.hits[center + step]) * frame.pixels[center + step].color;
+        found.color = found.color +
+                      share / static_cast<float>(frame.hits[center - step]) *
+                          frame.pixels[center - step].color +
+                      share / static_cast<float>(frame.hits[center + step]) *
+                          frame.pixels[center + step].color;
         weight += 2.0F * share;
       }
     }
@@ -144,7 +145,7 @@ ADASPLATS_HD inline std::int32_t gap(const FrameView& frame, std::int32_t x, std
 ADASPLATS_HD inline float hole_at(const Developer& with, const FrameView& frame, std::int32_t x,
                                   std::int32_t y) {
   constexpr int kSides = 8, kLeast = 7;
-  constexpr std::int32_t kTowards[kSides][2] = {{0, -1}, {0, 1},  {-1, 0}, {1, 0},
+  constexpr std::int32_t kTowards[kSides][2] = {{0, -1}, {0, 1},  {-1, 0},  {1, 0},
                                                 {-1, 1}, {1, -1}, {-1, -1}, {1, 1}};
   int closed = 0;
   for (int side = 0; side < kSides && side - closed <= kSides - kLeast; ++side) {
@@ -152,9 +153,9 @@ ADASPLATS_HD inline float hole_at(const Developer& with, const FrameView& frame,
     const std::int32_t most = slanted ? with.hole_px * 5 / 7 : with.hole_px;
     if (gap(frame, x, y, kTowards[side][0], kTowards[side][1], most) <= most) ++closed;
   }
-  return closed < kLeast ? 0.0F
-                         : static_cast<float>(closed - kLeast + 1) /
-                               static_cast<float>(kSides - kLeast + 1);
+  return closed < kLeast
+             ? 0.0F
+             : static_cast<float>(closed - kLeast + 1) / static_cast<float>(kSides - kLeast + 1);
 }
 
 }  // namespace developing

@@ -318,7 +318,8 @@ Shot room(bool walls) {
   shot.mesh.vertices = {{-20, -20, 0}, {20, -20, 0}, {20, 20, 0}, {-20, 20, 0}};
   shot.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   if (walls) {
-    shot.mesh.vertices.insert(shot.mesh.vertices.end(), {{2, -20, 9}, {2, 20, 9}, {2, -20, 0}, {2, 20, 0}});
+    shot.mesh.vertices.insert(shot.mesh.vertices.end(),
+                              {{2, -20, 9}, {2, 20, 9}, {2, -20, 0}, {2, 20, 0}});
     shot.mesh.triangles.insert(shot.mesh.triangles.end(), {{6, 7, 4}, {4, 7, 5}});
   }
   return shot;
@@ -364,7 +365,8 @@ Shot board_with_a_gap() {
   for (int x = -8; x <= 8; ++x)
     for (int y = -8; y <= 8; ++y)
       if (x != 0 || y != 0)
-        shot.disks.push_back({{0.5F * static_cast<float>(x), 0.5F * static_cast<float>(y), 1}, 0.36F, {0, 0, 1}});
+        shot.disks.push_back(
+            {{0.5F * static_cast<float>(x), 0.5F * static_cast<float>(y), 1}, 0.36F, {0, 0, 1}});
   return shot;
 }
 

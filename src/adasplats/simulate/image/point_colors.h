@@ -15,7 +15,8 @@ namespace adasplats {
 /// with a colour in `labels` (may be null), else intensity, else height.
 ImageColor default_color(const PointCloud& cloud, const LabelScheme* labels);
 
-/// A colour for each point of a cloud, to be drawn by draw_points. Without `color`: default_color().
+/// A colour for each point of a cloud, to be drawn by draw_points. Without `color`:
+/// default_color().
 /// - semantic: the class's colour, grey where it has none or black.
 /// - intensity: 2nd to 98th percentile; grey where the cloud has none.
 /// `range`: what the ends of the scale stand for, else shown_range().

@@ -20,7 +20,7 @@ struct PointImageOptions {
   int least_px = 2;            ///< the square's bounds in the picture
   int most_px = 8;
   Rgb background = ImageOptions{}.background;
-  bool sky = true;     ///< as ImageOptions has them
+  bool sky = true;  ///< as ImageOptions has them
   bool relief = true;
 };
 
