@@ -819,7 +819,7 @@ class Scans:
         folder: Path,
         *,
         format: Literal[
-            "semantickitti", "ply", "npy", "npz", "pcd", "las", "range-image", "mcap",
+            "semantickitti", "ply", "npy", "npz", "pcd", "las", "laz", "range-image", "mcap",
             "kitti-raw", "pandaset", "nuscenes",
         ] = "semantickitti",
         point_order: Literal["kitti", "firing"] = "kitti",

@@ -58,7 +58,7 @@ constexpr const char* kScanDoc =
 
 constexpr const char* kSaveDoc =
     "Write the scans into a folder, which is made where it is not there.\n\n"
-    "format: 'semantickitti' (FOLDER/sequences/00), 'ply', 'npy', 'npz', 'pcd', 'las',\n"
+    "format: 'semantickitti' (FOLDER/sequences/00), 'ply', 'npy', 'npz', 'pcd', 'las', 'laz',\n"
     "'range-image', 'mcap' (FOLDER/scans.mcap), 'kitti-raw', 'pandaset' or\n"
     "'nuscenes': docs/formats.md.\n"
     "point_order, of trees of data sets: 'kitti', as their own files, or 'firing', as here.\n"

@@ -123,13 +123,13 @@ class RealSensors(ProgramTest):
         self.assertNotIn("out", self.names())
 
     def test_formats(self):
-        endings = {"npz": ".npz", "pcd": ".pcd", "las": ".las", "ply": ".ply", "npy": ".npy"}
+        endings = {"npz": ".npz", "pcd": ".pcd", "las": ".las", "laz": ".laz", "ply": ".ply", "npy": ".npy"}
         for name, ending in endings.items():
             scans = self.scan(name, "--format", name)
             found = [path for path in scans.rglob("000004*") if path.suffix == ending]
             self.assertTrue(found, name)
             self.assertTrue((scans / "poses.csv").exists(), name)
-        for name in ("pcd", "las", "ply"):  # as clouds again
+        for name in ("pcd", "las", "laz", "ply"):  # as clouds again
             text = self.run_good("info", self.folder / name / f"000004{endings[name]}").stdout
             self.assertIn("360", text, name)
         images = self.scan("images", "--format", "range-image")

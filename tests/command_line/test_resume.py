@@ -10,7 +10,7 @@ import unittest
 
 from support import PROGRAM, ProgramTest, tree_digest
 
-FORMATS = ["semantickitti", "ply", "npy", "npz", "pcd", "las", "range-image", "mcap",
+FORMATS = ["semantickitti", "ply", "npy", "npz", "pcd", "las", "laz", "range-image", "mcap",
            "kitti-raw", "pandaset", "nuscenes"]
 SCANS = 161  # of three poses, 0.2 s apart in all, at 800 Hz
 

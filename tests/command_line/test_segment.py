@@ -109,11 +109,15 @@ class SegmentTest(ProgramTest):
         self.assertIn(b"confidence", las.read_bytes()[:4000])
         self.run_good("evaluate", "segmentation", las, ply)
         self.run_good("segment", las, "-o", self.folder / "b.las")
+        self.run_good("segment", las, "-o", self.folder / "b.laz")
+        self.run_good("evaluate", "segmentation", self.folder / "b.laz", self.folder / "b.las")
+        self.assertLess((self.folder / "b.laz").stat().st_size,
+                        (self.folder / "b.las").stat().st_size)
         self.run_bad(64, "segment", las, "-o", las, says=["is an input"])
         self.run_bad(64, "segment", las, "-o", self.folder / "b.label", says=["one scan (.bin)"])
         self.run_bad(64, "segment", scan, "-o", label, "--confidences", says=["no confidences"])
         self.run_bad(64, "segment", scan, "-o", self.folder / "b.txt",
-                     says=[".ply, .las or .label"])
+                     says=[".ply, .las, .laz or .label"])
         self.run_bad(64, "segment", self.sequence, "-o", self.sequence / "new",
                      says=["lies in the input"])
 

@@ -32,9 +32,10 @@ class SegmentCommand final : public Command {
                    },
                    "Sequence folders, or point files (" + point_format_names() + ")")
                 ->type_name("PATH"));
-    require(add_path(app, "-o,--output", job_.output,
-                     "Of sequences: folder to create; of files: PLY or LAS to write; of one .bin "
-                     "also .label"));
+    require(
+        add_path(app, "-o,--output", job_.output,
+                 "Of sequences: folder to create; of files: PLY, LAS or LAZ to write; of one .bin "
+                 "also .label"));
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     add_path(app, "--network", job_.network,
              "File of a network; else the one that comes with the program");

@@ -141,7 +141,7 @@ Faults faults_of(const DrivenCourt& court, const PointCloud& cloud) {
 }
 
 constexpr ScanFormat kFormatsWithTimes[] = {ScanFormat::mcap, ScanFormat::ply, ScanFormat::pcd,
-                                            ScanFormat::las};
+                                            ScanFormat::las, ScanFormat::laz};
 
 std::string name_of_format(ScanFormat format) { return std::string(word_of(format, kScanFormats)); }
 

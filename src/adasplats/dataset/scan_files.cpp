@@ -127,8 +127,10 @@ std::string las_bytes(const std::filesystem::path& path, const ScanView& scan,
     if (column.name == "intensity") column.name = "intensity_value";
     columns.push_back(column);
   }
-  ByteBuffer file(scan.size() * (kExpectedPointBytes + 16));
-  put_las(file, path, scan.size(), columns);
+  LasWriteOptions options;
+  options.is_packed = is_laz_name(path);
+  ByteBuffer file(scan.size() * (options.is_packed ? 16 : kExpectedPointBytes + 16));
+  put_las(file, path, scan.size(), columns, options);
   return file.take();
 }
 
@@ -174,7 +176,10 @@ ScanBytes scan_bytes(ScanFormat format) {
     case ScanFormat::ply:
     case ScanFormat::pcd:
     case ScanFormat::npz: return {kLeast, kMost, 0, 0};
-    case ScanFormat::las: return {30 + 10, 30 + 18, 0, 0};  // point format 6 and extra bytes
+    case ScanFormat::las:
+      return {30 + 10, 30 + 18, 0, 0};  // point format 6 and extra bytes
+    // Scans of an HDL-64E with all attributes take 9 bytes a return.
+    case ScanFormat::laz: return {6, 30 + 18, 0, 0};
     case ScanFormat::range_image: return {0, 0, 4, 4 + 2 + 4 + 3};
     case ScanFormat::mcap: return {20, 28, 0, 0};  // fields are aligned, without range and column
   }
@@ -214,6 +219,9 @@ std::vector<EncodedFile> encode_scan_files(ScanFormat format, const std::string&
     case ScanFormat::npz: files.push_back({stem + ".npz", npz_bytes(stem + ".npz", scan)}); break;
     case ScanFormat::las:
       files.push_back({stem + ".las", las_bytes(stem + ".las", scan, full_intensity)});
+      break;
+    case ScanFormat::laz:
+      files.push_back({stem + ".laz", las_bytes(stem + ".laz", scan, full_intensity)});
       break;
     case ScanFormat::npy:
       files.push_back({stem + ".npy", npy_points(scan)});

@@ -22,6 +22,7 @@ enum class ScanFormat : std::uint8_t {
   npz,
   pcd,
   las,
+  laz,
   range_image,
   mcap,
   kitti_raw,
@@ -36,6 +37,7 @@ inline constexpr std::pair<std::string_view, ScanFormat> kScanFormats[] = {
     {"npz", ScanFormat::npz},
     {"pcd", ScanFormat::pcd},
     {"las", ScanFormat::las},
+    {"laz", ScanFormat::laz},
     {"range-image", ScanFormat::range_image},
     {"mcap", ScanFormat::mcap},
     {"kitti-raw", ScanFormat::kitti_raw},
@@ -78,15 +80,16 @@ void write_scan_npz(const std::filesystem::path& path, const ScanView& scan);
 /// PCD, binary, with the columns of scan_columns(); VIEWPOINT is world_from_sensor.
 void write_scan_pcd(const std::filesystem::path& path, const ScanView& scan);
 
-/// LAS 1.4, point format 6, in millimetres. Intensity: 0..`full_intensity` becomes 0..65535.
-/// Classification is the low byte of the class, GPS time when the point was measured, or the scan's
-/// time where the sensor stood still meanwhile (times_from_pose() has why). Extra
-/// bytes: intensity_value, label, instance, ring, column, range, as far as the scan has them.
+/// LAS 1.4 (LAZ where the path ends in .laz), point format 6, in millimetres. Intensity:
+/// 0..`full_intensity` becomes 0..65535. Classification is the low byte of the class, GPS time when
+/// the point was measured, or the scan's time where the sensor stood still meanwhile
+/// (times_from_pose() has why). Extra bytes: intensity_value, label, instance, ring, column, range,
+/// as far as the scan has them.
 void write_scan_las(const std::filesystem::path& path, const ScanView& scan,
                     double full_intensity = 1.0);
 
-/// The same as bytes: the files of `format` (ply, npy, npz, pcd or las, else std::logic_error) that
-/// a scan becomes, named `stem` with their extensions. Errors: those of the formats.
+/// The same as bytes: the files of `format` (ply, npy, npz, pcd, las or laz, else std::logic_error)
+/// that a scan becomes, named `stem` with their extensions. Errors: those of the formats.
 std::vector<EncodedFile> encode_scan_files(ScanFormat format, const std::string& stem,
                                            const ScanView& scan, double full_intensity = 1.0);
 

@@ -135,6 +135,25 @@ TEST(ScanFiles, Las) {
   EXPECT_EQ(column(read_las(folder.path() / "scan.las"), "intensity")[2], 257);
 }
 
+// Oracle: the same scan as LAS.
+TEST(ScanFiles, LazHasWhatLasHas) {
+  const TemporaryFolder folder;
+  const Scan scan = scan_with_returns();
+  write_scan_las(folder.path() / "scan.las", scan);
+  write_scan_las(folder.path() / "scan.laz", scan);
+  const std::string bytes = read_file(folder.path() / "scan.laz");
+  EXPECT_NE(bytes.find("laszip encoded"), std::string::npos);
+  const Table wanted = read_las(folder.path() / "scan.las");
+  const Table found = read_las(folder.path() / "scan.laz");
+  ASSERT_EQ(found.rows, wanted.rows);
+  ASSERT_EQ(found.columns.size(), wanted.columns.size());
+  for (std::size_t k = 0; k < found.columns.size(); ++k)
+    EXPECT_EQ(found.columns[k].values, wanted.columns[k].values) << found.columns[k].name;
+  const auto files = encode_scan_files(ScanFormat::laz, "scan", scan);
+  ASSERT_EQ(files.size(), 1U);
+  EXPECT_EQ(files[0].bytes, bytes);
+}
+
 TEST(ScanFiles, LasWithoutLabels) {
   const TemporaryFolder folder;
   Scan scan = scan_number(2, 2);

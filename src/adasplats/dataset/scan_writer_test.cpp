@@ -47,6 +47,7 @@ TEST(ScanWriter, NamesOfEveryFormat) {
   EXPECT_EQ(written_names(ScanFormat::npz), (Names{"000000.npz", "000001.npz", "poses.csv"}));
   EXPECT_EQ(written_names(ScanFormat::pcd), (Names{"000000.pcd", "000001.pcd", "poses.csv"}));
   EXPECT_EQ(written_names(ScanFormat::las), (Names{"000000.las", "000001.las", "poses.csv"}));
+  EXPECT_EQ(written_names(ScanFormat::laz), (Names{"000000.laz", "000001.laz", "poses.csv"}));
   EXPECT_EQ(written_names(ScanFormat::npy), (Names{"000000.npy", "000000_label.npy", "000001.npy",
                                                    "000001_label.npy", "poses.csv"}));
   EXPECT_EQ(written_names(ScanFormat::range_image),

@@ -90,7 +90,7 @@ class PointSegmenter {
 
   void segment_files(const std::vector<fs::path>& files) {
     constexpr const char* kLabels = ".label";
-    const std::vector<std::string> endings = {".ply", ".las", kLabels};
+    const std::vector<std::string> endings = {".ply", ".las", ".laz", kLabels};
     require_ending(job_.output, endings);
     require_no_input(job_.output, read_files());
     check_output_file(job_.output);
@@ -98,7 +98,7 @@ class PointSegmenter {
     if (ending == kLabels)
       segment_single_scan(files);
     else
-      segment_cloud_of_files(ending == ".las");
+      segment_cloud_of_files(ending != ".ply");
   }
 
   void segment_cloud_of_files(bool as_las) {
@@ -123,11 +123,12 @@ class PointSegmenter {
   void segment_single_scan(const std::vector<fs::path>& files) {
     if (files.size() != 1 || lower_case(files[0].extension().string()) != ".bin")
       throw Error(ErrorKind::usage, job_.output.string() +
-                                        ": labels alone are those of one scan (.bin); write PLY "
-                                        "or LAS");
+                                        ": labels alone are those of one scan (.bin); write PLY, "
+                                        "LAS or LAZ");
     if (job_.segment.confidences || job_.segment.probabilities)
-      throw Error(ErrorKind::usage,
-                  job_.output.string() + ": has labels alone, no confidences; write PLY or LAS");
+      throw Error(
+          ErrorKind::usage,
+          job_.output.string() + ": has labels alone, no confidences; write PLY, LAS or LAZ");
     KittiSequence scan;
     scan.folder = files[0].parent_path();
     scan.scans = files;

@@ -68,11 +68,11 @@ struct SegmentResult {
 /// sequences/00/labels/NNNNNN.label for the first folder and so on, a number for every point of the
 /// scan in its order; beside `labels`, on demand, confidences/NNNNNN.bin (save_floats(), a number a
 /// point) and probabilities/NNNNNN.bin (a number a class and point). Of files of points it is one
-/// PLY or LAS of all points (LabelledPoints), of a single .bin also a .label, as its name says.
-/// Numbers are SemanticKITTI's or the class map's. Errors: usage (sequences beside files, an output
-/// of another ending, that is or lies among the inputs), data (no points; a class of the network
-/// that SemanticKITTI does not have), unavailable (built without OpenBLAS), those of read_network,
-/// read_class_map, load_cloud and OutputFolder.
+/// PLY, LAS or LAZ of all points (LabelledPoints), of a single .bin also a .label, as its name
+/// says. Numbers are SemanticKITTI's or the class map's. Errors: usage (sequences beside files, an
+/// output of another ending, that is or lies among the inputs), data (no points; a class of the
+/// network that SemanticKITTI does not have), unavailable (built without OpenBLAS), those of
+/// read_network, read_class_map, load_cloud and OutputFolder.
 SegmentResult run_segment(const SegmentJob& job, Session& session);
 
 /// The keys of the command's report.

@@ -19,6 +19,7 @@
 #include "adasplats/io/base/record_writer.h"
 #include "adasplats/io/las/las_header.h"
 #include "adasplats/io/las/las_records.h"
+#include "adasplats/io/las/laz_writer.h"
 
 namespace adasplats {
 namespace {
@@ -168,6 +169,7 @@ class Grid {
   Vec3d offset() const { return options_.offset_m; }
   /// Whether the coordinate system is GeoTIFF keys.
   bool has_keys() const { return !options_.crs.empty() && options_.crs.wkt.empty(); }
+  bool is_packed() const { return options_.is_packed; }
   const std::filesystem::path& path() const { return path_; }
 
  private:
@@ -265,10 +267,12 @@ void add_crs(const std::filesystem::path& path, const Crs& crs, Records& records
 
 /// All that stands between the header and the points.
 Records records_of(const std::filesystem::path& path, std::span<const ColumnView> extras,
-                   const Crs& crs) {
+                   std::size_t record_bytes, const LasWriteOptions& options) {
   Records records;
-  add_crs(path, crs, records);
+  add_crs(path, options.crs, records);
   if (!extras.empty()) records.add(path, "LASF_Spec", kExtraRecordId, extra_descriptions(extras));
+  if (options.is_packed)
+    records.add(path, kLaszipUser, kLaszipRecordId, laszip_record(record_bytes));
   return records;
 }
 
@@ -285,7 +289,8 @@ std::string header_of(std::size_t rows, const Summary& summary, const Grid& grid
   put(bytes, 94, static_cast<std::uint16_t>(kHeaderBytes));
   put(bytes, 96, static_cast<std::uint32_t>(kHeaderBytes + records.bytes.size()));
   put(bytes, 100, records.count);
-  put(bytes, 104, static_cast<std::uint8_t>(kPointFormat));
+  put(bytes, 104,
+      static_cast<std::uint8_t>(kPointFormat | (grid.is_packed() ? kLaszipFormatBit : 0)));
   put(bytes, 105, static_cast<std::uint16_t>(record_bytes));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     put(bytes, 131 + 8 * axis, grid.scale());
@@ -308,10 +313,12 @@ void put_las(ByteSink& file, const std::filesystem::path& path, std::size_t rows
   const std::size_t fixed_bytes = las_format(kPointFormat).least_bytes;
   std::size_t record_bytes = fixed_bytes;
   for (const ColumnView& extra : points.extras()) record_bytes += type_bytes(extra.type);
-  const Records records = records_of(path, points.extras(), options.crs);
+  const Records records = records_of(path, points.extras(), record_bytes, options);
   file.write(header_of(rows, summary, grid, record_bytes, records));
   file.write(records.bytes);
-  write_records(file, rows, points.extras(), fixed_bytes, [&](std::size_t row, char* record) {
+  LazWriter packer(record_bytes);
+  ByteSink& to = options.is_packed ? static_cast<ByteSink&>(packer) : file;
+  write_records(to, rows, points.extras(), fixed_bytes, [&](std::size_t row, char* record) {
     std::memset(record, 0, fixed_bytes);
     const auto steps = grid.steps(points.position(row), row);
     std::memcpy(record, steps.data(), sizeof(steps));
@@ -319,6 +326,11 @@ void put_las(ByteSink& file, const std::filesystem::path& path, std::size_t rows
     put(record, kReturnsOffset, static_cast<std::uint8_t>(returns));
     points.copy_fields(row, record);
   });
+  if (options.is_packed) packer.finish(file, kHeaderBytes + records.bytes.size());
+}
+
+bool is_laz_name(const std::filesystem::path& path) {
+  return lower_case(path.extension().string()) == ".laz";
 }
 
 void write_las(const std::filesystem::path& path, std::size_t rows,

@@ -20,9 +20,15 @@ struct LasWriteOptions {
   /// of point format 6; GeoTIFF keys, which cannot be made one, as they came (records 34735 to
   /// 34737, bit 4 of the global encoding 0), which readers take all the same.
   Crs crs;
+  /// LAZ: the same points, packed as LASzip packs them (layers, chunks of 50000 points), which
+  /// takes memory for what is packed.
+  bool is_packed = false;
 };
 
-/// Writes LAS 1.4, point format 6 (ASPRS, "LAS specification 1.4 - R15"). Columns by name:
+/// Whether the name of a file to write says LAZ: `.laz` in any case.
+bool is_laz_name(const std::filesystem::path& path);
+
+/// Writes LAS or LAZ 1.4, point format 6 (ASPRS, "LAS specification 1.4 - R15"). Columns by name:
 /// - x, y, z (f32 or f64, must be there), rounded to the scale;
 /// - intensity, point_source_id (u16), return_number, number_of_returns (u8, 1 to 15; 1 where the
 ///   column is not there), classification, user_data (u8), gps_time (f64), as far as they are

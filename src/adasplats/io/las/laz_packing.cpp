@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "adasplats/io/las/las_vlrs.h"
+#include "adasplats/io/las/laz_writer.h"
 #include "adasplats/io/laz/record_values.h"
 
 namespace adasplats {
@@ -14,7 +15,6 @@ namespace {
 // LASzip's record (laszip.hpp): 34 bytes, the last two the number of items, then 6 bytes an item.
 constexpr std::size_t kLaszipBytes = 34;
 constexpr std::size_t kItemBytes = 6;
-constexpr std::uint16_t kLaszipRecordId = 22204;
 constexpr std::size_t kCoderAt = 2, kChunkPointsAt = 12, kItemCountAt = 32;
 
 /// The items of a point format in their order, of unknown version; what is left of the record are
@@ -143,8 +143,8 @@ LazPacking read_laz_packing(InputFile& file, const LasHeader& header) {
                             std::to_string(bytes) + " bytes reaches into the points");
     }
     const std::string_view user(reinterpret_cast<const char*>(start.data()) + 2, 16);
-    const bool is_laszip = user.starts_with("laszip encoded") &&
-                           load_value<std::uint16_t>(&start[18]) == kLaszipRecordId;
+    const bool is_laszip =
+        user.starts_with(kLaszipUser) && load_value<std::uint16_t>(&start[18]) == kLaszipRecordId;
     file.skip(kVlrHeaderBytes);
     if (is_laszip && packing) throw file.error_here("LAZ: a second record 'laszip encoded'");
     if (is_laszip) packing = PackingReader(file, file.peek(bytes).first(bytes), header).read();

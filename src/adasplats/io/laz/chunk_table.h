@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "adasplats/io/laz/integer_decoder.h"
+#include "adasplats/io/laz/integer_model.h"
 #include "adasplats/io/laz/range_decoder.h"
 
 namespace adasplats {
@@ -38,7 +38,7 @@ class ChunkTable {
   bool has_points_;
   bool is_broken_ = false;
   RangeDecoder decoder_;
-  IntegerDecoder integers_{32, 2};
+  IntegerModel integers_{32, 2};
   Entry last_;
 };
 

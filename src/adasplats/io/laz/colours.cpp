@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "adasplats/io/laz/integer_decoder.h"
+#include "adasplats/io/laz/integer_model.h"
 #include "adasplats/io/laz/pointwise_item.h"
 #include "adasplats/io/laz/record_values.h"
 
@@ -100,7 +100,7 @@ class Rgb12V1 final : public PointwiseItem {
  private:
   Rgb last_{};
   SymbolModel changed_{64};
-  IntegerDecoder bytes_{8, 6};
+  IntegerModel bytes_{8, 6};
 };
 
 }  // namespace

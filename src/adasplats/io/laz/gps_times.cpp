@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/io/laz/gps_times.h"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 #include "adasplats/io/laz/pointwise_item.h"
+#include "adasplats/io/laz/range_encoder.h"
 #include "adasplats/io/laz/record_values.h"
 
 namespace adasplats {
@@ -22,6 +27,21 @@ std::int32_t times(std::int32_t step, std::int32_t multiple) {
 /// The sum of the bits of a time and a difference with its sign.
 std::uint64_t later(std::uint64_t time, std::int32_t difference) {
   return time + static_cast<std::uint64_t>(std::int64_t{difference});
+}
+
+/// The difference of the bits of two times where it fits 32 bits.
+std::optional<std::int32_t> near_difference(std::uint64_t from, std::uint64_t to) {
+  const std::uint64_t difference = to - from;
+  const auto low = static_cast<std::int32_t>(static_cast<std::uint32_t>(difference));
+  if (later(from, low) != to) return std::nullopt;
+  return low;
+}
+
+/// How often `step` goes into `difference`, as LASzip rounds; beyond what has symbols: further.
+std::int32_t nearest_multiple(std::int32_t difference, std::int32_t step) {
+  constexpr float kFar = 1e6F;
+  const float share = static_cast<float>(difference) / static_cast<float>(step);
+  return static_cast<std::int32_t>(std::clamp(share, -kFar, kFar) + (share >= 0 ? 0.5F : -0.5F));
 }
 
 }  // namespace
@@ -117,6 +137,71 @@ void GpsTimes::begin_sequence(RangeDecoder& decoder) {
   current_ = newest_;
 }
 
+void GpsTimes::encode(RangeEncoder& encoder, std::uint64_t time) {
+  const Sequence& sequence = sequences_[current_];
+  if (const auto difference = near_difference(sequence.time, time))
+    encode_near(encoder, *difference);
+  else
+    encode_far(encoder, time);
+}
+
+void GpsTimes::encode_near(RangeEncoder& encoder, std::int32_t difference) {
+  Sequence& sequence = sequences_[current_];
+  if (sequence.step != 0) {
+    encode_multiple(encoder, difference);
+  } else {
+    without_step_.encode(encoder, unchanged_);
+    integers_.encode_signed(encoder, 0, difference, 0);
+    sequence.step = difference;
+    sequence.extremes = 0;
+  }
+  sequence.time = later(sequence.time, difference);
+}
+
+void GpsTimes::encode_multiple(RangeEncoder& encoder, std::int32_t difference) {
+  constexpr auto kMost = static_cast<std::int32_t>(kMostMultiple);
+  constexpr auto kFewest = -static_cast<std::int32_t>(kFewestMultiple);
+  Sequence& sequence = sequences_[current_];
+  const std::int32_t multiple =
+      std::clamp(nearest_multiple(difference, sequence.step), kFewest, kMost);
+  multiples_.encode(encoder,
+                    static_cast<std::uint32_t>(multiple < 0 ? kMost - multiple : multiple));
+  const bool is_extreme = multiple == 0 || multiple == kMost || multiple == kFewest;
+  const unsigned context = multiple == 0         ? 7
+                           : multiple == 1       ? 1
+                           : multiple == kMost   ? 4
+                           : multiple == kFewest ? 6
+                           : multiple < 0        ? 5
+                           : multiple < 10       ? 2
+                                                 : 3;
+  integers_.encode_signed(encoder, times(sequence.step, multiple), difference, context);
+  if (multiple == 1) sequence.extremes = 0;
+  if (!is_extreme || ++sequence.extremes <= kExtremesForNewStep) return;
+  sequence.step = difference;
+  sequence.extremes = 0;
+}
+
+void GpsTimes::encode_far(RangeEncoder& encoder, std::uint64_t time) {
+  const bool has_step = sequences_[current_].step != 0;
+  SymbolModel& symbols = has_step ? multiples_ : without_step_;
+  // Symbols: a new sequence, then the next ones that are there.
+  const std::uint32_t first = unchanged_ + (has_step ? kMultiples : 1);
+  for (std::uint32_t ahead = 1; ahead < 4; ++ahead) {
+    const auto difference = near_difference(sequences_[(current_ + ahead) % 4].time, time);
+    if (!difference) continue;
+    symbols.encode(encoder, first + ahead);
+    switch_sequence(ahead);
+    return encode_near(encoder, *difference);
+  }
+  symbols.encode(encoder, first);
+  const auto upper = static_cast<std::uint32_t>(sequences_[current_].time >> 32);
+  integers_.encode(encoder, upper, static_cast<std::uint32_t>(time >> 32), 8);
+  encoder.put_bits(static_cast<std::uint32_t>(time), 32);
+  newest_ = (newest_ + 1) % 4;
+  current_ = newest_;
+  sequences_[newest_] = {.time = time};
+}
+
 namespace {
 
 /// As LASzip packs since version 2.0.
@@ -190,7 +275,7 @@ class GpsTime11V1 final : public PointwiseItem {
   int extremes_ = 0;
   SymbolModel multiples_{kSymbols};
   SymbolModel without_step_{3};
-  IntegerDecoder integers_{32, 6};
+  IntegerModel integers_{32, 6};
 };
 
 }  // namespace

@@ -5,14 +5,14 @@
 #include <array>
 #include <cstdint>
 
-#include "adasplats/io/laz/integer_decoder.h"
+#include "adasplats/io/laz/integer_model.h"
 #include "adasplats/io/laz/range_decoder.h"
 
 namespace adasplats {
 
-/// Unpacks GPS times: the bits of each as a whole number, by its difference from one of four times
-/// that were seen, in multiples of the last difference there. Pulses of several scanners, or
-/// flight lines that are mixed, are four sequences so.
+/// Packs and unpacks GPS times: the bits of each as a whole number, by its difference from one of
+/// four times that were seen, in multiples of the last difference there. Pulses of several
+/// scanners, or flight lines that are mixed, are four sequences so.
 class GpsTimes {
  public:
   /// What the symbols of two versions of the same method stand for.
@@ -25,6 +25,8 @@ class GpsTimes {
 
   /// The next time, as the bits of a double.
   std::uint64_t decode(RangeDecoder& decoder);
+  /// Packs the next time, the bits of a double, which is not the last one (`changed_alone`).
+  void encode(RangeEncoder& encoder, std::uint64_t time);
 
  private:
   struct Sequence {
@@ -39,6 +41,10 @@ class GpsTimes {
   bool decode_with_step(RangeDecoder& decoder);
   void decode_multiple(RangeDecoder& decoder, std::uint32_t symbol);
   void begin_sequence(RangeDecoder& decoder);
+  /// Packs a time whose difference from the current sequence's last one is `difference`.
+  void encode_near(RangeEncoder& encoder, std::int32_t difference);
+  void encode_multiple(RangeEncoder& encoder, std::int32_t difference);
+  void encode_far(RangeEncoder& encoder, std::uint64_t time);
   void switch_sequence(std::uint32_t ahead) { current_ = (current_ + ahead) % 4; }
 
   std::uint32_t unchanged_;  // how many symbols stand for the same time: 0 or 1
@@ -47,7 +53,7 @@ class GpsTimes {
   std::uint32_t newest_ = 0;
   SymbolModel multiples_;
   SymbolModel without_step_;
-  IntegerDecoder integers_{32, 9};
+  IntegerModel integers_{32, 9};
 };
 
 }  // namespace adasplats

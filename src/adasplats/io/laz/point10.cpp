@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "adasplats/io/laz/integer_decoder.h"
+#include "adasplats/io/laz/integer_model.h"
 #include "adasplats/io/laz/pointwise_item.h"
 #include "adasplats/io/laz/record_values.h"
 #include "adasplats/io/laz/return_groups.h"
@@ -30,7 +30,7 @@ class ByteAfterByte {
   std::vector<SymbolModel> models_ = std::vector<SymbolModel>(256, SymbolModel(256));
 };
 
-void decode_u16(IntegerDecoder& integers, RangeDecoder& decoder, std::byte* value) {
+void decode_u16(IntegerModel& integers, RangeDecoder& decoder, std::byte* value) {
   store_value(value, static_cast<std::uint16_t>(
                          integers.decode(decoder, load_value<std::uint16_t>(value))));
 }
@@ -103,8 +103,8 @@ class Point10V2 final : public PointwiseItem {
   SymbolModel changed_{64};
   ByteAfterByte returns_, class_, user_data_;
   std::array<SymbolModel, 2> angle_steps_ = {SymbolModel(256), SymbolModel(256)};
-  IntegerDecoder intensity_{16, 4}, source_{16};
-  IntegerDecoder dx_{32, 2}, dy_{32, 22}, z_{32, 20};
+  IntegerModel intensity_{16, 4}, source_{16};
+  IntegerModel dx_{32, 2}, dy_{32, 22}, z_{32, 20};
   std::array<std::uint16_t, 16> intensities_{};
   std::array<RunningMedian, 16> x_steps_, y_steps_;
   std::array<std::int32_t, 8> heights_{};
@@ -158,8 +158,8 @@ class Point10V1 final : public PointwiseItem {
   Point10Bytes last_{};
   SymbolModel changed_{64};
   ByteAfterByte returns_, class_, user_data_;
-  IntegerDecoder dx_{32}, dy_{32, 20}, z_{32, 20};
-  IntegerDecoder intensity_{16}, angle_{8, 2}, source_{16};
+  IntegerModel dx_{32}, dy_{32, 20}, z_{32, 20};
+  IntegerModel intensity_{16}, angle_{8, 2}, source_{16};
   Steps x_steps_{}, y_steps_{};
   std::size_t oldest_ = 0;
 };

@@ -4,27 +4,16 @@
 
 #include <algorithm>
 
+#include "adasplats/io/laz/point14_channel.h"
 #include "adasplats/io/laz/record_values.h"
 #include "adasplats/io/laz/return_groups.h"
 
 namespace adasplats {
 namespace {
 
-// What changed since the last point of the channel.
-constexpr unsigned kReturnNumber = 3;  // 0: nothing, 1: one more, 2: one less, 3: otherwise
-constexpr unsigned kReturnsChanged = 4;
-constexpr unsigned kAngleChanged = 8;
-constexpr unsigned kTimeChanged = 16;
-constexpr unsigned kSourceChanged = 32;
-constexpr unsigned kChannelChanged = 64;
-
 std::int32_t moved(std::int32_t from, std::int32_t by) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(from) +
                                    static_cast<std::uint32_t>(by));
-}
-
-std::vector<SymbolModel> models(std::size_t count, std::uint32_t symbols) {
-  return std::vector<SymbolModel>(count, SymbolModel(symbols));
 }
 
 }  // namespace
@@ -63,34 +52,6 @@ void store_point14(std::byte* item, const Point14& point) {
   store_value(item + 22, point.gps_time);
 }
 
-/// What is known of one scanner channel.
-struct Point14Decoder::Channel {
-  explicit Channel(const Point14& point)
-      : last(point), gps_times(GpsTimes::Symbols::changed_alone, point.gps_time) {
-    heights.fill(point.z);
-    intensities.fill(point.intensity);
-  }
-
-  bool is_first() const { return last.return_number == 1; }
-  bool is_last() const { return last.return_number >= last.number_of_returns; }
-  bool is_single() const { return last.number_of_returns == 1; }
-
-  Point14 last;
-  bool had_new_time = false;
-  std::vector<SymbolModel> changed = models(8, 128);
-  SymbolModel other_channel{3};
-  std::vector<SymbolModel> numbers_of_returns = models(16, 16), return_numbers = models(16, 16);
-  SymbolModel return_number_same_time{13};
-  IntegerDecoder dx{32, 2}, dy{32, 22}, z{32, 20};
-  std::array<RunningMedian, 12> x_steps, y_steps;
-  std::array<std::int32_t, 8> heights{};
-  std::vector<SymbolModel> classes = models(64, 256), flags = models(64, 64),
-                           user_data = models(64, 256);
-  IntegerDecoder intensity{16, 4}, scan_angle{16, 2}, point_source{16};
-  std::array<std::uint16_t, 8> intensities{};
-  GpsTimes gps_times;
-};
-
 Point14Decoder::Point14Decoder(unsigned version, const std::byte* item,
                                std::span<const std::span<const std::byte>> layers, bool& is_broken)
     : version_(version),
@@ -112,9 +73,8 @@ Point14Decoder::~Point14Decoder() = default;
 
 std::size_t Point14Decoder::decode(std::byte* item) {
   Channel* channel = channels_[current_].get();
-  const std::size_t context = (channel->is_first() ? 1U : 0U) + (channel->is_last() ? 2U : 0U) +
-                              (channel->had_new_time ? 4U : 0U);
-  const unsigned changed = channel->changed[context].decode(returns_xy_.decoder);
+  const unsigned changed =
+      channel->changed[channel->context_of_change()].decode(returns_xy_.decoder);
   const bool is_other_channel = (changed & kChannelChanged) != 0;
   if (is_other_channel) channel = &switch_channel(*channel);
   decode_returns(*channel, returns_xy_.decoder, changed);
@@ -182,7 +142,7 @@ void Point14Decoder::decode_position(Channel& channel, bool has_new_time) {
 
 void Point14Decoder::decode_attributes(Channel& channel, unsigned changed) {
   Point14& point = channel.last;
-  const unsigned kind = (channel.is_first() ? 2 : 0) + (channel.is_last() ? 1 : 0);
+  const unsigned kind = channel.kind();
   const unsigned has_new_time = (changed & kTimeChanged) != 0 ? 1 : 0;
   if (classification_.is_packed) {
     const std::size_t before = 2 * (point.classification & 0x1fU) + (kind == 3 ? 1 : 0);

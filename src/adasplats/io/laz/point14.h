@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adasplats/io/laz/gps_times.h"
-#include "adasplats/io/laz/integer_decoder.h"
+#include "adasplats/io/laz/integer_model.h"
 #include "adasplats/io/laz/layered_item.h"
 #include "adasplats/io/laz/range_decoder.h"
 #include "adasplats/io/laz/running_median.h"
@@ -34,6 +34,8 @@ struct Point14 {
 Point14 load_point14(const std::byte* item);
 void store_point14(std::byte* item, const Point14& point);
 
+struct Point14Channel;
+
 /// Unpacks the points of a layered chunk. Each scanner channel has models and a last point of its
 /// own; a layer that is empty says that its attribute is that of the last point.
 class Point14Decoder {
@@ -49,7 +51,7 @@ class Point14Decoder {
   std::size_t channel() const { return current_; }
 
  private:
-  struct Channel;
+  using Channel = Point14Channel;
 
   Channel& switch_channel(Channel& from);
   static void decode_returns(Channel& channel, RangeDecoder& decoder, unsigned changed);

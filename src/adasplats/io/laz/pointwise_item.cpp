@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "adasplats/io/laz/integer_decoder.h"
+#include "adasplats/io/laz/integer_model.h"
 
 namespace adasplats {
 namespace {
@@ -48,7 +48,7 @@ class ExtraBytesV1 final : public PointwiseItem {
 
  private:
   std::vector<std::byte> last_;
-  IntegerDecoder integers_;
+  IntegerModel integers_;
 };
 
 }  // namespace

@@ -10,11 +10,14 @@
 namespace adasplats {
 
 class RangeDecoder;
+class RangeEncoder;
 
 /// How probable 0 is as the value of a bit, learned from the bits so far.
 class BitModel {
  public:
   unsigned decode(RangeDecoder& decoder);
+  /// `bit`: 0 or 1.
+  void encode(RangeEncoder& encoder, unsigned bit);
 
  private:
   void update();
@@ -35,6 +38,8 @@ class SymbolModel {
 
   /// The next symbol, below the model's number of symbols, whatever the data are.
   std::uint32_t decode(RangeDecoder& decoder);
+  /// `symbol`: below the model's number of symbols.
+  void encode(RangeEncoder& encoder, std::uint32_t symbol);
 
  private:
   void start();

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "adasplats/io/laz/integer_decoder.h"
+#include "adasplats/io/laz/integer_model.h"
 #include "adasplats/io/laz/range_decoder.h"
 
 namespace adasplats {
@@ -29,7 +29,7 @@ class WavePacketModels {
                                               SymbolModel(4)};
   std::uint32_t last_kind_ = 0;
   std::int32_t last_difference_ = 0;
-  IntegerDecoder differences_{32}, sizes_{32}, return_points_{32}, directions_{32, 3};
+  IntegerModel differences_{32}, sizes_{32}, return_points_{32}, directions_{32, 3};
 };
 
 }  // namespace adasplats

@@ -98,6 +98,7 @@ void save_labelled_las(const std::filesystem::path& file, const LabelledPoints& 
   LasWriteOptions options;
   options.offset_m = cloud.origin;
   options.crs = cloud.crs;
+  options.is_packed = is_laz_name(file);
   write_las(file, cloud.size(), columns, options);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/io/laz/integer_decoder.h"
+#include "adasplats/io/laz/integer_model.h"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ void put_difference(PlainEncoder& encoder, PlainModel& lengths, std::vector<Plai
     encoder.put_bits(static_cast<std::uint32_t>(place & ((std::int64_t{1} << low) - 1)), low);
 }
 
-TEST(IntegerDecoder, GivesTheNumbersThatWerePacked) {
+TEST(IntegerModel, GivesTheNumbersThatWerePacked) {
   const std::vector<std::int64_t> differences = {2,     -1,    3,      4,          5,     -7,
                                                  100,   -255,  256,    257,        -256,  1000,
                                                  -1023, 65536, -70000, 2147483647, 100000};
@@ -45,7 +45,7 @@ TEST(IntegerDecoder, GivesTheNumbersThatWerePacked) {
   const std::vector<std::byte> bytes = encoder.finish();
   bool is_broken = false;
   RangeDecoder decoder(bytes, is_broken);
-  IntegerDecoder integers(32);
+  IntegerModel integers(32);
   for (const std::int64_t difference : differences) {
     const std::int32_t prediction = -17;
     // Sums wrap.
@@ -58,7 +58,7 @@ TEST(IntegerDecoder, GivesTheNumbersThatWerePacked) {
 }
 
 // 16 bits: 65535 lies one below 0.
-TEST(IntegerDecoder, NumbersOfFewerBitsWrap) {
+TEST(IntegerModel, NumbersOfFewerBitsWrap) {
   PlainEncoder encoder;
   PlainModel lengths(17);
   std::vector<PlainModel> places;
@@ -68,7 +68,7 @@ TEST(IntegerDecoder, NumbersOfFewerBitsWrap) {
   const std::vector<std::byte> bytes = encoder.finish();
   bool is_broken = false;
   RangeDecoder decoder(bytes, is_broken);
-  IntegerDecoder integers(16);
+  IntegerModel integers(16);
   EXPECT_EQ(integers.decode(decoder, 2), 65535U);
   EXPECT_EQ(integers.decode(decoder, 65535), 2U);
 }

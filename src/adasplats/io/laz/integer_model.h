@@ -9,13 +9,12 @@
 
 namespace adasplats {
 
-/// Unpacks whole numbers that were packed as differences from a prediction (as LASzip
-/// does): first how many bits the difference takes, by a model a context, then the
-/// difference within that interval.
-class IntegerDecoder {
+/// Packs and unpacks whole numbers as differences from a prediction (as LASzip does): first how
+/// many bits the difference takes, by a model a context, then the difference within that interval.
+class IntegerModel {
  public:
   /// Numbers of `bits` (8, 16 or 32) bits; contexts are below `contexts`.
-  explicit IntegerDecoder(unsigned bits, unsigned contexts = 1);
+  explicit IntegerModel(unsigned bits, unsigned contexts = 1);
 
   /// The number, modulo 2^bits.
   std::uint32_t decode(RangeDecoder& decoder, std::uint32_t prediction, unsigned context = 0) {
@@ -25,6 +24,14 @@ class IntegerDecoder {
   std::int32_t decode_signed(RangeDecoder& decoder, std::int32_t prediction, unsigned context = 0) {
     return static_cast<std::int32_t>(
         decode(decoder, static_cast<std::uint32_t>(prediction), context));
+  }
+  /// Packs `number`, of which the `bits` lowest count.
+  void encode(RangeEncoder& encoder, std::uint32_t prediction, std::uint32_t number,
+              unsigned context = 0);
+  void encode_signed(RangeEncoder& encoder, std::int32_t prediction, std::int32_t number,
+                     unsigned context = 0) {
+    encode(encoder, static_cast<std::uint32_t>(prediction), static_cast<std::uint32_t>(number),
+           context);
   }
   /// How many bits the last difference took, 0 to `bits`.
   unsigned last_bits() const { return last_bits_; }

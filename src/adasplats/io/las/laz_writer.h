@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adasplats/io/base/byte_sink.h"
+
+namespace adasplats {
+
+inline constexpr std::string_view kLaszipUser = "laszip encoded";
+inline constexpr std::uint16_t kLaszipRecordId = 22204;
+/// Of the point format's byte in a LAZ file's header.
+inline constexpr std::uint8_t kLaszipFormatBit = 1U << 7;
+
+/// The content of LASzip's record in a file of point format 6 with extra bytes up to
+/// `record_bytes`, as LazWriter packs it.
+std::string laszip_record(std::size_t record_bytes);
+
+/// Takes records of point format 6, in any pieces, and packs them in chunks of 50000. What is
+/// packed is kept in memory, since a table's place stands before it.
+class LazWriter final : public ByteSink {
+ public:
+  explicit LazWriter(std::size_t record_bytes) : record_bytes_(record_bytes) {}
+
+  using ByteSink::write;
+  void write(const void* data, std::size_t bytes) override;
+  /// Writes all that follows the variable length records, which end at byte `points_at` of the
+  /// file. Call once, last.
+  void finish(ByteSink& file, std::uint64_t points_at);
+
+ private:
+  void pack();
+
+  std::size_t record_bytes_;
+  std::string records_;  ///< of the chunk that is not full yet
+  std::vector<std::string> chunks_;
+};
+
+}  // namespace adasplats

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace adasplats {
+
+/// Packs numbers as RangeDecoder unpacks them (A. Said, HPL-2004-76, section 2), with the bytes
+/// that LASzip gives the same numbers.
+class RangeEncoder {
+ public:
+  /// A number of `count` bits (1 to 32), as it is.
+  void put_bits(std::uint32_t number, unsigned count);
+  /// The bytes of all that was put, with those that a decoder reads ahead. Call once, last.
+  std::string finish();
+
+ private:
+  friend class BitModel;
+  friend class SymbolModel;
+
+  static constexpr std::uint32_t kLeastLength = 1U << 24;
+
+  /// Goes on with `length` of the interval from `begin` of it on.
+  void narrow(std::uint32_t begin, std::uint32_t length) {
+    const std::uint32_t before = base_;
+    base_ += begin;
+    if (base_ < before) carry();
+    length_ = length;
+    for (; length_ < kLeastLength; length_ <<= 8) {
+      bytes_ += static_cast<char>(base_ >> 24);
+      base_ <<= 8;
+    }
+  }
+  void carry();
+
+  std::uint32_t base_ = 0;
+  std::uint32_t length_ = ~0U;
+  std::string bytes_;
+};
+
+}  // namespace adasplats
