@@ -14,6 +14,7 @@
 #include "adasplats/calibrate/calibration_steps.h"
 #include "adasplats/calibrate/plane_system.h"
 #include "adasplats/calibrate/trajectory_fit.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/core/maths/small_motion.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
 
@@ -40,9 +41,7 @@ ResidualCounts counts_of(const std::vector<double>& residuals_m) {
 
 double median(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return upper_median_of(values);
 }
 
 class Calibrator {

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "adasplats/core/maths/median.h"
 #include "adasplats/core/maths/small_motion.h"
 
 namespace adasplats {
@@ -89,9 +90,7 @@ double median_step_s(const std::vector<PoseCorrection>& poses) {
     if (poses[k].time_s > poses[k - 1].time_s)
       steps_s.push_back(poses[k].time_s - poses[k - 1].time_s);
   if (steps_s.empty()) return 0;
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  return *middle;
+  return upper_median_of(steps_s);
 }
 
 /// By how much the correction of each scan that is no end of its drive is missed when it is told

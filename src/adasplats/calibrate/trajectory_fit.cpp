@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adasplats/calibrate/robust_weight.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/core/maths/small_motion.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
 
@@ -21,11 +22,7 @@ constexpr double kMedianSquare = 2.366;
 /// In standard deviations, where a pose counts a quarter: normal ones keep nearly all their weight.
 constexpr double kWidthOfFitting = 4;
 
-double variance_of(std::vector<double> squares) {
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  return *middle / kMedianSquare;
-}
+double variance_of(std::vector<double> squares) { return upper_median_of(squares) / kMedianSquare; }
 
 Vec3d solved(const SymmetricMat3d& matrix, Vec3d right) {
   const SymmetricEigen eigen = symmetric_eigen(matrix);

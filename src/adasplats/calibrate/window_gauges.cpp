@@ -10,6 +10,7 @@
 #include "adasplats/calibrate/chain_system.h"
 #include "adasplats/calibrate/robust_weight.h"
 #include "adasplats/calibrate/trajectory_fit.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/core/maths/small_motion.h"
 
 namespace adasplats {
@@ -202,10 +203,7 @@ class Settling {
 };
 
 double median_apart(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? 0 : upper_median_of(values);
 }
 
 /// Fills in scans without a correction by those around them.

@@ -13,6 +13,8 @@
 #include <span>
 #include <utility>
 
+#include "adasplats/core/maths/median.h"
+
 namespace adasplats {
 namespace {
 
@@ -63,9 +65,7 @@ std::size_t columns_of(const std::vector<std::vector<AzimuthPoint>>& rings,
     }
   }
   if (gaps_rad.empty()) return 0;
-  const auto middle = gaps_rad.begin() + static_cast<std::ptrdiff_t>(gaps_rad.size() / 2);
-  std::ranges::nth_element(gaps_rad, middle);
-  const double step_rad = *middle;
+  const double step_rad = upper_median_of(gaps_rad);
   const auto regular = std::ranges::count_if(gaps_rad, [&](double gap_rad) {
     return gap_rad > 0.7 * step_rad && gap_rad < 1.4 * step_rad;
   });

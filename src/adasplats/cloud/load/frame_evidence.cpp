@@ -11,6 +11,7 @@
 #include "adasplats/cloud/origins/station_check.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/constants.h"
+#include "adasplats/core/maths/median.h"
 
 namespace adasplats {
 namespace {
@@ -25,12 +26,6 @@ std::string with_figures(const char* format, double a, double b, double c) {
   std::array<char, 300> text{};
   std::snprintf(text.data(), text.size(), format, a, b, c);
   return text.data();
-}
-
-double median_value(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Some scans: their points as they stand and as seen from the poses, were they in the world.
@@ -63,14 +58,15 @@ Looks look_at(const SensorFrames& frames) {
       looks.from_poses.push_back(at.inverse() * p);
     }
     if (along[0].empty()) continue;
-    const Vec3d middle = {median_value(along[0]), median_value(along[1]), median_value(along[2])};
+    const Vec3d middle = {upper_median_of(along[0]), upper_median_of(along[1]),
+                          upper_median_of(along[2])};
     given_m.push_back(length(middle));
     posed_m.push_back(length(middle - pose.world_from_sensor.translation));
     poses_m.push_back(length(pose.world_from_sensor.translation));
   }
   if (given_m.empty()) return looks;
-  looks.given_m = median_value(given_m);
-  looks.posed_m = median_value(posed_m);
+  looks.given_m = upper_median_of(given_m);
+  looks.posed_m = upper_median_of(posed_m);
   looks.least_pose_m = *std::ranges::min_element(poses_m);
   return looks;
 }

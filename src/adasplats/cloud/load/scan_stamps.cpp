@@ -13,6 +13,7 @@
 #include "adasplats/cloud/origins/track.h"
 #include "adasplats/cloud/sequence/files_by_name.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/io/base/line_reader.h"
 #include "adasplats/io/base/number_text.h"
 
@@ -64,9 +65,7 @@ double median_step(const std::vector<double>& times) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < times.size(); ++k) steps.push_back(times[k] - times[k - 1]);
   if (steps.empty()) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return upper_median_of(steps);
 }
 
 bool ascend(const std::vector<double>& times) {

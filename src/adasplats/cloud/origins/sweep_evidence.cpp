@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "adasplats/cloud/origins/station_check.h"
+#include "adasplats/core/maths/median.h"
 
 namespace adasplats {
 namespace {
@@ -43,12 +44,6 @@ double entropy_of(std::vector<std::uint64_t>& keys, const Executor& executor) {
     begin = i;
   }
   return std::log(n) - sum / n;
-}
-
-double median_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// StationView::share_behind in the mean of the sweeps that have points enough.
@@ -108,8 +103,9 @@ SweepView view_along(const SweepSample& sample, const ClockPair& clock,
   for (const double range_m : ranges_m) logarithms += std::log(std::max(range_m, kLeastRange_m));
   view.scatter = entropy_of(keys, executor) + 3 * logarithms / n;
   view.share_far = static_cast<double>(std::ranges::count(far, std::uint8_t{1})) / n;
-  view.median_range_m = median_of(ranges_m);
-  view.median_way_m = {median_of(ways_m[0]), median_of(ways_m[1]), median_of(ways_m[2])};
+  view.median_range_m = upper_median_of(ranges_m);
+  view.median_way_m = {upper_median_of(ways_m[0]), upper_median_of(ways_m[1]),
+                       upper_median_of(ways_m[2])};
   look_at_sweeps(sample, clock, trajectory, executor, view);
   return view;
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "adasplats/core/maths/median.h"
+
 namespace adasplats {
 namespace {
 
@@ -33,9 +35,7 @@ double pose_distance_s(const Trajectory& poses) {
   for (std::size_t k = 1; k < poses.size(); ++k)
     apart_s.push_back(poses[k].time_s - poses[k - 1].time_s);
   if (apart_s.empty()) return 0;
-  const auto middle = apart_s.begin() + static_cast<std::ptrdiff_t>(apart_s.size() / 2);
-  std::nth_element(apart_s.begin(), middle, apart_s.end());
-  return *middle;
+  return upper_median_of(apart_s);
 }
 
 Track track_of(const Trajectory& given) {

@@ -18,6 +18,7 @@
 #include "adasplats/cloud/sequence/files_by_name.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
 
@@ -203,12 +204,11 @@ void require_record_near(const Trajectory& records, double time_s, const fs::pat
   std::vector<double> apart_s;
   for (std::size_t k = 1; k < records.size(); ++k)
     apart_s.push_back(records[k].time_s - records[k - 1].time_s);
-  const auto middle = apart_s.begin() + static_cast<std::ptrdiff_t>(apart_s.size() / 2);
-  std::nth_element(apart_s.begin(), middle, apart_s.end());
+  const double usual_s = upper_median_of(apart_s);
   const auto behind = std::ranges::upper_bound(records, time_s, {}, &TimedPose::time_s);
   const bool is_between = behind != records.begin() && behind != records.end();
   // A clock's rounding apart.
-  const double most_s = std::max(kMostApart * *middle, 1.001 * kRecord_s);
+  const double most_s = std::max(kMostApart * usual_s, 1.001 * kRecord_s);
   if (is_between && behind->time_s - std::prev(behind)->time_s <= most_s) return;
   throw fault(scan, "no record of oxts is near its time, " +
                         exact_text(std::round(1e3 * (time_s - records[1].time_s)) / 1e3) +

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "adasplats/core/maths/median.h"
 #include "adasplats/core/maths/small_motion.h"
 
 namespace adasplats {
@@ -29,12 +30,6 @@ std::size_t sector_of(Vec3d p) {
 
 double azimuth_of(std::size_t sector) {
   return ((static_cast<double>(sector) + 0.5) / kSectors - 0.5) * (2 * std::numbers::pi);
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// The points that lead the search, and the doubt that most of them allow.
@@ -77,7 +72,8 @@ Guides guides_of(std::span<const Vec3d> points, const ConeTable& table) {
     }
   }
   // A quarter of a gap is half the way to where the next laser is as near.
-  guides.doubt = 0.25 * MountDoubt{median_of(gaps_rad), median_of(heights_m), median_of(asides_m)};
+  guides.doubt = 0.25 * MountDoubt{upper_median_of(gaps_rad), upper_median_of(heights_m),
+                                   upper_median_of(asides_m)};
   // Of cones that coincide, too, something is left.
   guides.doubt.tilt_rad = std::max(guides.doubt.tilt_rad, 0.01 * kDegree);
   guides.doubt.height_m = std::max(guides.doubt.height_m, 0.001);
@@ -273,7 +269,7 @@ ConeFit best_beside(const ConeFit& fit, std::span<const Vec3d> points, const Con
   gaps_rad.reserve(better.size());
   for (const Vec3d& point : better)
     gaps_rad.push_back(table.place_of(fit.mount.inverse() * point).gap_rad);
-  const double gap_rad = median_of(gaps_rad);
+  const double gap_rad = upper_median_of(gaps_rad);
   std::vector<Start> starts;
   for (const double roll : {-gap_rad, 0.0, gap_rad})
     for (const double pitch : {-gap_rad, 0.0, gap_rad})

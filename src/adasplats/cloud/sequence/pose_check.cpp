@@ -14,6 +14,7 @@
 
 #include "adasplats/cloud/sequence/files_by_name.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/median.h"
 
 namespace adasplats {
 
@@ -84,9 +85,7 @@ NearPoints near_points(const KittiScan& scan, double reach_m) {
   std::vector<double> values(near.points.size());
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = near.points[i][axis];
-    const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), half, values.end());
-    near.middle[axis] = *half;
+    near.middle[axis] = upper_median_of(values);
   }
   std::erase_if(near.points, [&](Vec3d p) { return !(length(p - near.middle) < reach_m); });
   return near;
@@ -296,17 +295,16 @@ void require_times_of_scans(const KittiSequence& sequence) {
     driven_m +=
         length(poses[k].world_from_sensor.translation - poses[k - 1].world_from_sensor.translation);
   }
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
+  const double step_s = upper_median_of(steps_s);
   const double speed_mps = driven_m / (poses.back().time_s - poses.front().time_s);
-  const bool is_long = *middle > kLongStep_s && speed_mps < kSlow_mps && driven_m > kLeastDriven_m;
-  const bool is_short = *middle < kShortStep_s && speed_mps > kFast_mps;
+  const bool is_long = step_s > kLongStep_s && speed_mps < kSlow_mps && driven_m > kLeastDriven_m;
+  const bool is_short = step_s < kShortStep_s && speed_mps > kFast_mps;
   if (!is_long && !is_short) return;
   std::array<char, 300> text{};
   std::snprintf(text.data(), text.size(),
                 ": the times of the scans are not seconds: by them scans are %.4g s apart, and the "
                 "vehicle drives %.1f m at %.3g m/s",
-                *middle, driven_m, speed_mps);
+                step_s, driven_m, speed_mps);
   throw Error(ErrorKind::data, sequence.folder.string() + text.data());
 }
 

@@ -14,6 +14,7 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/sweep_check.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/median.h"
 
 namespace adasplats {
 namespace {
@@ -109,12 +110,6 @@ std::pair<std::uint16_t, double> nearest_cone(Vec3d point) {
 
 /// Distance of a point from the nearest of the beams' cones, m.
 double distance_from_fan(Vec3d point) { return nearest_cone(point).second; }
-
-double median_of_all(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// What the sweeps by the poses' times are multiplied with: without motion, as the times have it,
 /// and were these milliseconds, microseconds or nanoseconds.
@@ -256,7 +251,7 @@ bool says_motion_of_sweeps(const Trajectory& poses) {
   apart_s.reserve(poses.size());
   for (std::size_t k = 1; k < poses.size(); ++k)
     apart_s.push_back(poses[k].time_s - poses[k - 1].time_s);
-  return !apart_s.empty() && median_of_all(std::move(apart_s)) <= kMostApart_s;
+  return !apart_s.empty() && upper_median_of(std::move(apart_s)) <= kMostApart_s;
 }
 
 /// Of scans as they were measured: their motions by the poses, unless these are too far apart or
@@ -274,7 +269,7 @@ void find_raw_motions(const KittiSequence& sequence, const std::vector<Vec3d>& s
   std::vector<double> lengths_m;
   lengths_m.reserve(sweeps_m.size());
   for (const Vec3d sweep_m : sweeps_m) lengths_m.push_back(length(sweep_m));
-  beams.unknown_sweep_m = median_of_all(std::move(lengths_m));
+  beams.unknown_sweep_m = upper_median_of(std::move(lengths_m));
 }
 
 }  // namespace
@@ -301,7 +296,7 @@ ScanBeams recognize_beams(const KittiSequence& sequence, const Executor& executo
   if (distances_m[0].size() < kLeastPoints) return {};
   std::array<double, kSweepFactors.size()> median_m{};
   for (std::size_t f = 0; f < median_m.size(); ++f)
-    median_m[f] = median_of_all(std::move(distances_m[f]));
+    median_m[f] = upper_median_of(std::move(distances_m[f]));
   const auto [as_measured, compensated] = std::pair(median_m[0], median_m[1]);
   require_times_in_seconds(sequence, median_m, kMostDistance_m);
   if (!(std::min(as_measured, compensated) < kMostDistance_m)) return {};

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "adasplats/cloud/sequence/pose_check.h"
+#include "adasplats/core/maths/median.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
 
 namespace adasplats {
@@ -97,12 +98,6 @@ std::vector<double> wall_distances_m(const KittiSequence& sequence, const ScanBe
   return distances_m;
 }
 
-double median_apart_m(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Without any motion the medians are equal. On a drive of KITTI at 4.5 m/s the right motion has
 // 0.85 of that at rest and its reverse 1.18, on a simulated one 0.67 and 1.53; of compensated
 // scans 1.06. A mount that is 5 degrees and 0.4 m wrong has 0.86 and 1.25, but a median of 0.11 m,
@@ -139,9 +134,9 @@ SweepEvidence weigh_sweeps(const KittiSequence& sequence, const ScanBeams& beams
   SweepEvidence evidence;
   evidence.points = std::min({of_ways_m[0].size(), of_ways_m[1].size(), of_ways_m[2].size()});
   if (evidence.points == 0) return {};
-  evidence.still_m = median_apart_m(of_ways_m[0]);
-  evidence.moved_m = median_apart_m(of_ways_m[1]);
-  evidence.reversed_m = median_apart_m(of_ways_m[2]);
+  evidence.still_m = upper_median_of(of_ways_m[0]);
+  evidence.moved_m = upper_median_of(of_ways_m[1]);
+  evidence.reversed_m = upper_median_of(of_ways_m[2]);
   return evidence;
 }
 

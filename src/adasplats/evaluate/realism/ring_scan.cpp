@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "adasplats/core/maths/median.h"
+
 namespace adasplats {
 namespace {
 
@@ -70,9 +72,7 @@ RingScan arrange_in_rings(const KittiSequence& sequence, std::size_t index, cons
 double azimuth_step_rad(const RingScan& scan) {
   std::vector<float> gaps = gaps_rad(scan);
   if (gaps.empty()) return 0;
-  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-  std::nth_element(gaps.begin(), middle, gaps.end());
-  const double median = static_cast<double>(*middle);
+  const double median = static_cast<double>(upper_median_of(gaps));
   double sum = 0, count = 0;
   for (const float gap : gaps) {
     if (!(gap > 0.4 * median && gap < 1.4 * median)) continue;

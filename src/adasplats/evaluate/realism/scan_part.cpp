@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "adasplats/core/maths/median.h"
 #include "adasplats/core/maths/small_cholesky.h"
 
 namespace adasplats {
@@ -314,9 +315,7 @@ double mean_between(std::span<const float> ascending, double from, double to) {
 double median_of_known(std::vector<double> values) {
   std::erase_if(values, [](double value) { return value != value; });
   if (values.empty()) return kUnknownValue;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return upper_median_of(values);
 }
 
 }  // namespace adasplats

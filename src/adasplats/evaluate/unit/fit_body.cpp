@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/core/maths/median.h"
 #include "adasplats/evaluate/unit/fit_unit.h"
 
 namespace adasplats {
@@ -46,12 +47,7 @@ struct CellBeams {
   }
 };
 
-float middle_of(std::vector<float>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
+float middle_of(std::vector<float>& values) { return values.empty() ? 0 : upper_median_of(values); }
 
 }  // namespace
 

@@ -11,6 +11,7 @@
 
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
+#include "adasplats/core/maths/median.h"
 
 namespace adasplats {
 namespace {
@@ -83,9 +84,7 @@ double usual_reflectance_of(std::span<const EchoConditions> echoes, double other
     if (std::isfinite(echo.reflectance)) known.push_back(echo.reflectance);
   }
   if (known.empty()) return otherwise;
-  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-  std::nth_element(known.begin(), middle, known.end());
-  return static_cast<double>(*middle);
+  return static_cast<double>(upper_median_of(known));
 }
 
 void check_sizes(std::size_t echoes, std::size_t others) {

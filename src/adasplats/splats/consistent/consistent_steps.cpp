@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "adasplats/core/maths/median.h"
 #include "adasplats/neighbors/point_index.h"
 #include "adasplats/splats/consistent/cell_attributes.h"
 #include "adasplats/splats/consistent/consistent_steps_on.h"
@@ -90,9 +91,7 @@ class ConsistentOnCpu : public RaysOnCpu {
       if (units_m[i] > 0) spacings.push_back(planes[i].spacing_m / units_m[i]);
     }
     if (spacings.empty()) return 0;
-    const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
-    std::nth_element(spacings.begin(), middle, spacings.end());
-    return static_cast<double>(*middle);
+    return static_cast<double>(upper_median_of(spacings));
   }
 
   /// The disks that have a radius, with the attributes of their cells' points.
