@@ -380,8 +380,12 @@ FileFacts capture_facts(const fs::path& input, const std::optional<LabelScheme>&
   facts.json["sources"] = nlohmann::ordered_json::array();
   for (const auto& [name, source] : survey.sources) {
     std::string text = grouped(source.datagrams) + " datagrams, " + grouped(source.packets) +
-                       " packets of the sensor, " + grouped(source.revolutions.size()) +
-                       " revolutions";
+                       " packets of the sensor" +
+                       (source.dual_packets == 0 ? ""
+                        : source.dual_packets == source.packets
+                            ? " with two returns a firing"
+                            : ", " + grouped(source.dual_packets) + " with two returns a firing") +
+                       ", " + grouped(source.revolutions.size()) + " revolutions";
     if (source.lost_columns > 0)
       text += ", " + grouped(source.lost_columns) + " columns missing in " + grouped(source.gaps) +
               " gaps";
@@ -393,6 +397,7 @@ FileFacts capture_facts(const fs::path& input, const std::optional<LabelScheme>&
     facts.json["sources"].push_back({{"name", name},
                                      {"datagrams", source.datagrams},
                                      {"packets", source.packets},
+                                     {"dual_packets", source.dual_packets},
                                      {"revolutions", source.revolutions.size()},
                                      {"lost_columns", source.lost_columns},
                                      {"gaps", source.gaps},

@@ -163,7 +163,7 @@ void require_packets(const LidarModel& model, const PacketOptions& options) {
   const auto refuse = [&](const std::string& why) {
     throw Error(ErrorKind::usage, "packets of sensor '" + model.name + "': " + why);
   };
-  if (sensor.format == PacketFormat::ouster_single)
+  if (sensor.format > PacketFormat::ouster_legacy)
     refuse("written are those of profile LEGACY alone");
   if (options.returns > 1) refuse("hold one return a firing; --returns 1");
   if (options.has_angular_noise && model.angular_noise_rad > 0)

@@ -159,6 +159,8 @@ std::optional<PacketLayout> packets_of(const Metadata& metadata, const LidarMode
     layout.format = PacketFormat::ouster_legacy;
   } else if (profile == "RNG19_RFL8_SIG16_NIR16") {
     layout.format = PacketFormat::ouster_single;
+  } else if (profile == "RNG19_RFL8_SIG16_NIR16_DUAL") {
+    layout.format = PacketFormat::ouster_dual;
   } else {
     return std::nullopt;
   }

@@ -60,11 +60,29 @@ std::optional<std::string> objection_to_factory(PacketFormat format, std::string
       return "are of model " + hexadecimal(model) + ", " +
              std::string(word_of(other, kPacketFormats));
   // Sensors of before there were several modes say 0.
-  if (mode != kStrongest && mode != kLast && mode != 0)
+  if (mode != kStrongest && mode != kLast && mode != kDualMode && mode != 0)
     return "have mode " + hexadecimal(mode) +
-           " of returns, expected strongest (0x37) or last (0x38); two returns a firing are not "
-           "read";
+           " of returns, expected strongest (0x37), last (0x38) or both (0x39)";
   return std::nullopt;
+}
+
+/// A share of the lasers' blocks in the order of a packet with one return.
+struct VelodyneBlocks {
+  PacketFormat format;
+  bool is_dual;
+
+  /// How many blocks of a packet with one return this one stands for.
+  std::size_t count() const { return is_dual ? kVelodyneBlocks / 2 : kVelodyneBlocks; }
+  /// Where the last return of that block is, or the only one.
+  std::size_t first(std::size_t block) const {
+    return is_dual ? dual_blocks(format, block).first : block;
+  }
+  std::size_t second(std::size_t block) const { return dual_blocks(format, block).second; }
+};
+
+PacketReturn velodyne_return(std::string_view payload, std::size_t block, std::size_t channel) {
+  const std::size_t place = channel_byte(block, channel);
+  return {value_at<std::uint16_t>(payload, place), value_at<std::uint8_t>(payload, place + 2)};
 }
 
 }  // namespace
@@ -74,38 +92,62 @@ std::uint32_t PacketDecoder::steps_per_turn() const {
 }
 
 std::optional<std::string> PacketDecoder::objection(std::string_view payload) const {
-  if (is_ouster(sensor_.format)) {
-    constexpr std::uint64_t kLongest_ns = 1'000'000'000, kLatest_ns = std::uint64_t{1} << 62U;
-    const OusterBytes bytes(sensor_.format, sensor_.lasers());
-    const auto first_ns = value_at<std::uint64_t>(payload, bytes.head);
-    for (std::size_t k = 0; k < OusterBytes::kColumns; ++k) {
-      const auto id = value_at<std::uint16_t>(payload, bytes.head + k * bytes.column() + 8);
-      const auto time_ns = value_at<std::uint64_t>(payload, bytes.head + k * bytes.column());
-      if (time_ns > kLatest_ns || (time_ns != 0 && time_ns + kLongest_ns < first_ns) ||
-          time_ns > first_ns + kLongest_ns)
-        return "have columns that are not of one time";
-      if (id >= sensor_.model.columns)
-        return "have a column " + std::to_string(id) + " of a revolution of " +
-               std::to_string(sensor_.model.columns);
-    }
-    return std::nullopt;
+  return is_ouster(sensor_.format) ? ouster_objection(payload) : velodyne_objection(payload);
+}
+
+std::optional<std::string> PacketDecoder::ouster_objection(std::string_view payload) const {
+  constexpr std::uint64_t kLongest_ns = 1'000'000'000, kLatest_ns = std::uint64_t{1} << 62U;
+  const OusterBytes bytes(sensor_.format, sensor_.lasers());
+  const auto first_ns = value_at<std::uint64_t>(payload, bytes.head);
+  for (std::size_t k = 0; k < OusterBytes::kColumns; ++k) {
+    const auto id = value_at<std::uint16_t>(payload, bytes.head + k * bytes.column() + 8);
+    const auto time_ns = value_at<std::uint64_t>(payload, bytes.head + k * bytes.column());
+    if (time_ns > kLatest_ns || (time_ns != 0 && time_ns + kLongest_ns < first_ns) ||
+        time_ns > first_ns + kLongest_ns)
+      return "have columns that are not of one time";
+    if (id >= sensor_.model.columns)
+      return "have a column " + std::to_string(id) + " of a revolution of " +
+             std::to_string(sensor_.model.columns);
   }
-  const std::size_t blocks = blocks_of_firing(sensor_.lasers());
-  for (std::size_t block = 0; block < kVelodyneBlocks; ++block) {
+  return std::nullopt;
+}
+
+std::optional<std::string> PacketDecoder::velodyne_objection(std::string_view payload) const {
+  const VelodyneBlocks blocks{sensor_.format, is_dual(payload)};
+  const std::size_t of_firing = blocks_of_firing(sensor_.lasers());
+  const auto check = [&](std::size_t block, std::size_t flag_of) -> std::optional<std::string> {
     const auto flag = value_at<std::uint16_t>(payload, block * kBlockBytes);
-    if (flag != kBlockFlags[block % blocks])
+    if (flag != kBlockFlags[flag_of])
       return "begin their block " + std::to_string(block) + " with " + hexadecimal(flag) +
-             ", expected " + hexadecimal(kBlockFlags[block % blocks]);
+             ", expected " + hexadecimal(kBlockFlags[flag_of]);
     if (azimuth_of_block(payload, block) >= kAzimuthSteps)
       return "have an azimuth of " + std::to_string(azimuth_of_block(payload, block)) +
              " hundredths of a degree";
+    return std::nullopt;
+  };
+  for (std::size_t block = 0; block < blocks.count() / of_firing * of_firing; ++block) {
+    const std::size_t first = blocks.first(block), flag_of = block % of_firing;
+    if (auto objection = check(first, flag_of)) return objection;
+    if (!blocks.is_dual) continue;
+    const std::size_t second = blocks.second(block);
+    if (auto objection = check(second, flag_of)) return objection;
+    if (azimuth_of_block(payload, first) != azimuth_of_block(payload, second))
+      return "have two returns a firing, but other azimuths in blocks " + std::to_string(first) +
+             " and " + std::to_string(second);
   }
-  if (sensor_.format != PacketFormat::hdl_64e) return objection_to_factory(sensor_.format, payload);
-  bool is_dual = true;
+  if (sensor_.format == PacketFormat::hdl_64e) return std::nullopt;
+  return objection_to_factory(sensor_.format, payload);
+}
+
+bool PacketDecoder::is_dual(std::string_view payload) const {
+  if (is_ouster(sensor_.format)) return sensor_.format == PacketFormat::ouster_dual;
+  if (sensor_.format != PacketFormat::hdl_64e)
+    return value_at<std::uint8_t>(payload, kVelodyneTail + 4) == kDualMode;
+  // A head that stands has all azimuths alike, whatever it tells.
+  bool is_dual = azimuth_of_block(payload, 0) != azimuth_of_block(payload, 4);
   for (std::size_t block = 0; block < kVelodyneBlocks; block += 4)
     is_dual = is_dual && azimuth_of_block(payload, block) == azimuth_of_block(payload, block + 2);
-  if (is_dual) return "have each azimuth twice: two returns a firing are not read";
-  return std::nullopt;
+  return is_dual;
 }
 
 std::vector<MeasuredColumn> PacketDecoder::columns(std::string_view payload) const {
@@ -115,16 +157,22 @@ std::vector<MeasuredColumn> PacketDecoder::columns(std::string_view payload) con
 std::vector<MeasuredColumn> PacketDecoder::velodyne_columns(std::string_view payload) const {
   const std::size_t lasers = sensor_.lasers(), apart = blocks_of_firing(lasers);
   const std::size_t firings_of_block = std::max<std::size_t>(1, kBlockChannels / lasers);
+  const VelodyneBlocks blocks{sensor_.format, is_dual(payload)};
+  const auto azimuth_at = [&](std::size_t block) {
+    return std::uint32_t{azimuth_of_block(payload, blocks.first(block))};
+  };
   const double first_steps = -sensor_.model.first_azimuth_rad / kWholeTurn_rad * kAzimuthSteps;
   const auto micros = value_at<std::uint32_t>(payload, kVelodyneTail);
   std::vector<MeasuredColumn> columns;
-  std::uint32_t turned = 0;  // in steps, from one block to the next; the last one as the one before
-  for (std::size_t block = 0; block < kVelodyneBlocks; block += apart) {
-    const std::uint32_t azimuth = azimuth_of_block(payload, block);
-    if (block + apart < kVelodyneBlocks)
-      turned = (azimuth_of_block(payload, block + apart) + kAzimuthSteps - azimuth) % kAzimuthSteps;
+  // In steps, from one block to the next; the last one as the one before.
+  double turned = static_cast<double>(kAzimuthSteps) / sensor_.model.columns *
+                  static_cast<double>(firings_of_block);
+  for (std::size_t block = 0; block + apart <= blocks.count(); block += apart) {
+    const std::uint32_t azimuth = azimuth_at(block);
+    if (block + 2 * apart <= blocks.count())
+      turned = (azimuth_at(block + apart) + kAzimuthSteps - azimuth) % kAzimuthSteps;
     for (std::size_t part = 0; part < firings_of_block; ++part) {
-      const double per_firing = static_cast<double>(turned) / static_cast<double>(firings_of_block);
+      const double per_firing = turned / static_cast<double>(firings_of_block);
       const double steps = azimuth + static_cast<double>(part) * per_firing;
       // What is 0 but for rounding is 0, and not the end of the revolution before.
       double since_begin = std::fmod(steps - first_steps + 1e-6, kAzimuthSteps);
@@ -166,24 +214,44 @@ std::vector<MeasuredColumn> PacketDecoder::ouster_columns(std::string_view paylo
   return columns;
 }
 
-PacketReturn PacketDecoder::return_at(std::string_view payload, std::size_t k,
-                                      std::size_t laser) const {
+PacketDecoder::Returns PacketDecoder::returns_at(std::string_view payload, std::size_t k,
+                                                 std::size_t laser) const {
+  Returns returns;
+  const auto add = [&returns](PacketReturn found) {
+    if (found.counts == 0) return;
+    if (returns.count == 1 && returns.all[0].counts == found.counts) return;
+    returns.all[returns.count++] = found;
+    if (returns.count == 2 && returns.all[1].counts < returns.all[0].counts)
+      std::swap(returns.all[0], returns.all[1]);
+  };
   if (!is_ouster(sensor_.format)) {
-    const std::size_t place = VelodynePlace(sensor_.lasers(), k, laser).byte();
-    return {value_at<std::uint16_t>(payload, place), value_at<std::uint8_t>(payload, place + 2)};
+    const VelodyneBlocks blocks{sensor_.format, is_dual(payload)};
+    const VelodynePlace place(sensor_.lasers(), k, laser);
+    add(velodyne_return(payload, blocks.first(place.block), place.channel));
+    if (blocks.is_dual) add(velodyne_return(payload, blocks.second(place.block), place.channel));
+    return returns;
   }
   const OusterBytes bytes(sensor_.format, sensor_.lasers());
   const std::size_t place =
-      bytes.head + k * bytes.column() + bytes.column_head + laser * OusterBytes::kChannel;
-  const std::uint32_t counts = value_at<std::uint32_t>(payload, place) & sensor_.facts.most;
-  if (sensor_.format == PacketFormat::ouster_single)
-    return {counts, value_at<std::uint8_t>(payload, place + 4)};
-  return {counts, value_at<std::uint16_t>(payload, place + 4)};
+      bytes.head + k * bytes.column() + bytes.column_head + laser * bytes.channel;
+  const auto counts_at = [&](std::size_t byte) {
+    return value_at<std::uint32_t>(payload, byte) & sensor_.facts.most;
+  };
+  if (sensor_.format == PacketFormat::ouster_legacy) {
+    add({counts_at(place), value_at<std::uint16_t>(payload, place + 4)});
+  } else if (sensor_.format == PacketFormat::ouster_single) {
+    add({counts_at(place), value_at<std::uint8_t>(payload, place + 4)});
+  } else {
+    // Each return: 19 bits of range, flags, a byte of reflectivity.
+    add({counts_at(place), value_at<std::uint8_t>(payload, place + 3)});
+    add({counts_at(place + 4), value_at<std::uint8_t>(payload, place + 7)});
+  }
+  return returns;
 }
 
 bool PacketDecoder::has_returns(std::string_view payload, std::size_t k) const {
   for (std::size_t laser = 0; laser < sensor_.lasers(); ++laser)
-    if (return_at(payload, k, laser).counts != 0) return true;
+    if (returns_at(payload, k, laser).count > 0) return true;
   return false;
 }
 
@@ -191,17 +259,22 @@ void PacketDecoder::add_points(std::string_view payload, std::size_t k,
                                const MeasuredColumn& column, PacketPoints& points) const {
   const LidarModel& model = sensor_.model;
   for (std::size_t laser = 0; laser < sensor_.lasers(); ++laser) {
-    const PacketReturn found = return_at(payload, k, laser);
-    if (found.counts == 0) continue;
+    const Returns returns = returns_at(payload, k, laser);
+    if (returns.count == 0) continue;
     const std::size_t ring = sensor_.ring_of_laser[laser];
     const double late_s = model.firing_times_s.empty() ? 0.0 : model.firing_times_s[ring];
     const Firing firing = firing_at(model, ring, column.head_rad + column.turn_rad_s * late_s);
-    const double range_m = found.counts * sensor_.facts.quantum_m + sensor_.range_offsets_m[ring];
-    points.positions.push_back(vec_cast<double>(firing.origin) +
-                               range_m * vec_cast<double>(firing.direction));
-    points.late_s.push_back(late_s);
-    points.intensities.push_back(found.intensity);
-    points.rings.push_back(firing.ring);
+    for (std::size_t number = 0; number < returns.count; ++number) {
+      const PacketReturn& found = returns.all[number];
+      const double range_m = found.counts * sensor_.facts.quantum_m + sensor_.range_offsets_m[ring];
+      points.positions.push_back(vec_cast<double>(firing.origin) +
+                                 range_m * vec_cast<double>(firing.direction));
+      points.late_s.push_back(late_s);
+      points.intensities.push_back(found.intensity);
+      points.rings.push_back(firing.ring);
+      points.return_numbers.push_back(static_cast<std::uint8_t>(number + 1));
+      points.return_counts.push_back(static_cast<std::uint8_t>(returns.count));
+    }
   }
 }
 

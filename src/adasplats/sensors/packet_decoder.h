@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -30,9 +31,12 @@ struct PacketPoints {
   std::vector<double> late_s;  ///< since their column began
   std::vector<float> intensities;
   std::vector<std::uint16_t> rings;  ///< from the topmost
+  /// Of the returns of a firing, the nearest is 1 of return_counts; LAS numbers them so.
+  std::vector<std::uint8_t> return_numbers, return_counts;
 };
 
-/// Takes the packets of one sensor apart: formats as PacketFormat says, one return a firing.
+/// Takes the packets of one sensor apart: formats as PacketFormat says, of one return a firing or
+/// of two (the last and the strongest, which are one point where they are the same).
 class PacketDecoder {
  public:
   explicit PacketDecoder(PacketSensor sensor) : sensor_(std::move(sensor)) {}
@@ -45,9 +49,12 @@ class PacketDecoder {
   bool has_size(std::string_view payload) const {
     return payload.size() == sensor_.payload_bytes();
   }
-  /// What speaks against a payload of that size being one: another sensor's, two returns a firing.
+  /// What speaks against a payload of that size being one: another sensor's.
   std::optional<std::string> objection(std::string_view payload) const;
-  /// The columns of a packet against which nothing speaks.
+  /// Whether a packet against which nothing speaks has two returns a firing.
+  bool is_dual(std::string_view payload) const;
+  /// The columns of a packet against which nothing speaks. Of a VLS-128 with two returns that is
+  /// one, and the head is taken to turn as fast as the model's while it fires.
   std::vector<MeasuredColumn> columns(std::string_view payload) const;
   /// Whether anything came back in column `k` of it.
   bool has_returns(std::string_view payload, std::size_t k) const;
@@ -57,7 +64,14 @@ class PacketDecoder {
                   PacketPoints& points) const;
 
  private:
-  PacketReturn return_at(std::string_view payload, std::size_t k, std::size_t laser) const;
+  /// What came back to a laser in column `k`, the nearest first: nothing, one or two.
+  struct Returns {
+    std::array<PacketReturn, 2> all;
+    std::size_t count = 0;
+  };
+  Returns returns_at(std::string_view payload, std::size_t k, std::size_t laser) const;
+  std::optional<std::string> velodyne_objection(std::string_view payload) const;
+  std::optional<std::string> ouster_objection(std::string_view payload) const;
   std::vector<MeasuredColumn> velodyne_columns(std::string_view payload) const;
   std::vector<MeasuredColumn> ouster_columns(std::string_view payload) const;
 

@@ -102,7 +102,7 @@ std::string ouster_packet(const PacketSensor& sensor, std::span<const PacketColu
     put_at(packet, head + 10, column.frame);
     put_at(packet, head + 12, column.column * (kEncoderTicks / sensor.model.columns));
     for (std::size_t laser = 0; laser < sensor.lasers(); ++laser) {
-      const std::size_t place = head + bytes.column_head + laser * OusterBytes::kChannel;
+      const std::size_t place = head + bytes.column_head + laser * bytes.channel;
       const PacketReturn& found = column.returns[laser];
       put_at(packet, place, found.counts);
       put_at(packet, place + 4, static_cast<std::uint16_t>(std::lround(found.intensity / 257.0)));
@@ -117,7 +117,7 @@ std::string ouster_packet(const PacketSensor& sensor, std::span<const PacketColu
 
 std::string encode_packet(const PacketSensor& sensor, std::span<const PacketColumn> columns,
                           std::uint64_t packet_index) {
-  if (columns.size() != sensor.facts.columns || sensor.format == PacketFormat::ouster_single)
+  if (columns.size() != sensor.facts.columns || sensor.format > PacketFormat::ouster_legacy)
     throw std::logic_error("encode_packet: not the columns of one packet");
   return is_ouster(sensor.format) ? ouster_packet(sensor, columns)
                                   : velodyne_packet(sensor, columns, packet_index);

@@ -19,6 +19,7 @@ enum class PacketFormat : std::uint8_t {
   vls_128,        ///< VLS-128: four blocks of 32 lasers
   ouster_legacy,  ///< Ouster, profile LEGACY: 16 columns of 12 bytes a channel
   ouster_single,  ///< Ouster, profile RNG19_RFL8_SIG16_NIR16; read, not written
+  ouster_dual,    ///< Ouster, profile RNG19_RFL8_SIG16_NIR16_DUAL; likewise, 16 bytes a channel
 };
 inline constexpr std::pair<std::string_view, PacketFormat> kPacketFormats[] = {
     {"vlp-16", PacketFormat::vlp_16},
@@ -27,7 +28,8 @@ inline constexpr std::pair<std::string_view, PacketFormat> kPacketFormats[] = {
     {"hdl-64e", PacketFormat::hdl_64e},
     {"vls-128", PacketFormat::vls_128},
     {"ouster-legacy", PacketFormat::ouster_legacy},
-    {"ouster-rng19-rfl8-sig16-nir16", PacketFormat::ouster_single}};
+    {"ouster-rng19-rfl8-sig16-nir16", PacketFormat::ouster_single},
+    {"ouster-rng19-rfl8-sig16-nir16-dual", PacketFormat::ouster_dual}};
 
 constexpr bool is_ouster(PacketFormat format) { return format >= PacketFormat::ouster_legacy; }
 

@@ -58,7 +58,8 @@ PacketFacts facts_of_packets(PacketFormat format) {
     case PacketFormat::hdl_64e: return {64, 0.002, kSixteenBits, 6, kVelodynePort};
     case PacketFormat::vls_128: return {128, 0.004, kSixteenBits, 3, kVelodynePort};
     case PacketFormat::ouster_legacy: return {0, 0.001, (1U << 20) - 1, 16, kOusterPort};
-    case PacketFormat::ouster_single: break;
+    case PacketFormat::ouster_single:
+    case PacketFormat::ouster_dual: break;
   }
   return {0, 0.001, (1U << 19) - 1, 16, kOusterPort};
 }

@@ -142,12 +142,123 @@ TEST(Packets, OustersNewerProfileIsRead) {
   EXPECT_NE(decoder.objection(packet).value_or("").find("1024"), std::string::npos);
 }
 
-TEST(Packets, OtherSensorsAndTwoReturnsAreRefused) {
+/// A packet of a Velodyne with two returns, put together after the manuals (packet_bytes.h) from
+/// the first blocks of one with one return. Of every three lasers the first has the same return
+/// twice, the second its last one 500 counts behind the strongest, the third the strongest alone.
+std::string with_two_returns(const SentPacket& sent, std::size_t blocks) {
+  std::string dual(1206, '\0');
+  std::memcpy(dual.data() + 1200, sent.payload.data() + 1200, 6);
+  const bool is_hdl64 = sent.sensor.format == PacketFormat::hdl_64e;
+  if (!is_hdl64) dual[1204] = 0x39;
+  for (std::size_t block = 0; block < blocks; ++block) {
+    const std::size_t strongest = is_hdl64 ? block / 2 * 4 + block % 2 : 2 * block + 1;
+    const std::size_t last = is_hdl64 ? strongest + 2 : 2 * block;
+    for (const std::size_t to : {strongest, last})
+      std::memcpy(dual.data() + 100 * to, sent.payload.data() + 100 * block, 100);
+    for (std::size_t channel = 0; channel < 32; ++channel) {
+      char* const place = dual.data() + 100 * last + 4 + 3 * channel;
+      std::uint16_t counts = 0;
+      std::memcpy(&counts, place, 2);
+      const std::size_t laser = (block * 32 + channel) % sent.sensor.lasers();
+      if (laser % 3 == 1) counts = static_cast<std::uint16_t>(counts + 500);
+      if (laser % 3 == 2) counts = 0;
+      std::memcpy(place, &counts, 2);
+    }
+  }
+  return dual;
+}
+
+// Oracle: the packet with one return of the same firings.
+TEST(Packets, TwoReturnsAreReadAndThoseThatAreTheSameOnce) {
+  for (const char* name : {"velodyne-vlp-16", "velodyne-hdl-32e", "velodyne-vlp-32c",
+                           "velodyne-hdl-64e-s3", "velodyne-vls-128"}) {
+    SCOPED_TRACE(name);
+    const SentPacket sent(name, 100);
+    const PacketDecoder decoder(sent.sensor);
+    const bool is_large = sent.sensor.lasers() == 128;
+    const std::string dual = with_two_returns(sent, is_large ? 4 : 6);
+    EXPECT_EQ(decoder.objection(dual), std::nullopt);
+    EXPECT_TRUE(decoder.is_dual(dual));
+    EXPECT_FALSE(decoder.is_dual(sent.payload));
+    const auto columns = decoder.columns(dual), single = decoder.columns(sent.payload);
+    ASSERT_EQ(columns.size(), is_large ? 1U : single.size() / 2);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      EXPECT_EQ(columns[k].time_ns, single[k].time_ns);
+      EXPECT_EQ(columns[k].step, single[k].step);
+      PacketPoints found, wanted;
+      decoder.add_points(dual, k, columns[k], found);
+      decoder.add_points(sent.payload, k, single[k], wanted);
+      std::size_t at = 0;
+      for (std::size_t laser = 0; laser < sent.sensor.lasers(); ++laser) {
+        const std::size_t count = laser % 3 == 1 ? 2 : 1;
+        ASSERT_LE(at + count, found.positions.size());
+        for (std::size_t number = 1; number <= count; ++number, ++at) {
+          EXPECT_EQ(found.rings[at], wanted.rings[laser]);
+          EXPECT_EQ(found.return_numbers[at], number);
+          EXPECT_EQ(found.return_counts[at], count);
+          const double apart_m =
+              static_cast<double>(number - 1) * 500 * sent.sensor.facts.quantum_m;
+          EXPECT_NEAR(length(found.positions[at] - wanted.positions[laser]), apart_m, 1e-3)
+              << laser;
+        }
+      }
+      EXPECT_EQ(at, found.positions.size());
+    }
+  }
+}
+
+TEST(Packets, PairsOfBlocksHaveOneAzimuth) {
+  const SentPacket sent("velodyne-vlp-16", 0);
+  const PacketDecoder decoder(sent.sensor);
+  std::string dual = with_two_returns(sent, 6);
+  dual[3 * 100 + 2] = static_cast<char>(dual[3 * 100 + 2] ^ 1);
+  EXPECT_NE(decoder.objection(dual).value_or("").find("blocks 2 and 3"), std::string::npos);
+  // A head that stands, with one return a firing.
+  const SentPacket large("velodyne-hdl-64e-s3", 0);
+  std::string still = large.payload;
+  for (std::size_t block = 0; block < 12; ++block) std::memcpy(&still[100 * block + 2], "\1\0", 2);
+  EXPECT_FALSE(PacketDecoder(large.sensor).is_dual(still));
+  EXPECT_EQ(PacketDecoder(large.sensor).columns(still).size(), 6U);
+}
+
+/// Profile RNG19_RFL8_SIG16_NIR16_DUAL, put together after the Firmware User Manual: as the one
+/// with one return, 16 bytes a channel.
+TEST(Packets, OustersProfileOfTwoReturnsIsRead) {
+  LidarModel model = load_lidar_model("ouster-os1-64");
+  model.packets->format = PacketFormat::ouster_dual;
+  const PacketDecoder decoder(packet_sensor(model));
+  std::string packet(32 + 16 * (12 + 64 * 16) + 32, '\0');
+  const auto put = [&](std::size_t place, auto value) {
+    std::memcpy(packet.data() + place, &value, sizeof value);
+  };
+  for (std::size_t k = 0; k < 16; ++k) {
+    const std::size_t head = 32 + k * (12 + 64 * 16);
+    put(head, std::uint64_t{kSent_ns + 97'656 * k});
+    put(head + 8, static_cast<std::uint16_t>(256 + k));
+    put(head + 10, std::uint16_t{1});
+    const std::size_t both = head + 12 + 16 * 7, one = head + 12 + 16 * 8;
+    put(both, std::uint32_t{30'012 | 200U << 24 | 31U << 19});  // reflectivity 200, flags
+    put(both + 4, std::uint32_t{20'012 | 100U << 24});
+    put(one, std::uint32_t{10'012 | 50U << 24});
+  }
+  ASSERT_TRUE(decoder.has_size(packet));
+  EXPECT_EQ(decoder.objection(packet), std::nullopt);
+  EXPECT_TRUE(decoder.is_dual(packet));
+  PacketPoints points;
+  decoder.add_points(packet, 2, decoder.columns(packet)[2], points);
+  EXPECT_EQ(points.rings, (std::vector<std::uint16_t>{7, 7, 8}));
+  EXPECT_EQ(points.intensities, (std::vector<float>{100, 200, 50}));
+  EXPECT_EQ(points.return_numbers, (std::vector<std::uint8_t>{1, 2, 1}));
+  EXPECT_EQ(points.return_counts, (std::vector<std::uint8_t>{2, 2, 1}));
+  EXPECT_NEAR(length(points.positions[1] - points.positions[0]), 10, 1e-6);
+}
+
+TEST(Packets, OtherSensorsAndUnknownModesAreRefused) {
   const SentPacket sent("velodyne-vlp-16", 0);
   const PacketDecoder decoder(sent.sensor);
   std::string other = sent.payload;
-  other[1204] = 0x39;
-  EXPECT_NE(decoder.objection(other).value_or("").find("two returns"), std::string::npos);
+  other[1204] = 0x3a;
+  EXPECT_NE(decoder.objection(other).value_or("").find("mode 0x3A of returns"), std::string::npos);
   other = sent.payload;
   other[1205] = 0x21;
   EXPECT_NE(decoder.objection(other).value_or("").find("hdl-32e"), std::string::npos);

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/cloud/load/packet_drive.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <utility>
@@ -138,6 +140,25 @@ void tell_of_packets(const PacketSurvey& survey, const std::string& name,
                   ", left out");
 }
 
+/// Of revolutions that a capture begins or ends within.
+void tell_of_parts(const PacketSurvey& survey, const std::string& name, const PacketSource& source,
+                   ProgressSink& progress) {
+  constexpr double kWhole = 0.95;
+  const std::vector<Revolution>& turns = source.revolutions;
+  // Sensors that are set to a part of the view have no more of any.
+  double usual = turns.size() < 3 ? 1 : 0;
+  for (const Revolution& turn : turns) usual = std::max(usual, turn.share);
+  const auto tell = [&](const Revolution& turn, const std::string& what) {
+    if (!turn.has_points || turn.share >= kWhole * usual) return;
+    progress.warn(survey.path.string() + ": " + what + " revolution of " + name + " is " +
+                  std::to_string(std::lround(100 * turn.share)) +
+                  " % of a turn, since the capture does not hold all of it; it is a scan all the "
+                  "same");
+  };
+  tell(turns.front(), "the first");
+  if (turns.size() > 1) tell(turns.back(), "the last");
+}
+
 struct PacketDrive {
   SensorFrames frames;
   std::vector<double> middles_s;
@@ -210,6 +231,7 @@ KittiSequence open_packet_drive(const FrameDrive& given, const PacketSurvey& sur
   require_options_of_captures(drive);
   const auto& [name, source] = source_of(survey, drive.topic);
   tell_of_packets(survey, name, source, progress);
+  tell_of_parts(survey, name, source, progress);
   PacketDrive scans =
       scans_of_packets(survey, name, source, drive.time_offset_s.value_or(0), progress);
   SensorFrames& frames = scans.frames;
@@ -232,7 +254,8 @@ KittiSequence open_packet_drive(const FrameDrive& given, const PacketSurvey& sur
   frames.poses.has_times = true;
   if (drive.sweep_points == SweepPoints::found) drive.sweep_points = SweepPoints::measured;
   return open_sensor_frames(drive, frames,
-                            "packets of " + survey.decoder->sensor().model.name + " from " + name,
+                            "packets of " + survey.decoder->sensor().model.name + " from " + name +
+                                (source.dual_packets > 0 ? ", two returns a firing" : ""),
                             executor, progress);
 }
 

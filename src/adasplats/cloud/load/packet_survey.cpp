@@ -37,6 +37,7 @@ class RevolutionFinder {
     const std::vector<MeasuredColumn> columns = decoder_.columns(datagram.payload);
     const std::int64_t first_ns = columns.front().time_ns;
     const std::int64_t begin_ns = clock_.time_ns(first_ns, datagram.time_ns, what);
+    if (decoder_.is_dual(datagram.payload)) ++source_.dual_packets;
     if (source_.packets == 0)
       source_.ahead_ns = static_cast<std::int64_t>(datagram.time_ns) - begin_ns +
                          (is_ouster(decoder_.sensor().format) ? clock_.shift_ns() : 0);
@@ -44,11 +45,16 @@ class RevolutionFinder {
     for (std::size_t k = 0; k < columns.size(); ++k) {
       if (!columns[k].is_valid) continue;
       const std::int64_t time_ns = begin_ns + columns[k].time_ns - first_ns;
-      if (begins_revolution(columns[k], time_ns))
-        source_.revolutions.push_back({datagram.place, k, 0, time_ns, time_ns, false});
+      const bool begins_anew = source_.revolutions.empty() || time_ns - last_ns_ > turn_ns() / 2;
+      if (begins_anew) cut_step_ = cut_before(columns[k]);
+      if (begins_anew || begins_revolution(columns[k])) {
+        source_.revolutions.push_back({datagram.place, k, 0, 0, time_ns, time_ns, false});
+        first_step_ = since_cut(columns[k]);
+      }
       count_gap(time_ns);
       Revolution& now = source_.revolutions.back();
       ++now.columns;
+      now.share = share_of_turn(columns[k]);
       now.end_ns = time_ns + column_ns_;
       now.has_points = now.has_points || decoder_.has_returns(datagram.payload, k);
       last_ = columns[k];
@@ -57,15 +63,32 @@ class RevolutionFinder {
   }
 
  private:
-  /// The head went on past the end of a turn, went back (it was elsewhere meanwhile), or was away
-  /// for most of a turn.
-  bool begins_revolution(const MeasuredColumn& column, std::int64_t time_ns) const {
-    if (source_.revolutions.empty()) return true;
+  std::int64_t turn_ns() const {
+    return static_cast<std::int64_t>(static_cast<double>(kSecond_ns) /
+                                     decoder_.sensor().model.rotation_hz);
+  }
+  /// The step that revolutions begin at, when a column is the first of several.
+  std::uint32_t cut_before(const MeasuredColumn& column) const {
+    const LidarModel& model = decoder_.sensor().model;
+    if (is_ouster(decoder_.sensor().format) || model.first_azimuth_rad != 0) return 0;
+    // A quarter of a column before it: azimuths are rounded.
+    const std::uint32_t turn = decoder_.steps_per_turn();
+    return (column.step + turn - turn / (4 * model.columns)) % turn;
+  }
+  std::uint32_t since_cut(const MeasuredColumn& column) const {
+    const std::uint32_t turn = decoder_.steps_per_turn();
+    return (column.step + turn - cut_step_) % turn;
+  }
+  /// The head went on past the end of a turn, or went back (it was elsewhere meanwhile).
+  bool begins_revolution(const MeasuredColumn& column) const {
     if (is_ouster(decoder_.sensor().format) && column.frame != last_.frame) return true;
     const std::uint32_t back = decoder_.steps_per_turn() / 720;  // half a degree
-    const auto turn_ns = static_cast<std::int64_t>(static_cast<double>(kSecond_ns) /
-                                                   decoder_.sensor().model.rotation_hz);
-    return column.step + back < last_.step || time_ns - last_ns_ > turn_ns / 2;
+    return since_cut(column) + back < since_cut(last_);
+  }
+  double share_of_turn(const MeasuredColumn& last) const {
+    const double turn = decoder_.steps_per_turn();
+    const double steps = static_cast<double>(since_cut(last)) - first_step_;
+    return steps / turn + 1.0 / decoder_.sensor().model.columns;
   }
   void count_gap(std::int64_t time_ns) {
     if (source_.packets == 1 || time_ns - last_ns_ < 3 * column_ns_ / 2) return;
@@ -78,6 +101,7 @@ class RevolutionFinder {
   PacketSource& source_;
   SensorClock clock_;
   std::int64_t column_ns_, last_ns_ = 0;
+  std::uint32_t cut_step_ = 0, first_step_ = 0;
   MeasuredColumn last_;
 };
 

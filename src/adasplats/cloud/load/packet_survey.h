@@ -20,6 +20,7 @@ struct Revolution {
   CapturePlace place;         ///< of the packet that it begins in
   std::size_t skipped = 0;    ///< columns of that packet that are of the one before
   std::size_t columns = 0;    ///< that were captured
+  double share = 0;           ///< of a turn, from its first column to its last one
   std::int64_t begin_ns = 0;  ///< when its first column was measured, since 1970
   std::int64_t end_ns = 0;    ///< when its last one ended
   bool has_points = false;
@@ -29,6 +30,7 @@ struct Revolution {
 struct PacketSource {
   std::uint64_t datagrams = 0;
   std::uint64_t packets = 0;                 ///< of the sensor
+  std::uint64_t dual_packets = 0;            ///< of them, with two returns a firing
   std::uint64_t gaps = 0, lost_columns = 0;  ///< where packets are missing
   std::string objection;                     ///< why datagrams of their size are none; empty: none
   std::int64_t ahead_ns = 0;  ///< the clock of the capture less the sensor's, before ahead_ns
@@ -59,8 +61,11 @@ class SensorClock {
   std::uint64_t last_captured_ns_ = 0;
 };
 
-/// Reads a capture from front to back and finds the revolutions of a sensor in it; without
-/// `decoder` it counts datagrams alone. Memory: 90 bytes a revolution. Errors: those of
+/// Reads a capture from front to back and finds the revolutions of a sensor in it: Ouster's by
+/// their numbers; Velodyne's end where the head passes the first azimuth of the sensor file, or
+/// where that is 0, and so nobody said where, the azimuth that the capture begins at, so that all
+/// but the last are whole. After a gap of half a turn or more that is the azimuth behind it.
+/// Without `decoder` it counts datagrams alone. Memory: 90 bytes a revolution. Errors: those of
 /// DatagramReader; data (more than 256 sources; a sensor's clock that jumps).
 PacketSurvey survey_packets(const std::filesystem::path& path,
                             std::shared_ptr<const PacketDecoder> decoder, ProgressSink& progress);
