@@ -62,21 +62,26 @@ void report_own_body(const std::string& input, const LoadReport& report, const L
                        "(`own_body` 0 keeps them)"));
 }
 
-void require_metres(const std::string& input, Vec3d low, Vec3d high) {
+void require_metres(const std::string& input, Vec3d low, Vec3d high, const Crs& crs,
+                    ProgressSink& progress) {
   constexpr double kMostLongitude = 180, kMostLatitude = 90;
-  constexpr double kLeastSteepness = 1000;
+  constexpr double kCertainSteepness = 1000, kDoubtfulSteepness = 10, kDoubtfulWidth = 1;
   const bool in_range = low.x >= -kMostLongitude && high.x <= kMostLongitude &&
                         low.y >= -kMostLatitude && high.y <= kMostLatitude;
   const bool holds_zero = low.x <= 0 && high.x >= 0 && low.y <= 0 && high.y >= 0;
-  const double width = std::max(high.x - low.x, high.y - low.y);
+  const double width = std::max(high.x - low.x, high.y - low.y), height = high.z - low.z;
   if (!in_range || holds_zero || !(width > 0)) return;
-  if (!(high.z - low.z > kLeastSteepness * width)) return;
-  throw Error(ErrorKind::data,
-              input + ": the points lie within " + short_text(high.x - low.x, 3) + " by " +
-                  short_text(high.y - low.y, 3) + " around x " + short_text(low.x, 6) + ", y " +
-                  short_text(low.y, 6) + " and differ by " + short_text(high.z - low.z, 3) +
-                  " in height: longitudes and latitudes; project them to metres first (UTM, say, "
-                  "with 'pdal translate IN OUT reprojection --filters.reprojection.out_srs=...')");
+  const std::string seen = input + ": the points lie within " + short_text(high.x - low.x, 3) +
+                           " by " + short_text(high.y - low.y, 3) + " around x " +
+                           short_text(low.x, 6) + ", y " + short_text(low.y, 6) +
+                           " and differ by " + short_text(height, 3) + " in height";
+  const std::string cure =
+      "project them to metres first (UTM, say, with 'pdal translate IN OUT reprojection "
+      "--filters.reprojection.out_srs=...')";
+  if (height > kCertainSteepness * width)
+    throw Error(ErrorKind::data, seen + ": longitudes and latitudes; " + cure);
+  if (crs.empty() && width < kDoubtfulWidth && height > kDoubtfulSteepness * width)
+    progress.warn(seen + ": taken as metres; if these are longitudes and latitudes, " + cure);
 }
 
 }  // namespace adasplats

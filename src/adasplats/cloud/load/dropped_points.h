@@ -22,7 +22,10 @@ void report_own_body(const std::string& input, const LoadReport& report, const L
 
 /// Throws data where the box of all points can only be one of degrees: within 180 and 90 without
 /// holding 0, 0, and more than a thousand times as high as it is wide. (Degrees are 111 km, so that
-/// points of a place whose heights differ by 1 % of its width look like that.)
-void require_metres(const std::string& input, Vec3d low, Vec3d high);
+/// points of a place whose heights differ by 1 % of its width look like that.) Warns where it can
+/// be one of degrees or a pole: less than 1 wide and more than ten times as high, of files that say
+/// no coordinate system.
+void require_metres(const std::string& input, Vec3d low, Vec3d high, const Crs& crs,
+                    ProgressSink& progress);
 
 }  // namespace adasplats

@@ -139,8 +139,8 @@ std::string box_text(Vec3d low, Vec3d high) {
   std::string text;
   for (int axis = 0; axis < 3; ++axis) {
     if (!std::isfinite(low[axis]) && !std::isfinite(high[axis])) continue;
-    text += (text.empty() ? "" : ", ") + std::string(1, "xyz"[axis]) + " " + exact_text(low[axis]) +
-            " .. " + exact_text(high[axis]);
+    text += (text.empty() ? "" : ", ") + std::string(1, "xyz"[axis]) + " " +
+            decimal_text(low[axis]) + " .. " + decimal_text(high[axis]);
   }
   return text;
 }
@@ -535,7 +535,7 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   for (const Kept& kept : gathered.kept) dropped += count_dropped(kept);
   report.dropped_far = dropped - report.dropped_not_finite;
   report_dropped(name_of(inputs), report, options, progress);
-  require_metres(name_of(inputs), extents.low, extents.high);
+  require_metres(name_of(inputs), extents.low, extents.high, crs, progress);
   const Vec3d origin = choose_origin(extents.low, extents.high);
 
   Kept moving = in_boxes(gathered);

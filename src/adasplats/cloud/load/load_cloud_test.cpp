@@ -272,6 +272,20 @@ TEST(LoadCloud, LongitudesAndLatitudesAreNoMetres) {
   EXPECT_EQ(load({folder.write("p.xyz", "5 6 0\n5.1 6.1 30\n")}).first.size(), 2U);
   EXPECT_EQ(load({folder.write("s.xyz", "-0.001 -0.001 0\n0.001 0.001 30\n")}).first.size(), 2U);
   EXPECT_EQ(load({folder.write("one.xyz", "2.34 48.84 35\n")}).first.size(), 1U);
+  // A kilometre with 3 m of height could be a pole, too: taken, and said.
+  const auto warnings_of = [&](const std::string& text) {
+    Listener listener;
+    load_cloud(std::vector{folder.write("doubtful.xyz", text)}, {}, Executor(1), listener);
+    return listener.warnings;
+  };
+  const std::string kilometre = "2.34 48.84 35\n2.35 48.84 36\n2.34 48.85 38\n2.35 48.85 37\n";
+  ASSERT_EQ(warnings_of(kilometre).size(), 1U);
+  EXPECT_NE(
+      warnings_of(kilometre)[0].find("taken as metres; if these are longitudes and latitudes"),
+      std::string::npos);
+  EXPECT_EQ(warnings_of("5 6 0\n5.1 6.1 30\n").size(), 1U);
+  EXPECT_TRUE(warnings_of("5 6 0\n5.5 6.5 4\n").empty());  // a statue
+  EXPECT_TRUE(warnings_of("-5 -6 0\n5 6 2\n").empty());
 }
 
 /// A PLY of two points whose comments say a coordinate system, or none.

@@ -190,10 +190,14 @@ std::vector<Vec3d> read_sensor_positions(const PointFile& file, const LoadOption
 
 /// What a reader says beside the columns.
 void take_comment(const PointFile& file, const std::string& comment, ProgressSink& progress) {
-  constexpr std::string_view kNotMetres = "not metres: ", kWithheld = "withheld: ";
+  constexpr std::string_view kNotMetres = "not metres: ", kWithheld = "withheld: ",
+                             kNotKnown = "not known: ";
   if (comment.starts_with(kWithheld))
     progress.warn(file.path.string() + ": " + comment.substr(kWithheld.size()) +
                   " are flagged as withheld (deleted), left out");
+  if (comment.starts_with(kNotKnown))
+    progress.warn(file.path.string() + ": has " + comment.substr(kNotKnown.size()) +
+                  ", which is newer than what is known here: taken as metres");
   if (comment.starts_with("salvaged") || comment.starts_with("left out: ") ||
       comment.starts_with("intensities: "))
     progress.warn(file.path.string() + ": " + comment);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <limits>
 
 namespace adasplats {
 namespace {
@@ -55,6 +57,14 @@ std::string exact_text(double value) {
   std::array<char, 32> buffer;
   // Adding zero makes a 0 of -0.
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0).ptr;
+  return {buffer.data(), end};
+}
+
+std::string decimal_text(double value) {
+  std::array<char, 32> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0,
+                                 std::chars_format::general, std::numeric_limits<double>::digits10)
+                       .ptr;
   return {buffer.data(), end};
 }
 

@@ -53,6 +53,11 @@ std::string shown(std::string_view token);
 /// The shortest text that reads back as the same number; a zero has no sign.
 std::string exact_text(double value);
 
+/// The shortest text that is the same number to 15 digits, as many as every decimal number keeps in
+/// a double: what a file or a person meant, without the last bits of arithmetic (848899.7, not
+/// 848899.7000000001).
+std::string decimal_text(double value);
+
 /// `text` with ASCII letters in lower case, whatever the locale.
 std::string lower_case(std::string_view text);
 

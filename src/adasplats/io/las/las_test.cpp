@@ -219,6 +219,14 @@ TEST(Las, UnitsThatAreNoMetresAreSaid) {
       directory += bytes_of(static_cast<std::uint16_t>(value));
     return read(las_with(las_vlr("LASF_Projection", 34735, directory), 1, 0)).comments;
   };
+  const auto both = [](int system, int unit) {
+    std::string directory;
+    for (const int value : {1, 1, 0, 2, 3072, 0, 1, system, 3076, 0, 1, unit})
+      directory += bytes_of(static_cast<std::uint16_t>(value));
+    return read(las_with(las_vlr("LASF_Projection", 34735, directory), 1, 0)).comments;
+  };
+  EXPECT_TRUE(both(2263, 9001).empty());  // what is stated comes before what is looked up
+  EXPECT_EQ(both(2263, 9003).size(), 1U);
   for (const int key : {3076, 4099})
     for (const int unit : {9001, 0, 32767}) EXPECT_TRUE(comments(key, unit).empty());
   EXPECT_EQ(comments(3076, 9002).at(0),
@@ -227,6 +235,12 @@ TEST(Las, UnitsThatAreNoMetresAreSaid) {
             "not metres: z in US survey feet (1200/3937 m), by GeoTIFF key 4099 = 9003");
   EXPECT_EQ(comments(3076, 9005).at(0),
             "not metres: x and y in the unit EPSG 9005, by GeoTIFF key 3076 = 9005");
+  // Systems by their codes alone (EPSG registry).
+  EXPECT_EQ(comments(3072, 2263).at(0),
+            "not metres: x and y in US survey feet (1200/3937 m), by EPSG:2263");
+  EXPECT_EQ(comments(4096, 8228).at(0), "not metres: z in feet (0.3048 m), by EPSG:8228");
+  EXPECT_EQ(comments(3072, 10480).at(0), "not known: x and y in the unit of EPSG:10480");
+  for (const int metres : {32632, 2154, 0, 32767}) EXPECT_TRUE(comments(3072, metres).empty());
   const std::string wkt = "PROJCS[\"x\",GEOGCS[\"y\",UNIT[\"degree\",0.017]],UNIT[\"ft\",0.3048]]";
   EXPECT_EQ(read(las_with(las_vlr("LASF_Projection", 2112, wkt), 1, 0)).comments.at(0),
             "not metres: x and y in ft (0.3048 m), by the WKT");

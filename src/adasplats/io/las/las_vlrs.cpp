@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "adasplats/io/base/epsg_units.h"
 #include "adasplats/io/base/records.h"
 #include "adasplats/io/base/wkt_units.h"
 #include "adasplats/io/las/las_records.h"
@@ -21,9 +22,8 @@ constexpr std::uint16_t kWktRecord = 2112;
 constexpr std::uint16_t kGeoKeysRecord = 34735, kGeoDoublesRecord = 34736, kGeoTextRecord = 34737;
 constexpr std::uint16_t kModelTypeKey = 1024;
 constexpr std::uint16_t kModelTypeGeographic = 2;
-constexpr std::uint16_t kLinearUnitsKey = 3076;
-constexpr std::uint16_t kVerticalUnitsKey = 4099;
-constexpr std::uint16_t kMetre = 9001;
+constexpr std::uint16_t kProjectedTypeKey = 3072, kLinearUnitsKey = 3076;
+constexpr std::uint16_t kVerticalTypeKey = 4096, kVerticalUnitsKey = 4099;
 
 template <class T>
 T value_at(std::string_view bytes, std::size_t offset) {
@@ -81,30 +81,48 @@ bool is_geographic_directory(std::string_view record) {
   return false;
 }
 
-/// A unit of GeoTIFF that is no metre; nothing for metres and what the file defines itself.
-std::optional<std::string> foreign_unit(std::uint16_t unit) {
-  constexpr std::uint16_t kFirst = 9000, kLast = 9099;  // lengths
-  if (unit == kMetre || unit < kFirst || unit > kLast) return std::nullopt;
-  switch (unit) {
-    case 9002: return "feet (0.3048 m)";
-    case 9003: return "US survey feet (1200/3937 m)";
-    case 9036: return "kilometres";
-    default: return "the unit EPSG " + std::to_string(unit);
+/// What a GeoTIFF key directory says of the lengths of the coordinates.
+struct DirectoryUnits {
+  std::optional<std::string> not_metres, unknown;
+};
+
+/// The keys of the system and of the unit of x and y, or of z.
+struct UnitKeys {
+  const char* coordinates;
+  std::uint16_t system, unit;
+  std::optional<std::uint16_t> (*unit_of_system)(std::uint16_t);
+};
+
+/// A unit that is stated comes before that of a system that is known by its code alone.
+void add_units(std::string_view record, const UnitKeys& keys, DirectoryUnits& units) {
+  constexpr std::size_t kKeyBytes = 8;
+  constexpr std::uint16_t kUserDefined = 32767;
+  std::uint16_t unit = 0, system = 0;
+  for (; record.size() >= kKeyBytes; record.remove_prefix(kKeyBytes)) {
+    const auto key = value_at<std::uint16_t>(record, 0);
+    if (key == keys.unit) unit = value_at<std::uint16_t>(record, 6);
+    if (key == keys.system) system = value_at<std::uint16_t>(record, 6);
+  }
+  const std::string in = std::string(keys.coordinates) + " in ";
+  if (unit != 0 && unit != kUserDefined) {
+    if (const auto length = foreign_length_of(unit))
+      units.not_metres = in + *length + ", by GeoTIFF key " + std::to_string(keys.unit) + " = " +
+                         std::to_string(unit);
+  } else if (unit == 0 && system != 0 && system != kUserDefined) {
+    const auto found = keys.unit_of_system(system);
+    const std::string name = "EPSG:" + std::to_string(system);
+    if (!found) units.unknown = in + "the unit of " + name;
+    if (const auto length = found ? foreign_length_of(*found) : std::nullopt)
+      units.not_metres = in + *length + ", by " + name;
   }
 }
 
-/// Which coordinates a GeoTIFF key directory has in another unit than metres.
-std::optional<std::string> foreign_units_of_directory(std::string_view record) {
-  constexpr std::size_t kKeyBytes = 8;
-  for (; record.size() >= kKeyBytes; record.remove_prefix(kKeyBytes)) {
-    const auto key = value_at<std::uint16_t>(record, 0);
-    if (key != kLinearUnitsKey && key != kVerticalUnitsKey) continue;
-    const auto value = value_at<std::uint16_t>(record, 6);
-    if (const auto unit = foreign_unit(value))
-      return std::string(key == kLinearUnitsKey ? "x and y" : "z") + " in " + *unit +
-             ", by GeoTIFF key " + std::to_string(key) + " = " + std::to_string(value);
-  }
-  return std::nullopt;
+DirectoryUnits units_of_directory(std::string_view record) {
+  DirectoryUnits units;
+  add_units(record, {"z", kVerticalTypeKey, kVerticalUnitsKey, &unit_of_vertical_system}, units);
+  add_units(record, {"x and y", kProjectedTypeKey, kLinearUnitsKey, &unit_of_projected_system},
+            units);
+  return units;
 }
 
 template <class T>
@@ -132,7 +150,7 @@ class Descriptor {
       case kExtraBytesRecord: description_.extra_fields = extra_fields_of(record, header_); break;
       case kGeoKeysRecord:
         if (is_geographic_directory(record)) description_.geographic = "GTModelType 2, geographic";
-        if (const auto units = foreign_units_of_directory(record)) description_.not_metres = units;
+        take_units(units_of_directory(record));
         keys_.directory = values_of<std::uint16_t>(record);
         break;
       case kGeoDoublesRecord: keys_.doubles = values_of<double>(record); break;
@@ -142,6 +160,11 @@ class Descriptor {
         if (const auto units = foreign_units_of_wkt(record)) description_.not_metres = units;
         wkt_ = crs_of_wkt(record);
     }
+  }
+
+  void take_units(DirectoryUnits units) {
+    if (units.not_metres) description_.not_metres = std::move(units.not_metres);
+    if (units.unknown) description_.unknown_unit = std::move(units.unknown);
   }
 
   void finish() {
@@ -233,6 +256,7 @@ std::vector<std::string> LasDescription::comments() const {
   std::vector<std::string> comments;
   if (geographic) comments.push_back("geographic: " + *geographic);
   if (not_metres) comments.push_back("not metres: " + *not_metres);
+  if (unknown_unit) comments.push_back("not known: " + *unknown_unit);
   if (has_adjusted_times) comments.push_back("adjusted GPS time");
   if (is_cut) comments.push_back("left out: extended records that reach beyond the file's end");
   return comments;

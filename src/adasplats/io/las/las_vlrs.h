@@ -33,6 +33,8 @@ struct LasDescription {
   std::optional<std::string> geographic;
   /// Where a length of the coordinates is no metre: which, its unit and what says so.
   std::optional<std::string> not_metres;
+  /// Where a length's unit is that of a system which is too new to be known here: which.
+  std::optional<std::string> unknown_unit;
   bool has_adjusted_times = false;  ///< as LasHeader has it
   /// What the coordinates are in: the text, or the keys, by what the header says where there are
   /// both.
