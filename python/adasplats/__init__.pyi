@@ -277,7 +277,7 @@ def export(
     input: Path,
     output: Path,
     *,
-    format: Literal["gaussian-3d", "gaussian-2d", "glb", "ply", "mcap"] | None = None,
+    format: Literal["gaussian-3d", "gaussian-2d", "glb", "ply", "las", "laz", "mcap"] | None = None,
     labels: Path | None = None,
     color: Literal["class", "intensity", "height"] | None = None,
     label_field: str | None = None,

@@ -42,7 +42,8 @@ constexpr const char* kCalibrateDoc =
 constexpr const char* kExportDoc =
     "Write a splat model, points or the scans of a sequence for other programs.\n\n"
     "input: a splat model, a point file, a sequence folder or what simulate wrote. format:\n"
-    "'gaussian-3d', 'gaussian-2d', 'glb', 'ply' or 'mcap'; else what the ending of output says.\n"
+    "'gaussian-3d', 'gaussian-2d', 'glb', 'ply', 'las', 'laz' or 'mcap'; else what the ending of "
+    "output says.\n"
     "color: 'class', 'intensity' or 'height'; else the first of these there is. Gives a dict: "
     "what\n"
     "was written and how much. Raises ValueError, OSError.";

@@ -53,6 +53,13 @@ class Export(ProgramTest):
             self.assertEqual(self.report("export", source, "-o", self.folder / "p.glb")["points"],
                              points)
             self.assertIn(f"element vertex {points}", self.header(self.folder / "points.ply"))
+            sizes = []
+            for name in ("p.las", "p.laz"):
+                self.assertEqual(self.report("export", source, "-o", self.folder / name)["points"],
+                                 points)
+                self.assertEqual(self.report("info", self.folder / name)["files"][0]["points"], points)
+                sizes.append((self.folder / name).stat().st_size)
+            self.assertLess(sizes[1], 0.6 * sizes[0])
         both = [self.export(scans, "a.mcap"), self.export(scans / "sequences" / "00", "b.mcap")]
         self.assertEqual(both[0].read_bytes(), both[1].read_bytes())
         self.assertEqual(both[0].read_bytes()[:8], b"\x89MCAP0\r\n")
@@ -84,9 +91,9 @@ class Export(ProgramTest):
                                                               self.folder / name, *words, says=says)
         bad(model, "out.ply", says=["splat model", "gaussian-3d, gaussian-2d or glb", "give the format"])
         bad(model, "out.mcap", says=["splat model", "gaussian-3d, gaussian-2d or glb"])
-        bad(model, "out", says=["out", ".ply, .glb or .mcap"])
+        bad(model, "out", says=["out", ".ply, .glb, .las, .laz or .mcap"])
         bad(model, "out.ply", "--format", "ply", says=["not as ply"])
-        bad(self.cloud, "out.mcap", says=["point cloud", "glb or ply"])
+        bad(self.cloud, "out.mcap", says=["point cloud", "glb, ply, las or laz"])
         bad(self.cloud, "out.ply", "--format", "gaussian-3d", says=["not as gaussian-3d"])
         bad(self.cloud, "out.ply", "--format", "gausian-3d", says=["did you mean 'gaussian-3d'"])
         bad(model, "model.ply", "--format", "gaussian-3d", says=["is an input, too"])
@@ -113,7 +120,7 @@ class Export(ProgramTest):
         cloud = self.folder / "few.csv"
         for rows, count in [("", 0), ("1,2,3\n", 1)]:
             cloud.write_text("x,y,z\n" + rows)
-            for name in ["few.glb", "few.ply"]:
+            for name in ["few.glb", "few.ply", "few.las", "few.laz"]:
                 report = self.report("export", cloud, "-o", self.folder / name)
                 self.assertEqual(report["points"], count)
 

@@ -17,7 +17,8 @@ constexpr const char* kExportExamples =
     "  adasplats export street.ply -o centers.glb --color intensity\n"
     "  adasplats export sequences/08 -o drive.mcap --scans 0:100\n"
     "  adasplats export scans -o drive.mcap\n"
-    "  adasplats export cloud.las -o cloud.glb --color height\n";
+    "  adasplats export cloud.las -o cloud.glb --color height\n"
+    "  adasplats export cloud.ply -o cloud.laz\n";
 
 constexpr double kBytesPerMegabyte = 1e6;
 
@@ -25,13 +26,13 @@ class ExportCommand final : public Command {
  public:
   explicit ExportCommand(CLI::App& program)
       : Command(program, "export",
-                "Write splats as Gaussians or glTF, points as glTF or PLY, scans as MCAP",
+                "Write splats as Gaussians or glTF, points as glTF, PLY, LAS or LAZ, scans as MCAP",
                 kExportExamples) {
     OptionSet& app = options();
     require(add_path(app, "INPUT", job_.input,
                      "Splat model, point file, sequence folder or output of 'simulate'"));
     require(writes(add_path(app, "-o,--output", job_.output, "File to write"),
-                   {".ply", ".glb", ".mcap"}));
+                   {".ply", ".glb", ".las", ".laz", ".mcap"}));
     add_choice<std::optional<ExportFormat>>(app, "--format", job_.format,
                                             choices_of_optional(kExportFormats),
                                             "Of the file; else what its ending says");

@@ -41,15 +41,15 @@ KindFormats formats_of(InputKind kind) {
   using enum ExportFormat;
   switch (kind) {
     case InputKind::model: return {"a splat model", {gaussian_3d, gaussian_2d, glb}};
-    case InputKind::cloud: return {"a point cloud", {glb, ply}};
-    case InputKind::sequence: return {"a sequence of scans", {mcap, glb, ply}};
+    case InputKind::cloud: return {"a point cloud", {glb, ply, las, laz}};
+    case InputKind::sequence: return {"a sequence of scans", {mcap, glb, ply, las, laz}};
   }
   return {};
 }
 
 std::string_view name_of(ExportFormat format) {
-  constexpr std::array<std::string_view, 5> kNames = {"gaussian-3d", "gaussian-2d", "glb", "ply",
-                                                      "mcap"};
+  constexpr std::array<std::string_view, 7> kNames = {"gaussian-3d", "gaussian-2d", "glb", "ply",
+                                                      "las",         "laz",         "mcap"};
   return kNames[static_cast<std::size_t>(format)];
 }
 
@@ -105,9 +105,7 @@ ExportFormat format_of(const ExportJob& job, InputKind kind) {
                                     ": give the format");
 }
 
-bool has_colors(ExportFormat format) {
-  return format != ExportFormat::ply && format != ExportFormat::mcap;
-}
+bool has_colors(ExportFormat format) { return format <= ExportFormat::glb; }
 
 std::vector<Rgb> colors_by_height(PointCloud& cloud) {
   // Heights are what point_colors() shows of positions alone.
@@ -180,7 +178,7 @@ ExportResult export_cloud(const ExportJob& job, ExportFormat format, Session& se
     const std::vector<Rgb> colors = colors_of(cloud, labels ? &*labels : nullptr, job.color);
     save_cloud_glb(job.output, cloud, colors);
   } else {
-    save_cloud_ply(job.output, cloud);
+    (format == ExportFormat::ply ? save_cloud_ply : save_cloud_las)(job.output, cloud, {});
   }
   return {cloud.size(), "points", report.dropped_not_finite + report.dropped_far};
 }

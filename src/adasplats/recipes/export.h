@@ -16,12 +16,14 @@
 namespace adasplats {
 
 /// What other programs open (docs/exports.md).
-enum class ExportFormat : std::uint8_t { gaussian_3d, gaussian_2d, glb, ply, mcap };
+enum class ExportFormat : std::uint8_t { gaussian_3d, gaussian_2d, glb, ply, las, laz, mcap };
 inline constexpr std::pair<std::string_view, ExportFormat> kExportFormats[] = {
     {"gaussian-3d", ExportFormat::gaussian_3d},
     {"gaussian-2d", ExportFormat::gaussian_2d},
     {"glb", ExportFormat::glb},
     {"ply", ExportFormat::ply},
+    {"las", ExportFormat::las},
+    {"laz", ExportFormat::laz},
     {"mcap", ExportFormat::mcap}};
 /// What colours show.
 enum class ExportColor : std::uint8_t { semantic, intensity, height };

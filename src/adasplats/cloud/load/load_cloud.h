@@ -266,4 +266,12 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
 void save_cloud_ply(const std::filesystem::path& path, const PointCloud& cloud,
                     std::span<const ColumnView> more = {});
 
+/// Writes a cloud as LAS 1.4, or LAZ where the name ends in .laz: point format 6, in millimetres
+/// from the cloud's origin; classification (the class; 0, never classified, for numbers above 255),
+/// intensity (0 to 1 becomes 0 to 65535, numbers beyond 1 are rounded); extra bytes: what the PLY
+/// has, the intensity as `intensity_value`, and `more`. The coordinate system along. Errors: those
+/// of write_las.
+void save_cloud_las(const std::filesystem::path& path, const PointCloud& cloud,
+                    std::span<const ColumnView> more = {});
+
 }  // namespace adasplats

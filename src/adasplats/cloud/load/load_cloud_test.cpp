@@ -12,6 +12,7 @@
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/recordings_test.h"
 #include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/las/las_writer.h"
 
 namespace adasplats {
@@ -565,6 +566,33 @@ TEST(SaveCloud, RoundTrip) {
     save_cloud_ply(file, cloud);
     expect_same(load({file}).first, cloud);
   }
+}
+
+// Oracle: the cloud, to the half millimetre that LAS rounds by.
+TEST(SaveCloud, LasAndLazHoldTheCloud) {
+  const TemporaryFolder folder;
+  write_sequence(folder, 3, 448262.125);
+  PointCloud cloud = load({folder.path()}).first;
+  cloud.crs = crs_of_wkt("LOCAL_CS[\"here\"]");
+  const auto las = folder.path() / "a.las", laz = folder.path() / "a.laz";
+  save_cloud_las(las, cloud);
+  save_cloud_las(laz, cloud);
+  const PointCloud found = load({laz}).first;
+  expect_same(load({las}).first, found);
+  ASSERT_EQ(found.size(), cloud.size());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    EXPECT_LT(length(found.world(i) - cloud.world(i)), 0.001);
+  EXPECT_EQ(found.classes, cloud.classes);
+  EXPECT_EQ(found.scan_indices, cloud.scan_indices);
+  EXPECT_EQ(found.sensor_positions.size(), cloud.sensor_positions.size());
+  EXPECT_EQ(found.crs, cloud.crs);
+  EXPECT_NE(read_file(laz).find("laszip encoded"), std::string::npos);
+  save_cloud_las(folder.path() / "empty.laz", {});
+  EXPECT_TRUE(load({folder.path() / "empty.laz"}).first.empty());
+  PointCloud bare;
+  bare.positions = {{1, 2, 3}};
+  save_cloud_las(folder.path() / "bare.laz", bare);
+  EXPECT_EQ(load({folder.path() / "bare.laz"}).first.positions.size(), 1U);
 }
 
 TEST(SaveCloud, EmptyAndBareClouds) {

@@ -132,12 +132,25 @@ std::string mesh_members(const std::vector<Attribute>& attributes, std::size_t p
          R"(}],"buffers":[{"byteLength":)" + bytes + "}]";
 }
 
+/// A text in quotes; bytes that are no ASCII come from files of any encoding, and become '?'.
+std::string json_text(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    const bool is_plain = c >= ' ' && c <= '~';
+    quoted += is_plain ? c : c == '\n' || c == '\t' || c == '\r' ? ' ' : '?';
+  }
+  return quoted + "\"";
+}
+
 /// The JSON with blanks behind it up to a multiple of four bytes.
 std::string document(const PointCloud& cloud, const std::string& members) {
   std::string json =
       R"({"asset":{"version":"2.0","generator":"adasplats"},"scene":0,"scenes":[{"nodes":[0]}],)"
       R"("nodes":[{"name":"points","rotation":)";
   json.append(kNodeRotation).append(R"(,"extras":{"origin":)").append(vector_text(cloud.origin));
+  if (!cloud.crs.empty()) json += R"(,"crs":)" + json_text(cloud.crs.name());
+  if (!cloud.crs.wkt.empty()) json += R"(,"crs_wkt":)" + json_text(cloud.crs.wkt);
   json += members.empty() ? "}}]" : R"(},"mesh":0}])";
   json += members + "}";
   while (json.size() % 4 != 0) json += ' ';

@@ -15,7 +15,8 @@ namespace adasplats {
 /// of points with POSITION (float32, m, relative to the cloud's origin), COLOR_0 (8 bits a channel,
 /// linear as glTF has colours; `colors` are sRGB, one a point) and, as far as the cloud has them,
 /// _INTENSITY (float32; 0 for NaN) and _CLASS (uint16). The node turns x forward, y left, z up into
-/// glTF's z, x, y; its extras have "origin", the world coordinates of the cloud's origin. No
+/// glTF's z, x, y; its extras have "origin", the world coordinates of the cloud's origin, and
+/// where it is known "crs" and "crs_wkt", the name and the text of their system. No
 /// points: a node without a mesh. Atomic; memory: 8 bytes a point. Errors: data (more points than 4
 /// GiB hold); std::logic_error (another number of colours).
 void save_cloud_glb(const std::filesystem::path& path, const PointCloud& cloud,

@@ -66,6 +66,7 @@ Glb written(const PointCloud& cloud, const std::vector<Rgb>& colors) {
 TEST(CloudGlb, EveryAttribute) {
   PointCloud cloud;
   cloud.origin = {448000, 5411000, 0};
+  cloud.crs = crs_of_wkt("PROJCS[\"UTM 32N\",AUTHORITY[\"EPSG\",\"32632\"]]");
   cloud.positions = {{0.1F, 2, -3}, {-4, 5.5F, 0.3F}, {1, 1, 1}};
   cloud.intensities = {0.25F, std::numeric_limits<float>::quiet_NaN(), 255};
   cloud.classes = {40, 65535, 0};
@@ -90,6 +91,8 @@ TEST(CloudGlb, EveryAttribute) {
   EXPECT_EQ(accessor["max"][2].get<double>(), 1.0);
   EXPECT_EQ(accessor["min"][0].get<double>(), -4.0);
   EXPECT_EQ(glb.json["nodes"][0]["extras"]["origin"], (nlohmann::json{448000, 5411000, 0}));
+  EXPECT_EQ(glb.json["nodes"][0]["extras"]["crs"], cloud.crs.name());
+  EXPECT_EQ(glb.json["nodes"][0]["extras"]["crs_wkt"], cloud.crs.wkt);
 }
 
 // Oracle: the specification (y up, z forward, x left) and Hamilton's product.

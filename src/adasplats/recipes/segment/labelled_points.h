@@ -23,10 +23,7 @@ struct LabelledPoints {
 /// number.
 void save_labelled_ply(const std::filesystem::path& file, const LabelledPoints& points);
 
-/// LAS 1.4 (LAZ where the name ends in .laz), point format 6, in millimetres: classification (the
-/// label; 0, never classified, for labels above 255), intensity (0 to 1 becomes 0 to 65535, numbers
-/// beyond 1 are rounded); extra bytes: what the PLY has, the intensity as `intensity_value`.
-/// Errors: those of write_las.
+/// LAS or LAZ, as the name says, with the columns of save_cloud_las() and those two.
 void save_labelled_las(const std::filesystem::path& file, const LabelledPoints& points);
 
 /// One number a point in their order, as SemanticKITTI's .label (32 bits, little endian).
