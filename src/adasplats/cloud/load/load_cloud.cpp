@@ -145,6 +145,13 @@ std::string box_text(Vec3d low, Vec3d high) {
   return text;
 }
 
+/// In whole steps of a file's coordinates, as its points are: headers may hold more digits.
+Vec3d in_steps(Vec3d place, Vec3d step) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (step[axis] > 0) place[axis] = std::round(place[axis] / step[axis]) * step[axis];
+  return place;
+}
+
 /// Of an extent without points.
 Error nothing_within(std::span<const Source> sources, const LoadOptions& options) {
   const std::filesystem::path& first = sources.front().input.path;
@@ -154,8 +161,9 @@ Error nothing_within(std::span<const Source> sources, const LoadOptions& options
              box_text(options.selection.extent->low, options.selection.extent->high);
   if (is_las(first)) {
     const LasFacts las = read_las_facts(first);
-    message +=
-        "; " + first.string() + " has " + box_text(las.box_min, las.box_max) + " by its header";
+    message += "; " + first.string() + " has " +
+               box_text(in_steps(las.box_min, las.scale), in_steps(las.box_max, las.scale)) +
+               " by its header";
   }
   return {ErrorKind::data, message};
 }
