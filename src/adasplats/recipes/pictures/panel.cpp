@@ -118,6 +118,7 @@ Image Panel::draw_model(const Camera& camera, const PanelLook& look) const {
   ImageOptions options;
   options.color = color_;
   options.samples_per_axis = look.samples_per_axis;
+  options.relief = look.relief;
   options.range = range_;
   if (splat_errors_m_.empty()) return model_->render(camera, options);
   Image image = model_->render(camera, options, splat_errors_m_);
@@ -125,8 +126,10 @@ Image Panel::draw_model(const Camera& camera, const PanelLook& look) const {
   return image;
 }
 
-Image Panel::draw_cloud(const Camera& camera, const Executor& executor) const {
+Image Panel::draw_cloud(const Camera& camera, const PanelLook& look,
+                        const Executor& executor) const {
   PointImageOptions options;
+  options.relief = look.relief;
   if (!point_errors_m_.empty()) {
     options.background = {22, 22, 26};  // what is right is white
     options.sky = options.relief = false;
@@ -141,7 +144,7 @@ Image Panel::draw_cloud(const Camera& camera, const Executor& executor) const {
 }
 
 Image Panel::draw(const Camera& camera, const PanelLook& look, const Executor& executor) const {
-  return model_ ? draw_model(camera, look) : draw_cloud(camera, executor);
+  return model_ ? draw_model(camera, look) : draw_cloud(camera, look, executor);
 }
 
 /// Dots where beams fell through the model and nothing of it is in front.

@@ -20,6 +20,7 @@ namespace adasplats {
 struct PanelLook {
   std::optional<ImageColor> color;  ///< else what tells most of each panel
   int samples_per_axis = 2;
+  bool relief = true;    ///< as ImageOptions has it
   bool captions = true;  ///< title, legend, scale and north
 };
 
@@ -60,7 +61,7 @@ class Panel {
 
  private:
   Image draw_model(const Camera& camera, const PanelLook& look) const;
-  Image draw_cloud(const Camera& camera, const Executor& executor) const;
+  Image draw_cloud(const Camera& camera, const PanelLook& look, const Executor& executor) const;
   void mark_holes(Image& image, const Camera& camera) const;
   void write_legend(Image& image) const;
   double origin_z() const;

@@ -50,6 +50,8 @@ void visit_settings(RenderJob& job, Visit&& visit) {
       Setting{
           .name = "samples", .help = "Rays a pixel: the square of this", .least = 1, .most = 64},
       job.look.samples_per_axis);
+  visit(Setting{.name = "relief", .help = "Dark corners and gaps, splats that run into each other"},
+        job.look.relief);
   visit(Setting{.name = "captions", .help = "Title, legend, scale and north"}, job.look.captions);
   visit(Setting{.name = "difference",
                 .help = "Of two models: how much farther the second is along the view, by colour"},
