@@ -17,7 +17,8 @@ namespace gpu {
 struct RenderSlot {
   Stream stream;
   DeviceBuffer<Hit> hits;
-  DeviceBuffer<FramePixel> frame_pixels;
+  DeviceBuffer<Vec3f> frame_colors;
+  DeviceBuffer<float> frame_nearness, frame_splat_px;
   DeviceBuffer<std::uint16_t> frame_hits;
   DeviceBuffer<std::uint8_t> device_pixels;
   PinnedBuffer<std::uint8_t> pixels;
@@ -92,7 +93,9 @@ void GpuRenderer::Impl::launch(RenderSlot& slot, const Camera& camera) const {
       static_cast<std::uint64_t>(source.columns) * static_cast<std::uint64_t>(source.rows);
   part_.scene->cast(source, rays, 1, slot.hits.data(), stream);
   gpu::queue_shading(tables_, Developer(camera, options_), source, slot.hits.data(), camera.width,
-                     camera.height, {slot.frame_pixels.data(), slot.frame_hits.data()},
+                     camera.height,
+                     {slot.frame_colors.data(), slot.frame_nearness.data(),
+                      slot.frame_splat_px.data(), slot.frame_hits.data()},
                      slot.device_pixels.data(), stream);
   const std::size_t bytes =
       3 * static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
@@ -121,7 +124,9 @@ void GpuRenderer::Impl::render_all(std::span<const Camera> cameras, GpuRenderer:
     slot->stream.wait("prepare pictures on the GPU");  // what an exception left there
     if (slot->hits.size() < rays) slot->hits = gpu::DeviceBuffer<Hit>(rays, slot->stream.get());
     if (slot->pixels.size() < bytes) {
-      slot->frame_pixels = gpu::DeviceBuffer<FramePixel>(bytes / 3, slot->stream.get());
+      slot->frame_colors = gpu::DeviceBuffer<Vec3f>(bytes / 3, slot->stream.get());
+      slot->frame_nearness = gpu::DeviceBuffer<float>(bytes / 3, slot->stream.get());
+      slot->frame_splat_px = gpu::DeviceBuffer<float>(bytes / 3, slot->stream.get());
       slot->frame_hits = gpu::DeviceBuffer<std::uint16_t>(bytes / 3, slot->stream.get());
       slot->device_pixels = gpu::DeviceBuffer<std::uint8_t>(bytes, slot->stream.get());
       slot->pixels = gpu::PinnedBuffer<std::uint8_t>(bytes);

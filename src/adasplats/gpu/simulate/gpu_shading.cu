@@ -22,7 +22,9 @@ void queue_frame(const ShadingTables& tables, const RaySource& source, const Hit
         sum.add(tables, source.camera, ray_of(source, ray), hits[ray]);
       }
     }
-    frame.pixels[i] = sum.pixel;
+    frame.colors[i] = sum.pixel.color;
+    frame.nearness[i] = sum.pixel.nearness;
+    frame.splat_px[i] = sum.pixel.splat_px;
     frame.hits[i] = sum.hits;
   });
 }
@@ -35,7 +37,7 @@ void queue_shading(const ShadingTables& tables, const Developer& developer, cons
   const std::uint64_t count =
       static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   queue_frame(tables, source, hits, width, count, frame, stream);
-  const FrameView view = {frame.pixels, frame.hits, width, height};
+  const FrameView view = {frame.colors, frame.nearness, frame.splat_px, frame.hits, width, height};
   for_each(count, stream, "develop a picture on the GPU", [=] __device__(std::uint64_t i) {
     const Quotient at = divide(i, static_cast<std::uint32_t>(width));
     const Vec3f color = develop_pixel(developer, view, static_cast<std::int32_t>(at.rest),

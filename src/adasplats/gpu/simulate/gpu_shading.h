@@ -14,7 +14,9 @@ namespace adasplats::gpu {
 
 /// Private to gpu/: a frame in device memory, of as many pixels as a picture has.
 struct DeviceFrame {
-  FramePixel* pixels = nullptr;
+  Vec3f* colors = nullptr;
+  float* nearness = nullptr;
+  float* splat_px = nullptr;
   std::uint16_t* hits = nullptr;
 };
 

@@ -50,10 +50,9 @@ Image draw_difference(const ModelScene& first, const ModelScene& second, const C
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Hit& shown = hits[0][i].valid() ? hits[0][i] : hits[1][i];
       if (!shown.valid()) continue;
-      FramePixel& pixel = frame.pixels[begin * width + i];
-      pixel.color = pixel_color(hits[0][i], hits[1][i]);
-      pixel.nearness = nearness_of(rays_of[0], rays[i], shown.t);
-      frame.hits[begin * width + i] = 1;
+      frame.set(begin * width + i,
+                {pixel_color(hits[0][i], hits[1][i]), nearness_of(rays_of[0], rays[i], shown.t)},
+                1);
     }
   }
   return develop(frame, developer, executor);

@@ -47,7 +47,7 @@ Developer::Developer(const Camera& from, const ImageOptions& options)
 
 Image develop(const Frame& frame, const Developer& developer, const Executor& executor) {
   const FrameView view = frame.view();
-  Image image{frame.width, frame.height, std::vector<std::uint8_t>(3 * frame.pixels.size())};
+  Image image{frame.width, frame.height, std::vector<std::uint8_t>(3 * frame.colors.size())};
   executor.for_chunks(static_cast<std::size_t>(frame.height), kRowsPerChunk,
                       [&](std::size_t begin, std::size_t end) {
                         std::uint8_t* out = &image.pixels[3 * frame.at(0, static_cast<int>(begin))];

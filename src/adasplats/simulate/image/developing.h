@@ -95,11 +95,10 @@ ADASPLATS_HD inline Surroundings look_around(const Developer& with, const FrameV
   constexpr float kWeights[Developer::kScales] = {0.45F, 0.30F, 0.25F};
   constexpr float kSame_m = 0.03F, kSame = 0.25F;  // rise and slope within one surface
   const std::int64_t center = place(frame, x, y);
-  const FramePixel pixel = frame.pixels[center];
-  const float m_per_px =
-      with.parallel ? 1.0F / with.px_per_m : 1.0F / (pixel.nearness * with.px_per_m);
+  const float nearness = frame.nearness[center], splat_px = frame.splat_px[center];
+  const float m_per_px = with.parallel ? 1.0F / with.px_per_m : 1.0F / (nearness * with.px_per_m);
   Surroundings found;
-  found.color = 1.0F / static_cast<float>(frame.hits[center]) * pixel.color;
+  found.color = 1.0F / static_cast<float>(frame.hits[center]) * frame.colors[center];
   float weight = 1.0F;
   for (int scale = 0; scale < Developer::kScales; ++scale) {
     float shadow = 0.0F;
@@ -108,18 +107,17 @@ ADASPLATS_HD inline Surroundings look_around(const Developer& with, const FrameV
       if (!inside(frame, x - pair.dx, y - pair.dy) || !inside(frame, x + pair.dx, y + pair.dy))
         continue;
       const std::int64_t step = place(frame, pair.dx, pair.dy);
-      const float rise = rise_m(with, pixel.nearness, frame.pixels[center - step].nearness,
-                                frame.pixels[center + step].nearness);
+      const float rise =
+          rise_m(with, nearness, frame.nearness[center - step], frame.nearness[center + step]);
       const float distance_m = pair.distance_px * m_per_px;
       shadow += shadow_of(rise, distance_m, scale == 0);
-      const float blend = pixel.splat_px / (2.0F * pair.distance_px);
+      const float blend = splat_px / (2.0F * pair.distance_px);
       if (blend > 0.1F && std::fabs(rise) < kSame_m + kSame * distance_m) {
         const float share = blend < 1.0F ? blend : 1.0F;
-        found.color = found.color +
-                      share / static_cast<float>(frame.hits[center - step]) *
-                          frame.pixels[center - step].color +
-                      share / static_cast<float>(frame.hits[center + step]) *
-                          frame.pixels[center + step].color;
+        found.color =
+            found.color +
+            share / static_cast<float>(frame.hits[center - step]) * frame.colors[center - step] +
+            share / static_cast<float>(frame.hits[center + step]) * frame.colors[center + step];
         weight += 2.0F * share;
       }
     }
@@ -168,7 +166,7 @@ ADASPLATS_HD inline Vec3f develop_pixel(const Developer& with, const FrameView& 
   const int hits = frame.hits[at];
   Vec3f sum;
   if (hits > 0) {
-    sum = frame.pixels[at].color;
+    sum = frame.colors[at];
     if (with.relief) {
       const developing::Surroundings around = developing::look_around(with, frame, x, y);
       sum = static_cast<float>(hits) / (1.0F + kShadow * around.shadow) * around.color;

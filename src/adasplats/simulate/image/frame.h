@@ -22,10 +22,13 @@ struct FramePixel {
 };
 inline constexpr float kNothingNear = -std::numeric_limits<float>::infinity();
 
-/// A picture's pixels before they are developed, rows from the top. Pointers are memory of the
-/// device that reads them.
+/// A picture's pixels before they are developed, rows from the top: the members of FramePixel one
+/// by one, since most of developing reads nearness alone. Pointers are memory of the device that
+/// reads them.
 struct FrameView {
-  const FramePixel* pixels = nullptr;
+  const Vec3f* colors = nullptr;
+  const float* nearness = nullptr;
+  const float* splat_px = nullptr;
   const std::uint16_t* hits = nullptr;  ///< samples of the pixel that hit something
   std::int32_t width = 0, height = 0;
 };
@@ -35,17 +38,28 @@ struct Frame {
   Frame(int columns, int rows)
       : width(columns),
         height(rows),
-        pixels(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)),
-        hits(pixels.size(), 0) {}
+        colors(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)),
+        nearness(colors.size(), kNothingNear),
+        splat_px(colors.size(), 0.0F),
+        hits(colors.size(), 0) {}
 
-  FrameView view() const { return {pixels.data(), hits.data(), width, height}; }
+  FrameView view() const {
+    return {colors.data(), nearness.data(), splat_px.data(), hits.data(), width, height};
+  }
+  void set(std::size_t i, const FramePixel& pixel, std::uint16_t samples_hit) {
+    colors[i] = pixel.color;
+    nearness[i] = pixel.nearness;
+    splat_px[i] = pixel.splat_px;
+    hits[i] = samples_hit;
+  }
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(x);
   }
 
   int width, height;
-  std::vector<FramePixel> pixels;
+  std::vector<Vec3f> colors;
+  std::vector<float> nearness, splat_px;
   std::vector<std::uint16_t> hits;
 };
 

@@ -97,8 +97,7 @@ class Renderer {
             const std::uint32_t i = ray_at[static_cast<std::size_t>(first + v * width + u)];
             sum.add(shading_.tables(), camera_rays_, rays[i], hits[i]);
           }
-        frame.pixels[frame.at(x, y)] = sum.pixel;
-        frame.hits[frame.at(x, y)] = sum.hits;
+        frame.set(frame.at(x, y), sum.pixel, sum.hits);
       }
     }
   }

@@ -101,9 +101,10 @@ class Canvas {
       for (std::size_t i = begin; i < end; ++i) {
         if (keys_[i] == kNothing) continue;
         const float depth_m = std::bit_cast<float>(static_cast<std::uint32_t>(keys_[i] >> 32));
-        frame.pixels[i] = {color_of(colors[static_cast<std::uint32_t>(keys_[i])]),
-                           parallel ? -depth_m : 1.0F / depth_m};
-        frame.hits[i] = 1;
+        frame.set(i,
+                  {color_of(colors[static_cast<std::uint32_t>(keys_[i])]),
+                   parallel ? -depth_m : 1.0F / depth_m},
+                  1);
       }
     });
     return frame;
