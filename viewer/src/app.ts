@@ -6,12 +6,14 @@
 import { CameraModes } from './driving/camera_modes';
 import { firstMode } from './panels/color_panel';
 import { CommandDialog } from './panels/command_dialog';
-import { button, byId, fill } from './panels/dom';
+import { button, byId, fill, short } from './panels/dom';
 import { DrivePanel } from './panels/drive_panel';
 import { DrivenSensor } from './driving/driven_sensor';
 import { publishHandle } from './handle';
 import { fillHelp } from './panels/help';
 import { listenToKeys } from './driving/keyboard';
+import { showKeyHints } from './panels/key_hints';
+import { Legend } from './panels/legend';
 import { LidarPanel } from './panels/lidar_panel';
 import { showLiveFigures } from './panels/live_figures';
 import { LiveScans } from './live_scans';
@@ -41,6 +43,8 @@ export class App {
   private readonly drive: DrivePanel;
   private readonly panel: SidePanel;
   private readonly strip: RangeStrip;
+  private readonly legend: Legend;
+  private readonly scanPoints: ScanPointsPanel;
   private readonly picker: Picker;
   private readonly dialog: CommandDialog;
 
@@ -68,14 +72,16 @@ export class App {
     const clouds = [cloud, recordedCloud];
     this.cameras = new CameraModes(view);
     this.drive = new DrivePanel(this.source, this.cameras, this.sensor);
-    this.strip = new RangeStrip(cloud, view.palette);
+    this.strip = new RangeStrip(cloud, view.palette, view.maps);
+    this.legend = new Legend(scene, view.maps, view.palette);
     this.picker = new Picker(view, live, clouds, scene.origin_m);
     this.dialog = new CommandDialog(this.source, this.lidar, this.sensor.driver);
     const scanPoints = new ScanPointsPanel(view, cloud, clouds, scene.can_simulate);
+    this.scanPoints = scanPoints;
     this.panel = new SidePanel(
       { view, lidar: this.lidar, drive: this.drive, scanPoints, recordedCloud },
       {
-        colorsChanged: () => this.strip.draw(),
+        colorsChanged: () => this.colorsChanged(),
         goTo: (pose) => this.sensor.setPose(pose),
         failed,
       },
@@ -92,9 +98,13 @@ export class App {
     const { scene } = this.source;
     const { live, rate, cloud } = this.scans;
     view.rig.setScene(scene.middle_box);
-    view.rig.frame(scene.middle_box);
     view.colorMode = firstMode(scene);
     sensor.moved();
+    const { position, quaternion } = sensor.body.object;
+    view.rig.followSensor(position, yawOf(quaternion), 0);
+    this.cameras.choose('follow');
+    this.showLoading();
+    showKeyHints(scene.scans.length > 0);
     view.beforeFrame = (dt) => this.step(dt);
     view.start();
     window.setInterval(() => this.showFigures(), kFiguresMs);
@@ -156,8 +166,37 @@ export class App {
     this.strip.step(this.scans.step());
   }
 
+  /** Until something is seen. */
+  private showLoading() {
+    const { layers, name } = this.source.scene;
+    const what = layers.map((l) => `${short(l.count)} ${l.kind}`).slice(0, 2);
+    const note = byId('loading');
+    note.textContent = `Loading ${name}: ${what.join(', ')}`;
+    note.hidden = false;
+    this.view.firstShown = () => (note.hidden = true);
+  }
+
+  private colorsChanged() {
+    ++this.colorVersion;
+    this.strip.draw();
+    this.showLegend();
+  }
+  private colorVersion = 0;
+
+  private showLegend() {
+    const { view, scanPoints, colorVersion } = this;
+    const subject = {
+      layers: view.shownLayers.map((l) => l.info),
+      mode: view.colorMode,
+      classes: view.seenClasses,
+      scan: scanPoints.subject,
+    };
+    this.legend.show(subject, colorVersion);
+  }
+
   private showFigures() {
     this.panel.update();
+    this.showLegend();
     showViewFigures(byId('figures'), this.view);
     showLiveFigures(byId('live'), this.scans.cloud.packet, this.scans.rate, this.lidar.running);
     this.drive.showSpeed();
@@ -184,7 +223,7 @@ export class App {
       clicked: (place) => void picker.pick(place, sensor.body.object.position),
     });
     listenToKeys({
-      driver: this.source.scene.can_simulate ? sensor.driver : null,
+      driver: sensor.driver,
       escape: () => picker.hide(),
       shortcut: (key) => this.shortcut(key),
     });

@@ -3,7 +3,10 @@
 #include "commands/view_inputs.h"
 
 #include <algorithm>
-#include <cmath>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
@@ -11,6 +14,7 @@
 #include "adasplats/evaluate/error_points.h"
 #include "adasplats/pipeline/scene/view_choice.h"
 #include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/view/error_layers.h"
 
 namespace adasplats::app {
 namespace {
@@ -100,9 +104,11 @@ class Loading {
     std::vector<fs::path> inputs = sorted_.clouds;
     inputs.insert(inputs.end(), sorted_.sequences.begin(), sorted_.sequences.end());
     view_.scene.labels = label_scheme_for(job_.labels, inputs);
+    for (const fs::path& errors : sorted_.errors) read_errors(errors);
     if (!sorted_.model.empty()) add_model();
     for (const fs::path& cloud : sorted_.clouds) add_cloud(cloud);
-    for (const fs::path& errors : sorted_.errors) add_errors(errors);
+    for (std::size_t i = 0; i < errors_.size(); ++i)
+      add_errors(name_of(sorted_.errors[i]), errors_[i]);
     for (const fs::path& sequence : sorted_.sequences)
       view_.scene.sequences.push_back({name_of(sequence), open_kitti_sequence(sequence)});
     for (const fs::path& poses : sorted_.trajectories)
@@ -121,9 +127,24 @@ class Loading {
     if (view_.model->labels() != nullptr) scene.labels = *view_.model->labels();
     scene.command = {"adasplats", "simulate", sorted_.model.string()};
     session_.progress.begin_step("levels of detail", 0);
-    scene.layers.push_back(splat_layer(name_of(sorted_.model), *view_.model->splats(), scene.origin,
+    scene.layers.push_back(splat_layer(name_of(sorted_.model), *view_.model->splats(),
+                                       errors_of_splats(*view_.model->splats()), scene.origin,
                                        session_.executor));
     session_.progress.end_step();
+  }
+
+  /// Of all files of errors; empty without any.
+  std::vector<float> errors_of_splats(const SplatModel& model) const {
+    if (errors_.empty()) return {};
+    std::vector<Vec3f> positions;
+    std::vector<float> errors_m;
+    for (const ErrorPoints& points : errors_) {
+      const Vec3d shift = points.cloud.origin - model.origin;
+      for (const Vec3f& p : points.cloud.positions)
+        positions.push_back(vec_cast<float>(vec_cast<double>(p) + shift));
+      errors_m.insert(errors_m.end(), points.errors_m.begin(), points.errors_m.end());
+    }
+    return disk_errors(model.disks, positions, {}, errors_m, {}, session_.executor);
   }
 
   void add_cloud(const fs::path& path) {
@@ -134,13 +155,17 @@ class Loading {
     add_points(name_of(path), cloud, {});
   }
 
-  void add_errors(const fs::path& path) {
+  void read_errors(const fs::path& path) {
     require_input(path);
-    const ErrorPoints points = read_error_points(path);
-    if (points.cloud.empty()) throw Error(ErrorKind::data, path.string() + ": no points");
-    std::vector<float> sizes_m = points.errors_m;  // too near is as wrong as too far
-    for (float& error_m : sizes_m) error_m = std::fabs(error_m);
-    add_points(name_of(path), points.cloud, sizes_m);
+    errors_.push_back(read_error_points(path));
+    if (errors_.back().cloud.empty()) throw Error(ErrorKind::data, path.string() + ": no points");
+  }
+
+  void add_errors(const std::string& name, const ErrorPoints& points) {
+    add_points(name, points.cloud, points.errors_m);
+    for (ViewLayer& part : error_part_layers(points.cloud, points.errors_m, {}, view_.scene.origin,
+                                             session_.executor))
+      view_.scene.layers.push_back(std::move(part));
   }
 
   void add_points(const std::string& name, const PointCloud& cloud,
@@ -172,7 +197,8 @@ class Loading {
   const Sorted& sorted_;
   Session& session_;
   LoadedView view_;
-  SharedCrs crs_;  ///< of the model and the clouds
+  std::vector<ErrorPoints> errors_;  ///< of sorted_.errors
+  SharedCrs crs_;                    ///< of the model and the clouds
 };
 
 }  // namespace

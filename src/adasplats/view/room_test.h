@@ -45,7 +45,7 @@ struct Room {
     scene.model = &model;
     scene.labels = *model.labels();
     scene.middle_box = model.middle_box();
-    scene.layers.push_back(splat_layer("room", *model.splats(), scene.origin, executor));
+    scene.layers.push_back(splat_layer("room", *model.splats(), {}, scene.origin, executor));
     PointCloud cloud;
     cloud.origin = {4000, 6000, 0};
     std::vector<float> errors_m;

@@ -28,15 +28,18 @@ Json layer_json(const ViewLayer& layer, std::size_t id) {
           {"has_classes", layer.has_classes},
           {"has_intensities", layer.has_intensities},
           {"has_errors", layer.has_errors},
+          {"part", layer.part},
           {"intensity_range", json_of(layer.tree.intensity_range())},
           {"error_range_m", json_of(layer.tree.error_range_m())},
           {"box", box_of(layer.tree)}};
 }
 
 Json trajectory_json(const std::string& name, const Trajectory& poses, Vec3d origin) {
-  Json json = {{"name", name}, {"poses", Json::array()}};
-  for (const TimedPose& pose : poses)
+  Json json = {{"name", name}, {"poses", Json::array()}, {"times_s", Json::array()}};
+  for (const TimedPose& pose : poses) {
     json["poses"].push_back(pose_json(pose.world_from_sensor, origin));
+    json["times_s"].push_back(pose.time_s - poses.front().time_s);
+  }
   return json;
 }
 
@@ -54,9 +57,11 @@ Json scans_json(const ViewScene& scene) {
   Json json = Json::array();
   for (std::size_t k = 0; k < scene.sequences.size(); ++k) {
     const KittiSequence& scans = scene.sequences[k].scans;
+    const double first_s = scans.trajectory.empty() ? 0 : scans.trajectory.front().time_s;
     for (std::size_t i = 0; i < scans.scans.size(); ++i) {
       json.push_back({{"name", scans.scans[i].stem().string()},
                       {"trajectory", k},
+                      {"time_s", scans.trajectory[i].time_s - first_s},
                       {"pose", pose_json(scans.trajectory[i].world_from_sensor, scene.origin)}});
     }
   }

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/view/view_scene.h"
 
+#include <algorithm>
+
+#include "adasplats/view/street_pose.h"
+
 namespace adasplats {
 namespace {
 
@@ -15,16 +19,52 @@ std::span<const Vec3f> relative_to_origin(std::span<const Vec3f> positions, Vec3
   return storage;
 }
 
+/// Samples of a scene's layers that are enough to find a street by.
+constexpr std::size_t kMostSamples = 400'000;
+
+/// Classes that are all 0 and intensities that are all the same tell nothing.
+template <class T>
+bool tells(std::span<const T> values, T nothing) {
+  return std::ranges::any_of(values, [=](T value) { return value != nothing; });
+}
+
+bool has_classes(std::span<const std::uint16_t> classes) {
+  return tells(classes, std::uint16_t{0});
+}
+bool has_intensities(std::span<const float> intensities) {
+  return !intensities.empty() && tells(intensities, intensities.front());
+}
+
+/// Of the leaves, every so many, as the page gets them.
+std::vector<Vec3f> samples_of(const LevelTree& tree) {
+  const std::size_t step = 1 + tree.input_size() / kMostSamples;
+  std::vector<Vec3f> samples;
+  std::size_t number = 0;
+  for (std::size_t n = 0; n < tree.nodes().size(); ++n) {
+    const LevelNode& node = tree.nodes()[n];
+    if (node.child_count > 0) continue;
+    for (const LevelElement& element : tree.elements(n)) {
+      if (number++ % step != 0) continue;
+      Vec3f at;
+      for (int axis = 0; axis < 3; ++axis)
+        at[axis] = node.low[axis] + (node.high[axis] - node.low[axis]) *
+                                        static_cast<float>(element.position[axis]) / 65535;
+      samples.push_back(at);
+    }
+  }
+  return samples;
+}
+
 }  // namespace
 
-ViewLayer splat_layer(std::string name, const SplatModel& model, Vec3d origin,
-                      const Executor& executor) {
+ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const float> errors_m,
+                      Vec3d origin, const Executor& executor) {
   std::vector<Disk> storage;
   LevelInput input{.disks = model.disks,
                    .positions = {},
                    .classes = model.classes,
                    .intensities = model.intensities,
-                   .errors_m = {}};
+                   .errors_m = errors_m};
   const Vec3d shift = model.origin - origin;
   if (shift.x != 0 || shift.y != 0 || shift.z != 0) {
     storage = model.disks;
@@ -33,10 +73,11 @@ ViewLayer splat_layer(std::string name, const SplatModel& model, Vec3d origin,
   }
   return {std::move(name),
           true,
-          !model.classes.empty(),
-          !model.intensities.empty(),
-          false,
-          LevelTree(input, {}, executor)};
+          has_classes(model.classes),
+          has_intensities(model.intensities),
+          !errors_m.empty(),
+          LevelTree(input, {}, executor),
+          {}};
 }
 
 ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const float> errors_m,
@@ -48,9 +89,13 @@ ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const
       .classes = cloud.classes,
       .intensities = cloud.intensities,
       .errors_m = errors_m};
-  return {std::move(name),        false,
-          !cloud.classes.empty(), !cloud.intensities.empty(),
-          !errors_m.empty(),      LevelTree(input, {}, executor)};
+  return {std::move(name),
+          false,
+          has_classes(cloud.classes),
+          has_intensities(cloud.intensities),
+          !errors_m.empty(),
+          LevelTree(input, {}, executor),
+          {}};
 }
 
 RigidTransform start_pose_of(const ViewScene& scene, double mount_height_m,
@@ -60,6 +105,12 @@ RigidTransform start_pose_of(const ViewScene& scene, double mount_height_m,
       return sequence.scans.trajectory.front().world_from_sensor;
   for (const auto& [name, poses] : scene.trajectories)
     if (!poses.empty()) return poses.front().world_from_sensor;
+  if (!scene.layers.empty()) {
+    if (auto pose = street_pose(samples_of(scene.layers.front().tree), mount_height_m)) {
+      pose->translation = pose->translation + scene.origin;
+      return *pose;
+    }
+  }
   const auto [low, high] = scene.middle_box;
   RigidTransform pose;
   pose.translation = 0.5 * (low + high);

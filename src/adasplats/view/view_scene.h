@@ -24,14 +24,16 @@ namespace adasplats {
 struct ViewLayer {
   std::string name;
   bool is_splats = false;
-  bool has_classes = false;
-  bool has_intensities = false;
+  bool has_classes = false;      ///< more than class 0
+  bool has_intensities = false;  ///< not all the same
   bool has_errors = false;
   LevelTree tree;
+  std::string part;  ///< of the beams with errors (error_layers.h); empty: all, or no such layer
 };
 
-ViewLayer splat_layer(std::string name, const SplatModel& model, Vec3d origin,
-                      const Executor& executor);
+/// `errors_m`: empty, or one a splat.
+ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const float> errors_m,
+                      Vec3d origin, const Executor& executor);
 /// `errors_m`: empty, or one a point.
 ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const float> errors_m,
                       Vec3d origin, const Executor& executor);
@@ -58,8 +60,9 @@ struct ViewScene {
   std::vector<std::string> command;  ///< that 'copy command line' begins with
 };
 
-/// Where a sensor begins to drive: at the first pose that there is, else `mount_height_m` above
-/// what lies in the middle of the model.
+/// Where a sensor begins to drive: at the first pose that there is, else `mount_height_m` above the
+/// ground of a street that is found in the layers (street_pose.h), else above what lies in the
+/// middle.
 RigidTransform start_pose_of(const ViewScene& scene, double mount_height_m,
                              const Executor& executor);
 

@@ -20,7 +20,7 @@ export class CameraModes {
     this.element = segments(
       'Camera',
       kModes.map(([value, text]) => ({ value, text })),
-      'orbit',
+      'follow',
       (mode) => this.set(mode as CameraMode),
     );
   }

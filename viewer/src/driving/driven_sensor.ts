@@ -16,7 +16,6 @@ export class DrivenSensor {
   readonly body = new SensorBody();
   readonly driver: Driver;
   private readonly path = new PathLine(kPathColor);
-  private readonly drives: boolean;
   private motionDue = false;
   private lastMotionMs = 0;
 
@@ -27,7 +26,6 @@ export class DrivenSensor {
     private readonly tell: (motion: Driver['motion']) => void,
   ) {
     this.driver = new Driver(start_pose, pick);
-    this.drives = can_simulate;
     this.body.object.visible = this.path.object.visible = can_simulate;
   }
 
@@ -53,7 +51,7 @@ export class DrivenSensor {
 
   /** In each frame. */
   step(dt: number) {
-    if (this.drives && this.driver.step(dt)) this.moved();
+    if (this.driver.step(dt)) this.moved();
     if (this.motionDue) this.tellMotion();
   }
 

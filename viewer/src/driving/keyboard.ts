@@ -6,8 +6,7 @@
 import { type Driver, typing } from './driver';
 
 export interface Keyboard {
-  /** Null where nothing is driven. */
-  driver: Driver | null;
+  driver: Driver;
   escape(): void;
   /** Whether the key is one. */
   shortcut(key: string): boolean;
@@ -16,9 +15,9 @@ export interface Keyboard {
 export function listenToKeys({ driver, escape, shortcut }: Keyboard) {
   window.addEventListener('keydown', (event) => {
     if (event.key === 'Escape') escape();
-    if (driver?.keyDown(event)) event.preventDefault();
+    if (driver.keyDown(event)) event.preventDefault();
     else if (!typing(event) && !event.repeat && shortcut(event.key)) event.preventDefault();
   });
-  window.addEventListener('keyup', (event) => driver?.keyUp(event));
-  window.addEventListener('blur', () => driver?.releaseKeys());
+  window.addEventListener('keyup', (event) => driver.keyUp(event));
+  window.addEventListener('blur', () => driver.releaseKeys());
 }

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What colours mean: the mode, the classes, and a legend of numbers.
+// How the model is coloured, and which of its classes are shown.
 
 import { button, choice, fill, make, tick } from './dom';
-import { cssColor, cssGradient } from '../picture/palette';
+import { cssColor } from '../picture/color_maps';
 import type { SceneInfo } from '../server/protocol';
 import type { SceneView } from '../picture/scene_view';
 import { kColorModes, type ColorMode } from '../picture/shaders';
@@ -25,21 +25,24 @@ function available(scene: SceneInfo, mode: ColorMode): boolean {
   return true;
 }
 
-/** The mode that tells most of a scene. */
-export function firstMode(scene: SceneInfo): ColorMode {
-  if (available(scene, 'class') && scene.classes.length > 0) return 'class';
-  return (['error', 'intensity'] as const).find((m) => available(scene, m)) ?? 'shading';
+/** The mode that tells most of a scene: what the first layer has, errors where there is no model. */
+export function firstMode({ layers, classes }: SceneInfo): ColorMode {
+  const [first] = layers;
+  if (!first) return 'shading';
+  if (first.kind === 'points' && first.has_errors) return 'error';
+  if (first.has_classes && classes.length > 0) return 'class';
+  return first.has_intensities ? 'intensity' : 'height';
 }
 
 export class ColorPanel {
   readonly element = make('div');
   private readonly select: HTMLSelectElement;
   private readonly classes = make('div', { className: 'classes' });
+  private listed = '';
 
   constructor(
     private readonly view: SceneView,
-    private readonly scene: SceneInfo,
-    private readonly legend: HTMLElement,
+    scene: SceneInfo,
     private readonly changed: () => void,
   ) {
     const options = kColorModes.map((m) => ({
@@ -51,7 +54,9 @@ export class ColorPanel {
       this.choose(value as ColorMode),
     );
     this.select.id = 'color';
-    fill(this.element, this.select, this.classes);
+    const safe = tick('For the colour-blind', view.maps.isColorBlind, (on) => this.setSafe(on));
+    safe.querySelector('input')!.id = 'color-blind';
+    fill(this.element, this.select, safe, this.classes);
     this.update();
     this.choose(view.colorMode);
   }
@@ -60,7 +65,7 @@ export class ColorPanel {
     this.select.value = mode;
     this.view.colorMode = mode;
     this.classes.hidden = mode !== 'class';
-    this.showLegend(mode);
+    this.changed();
   }
 
   /** The next mode that the scene has. */
@@ -70,67 +75,20 @@ export class ColorPanel {
     if (options[next]) this.choose(options[next].value as ColorMode);
   }
 
-  private showLegend(mode: ColorMode) {
-    const range = this.range(mode);
-    this.legend.hidden = range === null;
-    if (!range) return;
-    const bar = make('div', { className: 'bar' });
-    bar.style.background = cssGradient(range.map, range.from);
-    fill(
-      this.legend,
-      make('strong', {}, range.title),
-      bar,
-      make(
-        'div',
-        { className: 'ends' },
-        make('span', {}, range.low),
-        make('span', {}, range.middle),
-        make('span', {}, range.high),
-      ),
-    );
-  }
-
-  private range(mode: ColorMode) {
-    const ends = (
-      title: string,
-      map: 'viridis' | 'plasma' | 'inferno',
-      from: number,
-      low: number,
-      high: number,
-      digits: number,
-      more = '',
-    ) => ({
-      title,
-      map,
-      from,
-      low: low.toFixed(digits),
-      middle: ((low + high) / 2).toFixed(digits),
-      high: more + high.toFixed(digits),
-    });
-    const { layers, origin_m, middle_box } = this.scene;
-    if (mode === 'height') {
-      const [low, high] = [middle_box[0][2] + origin_m[2], middle_box[1][2] + origin_m[2]];
-      return ends('Height, m', 'viridis', 0, low, high, 1);
-    }
-    if (mode === 'intensity') {
-      const layer = layers.find((l) => l.has_intensities);
-      return layer ? ends('Intensity', 'inferno', 0.12, ...layer.intensity_range, 2) : null;
-    }
-    if (mode === 'error') {
-      const layer = layers.find((l) => l.has_errors);
-      return layer ? ends('Error, m', 'plasma', 0, ...layer.error_range_m, 3, '≥ ') : null;
-    }
-    return null;
-  }
-
   /** Lists the classes that have been seen; a scheme has many that a scene has not. */
   update() {
-    const seen = new Set(this.view.layers.flatMap((l) => [...l.classes]));
-    if (seen.size === this.listed) return;
-    this.listed = seen.size;
-    this.fillClasses([...seen].sort((a, b) => a - b));
+    const ids = this.view.seenClasses;
+    if (ids.join() === this.listed) return;
+    this.listed = ids.join();
+    this.fillClasses(ids);
   }
-  private listed = 0;
+
+  private setSafe(on: boolean) {
+    this.view.maps.colorBlind = on;
+    this.view.palette.colorBlind = on;
+    this.fillClasses(this.view.seenClasses);
+    this.shown();
+  }
 
   private fillClasses(ids: number[]) {
     const { palette } = this.view;

@@ -5,7 +5,8 @@
 
 import { Vector3 } from 'three';
 import { button, fill, grouped, make } from './dom';
-import { cssColor, type ClassPalette } from '../picture/palette';
+import type { ClassPalette } from '../picture/class_palette';
+import { cssColor } from '../picture/color_maps';
 import type { PickedMessage, Vec3 } from '../server/protocol';
 import type { Echo } from '../picture/scan_cloud';
 

@@ -4,7 +4,8 @@
 // The strip below the scene: the live scan as a range image, and what it is.
 
 import { byId, fill, make, segments } from './dom';
-import type { ClassPalette } from '../picture/palette';
+import type { ClassPalette } from '../picture/class_palette';
+import type { ColorMaps } from '../picture/color_maps';
 import { RangeImage, type ImageMode } from '../picture/range_image';
 import type { ScanCloud } from '../picture/scan_cloud';
 
@@ -20,8 +21,9 @@ export class RangeStrip {
   constructor(
     private readonly cloud: ScanCloud,
     palette: ClassPalette,
+    maps: ColorMaps,
   ) {
-    this.image = new RangeImage(byId<HTMLCanvasElement>('range-image'), palette);
+    this.image = new RangeImage(byId<HTMLCanvasElement>('range-image'), palette, maps);
     const modes = segments(
       'Range image',
       kModes.map((m) => ({ value: m, text: m[0].toUpperCase() + m.slice(1) })),

@@ -10,7 +10,7 @@ import { kScanModes, type ScanMode } from '../picture/shaders';
 
 export class ScanPointsPanel {
   readonly element: HTMLElement;
-  private mode: ScanMode = 'range';
+  mode: ScanMode = 'range';
   private pixels = 2.5;
 
   constructor(
@@ -41,6 +41,14 @@ export class ScanPointsPanel {
       view.invalidate();
     });
     this.element = make('div', {}, canSimulate ? show : null, modes, row('Points', size));
+  }
+
+  /** Of the scan that is drawn, for the legend; null: none is. */
+  get subject() {
+    const cloud = this.clouds.find((c) => c.packet !== null && c.object.visible);
+    if (!cloud?.packet) return null;
+    const { max_range_m, rings } = cloud.packet;
+    return { mode: this.mode, maxRange_m: max_range_m, rings };
   }
 
   /** Draws the clouds as it was chosen, and as large on the screen of now. */

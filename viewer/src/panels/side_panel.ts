@@ -41,13 +41,13 @@ export class SidePanel {
   show(scene: SceneInfo) {
     const { view, lidar, drive, scanPoints, recordedCloud } = this.parts;
     this.scans?.dispose();
-    this.colors = new ColorPanel(view, scene, byId('legend'), () => this.events.colorsChanged());
+    this.colors = new ColorPanel(view, scene, () => this.events.colorsChanged());
     this.scans = new ScansPanel(view, scene, recordedCloud, this.events);
     const can = scene.can_simulate;
     scanPoints.style();
     fill(
       byId('sections'),
-      section('Model', layersPanel(view)),
+      section('Layers', layersPanel(view)),
       section('Colour', this.colors.element),
       can ? section('LiDAR', lidar.element) : null,
       section(can ? 'Drive and camera' : 'Camera', drive.element),

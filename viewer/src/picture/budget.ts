@@ -30,7 +30,7 @@ export class Budget {
 
   /** Once it rests: such a picture is drawn once. */
   get still(): number {
-    return Math.min(this.moving * (this.software ? 5 : 3), kMost);
+    return Math.min(this.moving * (3), kMost);
   }
 
   /** Two pictures in a row took so long; `limited`: a larger budget would be used. */

@@ -62,6 +62,8 @@ export class Layer implements Tree {
     readonly info: LayerInfo,
     readonly nodes: TreeNode[],
     shared: SharedUniforms,
+    /** The bytes of each node where no server has them. */
+    private readonly local: ArrayBuffer[] | null = null,
   ) {
     this.boxes = nodes.map(nodeBox);
     this.parents = parentsOf(nodes);
@@ -74,7 +76,14 @@ export class Layer implements Tree {
       side: 2,
       uniforms: {
         ...shared,
-        has: { value: (has_classes ? 1 : 0) | (has_intensities ? 2 : 0) | (has_errors ? 4 : 0) },
+        has: {
+          value:
+            (has_classes ? 1 : 0) |
+            (has_intensities ? 2 : 0) |
+            (has_errors ? 4 : 0) |
+            (info.error_range_m[0] < 0 ? 8 : 0) |
+            (info.kind === 'points' ? 16 : 0),
+        },
         low: { value: new Vector3() },
         size: { value: new Vector3() },
         largest_radius_m: { value: 0 },
@@ -91,8 +100,18 @@ export class Layer implements Tree {
     return this.loaded.has(node) || this.nodes[node].count === 0;
   }
 
-  url(node: number): string {
-    return `layers/${this.info.id}/nodes/${node}.bin`;
+  /** Whether the page holds its data, and no server does. */
+  get isLocal(): boolean {
+    return this.local !== null;
+  }
+
+  /** The bytes of a node. Rejects as fetch does, and where the server does not have it. */
+  async load(node: number, signal: AbortSignal): Promise<ArrayBuffer> {
+    if (this.local) return this.local[node];
+    const url = `layers/${this.info.id}/nodes/${node}.bin`;
+    const reply = await fetch(url, { signal });
+    if (!reply.ok) throw new Error(`${url}: ${reply.status}`);
+    return reply.arrayBuffer();
   }
 
   /** Takes what the server said of a node. Errors: ProtocolError. */

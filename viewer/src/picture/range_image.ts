@@ -3,7 +3,8 @@
 
 // The strip below the scene: a scan as its sensor has it, rings over columns.
 
-import { mapColor, type ClassPalette } from './palette';
+import type { ClassPalette } from './class_palette';
+import type { ColorMaps } from './color_maps';
 import { kScanPointWords, type ScanPacket } from '../server/protocol';
 
 export type ImageMode = 'range' | 'class' | 'intensity';
@@ -25,12 +26,13 @@ interface Grid {
 export class RangeImage {
   mode: ImageMode = 'range';
   private readonly context: CanvasRenderingContext2D | null;
-  private readonly maps = new Map<string, Uint8Array>();
+  private table = new Uint8Array(0);
   private image: ImageData | null = null;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly palette: ClassPalette,
+    private readonly maps: ColorMaps,
   ) {
     this.context = canvas.getContext('2d');
   }
@@ -44,6 +46,7 @@ export class RangeImage {
     const grid = packet.rings < kFewRings ? angleGrid(packet, floats) : ringGrid(packet);
     if (!this.context || grid.width * grid.height > kMostPixels) return;
     const image = this.blank(grid.width, grid.height);
+    this.table = this.maps.table(this.mode === 'intensity' ? 'strength' : 'distance');
     const nearest = new Float32Array(grid.width * grid.height).fill(Infinity);
     for (let i = 0; i < packet.points; ++i) {
       const cell = grid.cell(i);
@@ -81,20 +84,11 @@ export class RangeImage {
       this.mode === 'intensity'
         ? (words[at + 5] & 0xffff) / 65535
         : Math.sqrt(range / (packet.max_range_m || 100));
-    const map = this.map(this.mode === 'intensity' ? 'inferno' : 'viridis');
+    const map = this.table;
     const from = 3 * Math.round(255 * Math.min(0.15 + 0.85 * t, 1));
     pixels[to] = map[from];
     pixels[to + 1] = map[from + 1];
     pixels[to + 2] = map[from + 2];
-  }
-
-  private map(name: 'inferno' | 'viridis'): Uint8Array {
-    let map = this.maps.get(name);
-    if (!map) {
-      map = Uint8Array.from(Array.from({ length: 256 }, (_, i) => mapColor(name, i / 255)).flat());
-      this.maps.set(name, map);
-    }
-    return map;
   }
 
   private blank(width: number, height: number): ImageData {

@@ -7,11 +7,12 @@
 import { Frustum, Matrix4, Object3D, Vector2 } from 'three';
 import { Budget } from './budget';
 import { CameraRig } from '../driving/camera_rig';
-import { Layer, type SharedUniforms } from './layer';
-import { ancestors, chooseCut, type Cut, type View } from './lod';
-import { FetchQueue } from '../server/node_store';
-import { ClassPalette, mapsTexture } from './palette';
-import { parseNodes, type LayerInfo, type SceneInfo } from '../server/protocol';
+import type { Layer, SharedUniforms } from './layer';
+import { LayerSet } from './layer_set';
+import { chooseCut, type Cut, type View } from './lod';
+import { ClassPalette } from './class_palette';
+import { ColorMaps } from './color_maps';
+import type { SceneInfo } from '../server/protocol';
 import { kColorModes, type ColorMode } from './shaders';
 import { Stage, type Area } from './stage';
 
@@ -26,10 +27,10 @@ export interface ViewStatistics {
   limited: boolean;
   framesPerSecond: number;
   budget: number;
+  /** From the page's load to the first picture of the model on the screen; null: not yet. */
+  firstPictureMs: number | null;
 }
 
-/** A node that was used so lately is not unloaded. */
-const kKeepMs = 2000;
 const kRestMs = 220;
 const kMegabyte = 1 << 20;
 
@@ -37,46 +38,48 @@ export class SceneView {
   readonly stage: Stage;
   readonly rig: CameraRig;
   readonly palette = new ClassPalette();
+  readonly maps = new ColorMaps();
   readonly shared: SharedUniforms;
-  layers: Layer[] = [];
+  readonly set: LayerSet;
   arrangement: Arrangement = { split: false };
   /** Called before each frame with the seconds since the last. */
   beforeFrame: (dt: number) => void = () => {};
   /** Called when layers were shown or hidden by other means than the user's. */
   layersChanged: () => void = () => {};
+  /** Called once, when something of the model is on the screen. */
+  firstShown: () => void = () => {};
   private readonly budget: Budget;
-  private readonly queue: FetchQueue;
   private cuts: Cut[] = [];
   private modelDirty = true;
   private screenDirty = true;
-  private arrivals = false;
   private movedMs = 0;
   private lastFrameMs = 0;
   private lastModelMs = 0;
+  /** That the last picture of the model took; known where it is waited for. */
+  private modelMs = 0;
   private modelInLastFrame = false;
   private wasStill = false;
   private readonly frameTimes: number[] = [];
-  private readonly memoryLimit: number;
-  private generation = 0;
+  private firstPictureMs: number | null = null;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
-    private readonly failed: (error: unknown) => void,
+    failed: (error: unknown) => void,
   ) {
     this.stage = new Stage(canvas);
     this.budget = new Budget(this.stage.software);
-    this.memoryLimit = (this.stage.software ? 128 : 384) * kMegabyte;
     if (this.stage.software) this.stage.outline = 0;
     this.rig = new CameraRig(canvas, () => this.moved());
-    this.queue = new FetchQueue((_, error) => this.failed(error));
     this.shared = {
       classes: { value: this.palette.texture },
-      maps: { value: mapsTexture() },
+      maps: { value: this.maps.texture },
       color_mode: { value: 0 },
       height_range_m: { value: new Vector2(0, 1) },
       point_px: { value: 2 },
       focal_px: { value: 1 },
     };
+    const memoryLimit = (this.stage.software ? 128 : 384) * kMegabyte;
+    this.set = new LayerSet(this.shared, memoryLimit, failed);
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement ?? canvas);
     this.resize();
   }
@@ -92,8 +95,10 @@ export class SceneView {
   set colorMode(mode: ColorMode) {
     const before = this.colorMode;
     this.shared.color_mode.value = kColorModes.indexOf(mode);
-    if (mode !== before && (mode === 'error' || before === 'error'))
-      this.showErrors(mode === 'error');
+    if (mode !== before && (mode === 'error' || before === 'error')) {
+      this.set.showErrors(mode === 'error');
+      this.layersChanged();
+    }
     this.invalidateModel();
   }
 
@@ -116,41 +121,27 @@ export class SceneView {
   }
 
   retryFetches() {
-    this.queue.retry();
+    this.set.retry();
   }
 
-  /** Errors lie on what they are the errors of: layers without any would hide them. */
-  private showErrors(on: boolean) {
-    if (on && this.layers.some((l) => l.info.has_errors)) {
-      this.usual = this.layers.map((l) => l.visible);
-      for (const layer of this.layers) layer.visible = layer.info.has_errors;
-    } else if (!on && this.usual) {
-      this.usual.forEach((visible, i) => (this.layers[i].visible = visible));
-      this.usual = null;
-    }
-    this.layersChanged();
-  }
-  /** Which layers were visible before errors were looked at. */
-  private usual: boolean[] | null = null;
-
-  /** Replaces all layers. Errors: ProtocolError; whatever fetch throws. */
+  /** Replaces the server's layers. Errors: ProtocolError; whatever fetch throws. */
   async load(scene: SceneInfo) {
-    const generation = ++this.generation;
-    const layers = await Promise.all(scene.layers.map((info) => this.loadLayer(info)));
-    if (generation !== this.generation) return;
-    this.queue.clear();
-    for (const layer of this.layers) layer.dispose();
-    this.layers = layers;
-    // The cloud that a model was made of would only hide it.
-    const splats = layers.some((l) => l.info.kind === 'splats');
-    for (const layer of layers) layer.visible = !splats || layer.info.kind === 'splats';
-    this.usual = null;
-    if (this.colorMode === 'error') this.showErrors(true);
+    if (!(await this.set.load(scene))) return;
+    if (this.colorMode === 'error') this.set.showErrors(true);
     this.cuts = [];
     this.palette.setClasses(scene.classes);
     const [low, high] = scene.middle_box;
     this.shared.height_range_m.value.set(low[2], Math.max(high[2], low[2] + 0.1));
     this.moved();
+  }
+
+  get layers(): Layer[] {
+    return this.set.layers;
+  }
+
+  /** Classes of the nodes that have come so far, ascending. */
+  get seenClasses(): number[] {
+    return this.set.classes;
   }
 
   get statistics(): ViewStatistics {
@@ -159,10 +150,11 @@ export class SceneView {
       elements: sum((c) => c.elements),
       nodes: sum((c) => c.drawn.length),
       loadedNodes: this.layers.reduce((s, l) => s + l.loadedNodes, 0),
-      loading: this.queue.busy || this.cuts.some((c) => c.wanted.length > 0),
+      loading: this.set.busy || this.cuts.some((c) => c.wanted.length > 0),
       limited: this.cuts.some((c) => c.limited),
       framesPerSecond: this.framesPerSecond(),
       budget: Math.round(this.budget.interactive),
+      firstPictureMs: this.firstPictureMs,
     };
   }
 
@@ -205,12 +197,6 @@ export class SceneView {
     this.invalidateModel();
   }
 
-  private async loadLayer(info: LayerInfo): Promise<Layer> {
-    const reply = await fetch(`layers/${info.id}/nodes.bin`);
-    if (!reply.ok) throw new Error(`layer ${info.name}: ${reply.status}`);
-    return new Layer(info, parseNodes(await reply.arrayBuffer()), this.shared);
-  }
-
   private frame(now: number) {
     const dt = Math.min((now - this.lastFrameMs) / 1000, 0.5);
     const ms = now - this.lastFrameMs;
@@ -219,8 +205,9 @@ export class SceneView {
     this.rig.controls.update(dt);
     const still = now - this.movedMs > kRestMs;
     const refine = still && !this.wasStill && this.cuts.some((c) => c.limited);
-    const pause = this.stage.software ? 350 : 60;
-    if (this.arrivals && (now - this.lastModelMs > pause || !still)) this.invalidateModel();
+    // What comes is shown soon, but drawing must not be all that a slow machine does.
+    const pause = this.stage.software ? Math.min(Math.max(350, this.modelMs), 1500) : 60;
+    if (this.set.arrivals && (now - this.lastModelMs > pause || !still)) this.invalidateModel();
     if (this.modelInLastFrame && !still)
       this.budget.frame(
         ms,
@@ -235,7 +222,7 @@ export class SceneView {
 
   private drawModel(still: boolean, now: number) {
     this.wasStill = still;
-    this.modelDirty = this.arrivals = false;
+    this.modelDirty = this.set.arrivals = false;
     this.lastModelMs = now;
     const { areas, rig } = this;
     rig.camera.aspect = areas[0].width / areas[0].height;
@@ -246,15 +233,24 @@ export class SceneView {
     this.shared.focal_px.value = view.focal_px;
     const budget = (still ? this.budget.still : this.budget.interactive) / areas.length;
     this.cuts = areas.map((_, i) => chooseCut(this.layersOf(i), view, budget));
-    this.keepUsed(now);
-    this.fetchWanted();
+    this.set.keepUsed(this.cuts, now);
+    this.set.want(this.cuts);
     this.stage.beginModel();
     areas.forEach((area, i) => this.stage.drawModel(objectsOf(this.cuts[i]), area, rig.camera));
+    if (!this.stage.software) return;
+    // Without a GPU pictures would queue up behind each other, and the page stand still for them.
+    this.stage.finish();
+    this.modelMs = performance.now() - now;
   }
 
   private drawScreen() {
     this.screenDirty = false;
     this.stage.drawScreen(this.areas, this.rig.camera);
+    if (this.firstPictureMs === null && this.cuts.some((c) => c.elements > 0)) {
+      this.stage.finish();
+      this.firstPictureMs = performance.now();
+      this.firstShown();
+    }
   }
 
   private view(height: number): View {
@@ -280,42 +276,6 @@ export class SceneView {
     if (!arrangement.split) return this.layers.filter((l) => l.visible);
     const index = area === 0 ? arrangement.left : arrangement.right;
     return this.layers.filter((_, i) => i === index);
-  }
-
-  private keepUsed(now: number) {
-    for (const layer of this.layers) {
-      const nodes = this.cuts
-        .flatMap((c) => c.drawn)
-        .filter((r) => r.tree === layer)
-        .map((r) => r.node);
-      layer.touch(ancestors(layer, new Set(nodes), layer.parents), now);
-    }
-    let bytes = this.layers.reduce((sum, l) => sum + l.bytes, 0);
-    if (bytes < this.memoryLimit) return;
-    const idle = this.layers.flatMap((l) => l.idle(now - kKeepMs)).sort((a, b) => a.used - b.used);
-    for (const { layer, node } of idle) {
-      if (bytes < 0.9 * this.memoryLimit) return;
-      bytes -= layer.bytes;
-      layer.unload(node);
-      bytes += layer.bytes;
-    }
-  }
-
-  private fetchWanted() {
-    const { generation } = this;
-    const wanted = this.cuts.flatMap((c) => c.wanted).sort((a, b) => b.pixels - a.pixels);
-    this.queue.want(
-      wanted.map(({ tree, node }) => {
-        const layer = tree as Layer;
-        const url = layer.url(node);
-        const arrived = (bytes: ArrayBuffer) => {
-          if (generation !== this.generation) return;
-          layer.add(node, bytes);
-          this.arrivals = true;
-        };
-        return { key: url, url, arrived };
-      }),
-    );
   }
 
   private framesPerSecond(): number {

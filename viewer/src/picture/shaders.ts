@@ -22,7 +22,7 @@ uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
 uniform vec3 cameraPosition;
 uniform sampler2D classes, maps;
 uniform int color_mode;
-uniform int has;            // 1: classes, 2: intensities, 4: errors
+uniform int has;            // 1: classes, 2: intensities, 4: errors, 8: signed ones, 16: holes
 uniform vec2 height_range_m;
 uniform vec3 low, size;
 in uvec4 element;
@@ -48,14 +48,15 @@ vec4 class_texel() {
   return texelFetch(classes, ivec2(id & 255, id >> 8), 0);
 }
 
-// Row r of the maps: 0 viridis, 1 plasma, 2 inferno.
+// Row r of the maps, as kRoles of color_maps.ts names them.
 vec3 map_color(int r, float t) {
   float x = (0.5 + 255.0 * clamp(t, 0.0, 1.0)) / 256.0;
-  return texture(maps, vec2(x, (float(r) + 0.5) / 3.0)).rgb;
+  return texture(maps, vec2(x, (float(r) + 0.5) / 4.0)).rgb;
 }
 
 const vec3 kPlain = vec3(0.74, 0.77, 0.80);
 const vec3 kUnknown = vec3(0.36, 0.38, 0.41);
+const vec3 kHole = vec3(0.98, 0.86, 0.10);
 
 vec3 base_color(vec3 position, vec3 normal) {
   if (color_mode == 0) return (has & 1) != 0 ? class_texel().rgb : kPlain;
@@ -65,8 +66,11 @@ vec3 base_color(vec3 position, vec3 normal) {
   if (color_mode == 2) return 0.5 + 0.5 * normal;
   if (color_mode == 4)
     return map_color(0, (position.z - height_range_m.x) / (height_range_m.y - height_range_m.x));
-  if (color_mode == 5)
-    return (has & 4) != 0 ? map_color(1, float(element.w >> 24) / 255.0) : kUnknown;
+  if (color_mode == 5) {
+    uint code = element.w >> 24;
+    if ((has & 4) == 0 || code == 0u) return (has & 16) != 0 ? kHole : kUnknown;
+    return map_color((has & 8) != 0 ? 3 : 1, float(code - 1u) / 254.0);
+  }
   return kPlain;
 }
 
@@ -170,7 +174,7 @@ flat out vec3 color;
 
 vec3 map_color(int r, float t) {
   float x = (0.5 + 255.0 * clamp(t, 0.0, 1.0)) / 256.0;
-  return texture(maps, vec2(x, (float(r) + 0.5) / 3.0)).rgb;
+  return texture(maps, vec2(x, (float(r) + 0.5) / 4.0)).rgb;
 }
 
 void main() {

@@ -125,6 +125,11 @@ export class Stage {
     renderer.setScissorTest(false);
   }
 
+  /** Waits until all of it is drawn. */
+  finish() {
+    this.read(0, 0, 1, 1);
+  }
+
   /** Colours of pixels of what was drawn in this task, from the upper left corner, 4 bytes each. */
   read(x: number, y: number, width: number, height: number): Uint8Array {
     const gl = this.renderer.getContext();

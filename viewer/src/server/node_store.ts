@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Fetches nodes, a few at a time and the most wanted first.
+// Fetches nodes, a few at a time and the most wanted first, and tries again what failed.
 
 export interface Fetch {
   /** Names it: what is under way is not asked for again. */
   key: string;
-  url: string;
+  load(signal: AbortSignal): Promise<ArrayBuffer>;
   arrived(bytes: ArrayBuffer): void;
 }
 
@@ -65,9 +65,7 @@ export class FetchQueue {
     this.underWay.set(one.key, controller);
     this.wanted = this.wanted.filter((f) => f !== one);
     try {
-      const reply = await fetch(one.url, { signal: controller.signal });
-      if (!reply.ok) throw new Error(`${one.url}: ${reply.status}`);
-      const bytes = await reply.arrayBuffer();
+      const bytes = await one.load(controller.signal);
       if (controller.signal.aborted) return;
       one.arrived(bytes);
       this.pauses.delete(one.key);

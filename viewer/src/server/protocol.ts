@@ -19,6 +19,8 @@ export interface LayerInfo {
   has_errors: boolean;
   intensity_range: [number, number];
   error_range_m: [number, number];
+  /** Of the beams with errors: 'early', 'late', 'ghosts', 'holes'; empty: all, or none have any. */
+  part: string;
   box: Box;
 }
 
@@ -42,8 +44,17 @@ export interface RecordedScan {
   name: string;
   trajectory: number;
   pose: Pose;
+  /** Since the first of its trajectory. */
+  time_s: number;
   /** Null: not told. */
   points: number | null;
+}
+
+export interface TrajectoryInfo {
+  name: string;
+  poses: Pose[];
+  /** Of the poses, since the first; ascending. */
+  times_s: number[];
 }
 
 export interface SceneInfo {
@@ -52,7 +63,7 @@ export interface SceneInfo {
   layers: LayerInfo[];
   middle_box: Box;
   classes: ClassInfo[];
-  trajectories: { name: string; poses: Pose[] }[];
+  trajectories: TrajectoryInfo[];
   scans: RecordedScan[];
   can_simulate: boolean;
   sensors: SensorInfo[];
@@ -165,6 +176,7 @@ function layer(value: unknown, what: string): LayerInfo {
     has_errors: v.has_errors === true,
     intensity_range: range(v.intensity_range, `${what}.intensity_range`),
     error_range_m: range(v.error_range_m, `${what}.error_range_m`),
+    part: typeof v.part === 'string' ? v.part : '',
     box: box(v.box, `${what}.box`),
   };
 }
@@ -192,9 +204,14 @@ function sensorInfo(value: unknown, what: string): SensorInfo {
   };
 }
 
-function trajectory(value: unknown, what: string) {
+function trajectory(value: unknown, what: string): TrajectoryInfo {
   const v = fields(value, what);
-  return { name: text(v.name, `${what}.name`), poses: list(v.poses, `${what}.poses`, pose) };
+  const poses = list(v.poses, `${what}.poses`, pose);
+  const told = list(v.times_s, `${what}.times_s`, number);
+  const ascend = told.length === poses.length && told.every((t, i) => i === 0 || t > told[i - 1]);
+  // Without times: one every tenth of a second, as most LiDARs turn.
+  const times_s = ascend ? told : poses.map((_, i) => 0.1 * i);
+  return { name: text(v.name, `${what}.name`), poses, times_s };
 }
 
 function recordedScan(value: unknown, what: string): RecordedScan {
@@ -203,6 +220,7 @@ function recordedScan(value: unknown, what: string): RecordedScan {
     name: text(v.name, `${what}.name`),
     trajectory: number(v.trajectory, `${what}.trajectory`),
     pose: pose(v.pose, `${what}.pose`),
+    time_s: typeof v.time_s === 'number' ? v.time_s : 0,
     points: typeof v.points === 'number' ? v.points : null,
   };
 }

@@ -31,7 +31,7 @@ float ElementValues::intensity(std::size_t k) const {
 }
 
 float ElementValues::error_m(std::size_t k) const {
-  return errors_m.empty() ? 0 : std::fabs(errors_m[sources[k]]);
+  return errors_m.empty() ? std::numeric_limits<float>::quiet_NaN() : errors_m[sources[k]];
 }
 
 ElementValues ElementValues::run(std::size_t begin, std::size_t end) const {

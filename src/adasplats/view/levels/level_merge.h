@@ -22,7 +22,7 @@ struct ElementValues {
 
   std::uint16_t class_id(std::size_t k) const { return classes.empty() ? 0 : classes[sources[k]]; }
   float intensity(std::size_t k) const;  ///< NaN: 0
-  float error_m(std::size_t k) const;    ///< magnitude
+  float error_m(std::size_t k) const;    ///< NaN: not known
   ElementValues run(std::size_t begin, std::size_t end) const;
 };
 

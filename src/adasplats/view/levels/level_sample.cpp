@@ -24,10 +24,19 @@ std::uint16_t place(float value, float low, float high) {
                                   kMost16);
 }
 
-std::uint8_t byte_of(float value, ByteRange range) {
-  if (std::isnan(value)) return 255;
+double share_of(float value, ByteRange range) {
   const double low = static_cast<double>(range.low), high = static_cast<double>(range.high);
-  return quantized<std::uint8_t>((static_cast<double>(value) - low) / (high - low), 255);
+  return (static_cast<double>(value) - low) / (high - low);
+}
+
+std::uint8_t intensity_byte(float value, ByteRange range) {
+  return quantized<std::uint8_t>(share_of(value, range), 255);
+}
+
+/// 0 says that it is not known.
+std::uint8_t error_byte(float value, ByteRange range) {
+  if (std::isnan(value)) return 0;
+  return static_cast<std::uint8_t>(1 + quantized<std::uint8_t>(share_of(value, range), 254));
 }
 
 }  // namespace
@@ -80,8 +89,8 @@ std::vector<LevelElement> encode(std::span<const LevelSample> samples, ByteRange
     element.normal[0] = normal.u;
     element.normal[1] = normal.v;
     element.class_id = sample.class_id;
-    element.intensity = byte_of(sample.intensity, intensities);
-    element.error = byte_of(sample.error_m, errors_m);
+    element.intensity = intensity_byte(sample.intensity, intensities);
+    element.error = error_byte(sample.error_m, errors_m);
     elements.push_back(element);
   }
   return elements;

@@ -18,7 +18,7 @@ struct LevelSample {
   Vec3f normal{0, 0, 1};
   std::uint16_t class_id = 0;
   float intensity = 0;
-  float error_m = 0;  ///< magnitude, NaN: not known
+  float error_m = 0;  ///< signed, NaN: not known
 };
 
 /// Fills box and largest radius of a node that holds `samples`, and gives their bytes. A position

@@ -59,8 +59,10 @@ ByteRange range_of_intensities(std::span<const float> intensities) {
 
 ByteRange range_of_errors(std::span<const float> errors_m) {
   std::vector<float> values = finite_values(errors_m, true);
-  return {0, values.empty() ? kLeastErrorRange_m
-                            : std::max(kLeastErrorRange_m, percentile(values, 98))};
+  const float most =
+      values.empty() ? kLeastErrorRange_m : std::max(kLeastErrorRange_m, percentile(values, 98));
+  const bool is_signed = std::ranges::any_of(errors_m, [](float error_m) { return error_m < 0; });
+  return {is_signed ? -most : 0, most};
 }
 
 /// Makes the elements of nodes.

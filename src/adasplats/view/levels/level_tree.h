@@ -21,7 +21,7 @@ struct LevelInput {
   std::span<const Vec3f> positions;  ///< points; else empty
   std::span<const std::uint16_t> classes;
   std::span<const float> intensities;
-  std::span<const float> errors_m;  ///< magnitudes count; NaN: not known, reported as the greatest
+  std::span<const float> errors_m;  ///< signed; NaN: not known
 };
 
 struct LevelOptions {
@@ -32,7 +32,8 @@ struct LevelOptions {
   int cells_per_side = 64;
 };
 
-/// Bytes 0 and 255 of an attribute stand for these.
+/// The ends of what an attribute's bytes stand for: intensities 0 and 255, errors 1 and 255 (0: not
+/// known).
 struct ByteRange {
   float low = 0;
   float high = 1;
@@ -95,7 +96,8 @@ class LevelTree {
   std::vector<LevelElement> elements_;
   /// 2nd and 98th percentile of the intensities; {0, 1} without any or where they are equal.
   ByteRange intensity_range_;
-  /// 0 and the 98th percentile of the errors, at least a millimetre.
+  /// To the 98th percentile of the errors' magnitudes, at least a millimetre; from its negative
+  /// where any error is negative, else from 0.
   ByteRange error_range_m_;
 };
 

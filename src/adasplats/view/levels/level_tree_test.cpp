@@ -166,6 +166,7 @@ TEST(LevelTree, EveryElementIsInOneLeaf) {
   EXPECT_NEAR(tree.intensity_range().low, 0.04F, 1e-3F);
   EXPECT_NEAR(tree.intensity_range().high, 1.96F, 1e-3F);
   EXPECT_NEAR(tree.error_range_m().high, 0.49F, 1e-3F);
+  EXPECT_EQ(tree.error_range_m().low, -tree.error_range_m().high);
   std::vector<int> seen(disks.size(), 0);
   for (std::size_t n = 0; n < tree.nodes().size(); ++n) {
     const LevelNode& node = tree.nodes()[n];
@@ -182,8 +183,8 @@ TEST(LevelTree, EveryElementIsInOneLeaf) {
       const float share = (intensities[i] - tree.intensity_range().low) /
                           (tree.intensity_range().high - tree.intensity_range().low);
       ASSERT_NEAR(element.intensity, 255 * std::clamp(share, 0.0F, 1.0F), 0.51F);
-      const float error = std::min(std::fabs(errors_m[i]) / tree.error_range_m().high, 1.0F);
-      ASSERT_NEAR(element.error, std::isnan(errors_m[i]) ? 255 : 255 * error, 0.51F);
+      const float error = std::max(errors_m[i] / tree.error_range_m().high, -1.0F);
+      ASSERT_NEAR(element.error, std::isnan(errors_m[i]) ? 0 : 1 + 127 * (1 + error), 0.51F);
     }
   }
   EXPECT_EQ(std::ranges::count(seen, 1), static_cast<std::ptrdiff_t>(disks.size()));
@@ -316,7 +317,7 @@ TEST(LevelTree, AMergedDiskHasTheClassOfMostAreaAndMeans) {
   EXPECT_FLOAT_EQ(root[0].disk.radius, 0.2F);
   EXPECT_EQ(root[0].class_id, 9);
   EXPECT_NEAR(root[0].intensity, 170, 1);
-  EXPECT_EQ(root[0].error, 255);  // 0.2 m is the most that is known
+  EXPECT_EQ(root[0].error, 1);  // -0.2 m is the most that is known
 }
 
 TEST(LevelTree, OfNoneAndOfOne) {
@@ -445,7 +446,7 @@ TEST(LevelTree, RangesOfAttributes) {
   const LevelTree dark({{}, points, {}, unknown, unknown}, {}, executor);
   EXPECT_EQ(dark.intensity_range().high, 1.0F);
   EXPECT_EQ(dark.error_range_m().high, 1e-3F);
-  EXPECT_EQ(dark.elements(0)[0].error, 255);
+  EXPECT_EQ(dark.elements(0)[0].error, 0);
   EXPECT_EQ(dark.elements(0)[0].intensity, 0);
 }
 

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/view/error_layers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "adasplats/neighbors/point_index.h"
+
+namespace adasplats {
+namespace {
+
+constexpr std::array<const char*, 4> kParts = {"early", "late", "ghosts", "holes"};
+constexpr std::size_t kNoPart = kParts.size();
+
+std::size_t part_of(float error_m, const ErrorLimits& limits) {
+  if (std::isnan(error_m)) return 3;
+  if (error_m < -limits.ghost_m) return 2;
+  if (error_m > limits.fits_m) return 1;
+  return error_m < -limits.fits_m ? 0 : kNoPart;
+}
+
+/// The points of some rows.
+PointCloud chosen_rows(const PointCloud& cloud, std::span<const std::uint32_t> rows) {
+  PointCloud chosen;
+  chosen.origin = cloud.origin;
+  for (const std::uint32_t i : rows) {
+    chosen.positions.push_back(cloud.positions[i]);
+    if (!cloud.classes.empty()) chosen.classes.push_back(cloud.classes[i]);
+    if (!cloud.intensities.empty()) chosen.intensities.push_back(cloud.intensities[i]);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<float> disk_errors(std::span<const Disk> disks, std::span<const Vec3f> positions,
+                               Vec3d shift, std::span<const float> errors_m,
+                               const ErrorLimits& limits, const Executor& executor) {
+  std::vector<Vec3f> centers, places;
+  centers.reserve(disks.size());
+  for (const Disk& disk : disks) centers.push_back(disk.center);
+  places.reserve(positions.size());
+  for (const Vec3f& p : positions) places.push_back(vec_cast<float>(vec_cast<double>(p) + shift));
+  const std::vector<Neighbor> nearest = PointIndex(centers, executor).nearest(places, executor);
+  std::vector<double> sums(disks.size(), 0);
+  std::vector<std::uint32_t> counts(disks.size(), 0);
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    const Neighbor& found = nearest[i];
+    if (found.index == Neighbor::kNone || std::isnan(errors_m[i]) ||
+        found.squared_distance > limits.reach_m * limits.reach_m)
+      continue;
+    sums[found.index] += static_cast<double>(errors_m[i]);
+    ++counts[found.index];
+  }
+  std::vector<float> means(disks.size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t k = 0; k < means.size(); ++k)
+    if (counts[k] > 0) means[k] = static_cast<float>(sums[k] / counts[k]);
+  return means;
+}
+
+std::vector<ViewLayer> error_part_layers(const PointCloud& cloud, std::span<const float> errors_m,
+                                         const ErrorLimits& limits, Vec3d origin,
+                                         const Executor& executor) {
+  std::vector<ViewLayer> layers;
+  if (std::ranges::none_of(errors_m, [](float error_m) { return error_m < 0; })) return layers;
+  std::array<std::vector<std::uint32_t>, kParts.size()> rows;
+  for (std::size_t i = 0; i < errors_m.size(); ++i)
+    if (const std::size_t part = part_of(errors_m[i], limits); part != kNoPart)
+      rows[part].push_back(static_cast<std::uint32_t>(i));
+  for (std::size_t part = 0; part < rows.size(); ++part) {
+    if (rows[part].empty()) continue;
+    std::vector<float> chosen_m;
+    for (const std::uint32_t i : rows[part]) chosen_m.push_back(errors_m[i]);
+    ViewLayer layer =
+        point_layer(kParts[part], chosen_rows(cloud, rows[part]), chosen_m, origin, executor);
+    layer.part = kParts[part];
+    layers.push_back(std::move(layer));
+  }
+  return layers;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The layers that there are, which of them are shown, and their nodes as they are wanted.
+
+import type { Box3 } from 'three';
+import { Layer, type SharedUniforms } from './layer';
+import { ancestors, type Cut } from './lod';
+import { FetchQueue } from '../server/node_store';
+import { parseNodes, type LayerInfo, type SceneInfo } from '../server/protocol';
+
+/** A node that was used so lately is not unloaded. */
+const kKeepMs = 2000;
+
+export class LayerSet {
+  layers: Layer[] = [];
+  /** A node has come since this was last set to false. */
+  arrivals = false;
+  private readonly queue: FetchQueue;
+  private generation = 0;
+  /** Which layers were visible before errors were looked at. */
+  private usual: Map<Layer, boolean> | null = null;
+
+  constructor(
+    private readonly shared: SharedUniforms,
+    private readonly memoryLimit: number,
+    failed: (error: unknown) => void,
+  ) {
+    this.queue = new FetchQueue((_, error) => failed(error));
+  }
+
+  get busy(): boolean {
+    return this.queue.busy;
+  }
+
+  retry() {
+    this.queue.retry();
+  }
+
+  /** Replaces all layers of the server, keeps what the page added. False: another call came since. */
+  async load(scene: SceneInfo): Promise<boolean> {
+    const generation = ++this.generation;
+    const layers = await Promise.all(scene.layers.map((info) => this.loadLayer(info)));
+    if (generation !== this.generation) return false;
+    this.queue.clear();
+    const added = this.layers.filter((l) => l.isLocal);
+    for (const layer of this.layers) if (!layer.isLocal) layer.dispose();
+    this.layers = [...layers, ...added];
+    for (const layer of layers) layer.visible = startsVisible(layer.info, scene);
+    this.usual = null;
+    return true;
+  }
+
+  add(layer: Layer) {
+    this.layers = [...this.layers, layer];
+  }
+
+  remove(layer: Layer) {
+    this.layers = this.layers.filter((l) => l !== layer);
+    layer.dispose();
+  }
+
+  /** Errors lie on what they are the errors of: layers without any would hide them. */
+  showErrors(on: boolean) {
+    if (on && this.layers.some((l) => l.info.has_errors)) {
+      this.usual = new Map(this.layers.map((l) => [l, l.visible]));
+      for (const layer of this.layers) layer.visible = layer.info.has_errors;
+    } else if (!on && this.usual) {
+      for (const [layer, visible] of this.usual) layer.visible = visible;
+      this.usual = null;
+    }
+  }
+
+  /** Of the nodes that have come so far. */
+  get classes(): number[] {
+    return [...new Set(this.layers.flatMap((l) => [...l.classes]))].sort((a, b) => a - b);
+  }
+
+  get boxes(): Box3[] {
+    return this.layers.filter((l) => l.nodes.length > 0).map((l) => l.boxes[0]);
+  }
+
+  /** Notes what a picture was made of, and drops what no picture needed for long. */
+  keepUsed(cuts: Cut[], now: number) {
+    for (const layer of this.layers) {
+      const nodes = cuts
+        .flatMap((c) => c.drawn)
+        .filter((r) => r.tree === layer)
+        .map((r) => r.node);
+      layer.touch(ancestors(layer, new Set(nodes), layer.parents), now);
+    }
+    let bytes = this.layers.reduce((sum, l) => sum + l.bytes, 0);
+    if (bytes < this.memoryLimit) return;
+    const idle = this.layers.flatMap((l) => l.idle(now - kKeepMs)).sort((a, b) => a.used - b.used);
+    for (const { layer, node } of idle) {
+      if (bytes < 0.9 * this.memoryLimit) return;
+      bytes -= layer.bytes;
+      layer.unload(node);
+      bytes += layer.bytes;
+    }
+  }
+
+  want(cuts: Cut[]) {
+    const { generation } = this;
+    const wanted = cuts.flatMap((c) => c.wanted).sort((a, b) => b.pixels - a.pixels);
+    this.queue.want(
+      wanted.map(({ tree, node }) => {
+        const layer = tree as Layer;
+        const arrived = (bytes: ArrayBuffer) => {
+          if (generation !== this.generation && !layer.isLocal) return;
+          layer.add(node, bytes);
+          this.arrivals = true;
+        };
+        const load = (signal: AbortSignal) => layer.load(node, signal);
+        return { key: `${layer.info.id}/${node}`, load, arrived };
+      }),
+    );
+  }
+
+  private async loadLayer(info: LayerInfo): Promise<Layer> {
+    const reply = await fetch(`layers/${info.id}/nodes.bin`);
+    if (!reply.ok) throw new Error(`layer ${info.name}: ${reply.status}`);
+    return new Layer(info, parseNodes(await reply.arrayBuffer()), this.shared);
+  }
+}
+
+/** The cloud that a model was made of would only hide it; parts of the beams are for who asks. */
+function startsVisible(info: LayerInfo, scene: SceneInfo): boolean {
+  if (info.part !== '') return false;
+  return info.kind !== 'points' || scene.layers.every((l) => l.kind === 'points');
+}
