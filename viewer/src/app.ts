@@ -6,30 +6,37 @@
 import { CameraModes } from './driving/camera_modes';
 import { firstMode } from './panels/color_panel';
 import { CommandDialog } from './panels/command_dialog';
-import { button, byId, fill, short } from './panels/dom';
+import { button, byId, fill, make, short } from './panels/dom';
 import { DrivePanel } from './panels/drive_panel';
 import { DrivenSensor } from './driving/driven_sensor';
 import { publishHandle } from './handle';
 import { fillHelp } from './panels/help';
 import { listenToKeys } from './driving/keyboard';
 import { showKeyHints } from './panels/key_hints';
+import { Labels } from './picture/labels';
 import { Legend } from './panels/legend';
 import { LidarPanel } from './panels/lidar_panel';
 import { showLiveFigures } from './panels/live_figures';
 import { LiveScans } from './live_scans';
 import { showToast } from './panels/notices';
+import { ObjectsPanel } from './panels/objects_panel';
 import { Picker } from './driving/picker';
+import { Playback } from './playback';
 import { Pointer } from './driving/pointer';
 import { yawOf } from './driving/pose';
 import type { SceneInfo, SensorMessage } from './server/protocol';
 import { RangeStrip } from './panels/range_strip';
+import { SaveMenu } from './saving/save_menu';
 import { ScanCloud } from './picture/scan_cloud';
 import { ScanPointsPanel } from './panels/scan_points_panel';
 import { SceneSource } from './scene_source';
 import { SceneView } from './picture/scene_view';
-import { saveScreenshot } from './panels/screenshot';
 import { SidePanel } from './panels/side_panel';
+import { TimelinePanel } from './panels/timeline_panel';
+import { ToolBox } from './tools/tool_box';
+import { Tools } from './tools/tools';
 import { showViewFigures } from './panels/view_figures';
+import { WorldObjects } from './picture/world_objects';
 
 const kFiguresMs = 250;
 
@@ -42,20 +49,25 @@ export class App {
   private readonly cameras: CameraModes;
   private readonly drive: DrivePanel;
   private readonly panel: SidePanel;
+  private readonly playback: Playback;
+  private readonly timeline: TimelinePanel;
   private readonly strip: RangeStrip;
   private readonly legend: Legend;
   private readonly scanPoints: ScanPointsPanel;
   private readonly picker: Picker;
+  private readonly tools: Tools;
+  private readonly toolBox: ToolBox;
+  private readonly labels = new Labels(byId('labels'));
   private readonly dialog: CommandDialog;
+  private readonly saving: SaveMenu;
+  private readonly objects: WorldObjects;
+  private colorVersion = 0;
 
   constructor(scene: SceneInfo) {
     const canvas = byId<HTMLCanvasElement>('view');
     const failed = (error: unknown) => this.loadFailed(error);
     const view = (this.view = new SceneView(canvas, failed));
-    this.source = new SceneSource(scene, view, {
-      loaded: () => this.panel.show(this.source.scene),
-      failed,
-    });
+    this.source = new SceneSource(scene, view, { loaded: () => this.loaded(), failed });
     this.scans = this.makeScans();
     const { live, cloud } = this.scans;
     this.sensor = new DrivenSensor(
@@ -68,52 +80,70 @@ export class App {
       choose: (name, settings) => live.chooseSensor(name, settings),
       run: (on) => live.run(on),
     });
-    const recordedCloud = new ScanCloud(view.shared.classes, view.shared.maps);
-    const clouds = [cloud, recordedCloud];
+    const recorded = new ScanCloud(view.shared);
+    const clouds = [cloud, recorded];
+    this.objects = new WorldObjects(view, {
+      placed: (index, pose) => live.placeObject(index, pose),
+      failed,
+    });
+    this.playback = new Playback(scene, {
+      view,
+      sensor: this.sensor,
+      live: cloud,
+      recorded,
+      failed,
+      shown: () => this.strip.renew(),
+    });
+    this.timeline = new TimelinePanel(this.playback, scene.can_simulate);
     this.cameras = new CameraModes(view);
     this.drive = new DrivePanel(this.source, this.cameras, this.sensor);
-    this.strip = new RangeStrip(cloud, view.palette, view.maps);
+    this.strip = new RangeStrip(() => this.playback.packet, view.palette, view.maps);
     this.legend = new Legend(scene, view.maps, view.palette);
     this.picker = new Picker(view, live, clouds, scene.origin_m);
+    this.tools = new Tools(view, live, clouds, this.labels, this.sensor, scene.origin_m, failed);
+    this.toolBox = new ToolBox(this.tools.all);
     this.dialog = new CommandDialog(this.source, this.lidar, this.sensor.driver);
-    const scanPoints = new ScanPointsPanel(view, cloud, clouds, scene.can_simulate);
-    this.scanPoints = scanPoints;
-    this.panel = new SidePanel(
-      { view, lidar: this.lidar, drive: this.drive, scanPoints, recordedCloud },
-      {
-        colorsChanged: () => this.colorsChanged(),
-        goTo: (pose) => this.sensor.setPose(pose),
-        failed,
-      },
-    );
-    view.stage.overlay.add(recordedCloud.object, cloud.object, ...this.sensor.objects);
-    byId('strip').hidden = !scene.can_simulate;
-    this.fillTools();
+    this.scanPoints = new ScanPointsPanel(view, cloud, clouds, scene.can_simulate);
+    const command = scene.can_simulate ? () => void this.dialog.show() : null;
+    this.saving = new SaveMenu(view, scene, this.playback, command);
+    this.panel = this.makePanel();
+    view.stage.overlay.add(recorded.object, cloud.object, this.objects.object);
+    view.stage.overlay.add(...this.sensor.objects);
+    byId('strip').hidden = !scene.can_simulate && scene.scans.length === 0;
     fillHelp(byId('help'));
+    this.fillTools();
     this.listen(canvas);
   }
 
   start() {
     const { view, lidar, sensor } = this;
     const { scene } = this.source;
-    const { live, rate, cloud } = this.scans;
+    const { live } = this.scans;
     view.rig.setScene(scene.middle_box);
     view.colorMode = firstMode(scene);
     sensor.moved();
     const { position, quaternion } = sensor.body.object;
     view.rig.followSensor(position, yawOf(quaternion), 0);
     this.cameras.choose('follow');
+    this.playback.choose(this.playback.source);
     this.showLoading();
-    showKeyHints(scene.scans.length > 0);
+    showKeyHints(this.playback.timeline !== null);
     view.beforeFrame = (dt) => this.step(dt);
     view.start();
     window.setInterval(() => this.showFigures(), kFiguresMs);
     void this.source.show();
+    void this.objects.load(scene);
     if (scene.can_simulate) {
-      live.setMotion(sensor.driver.motion);
+      live.setMotion(sensor.motion);
       lidar.setRunning(true);
       live.connect();
     }
+    this.publish();
+  }
+
+  private publish() {
+    const { view, sensor, lidar } = this;
+    const { live, rate, cloud } = this.scans;
     publishHandle({
       view,
       live,
@@ -121,12 +151,24 @@ export class App {
       lidar,
       rate,
       cloud,
+      playback: this.playback,
+      tools: this.tools,
+      objects: this.objects,
       setPose: (pose) => sensor.setPose(pose),
       setCameraMode: (mode) => this.cameras.choose(mode),
       setColor: (mode) => this.panel.chooseColor(mode),
       command: () => this.dialog.command,
       poses: () => this.dialog.poses,
     });
+  }
+
+  private makePanel(): SidePanel {
+    const { view, lidar, drive, scanPoints } = this;
+    const objects = new ObjectsPanel(this.objects, this.source.scene.origin_m);
+    return new SidePanel(
+      { view, lidar, drive, scanPoints, objects },
+      { colorsChanged: () => this.colorsChanged() },
+    );
   }
 
   private makeScans(): LiveScans {
@@ -141,6 +183,10 @@ export class App {
         showToast(message);
       },
     });
+  }
+
+  private loaded() {
+    this.panel.show(this.source.scene);
   }
 
   private sensorConfirmed(message: SensorMessage) {
@@ -158,18 +204,25 @@ export class App {
 
   /** In each frame, before it is drawn. */
   private step(dt: number) {
-    const { view, sensor } = this;
+    const { view, sensor, playback } = this;
+    playback.step(dt);
     sensor.step(dt);
+    if (playback.timeline) {
+      sensor.setTime(playback.timeline.world_s);
+      this.objects.step(playback.timeline.world_s);
+    }
     const { position, quaternion } = sensor.body.object;
     if (view.rig.followSensor(position, yawOf(quaternion), dt)) view.moved();
     sensor.body.fit(view.rig.camera, view.height_px);
     this.strip.step(this.scans.step());
+    this.saving.step();
+    this.labels.place(view.rig.camera);
   }
 
   /** Until something is seen. */
   private showLoading() {
     const { layers, name } = this.source.scene;
-    const what = layers.map((l) => `${short(l.count)} ${l.kind}`).slice(0, 2);
+    const what = layers.slice(0, 2).map((l) => `${short(l.count)} ${l.kind}`);
     const note = byId('loading');
     note.textContent = `Loading ${name}: ${what.join(', ')}`;
     note.hidden = false;
@@ -181,7 +234,6 @@ export class App {
     this.strip.draw();
     this.showLegend();
   }
-  private colorVersion = 0;
 
   private showLegend() {
     const { view, scanPoints, colorVersion } = this;
@@ -190,41 +242,44 @@ export class App {
       mode: view.colorMode,
       classes: view.seenClasses,
       scan: scanPoints.subject,
+      both: this.playback.source === 'both',
     };
     this.legend.show(subject, colorVersion);
   }
 
   private showFigures() {
+    const { packet, source } = this.playback;
     this.panel.update();
     this.showLegend();
     showViewFigures(byId('figures'), this.view);
-    showLiveFigures(byId('live'), this.scans.cloud.packet, this.scans.rate, this.lidar.running);
+    const isLive = source !== 'recorded';
+    showLiveFigures(byId('live'), isLive ? packet : null, this.scans.rate, this.lidar.running);
     this.drive.showSpeed();
     this.strip.showFacts();
+    this.timeline.show();
   }
 
   private fillTools() {
-    const screenshot = () => saveScreenshot(this.view, this.source.scene.name);
-    const command = () => void this.dialog.show();
     fill(
       byId('tools'),
-      button('Screenshot', 'Saves the picture as PNG', screenshot),
-      this.source.scene.can_simulate
-        ? button('Copy command line', 'What simulates this path with this LiDAR', command)
-        : null,
+      make('div', { className: 'group' }, ...this.toolBox.elements),
+      ...this.saving.elements,
       button('Help', 'Keys and mouse (?)', showHelp),
     );
   }
 
   private listen(canvas: HTMLCanvasElement) {
-    const { sensor, picker } = this;
-    new Pointer(this.view, canvas, sensor.body, {
-      dragged: (x, y) => sensor.moveTo(x, y),
-      clicked: (place) => void picker.pick(place, sensor.body.object.position),
+    const { sensor, picker, toolBox } = this;
+    const grabbables = [this.tools.clip, sensor.grabbable, this.objects];
+    new Pointer(this.view, canvas, grabbables, (place) => {
+      if (!toolBox.clicked(place)) void picker.pick(place.screen, sensor.body.object.position);
     });
     listenToKeys({
       driver: sensor.driver,
-      escape: () => picker.hide(),
+      escape: () => {
+        picker.hide();
+        toolBox.putAll();
+      },
       shortcut: (key) => this.shortcut(key),
     });
     canvas.addEventListener('webglcontextlost', (e) => e.preventDefault());
@@ -234,11 +289,14 @@ export class App {
   private shortcut(key: string): boolean {
     const { lidar, view } = this;
     const { scene } = this.source;
-    if (this.cameras.chooseNumber(key)) return true;
+    if (this.cameras.chooseNumber(key) || this.toolBox.key(key)) return true;
     if (key === 'r' && scene.can_simulate) lidar.setRunning(!lidar.running);
     else if (key === 'c') this.panel.nextColor();
     else if (key === 'f') view.rig.frame(scene.middle_box);
     else if (key === 'p') this.panel.fold();
+    else if (key === 'k') this.timeline.toggle();
+    else if (key === ',') this.timeline.stepBy(-1);
+    else if (key === '.') this.timeline.stepBy(1);
     else if (key === '?') showHelp();
     else return false;
     return true;

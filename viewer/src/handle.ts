@@ -10,6 +10,9 @@ import type { Driver } from './driving/driver';
 import type { LidarPanel } from './panels/lidar_panel';
 import type { Live } from './server/live';
 import { kScanPointWords, type Pose, type ScanPacket } from './server/protocol';
+import type { Playback } from './playback';
+import type { Tools } from './tools/tools';
+import type { WorldObjects } from './picture/world_objects';
 import type { ScanCloud } from './picture/scan_cloud';
 import type { ScanRate } from './panels/scan_rate';
 import type { SceneView } from './picture/scene_view';
@@ -22,6 +25,9 @@ export interface HandleParts {
   lidar: LidarPanel;
   rate: ScanRate;
   cloud: ScanCloud;
+  playback: Playback;
+  tools: Tools;
+  objects: WorldObjects;
   setPose(pose: Pose): void;
   setCameraMode(mode: CameraMode): void;
   setColor(mode: ColorMode): void;
@@ -34,8 +40,10 @@ export function publishHandle(parts: HandleParts) {
   (window as unknown as { adasplats: unknown }).adasplats = handle;
 }
 
-function stateOf({ view, live, driver, lidar, rate, cloud }: HandleParts) {
+function stateOf(parts: HandleParts) {
+  const { view, live, driver, lidar, rate, cloud } = parts;
   return {
+    ...workState(parts),
     ...view.statistics,
     connected: live.connected,
     scansReceived: rate.received,
@@ -54,6 +62,26 @@ function stateOf({ view, live, driver, lidar, rate, cloud }: HandleParts) {
       mode: view.rig.mode,
     },
     software: view.stage.software,
+  };
+}
+
+function workState({ view, playback, tools, objects }: HandleParts) {
+  const { timeline, source, packet } = playback;
+  return {
+    time_s: timeline?.time_s ?? null,
+    duration_s: timeline?.duration_s ?? null,
+    playing: timeline?.playing ?? false,
+    scanSource: source,
+    shownScan: packet?.number ?? null,
+    measurements: tools.measure.all.map(({ from, to, distance_m }) => ({
+      from: from.toArray(),
+      to: to.toArray(),
+      distance_m,
+    })),
+    profilePoints: tools.profile.points.length,
+    clip: { mode: view.clip.mode, half: view.clip.half.toArray() },
+    objects: objects.objects.map(({ info }, i) => ({ name: info.name, pose: objects.poseOf(i) })),
+    layers: view.layers.map(({ info, visible }) => ({ name: info.name, kind: info.kind, visible })),
   };
 }
 

@@ -27,7 +27,7 @@ export class LiveScans {
     private readonly view: SceneView,
     events: Omit<LiveEvents, 'scan'>,
   ) {
-    this.cloud = new ScanCloud(view.shared.classes, view.shared.maps);
+    this.cloud = new ScanCloud(view.shared);
     const url = new URL('live', window.location.href);
     url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
     this.live = new Live(url.href, {

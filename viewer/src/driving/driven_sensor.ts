@@ -3,14 +3,19 @@
 
 // The sensor that is driven: shown where it is, with the path behind it, and told to the server.
 
+import { Plane, Vector3 } from 'three';
 import { Driver, type Pick } from './driver';
+import type { Grabbable } from './pointer';
 import { PathLine } from '../picture/path_line';
 import type { Pose, SceneInfo } from '../server/protocol';
 import type { SceneView } from '../picture/scene_view';
+import type { Motion } from '../server/live';
 import { SensorBody } from '../picture/sensor_body';
 
 const kMotionMs = 33;
 const kPathColor = 0x3aa0e6;
+/** Near the horizon a pixel is a kilometre. */
+const kFarthestDragM = 500;
 
 export class DrivenSensor {
   readonly body = new SensorBody();
@@ -23,10 +28,25 @@ export class DrivenSensor {
     private readonly view: SceneView,
     { start_pose, can_simulate }: SceneInfo,
     pick: Pick,
-    private readonly tell: (motion: Driver['motion']) => void,
+    private readonly tell: (motion: Motion) => void,
   ) {
     this.driver = new Driver(start_pose, pick);
     this.body.object.visible = this.path.object.visible = can_simulate;
+  }
+
+  /** To be taken with the mouse, and moved in its own plane. */
+  get grabbable(): Grabbable {
+    const { body } = this;
+    return {
+      isAt: (camera, place, height_px) => body.isAt(camera, place, height_px),
+      highlight: (on) => body.highlight(on),
+      grab: () => {},
+      drag: (ray) => {
+        const plane = new Plane(new Vector3(0, 0, 1), -body.object.position.z);
+        const hit = ray.intersectPlane(plane, new Vector3());
+        if (hit && hit.distanceTo(ray.origin) < kFarthestDragM) this.moveTo(hit.x, hit.y);
+      },
+    };
   }
 
   get objects() {
@@ -38,6 +58,20 @@ export class DrivenSensor {
     this.driver.setPose(pose);
     this.moved();
   }
+
+  /** Where a recording has it. */
+  place(pose: Pose) {
+    this.driver.place(pose);
+    this.moved();
+  }
+
+  /** Time of the world goes on, with or without the sensor. */
+  setTime(time_s: number) {
+    if (time_s === this.time_s) return;
+    this.time_s = time_s;
+    this.motionDue = true;
+  }
+  private time_s = 0;
 
   moveTo(x: number, y: number) {
     this.driver.moveTo(x, y);
@@ -63,11 +97,15 @@ export class DrivenSensor {
     this.motionDue = true;
   }
 
+  get motion(): Motion {
+    return { ...this.driver.motion, time_s: this.time_s };
+  }
+
   private tellMotion() {
     const now = performance.now();
     if (now - this.lastMotionMs < kMotionMs) return;
     this.lastMotionMs = now;
     this.motionDue = false;
-    this.tell(this.driver.motion);
+    this.tell(this.motion);
   }
 }

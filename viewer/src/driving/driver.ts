@@ -90,6 +90,11 @@ export class Driver {
     return this.vehicle.speed_m_s;
   }
 
+  /** Whether a key drives it. */
+  get isSteered(): boolean {
+    return Object.values(this.controls).some((on) => on);
+  }
+
   get motion() {
     const { speed_m_s, climb_m_s, yaw_rate_rad_s } = this.vehicle;
     const velocity_m_s: [number, number, number] = [speed_m_s, 0, climb_m_s];
@@ -102,6 +107,13 @@ export class Driver {
     this.vehicle = standing(pose[0], pose[1], pose[2], yawOf(this.rotation));
     this.heightM = this.groundZ = null;
     this.clearPath();
+  }
+
+  /** Where a recording has it: that is not driven, so the path stays as it is. */
+  place(pose: Pose) {
+    this.rotation = rotationOf(pose);
+    this.vehicle = standing(pose[0], pose[1], pose[2], yawOf(this.rotation));
+    this.heightM = this.groundZ = null;
   }
 
   /** Moved by hand, in its own plane. */

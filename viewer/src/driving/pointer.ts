@@ -1,31 +1,49 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The mouse over the scene: takes the sensor, or clicks; the rest is the camera's.
+// The mouse over the scene: takes what can be taken (the sensor, a handle, an object), or clicks;
+// the rest is the camera's.
 
-import { Plane, Raycaster, Vector2, Vector3 } from 'three';
+import { Raycaster, Vector2, type PerspectiveCamera, type Ray } from 'three';
 import type { SceneView } from '../picture/scene_view';
-import type { SensorBody } from '../picture/sensor_body';
 
-export interface PointerEvents {
-  dragged(x: number, y: number): void;
-  clicked(place: Vector2): void;
+/** Where a click was. */
+export interface Place {
+  /** On the camera's screen, -1..1. */
+  screen: Vector2;
+  /** Of the canvas, from its lower left corner. */
+  pixel: Vector2;
+}
+
+/** What can be taken with the mouse. */
+export interface Grabbable {
+  isAt(camera: PerspectiveCamera, place: Vector2, height_px: number): boolean;
+  highlight(on: boolean): void;
+  grab(camera: PerspectiveCamera, place: Vector2, height_px: number): void;
+  drag(ray: Ray): void;
 }
 
 const kClickPixels = 4;
-/** Near the horizon a pixel is a kilometre. */
-const kFarthestDragM = 500;
+
+interface Press {
+  x: number;
+  y: number;
+  id: number;
+  taken: Grabbable | null;
+}
 
 export class Pointer {
-  private down: { x: number; y: number; id: number; drags: boolean } | null = null;
+  private down: Press | null = null;
+  private under: Grabbable | null = null;
 
   constructor(
     private readonly view: SceneView,
     private readonly canvas: HTMLCanvasElement,
-    private readonly sensor: SensorBody,
-    private readonly events: PointerEvents,
+    /** The first that is hit is taken. */
+    private readonly grabbables: Grabbable[],
+    private readonly clicked: (place: Place) => void,
   ) {
-    // Before the camera's own listener, which then leaves the sensor alone.
+    // Before the camera's own listener, which then leaves what was taken alone.
     canvas.addEventListener('pointerdown', (e) => this.pressed(e), true);
     canvas.addEventListener('pointermove', (e) => this.movedTo(e));
     canvas.addEventListener('pointerup', (e) => this.released(e));
@@ -35,24 +53,26 @@ export class Pointer {
   private pressed(event: PointerEvent) {
     if (event.button !== 0 || !event.isPrimary) return;
     this.canvas.focus();
-    const drags = this.onSensor(event);
-    this.down = { x: event.clientX, y: event.clientY, id: event.pointerId, drags };
-    if (!drags) return;
+    const taken = this.at(event);
+    this.down = { x: event.clientX, y: event.clientY, id: event.pointerId, taken };
+    if (!taken) return;
+    const { camera } = this.view.rig;
+    taken.grab(camera, this.screen(event), this.view.height_px);
     this.view.rig.controls.enabled = false;
     this.canvas.setPointerCapture(event.pointerId);
   }
 
   private movedTo(event: PointerEvent) {
-    if (!this.down) this.highlight(this.onSensor(event));
-    else if (this.down.drags) this.drag(event);
+    if (!this.down) this.highlight(this.at(event));
+    else if (this.down.taken) this.down.taken.drag(this.ray(event));
   }
 
   private released(event: PointerEvent) {
     const { down } = this;
     this.stop();
-    if (!down || down.drags || down.id !== event.pointerId) return;
-    if (Math.hypot(event.clientX - down.x, event.clientY - down.y) < kClickPixels)
-      this.events.clicked(this.view.screenPlace(event.clientX, event.clientY));
+    if (!down || down.taken || down.id !== event.pointerId) return;
+    if (Math.hypot(event.clientX - down.x, event.clientY - down.y) >= kClickPixels) return;
+    this.clicked({ screen: this.screen(event), pixel: this.pixel(event) });
   }
 
   private stop() {
@@ -60,25 +80,37 @@ export class Pointer {
     this.view.rig.controls.enabled = true;
   }
 
-  private highlight(on: boolean) {
-    if (this.canvas.classList.toggle('taking', on) === this.highlighted) return;
-    this.highlighted = on;
-    this.sensor.highlighted = on;
+  private highlight(under: Grabbable | null) {
+    if (under === this.under) return;
+    this.under?.highlight(false);
+    under?.highlight(true);
+    this.under = under;
+    this.canvas.classList.toggle('taking', under !== null);
     this.view.invalidate();
   }
-  private highlighted = false;
 
-  private onSensor(event: PointerEvent): boolean {
-    const place = this.view.screenPlace(event.clientX, event.clientY);
-    return this.sensor.isAt(this.view.rig.camera, place, this.view.height_px);
+  private at(event: PointerEvent): Grabbable | null {
+    const place = this.screen(event);
+    const { camera } = this.view.rig;
+    return this.grabbables.find((g) => g.isAt(camera, place, this.view.height_px)) ?? null;
   }
 
-  private drag(event: PointerEvent) {
+  private screen(event: PointerEvent): Vector2 {
+    return this.view.screenPlace(event.clientX, event.clientY);
+  }
+
+  private pixel(event: PointerEvent): Vector2 {
+    const box = this.canvas.getBoundingClientRect();
+    const { x: width, y: height } = this.view.stage.pixels;
+    return new Vector2(
+      Math.floor(((event.clientX - box.left) / box.width) * width),
+      height - 1 - Math.floor(((event.clientY - box.top) / box.height) * height),
+    );
+  }
+
+  private ray(event: PointerEvent): Ray {
     const caster = new Raycaster();
-    caster.setFromCamera(this.view.screenPlace(event.clientX, event.clientY), this.view.rig.camera);
-    const at = this.sensor.object.position;
-    const hit = caster.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -at.z), new Vector3());
-    if (hit && hit.distanceTo(this.view.rig.camera.position) < kFarthestDragM)
-      this.events.dragged(hit.x, hit.y);
+    caster.setFromCamera(this.screen(event), this.view.rig.camera);
+    return caster.ray;
   }
 }

@@ -111,6 +111,26 @@ export function button(text: string, title: string, clicked: () => void): HTMLBu
   return make('button', { type: 'button', textContent: text, title, onclick: clicked });
 }
 
+/** Shapes in a square of 16, drawn by the page itself: fonts need not have them. */
+const kIcons = {
+  play: 'M4 2l10 6-10 6z',
+  pause: 'M4 2h3v12h-3zM9 2h3v12h-3z',
+  back: 'M13 2v12l-8-6zM3 2h2v12h-2z',
+  forward: 'M3 2v12l8-6zM11 2h2v12h-2z',
+};
+export type IconName = keyof typeof kIcons;
+
+export function icon(name: IconName): SVGElement {
+  const space = 'http://www.w3.org/2000/svg';
+  const svg = document.createElementNS(space, 'svg');
+  svg.setAttribute('viewBox', '0 0 16 16');
+  svg.setAttribute('aria-hidden', 'true');
+  const path = document.createElementNS(space, 'path');
+  path.setAttribute('d', kIcons[name]);
+  svg.append(path);
+  return svg;
+}
+
 /** A file for the user to keep. */
 export function download(name: string, content: Blob) {
   const url = URL.createObjectURL(content);

@@ -13,6 +13,9 @@ const kKeys: [string[], string][] = [
   [['Space'], 'stop'],
   [['R'], 'run or pause the LiDAR'],
   [['1', '2', '3'], 'camera: orbit, follow, top'],
+  [['K'], 'play or pause the recording'],
+  [[',', '.'], 'one scan back, one on'],
+  [['M', 'B', 'V'], 'measure, clipping box, profile'],
   [['C'], 'next colour mode'],
   [['F'], 'look at the whole scene'],
   [['P'], 'fold the panel'],
@@ -23,6 +26,7 @@ const kMouse: [string, string][] = [
   ['Right drag', 'move the view'],
   ['Wheel', 'nearer, farther, to where the mouse is'],
   ['Drag the sensor', 'move it in its plane'],
+  ['Drag an object', 'move it over the ground'],
   ['Click', 'what is there: class, range, splat'],
 ];
 

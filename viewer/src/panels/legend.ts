@@ -25,6 +25,8 @@ export interface LegendSubject {
   /** Classes that have been seen. */
   classes: number[];
   scan: { mode: ScanMode; maxRange_m: number; rings: number } | null;
+  /** A recorded scan lies over the simulated one, in one colour. */
+  both: boolean;
 }
 
 const kMostClasses = 10;
@@ -111,6 +113,7 @@ export class Legend {
       title ? make('strong', {}, title) : null,
       subject.mode === 'class' ? this.classes(subject.classes) : null,
       ...bars.map((bar) => this.bar(bar)),
+      subject.both ? make('small', {}, 'Orange points: recorded') : null,
     ];
     byId('legend').hidden = parts.every((p) => p === null);
     fill(byId('legend'), ...parts);

@@ -7,7 +7,7 @@ import { byId, fill, make, segments } from './dom';
 import type { ClassPalette } from '../picture/class_palette';
 import type { ColorMaps } from '../picture/color_maps';
 import { RangeImage, type ImageMode } from '../picture/range_image';
-import type { ScanCloud } from '../picture/scan_cloud';
+import type { ScanPacket } from '../server/protocol';
 
 const kImageMs = 60;
 const kModes: ImageMode[] = ['range', 'class', 'intensity'];
@@ -19,7 +19,7 @@ export class RangeStrip {
   private lastMs = 0;
 
   constructor(
-    private readonly cloud: ScanCloud,
+    private readonly packet: () => ScanPacket | null,
     palette: ClassPalette,
     maps: ColorMaps,
   ) {
@@ -37,7 +37,13 @@ export class RangeStrip {
   }
 
   draw() {
-    if (this.cloud.packet) this.image.draw(this.cloud.packet);
+    const packet = this.packet();
+    if (packet) this.image.draw(packet);
+  }
+
+  /** Another scan is shown: soon, in a frame. */
+  renew() {
+    this.dirty = true;
   }
 
   /** In each frame; a new scan is drawn soon, not in all of them. */
@@ -50,7 +56,7 @@ export class RangeStrip {
   }
 
   showFacts() {
-    const { packet } = this.cloud;
+    const packet = this.packet();
     if (packet)
       this.facts.textContent =
         `${packet.rings} rings × ${packet.columns} columns, to ${packet.max_range_m.toFixed(0)} m`;

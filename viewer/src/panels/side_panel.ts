@@ -6,12 +6,12 @@
 import { ColorPanel } from './color_panel';
 import { byId, fill, make, tick } from './dom';
 import type { DrivePanel } from './drive_panel';
+import type { ObjectsPanel } from './objects_panel';
 import { layersPanel } from './layers_panel';
 import type { LidarPanel } from './lidar_panel';
 import type { SceneInfo } from '../server/protocol';
-import type { ScanCloud } from '../picture/scan_cloud';
 import type { ScanPointsPanel } from './scan_points_panel';
-import { ScansPanel, type ScansEvents } from './scans_panel';
+import { PathsPanel } from './paths_panel';
 import type { SceneView } from '../picture/scene_view';
 import type { ColorMode } from '../picture/shaders';
 
@@ -20,16 +20,16 @@ export interface SidePanelParts {
   lidar: LidarPanel;
   drive: DrivePanel;
   scanPoints: ScanPointsPanel;
-  recordedCloud: ScanCloud;
+  objects: ObjectsPanel;
 }
 
-export interface SidePanelEvents extends ScansEvents {
+export interface SidePanelEvents {
   colorsChanged(): void;
 }
 
 export class SidePanel {
   private colors: ColorPanel | null = null;
-  private scans: ScansPanel | null = null;
+  private paths: PathsPanel | null = null;
 
   constructor(
     private readonly parts: SidePanelParts,
@@ -39,10 +39,10 @@ export class SidePanel {
   }
 
   show(scene: SceneInfo) {
-    const { view, lidar, drive, scanPoints, recordedCloud } = this.parts;
-    this.scans?.dispose();
+    const { view, lidar, drive, scanPoints, objects } = this.parts;
+    this.paths?.dispose();
     this.colors = new ColorPanel(view, scene, () => this.events.colorsChanged());
-    this.scans = new ScansPanel(view, scene, recordedCloud, this.events);
+    this.paths = new PathsPanel(view, scene);
     const can = scene.can_simulate;
     scanPoints.style();
     fill(
@@ -52,7 +52,8 @@ export class SidePanel {
       can ? section('LiDAR', lidar.element) : null,
       section(can ? 'Drive and camera' : 'Camera', drive.element),
       can || scene.scans.length > 0 ? section('Scan points', scanPoints.element) : null,
-      this.scans.empty ? null : section('Recorded', this.scans.element),
+      this.paths.empty ? null : section('Paths', this.paths.element, false),
+      scene.objects.length > 0 ? section('Objects', objects.element) : null,
       section('Drawing', drawingPanel(view), false),
     );
   }
@@ -73,6 +74,7 @@ export class SidePanel {
 
   /** Follows what has been loaded. */
   update() {
+    this.parts.objects.update();
     this.colors?.update();
   }
 }

@@ -10,6 +10,8 @@ import {
   GLSL3,
   InstancedBufferAttribute,
   InstancedBufferGeometry,
+  InstancedInterleavedBuffer,
+  InterleavedBufferAttribute,
   Mesh,
   Points,
   RawShaderMaterial,
@@ -17,8 +19,20 @@ import {
   type IUniform,
 } from 'three';
 import { nodeBox, parentsOf, type Tree } from './lod';
-import { kElementBytes, parseElements, type LayerInfo, type TreeNode } from '../server/protocol';
-import { kDiskFragment, kDiskVertex, kPointFragment, kPointVertex } from './shaders';
+import {
+  elementBytes,
+  kTriangleBytes,
+  parseElements,
+  type LayerInfo,
+  type TreeNode,
+} from '../server/protocol';
+import {
+  kDiskFragment,
+  kDiskVertex,
+  kPointFragment,
+  kPointVertex,
+  kTriangleVertex,
+} from './shaders';
 
 /** What all layers are drawn with; the same objects in every material. */
 export interface SharedUniforms {
@@ -29,11 +43,19 @@ export interface SharedUniforms {
   height_range_m: IUniform;
   point_px: IUniform<number>;
   focal_px: IUniform<number>;
+  clip_mode: IUniform<number>;
+  clip_from_world: IUniform;
 }
 
 /** A tip and four corners. */
 const kCorners = new Float32Array([0, 0, -1, -1, 1, -1, 1, 1, -1, 1]);
 const kTriangles = new Uint16Array([0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1]);
+
+const kShaders = {
+  splats: { vertexShader: kDiskVertex, fragmentShader: kDiskFragment },
+  points: { vertexShader: kPointVertex, fragmentShader: kPointFragment },
+  mesh: { vertexShader: kTriangleVertex, fragmentShader: kDiskFragment },
+};
 
 interface Loaded {
   object: Mesh | Points;
@@ -57,6 +79,8 @@ export class Layer implements Tree {
   readonly parents: Int32Array;
   private readonly loaded = new Map<number, Loaded>();
   private readonly material: RawShaderMaterial;
+  /** The uniform `has`. */
+  private readonly has_bits: number;
 
   constructor(
     readonly info: LayerInfo,
@@ -68,28 +92,30 @@ export class Layer implements Tree {
     this.boxes = nodes.map(nodeBox);
     this.parents = parentsOf(nodes);
     const { has_classes, has_intensities, has_errors } = info;
-    const splats = info.kind === 'splats';
+    this.has_bits =
+      (has_classes ? 1 : 0) |
+      (has_intensities ? 2 : 0) |
+      (has_errors ? 4 : 0) |
+      (info.error_range_m[0] < 0 ? 8 : 0) |
+      (info.kind === 'points' ? 16 : 0);
     this.material = new RawShaderMaterial({
       glslVersion: GLSL3,
-      vertexShader: splats ? kDiskVertex : kPointVertex,
-      fragmentShader: splats ? kDiskFragment : kPointFragment,
+      ...kShaders[info.kind],
       side: 2,
       uniforms: {
         ...shared,
-        has: {
-          value:
-            (has_classes ? 1 : 0) |
-            (has_intensities ? 2 : 0) |
-            (has_errors ? 4 : 0) |
-            (info.error_range_m[0] < 0 ? 8 : 0) |
-            (info.kind === 'points' ? 16 : 0),
-        },
+        has: { value: 0 },
         low: { value: new Vector3() },
         size: { value: new Vector3() },
         largest_radius_m: { value: 0 },
         spacing_m: { value: 0 },
+        one_class: { value: -1 },
       },
     });
+  }
+
+  get isWhole(): boolean {
+    return this.info.kind === 'mesh';
   }
 
   get loadedNodes(): number {
@@ -118,15 +144,28 @@ export class Layer implements Tree {
   add(node: number, bytes: ArrayBuffer) {
     if (this.loaded.has(node)) return;
     const count = this.nodes[node].count;
-    const elements = parseElements(bytes, count);
-    if (this.info.has_classes)
-      for (let i = 3; i < elements.length; i += 4) this.classes.add(elements[i] & 0xffff);
-    const object = this.info.kind === 'splats' ? this.disks(elements) : this.points(elements);
+    const { kind, has_classes } = this.info;
+    const elements = parseElements(bytes, count, kind);
+    const words = elementBytes(kind) / 4;
+    if (has_classes)
+      for (let i = words - 1; i < elements.length; i += words)
+        this.classes.add(elements[i] & 0xffff);
+    const object = this.make(elements);
     object.frustumCulled = false;
     object.matrixAutoUpdate = false;
-    object.onBeforeRender = () => this.setNode(node);
-    this.loaded.set(node, { object, bytes: count * kElementBytes, used: performance.now() });
-    this.bytes += count * kElementBytes;
+    object.onBeforeRender = () => this.setNode(node, null);
+    this.loaded.set(node, { object, bytes: bytes.byteLength, used: performance.now() });
+    this.bytes += bytes.byteLength;
+  }
+
+  /** What is loaded once more, to stand elsewhere: for one of the objects that are made of it. */
+  instances(oneClass: number | null): (Mesh | Points)[] {
+    return [...this.loaded].map(([node, { object }]) => {
+      const copy = object instanceof Mesh ? new Mesh(object.geometry, this.material) : new Points(object.geometry, this.material);
+      copy.frustumCulled = false;
+      copy.onBeforeRender = () => this.setNode(node, oneClass);
+      return copy;
+    });
   }
 
   /** Null where a node is empty. */
@@ -161,13 +200,20 @@ export class Layer implements Tree {
     this.material.dispose();
   }
 
-  private setNode(node: number) {
+  private make(elements: Uint32Array): Mesh | Points {
+    if (this.info.kind === 'points') return this.points(elements);
+    return this.info.kind === 'mesh' ? this.triangles(elements) : this.disks(elements);
+  }
+
+  private setNode(node: number, oneClass: number | null) {
     const { low, high, largest_radius_m, spacing_m } = this.nodes[node];
     const { uniforms } = this.material;
     uniforms.low.value.set(...low);
     uniforms.size.value.set(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
     uniforms.largest_radius_m.value = largest_radius_m;
     uniforms.spacing_m.value = spacing_m;
+    uniforms.one_class.value = oneClass ?? -1;
+    uniforms.has.value = this.has_bits | (oneClass === null ? 0 : 1);
     this.material.uniformsNeedUpdate = true;
   }
 
@@ -179,6 +225,22 @@ export class Layer implements Tree {
     forget(attribute);
     geometry.setAttribute('element', attribute);
     geometry.instanceCount = elements.length / 4;
+    return new Mesh(geometry, this.material);
+  }
+
+  private triangles(elements: Uint32Array): Mesh {
+    const geometry = new InstancedBufferGeometry();
+    geometry.setAttribute('corner', new BufferAttribute(new Float32Array([0, 1, 2]), 1));
+    const buffer = new InstancedInterleavedBuffer(elements, kTriangleBytes / 4);
+    buffer.onUpload(function (this: InstancedInterleavedBuffer) {
+      (this as { array: unknown }).array = new Uint32Array(0);
+    });
+    ['a', 'b', 'c'].forEach((name, i) =>
+      geometry.setAttribute(name, new InterleavedBufferAttribute(buffer, 3, 3 * i)),
+    );
+    geometry.setAttribute('attributes', new InterleavedBufferAttribute(buffer, 1, 9));
+    geometry.instanceCount = elements.length / (kTriangleBytes / 4);
+    geometry.setDrawRange(0, 3);
     return new Mesh(geometry, this.material);
   }
 

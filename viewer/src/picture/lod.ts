@@ -11,6 +11,8 @@ export interface Tree {
   nodes: TreeNode[];
   boxes: Box3[];
   has(node: number): boolean;
+  /** Whether a node is drawn at any cost: nothing coarser stands for it. */
+  isWhole: boolean;
 }
 
 export interface NodeRef {
@@ -119,7 +121,7 @@ export function chooseCut(trees: Tree[], view: View, budget: number): Cut {
     const children = childrenOf(ref, view);
     const seen = children.filter(inSight);
     const added = seen.reduce((sum, c) => sum + c.tree.nodes[c.node].count, -count);
-    if (cut.elements + added > budget) {
+    if (cut.elements + added > budget && !ref.tree.isWhole) {
       cut.limited = true;
       cut.drawn.push(ref);
       continue;

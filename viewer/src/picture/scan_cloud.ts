@@ -14,10 +14,10 @@ import {
   Points,
   RawShaderMaterial,
   Vector3,
-  type IUniform,
 } from 'three';
 import { matrixOf } from '../driving/pose';
 import { kScanPointWords, type ScanPacket } from '../server/protocol';
+import type { SharedUniforms } from './layer';
 import { kPointFragment, kScanModes, kScanVertex, type ScanMode } from './shaders';
 
 /** One echo, to be told to the user. */
@@ -39,7 +39,7 @@ export class ScanCloud {
   private readonly geometry = new BufferGeometry();
   private readonly material: RawShaderMaterial;
 
-  constructor(classes: IUniform, maps: IUniform) {
+  constructor({ classes, maps, clip_mode, clip_from_world }: SharedUniforms) {
     this.material = new RawShaderMaterial({
       glslVersion: GLSL3,
       vertexShader: kScanVertex,
@@ -47,7 +47,10 @@ export class ScanCloud {
       uniforms: {
         classes,
         maps,
+        clip_mode,
+        clip_from_world,
         scan_mode: { value: 0 },
+        is_plain: { value: 0 },
         has: { value: 0 },
         point_px: { value: 3 },
         rings: { value: 1 },
@@ -58,6 +61,11 @@ export class ScanCloud {
     this.object = new Points(this.geometry, this.material);
     this.object.frustumCulled = false;
     this.object.matrixAutoUpdate = false;
+  }
+
+  /** In one colour, whatever the mode. */
+  set isPlain(on: boolean) {
+    this.material.uniforms.is_plain.value = on ? 1 : 0;
   }
 
   set mode(mode: ScanMode) {

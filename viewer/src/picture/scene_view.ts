@@ -4,12 +4,13 @@
 // What is seen: layers at the detail that the screen and the machine allow, and what lies over
 // them.
 
-import { Frustum, Matrix4, Object3D, Vector2 } from 'three';
+import { Frustum, Matrix4, Object3D, Vector2, Vector3 } from 'three';
 import { Budget } from './budget';
 import { CameraRig } from '../driving/camera_rig';
 import type { Layer, SharedUniforms } from './layer';
 import { LayerSet } from './layer_set';
 import { chooseCut, type Cut, type View } from './lod';
+import { ClipBox } from './clip';
 import { ClassPalette } from './class_palette';
 import { ColorMaps } from './color_maps';
 import type { SceneInfo } from '../server/protocol';
@@ -39,6 +40,7 @@ export class SceneView {
   readonly rig: CameraRig;
   readonly palette = new ClassPalette();
   readonly maps = new ColorMaps();
+  readonly clip = new ClipBox();
   readonly shared: SharedUniforms;
   readonly set: LayerSet;
   arrangement: Arrangement = { split: false };
@@ -77,6 +79,7 @@ export class SceneView {
       height_range_m: { value: new Vector2(0, 1) },
       point_px: { value: 2 },
       focal_px: { value: 1 },
+      ...this.clip.uniforms,
     };
     const memoryLimit = (this.stage.software ? 128 : 384) * kMegabyte;
     this.set = new LayerSet(this.shared, memoryLimit, failed);
@@ -178,6 +181,14 @@ export class SceneView {
       2 * (x - Math.min(Math.floor(x), parts - 1)) - 1,
       1 - (2 * (clientY - box.top)) / box.height,
     );
+  }
+
+  /** What the picture of the model shows at a pixel of the canvas; null: nothing. */
+  surfaceAt(screen: Vector2, pixel: Vector2): Vector3 | null {
+    if (this.modelDirty) this.drawNow();
+    const depth = this.stage.depthAt(pixel);
+    if (depth >= 1) return null;
+    return new Vector3(screen.x, screen.y, 2 * depth - 1).unproject(this.rig.camera);
   }
 
   get height_px(): number {

@@ -58,7 +58,7 @@ export class SensorBody {
     this.object.quaternion.copy(rotationOf(pose));
   }
 
-  set highlighted(on: boolean) {
+  highlight(on: boolean) {
     this.shell.color.set(on ? 0x7fd0ff : 0xdfe6ee);
   }
 

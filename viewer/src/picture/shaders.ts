@@ -16,6 +16,17 @@ precision highp float;
 precision highp int;
 `;
 
+/** The clipping box (clip.ts). */
+const kClip = /* glsl */ `
+uniform int clip_mode;      // 1: what is inside is kept, 2: what is outside
+uniform mat4 clip_from_world;
+bool is_clipped(vec3 world) {
+  if (clip_mode == 0) return false;
+  vec3 p = abs((clip_from_world * vec4(world, 1.0)).xyz);
+  return (max(p.x, max(p.y, p.z)) <= 1.0) != (clip_mode == 1);
+}
+`;
+
 /** 16 bytes of nodes/N.bin, and how an element looks. Colours are those of the screen. */
 const kElement = /* glsl */ `
 uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
@@ -24,13 +35,15 @@ uniform sampler2D classes, maps;
 uniform int color_mode;
 uniform int has;            // 1: classes, 2: intensities, 4: errors, 8: signed ones, 16: holes
 uniform vec2 height_range_m;
+uniform int one_class;      // of a whole object; -1: each its own
 uniform vec3 low, size;
 in uvec4 element;
 flat out vec3 color;
 
+// Of an object: where it stands; of the place: as it is.
 vec3 element_position() {
   uvec3 q = uvec3(element.x & 0xffffu, element.x >> 16, element.y & 0xffffu);
-  return low + size * vec3(q) / 65535.0;
+  return (modelMatrix * vec4(low + size * vec3(q) / 65535.0, 1.0)).xyz;
 }
 
 vec3 element_normal() {
@@ -40,11 +53,11 @@ vec3 element_normal() {
     vec2 s = vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
     n.xy = (1.0 - abs(p.yx)) * s;
   }
-  return normalize(n);
+  return normalize(mat3(modelMatrix) * n);
 }
 
 vec4 class_texel() {
-  int id = int(element.w & 0xffffu);
+  int id = one_class >= 0 ? one_class : int(element.w & 0xffffu);
   return texelFetch(classes, ivec2(id & 255, id >> 8), 0);
 }
 
@@ -97,16 +110,18 @@ export const kDiskVertex =
 uniform float largest_radius_m;
 in vec2 corner;
 out vec2 offset;
+out vec3 world;
 const float kTip = 0.12;    // of the radius
 
 void main() {
   vec3 center = element_position();
   vec3 n = element_normal();
-  float radius = largest_radius_m * float(element.y >> 16) / 65535.0;
+  float radius = largest_radius_m * float(element.y >> 16) / 65535.0 * length(modelMatrix[0].xyz);
   if (hidden()) { gl_Position = kNowhere; return; }
   vec3 other = abs(n.z) < 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
   vec3 u = normalize(cross(n, other));
   vec3 position = center + radius * (corner.x * u + corner.y * cross(n, u));
+  world = position;
   vec4 seen = viewMatrix * vec4(position, 1.0);
   gl_Position = projectionMatrix * seen;
   if (corner == vec2(0.0)) {
@@ -119,14 +134,42 @@ void main() {
 }
 `;
 
+/** A triangle of a mesh, with the class and intensity of its own; seen from both sides. */
+export const kTriangleVertex =
+  kPrelude +
+  kElement.replace('in uvec4 element;', 'in uvec3 a, b, c;\nin uint attributes;\nuvec4 element;') +
+  /* glsl */ `
+in float corner;
+out vec2 offset;
+out vec3 world;
+
+void main() {
+  element = uvec4(0u, 0u, 0u, attributes);
+  if (hidden()) { gl_Position = kNowhere; return; }
+  vec3 p = (modelMatrix * vec4(uintBitsToFloat(a), 1.0)).xyz;
+  vec3 q = (modelMatrix * vec4(uintBitsToFloat(b), 1.0)).xyz;
+  vec3 r = (modelMatrix * vec4(uintBitsToFloat(c), 1.0)).xyz;
+  vec3 n = cross(q - p, r - p);
+  n = dot(n, n) > 0.0 ? normalize(n) : vec3(0.0, 0.0, 1.0);
+  vec3 center = (p + q + r) / 3.0;
+  world = corner < 0.5 ? p : corner < 1.5 ? q : r;
+  gl_Position = projectionMatrix * viewMatrix * vec4(world, 1.0);
+  offset = vec2(0.0);
+  vec3 base = base_color(world, n);
+  color = color_mode == 2 ? base : base * light(n, normalize(cameraPosition - center));
+}
+`;
+
 export const kDiskFragment =
   kPrelude +
+  kClip +
   /* glsl */ `
 flat in vec3 color;
 in vec2 offset;
+in vec3 world;
 out vec4 pixel;
 void main() {
-  if (dot(offset, offset) > 1.0) discard;
+  if (dot(offset, offset) > 1.0 || is_clipped(world)) discard;
   pixel = vec4(color, 1.0);
 }
 `;
@@ -134,12 +177,13 @@ void main() {
 export const kPointVertex =
   kPrelude +
   kElement +
+  kClip +
   /* glsl */ `
 uniform float point_px, spacing_m, focal_px;
 
 void main() {
   vec3 center = element_position();
-  if (hidden()) { gl_Position = kNowhere; return; }
+  if (hidden() || is_clipped(center)) { gl_Position = kNowhere; return; }
   vec4 seen = viewMatrix * vec4(center, 1.0);
   gl_Position = projectionMatrix * seen;
   gl_PointSize = clamp(max(point_px, 0.7 * spacing_m * focal_px / -seen.z), 1.0, 24.0);
@@ -163,10 +207,11 @@ void main() {
 /** 24 bytes of a scan packet, drawn a little before the surface that they lie on. */
 export const kScanVertex =
   kPrelude +
+  kClip +
   /* glsl */ `
 uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
 uniform sampler2D classes, maps;
-uniform int scan_mode, has;
+uniform int scan_mode, is_plain, has;
 uniform float point_px, rings, max_range_m;
 in uvec3 place;
 in uvec3 echo;              // ring and class, column, intensity and return
@@ -179,12 +224,15 @@ vec3 map_color(int r, float t) {
 
 void main() {
   vec3 position = uintBitsToFloat(place);
-  vec4 seen = viewMatrix * modelMatrix * vec4(position, 1.0);
+  vec4 world = modelMatrix * vec4(position, 1.0);
+  if (is_clipped(world.xyz)) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
+  vec4 seen = viewMatrix * world;
   seen.xyz *= 1.0 - min(0.02, 0.2 / max(-seen.z, 1e-3));
   gl_Position = projectionMatrix * seen;
   gl_PointSize = point_px;
   int id = int(echo.x >> 16);
-  if (scan_mode == 1 && (has & 1) != 0)
+  if (is_plain != 0) color = vec3(1.0, 0.62, 0.25);
+  else if (scan_mode == 1 && (has & 1) != 0)
     color = texelFetch(classes, ivec2(id & 255, id >> 8), 0).rgb;
   else if (scan_mode == 2) color = map_color(2, 0.15 + 0.85 * float(echo.z & 0xffffu) / 65535.0);
   else if (scan_mode == 3) color = map_color(1, float(echo.x & 0xffffu) / max(rings - 1.0, 1.0));
@@ -196,6 +244,19 @@ void main() {
 export const kScreenVertex = /* glsl */ `
 in vec3 position;
 void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }
+`;
+
+/** One pixel's depth in 24 bits. */
+export const kDepthFragment =
+  kPrelude +
+  /* glsl */ `
+uniform sampler2D depths;
+uniform vec2 at;
+out vec4 pixel;
+void main() {
+  uint depth = uint(texelFetch(depths, ivec2(at), 0).r * 16777215.0);
+  pixel = vec4(uvec3(depth >> 16, (depth >> 8) & 255u, depth & 255u), 255u) / 255.0;
+}
 `;
 
 /**

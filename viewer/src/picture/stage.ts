@@ -22,6 +22,7 @@ import {
   WebGLRenderTarget,
   WebGLRenderer,
 } from 'three';
+import { DepthProbe } from './depth_probe';
 import { kScreenFragment, kScreenVertex } from './shaders';
 
 /** A part of the canvas, in its pixels from the lower left corner. */
@@ -43,6 +44,7 @@ export class Stage {
   private readonly model = new Scene();
   private target: WebGLRenderTarget;
   private readonly screen: Mesh<BufferGeometry, RawShaderMaterial>;
+  private readonly probe: DepthProbe;
   private readonly screenCamera = new OrthographicCamera();
   private readonly size = new Vector2(1, 1);
 
@@ -54,6 +56,7 @@ export class Stage {
     this.renderer.sortObjects = false;
     this.target = makeTarget(1, 1);
     this.screen = makeScreen();
+    this.probe = new DepthProbe(this.renderer);
     this.model.matrixWorldAutoUpdate = false;
   }
 
@@ -123,6 +126,11 @@ export class Stage {
       renderer.render(this.overlay, camera);
     }
     renderer.setScissorTest(false);
+  }
+
+  /** Of the model's picture; 1: nothing is there. */
+  depthAt(pixel: Vector2): number {
+    return this.probe.read(this.target.depthTexture, pixel.x, pixel.y);
   }
 
   /** Waits until all of it is drawn. */

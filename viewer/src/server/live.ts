@@ -29,10 +29,12 @@ const kLongestPauseMs = 1000;
 const kPatienceMs = 5000;
 const kPickPatienceMs = 5000;
 
-interface Motion {
+export interface Motion {
   pose: Pose;
   velocity_m_s: [number, number, number];
   yaw_rate_rad_s: number;
+  /** Of the world. */
+  time_s: number;
 }
 
 export class Live {
@@ -43,6 +45,7 @@ export class Live {
   private running = false;
   private lastScanMs = 0;
   private nextPick = 1;
+  private readonly placed = new Map<number, Pose | null>();
   private readonly picks = new Map<number, (found: PickedMessage | null) => void>();
 
   constructor(
@@ -68,6 +71,12 @@ export class Live {
   setMotion(motion: Motion) {
     this.motion = motion;
     this.send({ type: 'pose', ...motion });
+  }
+
+  /** Where an object of the world is; null: on its own way. */
+  placeObject(id: number, pose: Pose | null) {
+    this.placed.set(id, pose);
+    this.send({ type: 'object', id, pose });
   }
 
   run(on: boolean) {
@@ -106,6 +115,7 @@ export class Live {
     this.pauseMs = kFirstPauseMs;
     this.events.connection(true);
     if (this.motion) this.send({ type: 'pose', ...this.motion });
+    for (const [id, pose] of this.placed) this.send({ type: 'object', id, pose });
     this.run(this.running);
   }
 

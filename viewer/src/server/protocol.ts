@@ -8,9 +8,12 @@ export type Vec3 = [number, number, number];
 export type Pose = [number, number, number, number, number, number, number];
 export type Box = [Vec3, Vec3];
 
+export const kLayerKinds = ['splats', 'points', 'mesh'] as const;
+export type LayerKind = (typeof kLayerKinds)[number];
+
 export interface LayerInfo {
   id: number;
-  kind: 'splats' | 'points';
+  kind: LayerKind;
   name: string;
   count: number;
   nodes: number;
@@ -55,6 +58,23 @@ export interface TrajectoryInfo {
   poses: Pose[];
   /** Of the poses, since the first; ascending. */
   times_s: number[];
+  /** Time of the world at the first. */
+  begin_s: number;
+}
+
+/** Something that a world file put into the place. */
+export interface ObjectInfo {
+  name: string;
+  /** In a frame of its own. */
+  geometry: LayerInfo;
+  /** Instead of the geometry's own; null: those. */
+  class_id: number | null;
+  scale: number;
+  /** There between its first and last pose alone. */
+  only_during: boolean;
+  /** world_from_object, at times of the world. */
+  poses: Pose[];
+  times_s: number[];
 }
 
 export interface SceneInfo {
@@ -65,6 +85,7 @@ export interface SceneInfo {
   classes: ClassInfo[];
   trajectories: TrajectoryInfo[];
   scans: RecordedScan[];
+  objects: ObjectInfo[];
   can_simulate: boolean;
   sensors: SensorInfo[];
   sensor: string;
@@ -162,9 +183,10 @@ function range(value: unknown, what: string): [number, number] {
 
 function layer(value: unknown, what: string): LayerInfo {
   const v = fields(value, what);
-  const kind = text(v.kind, `${what}.kind`);
-  if (kind !== 'splats' && kind !== 'points')
-    throw new ProtocolError(`${what}.kind is '${kind}', expected splats or points`);
+  const told = text(v.kind, `${what}.kind`);
+  const kind = kLayerKinds.find((k) => k === told);
+  if (!kind)
+    throw new ProtocolError(`${what}.kind is '${told}', expected ${kLayerKinds.join(' or ')}`);
   return {
     id: number(v.id, `${what}.id`),
     kind,
@@ -211,7 +233,8 @@ function trajectory(value: unknown, what: string): TrajectoryInfo {
   const ascend = told.length === poses.length && told.every((t, i) => i === 0 || t > told[i - 1]);
   // Without times: one every tenth of a second, as most LiDARs turn.
   const times_s = ascend ? told : poses.map((_, i) => 0.1 * i);
-  return { name: text(v.name, `${what}.name`), poses, times_s };
+  const begin_s = typeof v.begin_s === 'number' ? v.begin_s : 0;
+  return { name: text(v.name, `${what}.name`), poses, times_s, begin_s };
 }
 
 function recordedScan(value: unknown, what: string): RecordedScan {
@@ -222,6 +245,23 @@ function recordedScan(value: unknown, what: string): RecordedScan {
     pose: pose(v.pose, `${what}.pose`),
     time_s: typeof v.time_s === 'number' ? v.time_s : 0,
     points: typeof v.points === 'number' ? v.points : null,
+  };
+}
+
+function objectInfo(value: unknown, what: string): ObjectInfo {
+  const v = fields(value, what);
+  const poses = list(v.poses, `${what}.poses`, pose);
+  const times_s = list(v.times_s, `${what}.times_s`, number);
+  if (poses.length === 0 || times_s.length !== poses.length)
+    throw new ProtocolError(`${what} has ${poses.length} poses at ${times_s.length} times`);
+  return {
+    name: text(v.name, `${what}.name`),
+    geometry: layer(v.geometry, `${what}.geometry`),
+    class_id: typeof v.class_id === 'number' ? v.class_id : null,
+    scale: number(v.scale, `${what}.scale`),
+    only_during: v.only_during === true,
+    poses,
+    times_s,
   };
 }
 
@@ -239,6 +279,7 @@ export function parseScene(value: unknown): SceneInfo {
     classes: list(v.classes, 'classes', classInfo),
     trajectories: list(v.trajectories, 'trajectories', trajectory),
     scans: list(v.scans, 'scans', recordedScan),
+    objects: list(v.objects, 'objects', objectInfo),
     can_simulate: canSimulate,
     sensors: list(v.sensors, 'sensors', sensorInfo),
     sensor: typeof v.sensor === 'string' ? v.sensor : '',
@@ -321,6 +362,12 @@ export interface TreeNode {
 
 const kNodeBytes = 48;
 export const kElementBytes = 16;
+export const kTriangleBytes = 40;
+
+/** Of one element of a node. */
+export function elementBytes(kind: LayerKind): number {
+  return kind === 'mesh' ? kTriangleBytes : kElementBytes;
+}
 
 function treeNode(view: DataView, index: number, nodes: number): TreeNode {
   const at = 8 + kNodeBytes * index;
@@ -355,9 +402,9 @@ export function parseNodes(bytes: ArrayBuffer): TreeNode[] {
   return Array.from({ length: count }, (_, i) => treeNode(view, i, count));
 }
 
-/** nodes/N.bin: four words an element. */
-export function parseElements(bytes: ArrayBuffer, count: number): Uint32Array {
-  if (bytes.byteLength !== count * kElementBytes)
+/** nodes/N.bin: four words an element, ten a triangle. */
+export function parseElements(bytes: ArrayBuffer, count: number, kind: LayerKind): Uint32Array {
+  if (bytes.byteLength !== count * elementBytes(kind))
     throw new ProtocolError(`a node: ${bytes.byteLength} bytes for ${count} elements`);
   return new Uint32Array(bytes);
 }

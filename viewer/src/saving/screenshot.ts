@@ -3,8 +3,8 @@
 
 // The picture as a file.
 
-import { byId, download } from './dom';
-import { showToast } from './notices';
+import { byId, download } from '../panels/dom';
+import { showToast } from '../panels/notices';
 import type { SceneView } from '../picture/scene_view';
 
 export function saveScreenshot(view: SceneView, sceneName: string) {

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Recorded scans, read when they are asked for and kept for a while.
+
+import { parseScan, type ScanPacket } from './protocol';
+
+const kKept = 24;
+
+export class RecordedScans {
+  /** Last used last. */
+  private readonly kept = new Map<number, Promise<ScanPacket>>();
+
+  /** Rejects as fetch does, or with a ProtocolError; then it can be asked for again. */
+  get(index: number): Promise<ScanPacket> {
+    const found = this.kept.get(index) ?? this.load(index);
+    this.kept.delete(index);
+    this.kept.set(index, found);
+    for (const oldest of this.kept.keys()) {
+      if (this.kept.size <= kKept) break;
+      this.kept.delete(oldest);
+    }
+    return found;
+  }
+
+  private load(index: number): Promise<ScanPacket> {
+    const loading = (async () => {
+      const reply = await fetch(`scans/${index}.bin`);
+      if (!reply.ok) throw new Error(`scan ${index}: ${reply.status}`);
+      return parseScan(await reply.arrayBuffer());
+    })();
+    loading.catch(() => this.kept.delete(index));
+    return loading;
+  }
+}

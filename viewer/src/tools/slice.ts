@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What lies in a vertical slice of the scene: the elements of the layers that are shown.
+
+import { Vector3 } from 'three';
+import type { Layer } from '../picture/layer';
+import { kElementBytes, type TreeNode } from '../server/protocol';
+
+/** A wall of air between two places, so thick. */
+export interface Slice {
+  from: Vector3;
+  to: Vector3;
+  width_m: number;
+}
+
+export interface SlicePoint {
+  /** From the first place, along the slice. */
+  along_m: number;
+  /** To the left of it. */
+  offset_m: number;
+  position: Vector3;
+  class: number | null;
+  /** 0..1 */
+  intensity: number | null;
+  layer: string;
+}
+
+/** More elements than these are not fetched: the slice is taken from coarser nodes. */
+const kMostFetched = 3_000_000;
+const kAtOnce = 6;
+
+/** Coordinates along and across a slice. */
+export class SliceFrame {
+  readonly length_m: number;
+  private readonly ux: number;
+  private readonly uy: number;
+
+  constructor(private readonly slice: Slice) {
+    const [dx, dy] = [slice.to.x - slice.from.x, slice.to.y - slice.from.y];
+    this.length_m = Math.max(Math.hypot(dx, dy), 1e-6);
+    this.ux = dx / this.length_m;
+    this.uy = dy / this.length_m;
+  }
+
+  along(x: number, y: number): number {
+    return (x - this.slice.from.x) * this.ux + (y - this.slice.from.y) * this.uy;
+  }
+
+  offset(x: number, y: number): number {
+    return (y - this.slice.from.y) * this.ux - (x - this.slice.from.x) * this.uy;
+  }
+
+  holds(x: number, y: number): boolean {
+    const along = this.along(x, y);
+    const reach = this.slice.width_m / 2;
+    return along >= 0 && along <= this.length_m && Math.abs(this.offset(x, y)) <= reach;
+  }
+
+  /** Whether a node may have something in it: by the circle around its box. */
+  touches({ low, high }: TreeNode): boolean {
+    const [x, y] = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
+    const reach = Math.hypot(high[0] - low[0], high[1] - low[1]) / 2;
+    const along = this.along(x, y);
+    if (along < -reach || along > this.length_m + reach) return false;
+    return Math.abs(this.offset(x, y)) <= reach + this.slice.width_m / 2;
+  }
+}
+
+/** Leaves that touch the slice, or coarser nodes where those hold too much. */
+function nodesOf(layer: Layer, frame: SliceFrame): { nodes: number[]; coarse: boolean } {
+  let nodes = layer.nodes.length > 0 ? [0] : [];
+  for (;;) {
+    const next = nodes.flatMap((n) => {
+      const { first_child, child_count } = layer.nodes[n];
+      if (child_count === 0) return [n];
+      const children = Array.from({ length: child_count }, (_, i) => first_child + i);
+      return children.filter((c) => frame.touches(layer.nodes[c]));
+    });
+    if (next.length === nodes.length && next.every((n, i) => n === nodes[i]))
+      return { nodes, coarse: false };
+    const count = next.reduce((sum, n) => sum + layer.nodes[n].count, 0);
+    if (count > kMostFetched) return { nodes, coarse: true };
+    nodes = next;
+  }
+}
+
+function pointsOf(layer: Layer, node: number, bytes: ArrayBuffer, frame: SliceFrame): SlicePoint[] {
+  const { low, high } = layer.nodes[node];
+  const halves = new Uint16Array(bytes);
+  const all = new Uint8Array(bytes);
+  const scale = [0, 1, 2].map((i) => (high[i] - low[i]) / 65535);
+  const { name, has_classes, has_intensities } = layer.info;
+  const points: SlicePoint[] = [];
+  for (let k = 0; k < bytes.byteLength / kElementBytes; ++k) {
+    const at = k * (kElementBytes / 2);
+    const x = low[0] + scale[0] * halves[at];
+    const y = low[1] + scale[1] * halves[at + 1];
+    if (!frame.holds(x, y)) continue;
+    points.push({
+      along_m: frame.along(x, y),
+      offset_m: frame.offset(x, y),
+      position: new Vector3(x, y, low[2] + scale[2] * halves[at + 2]),
+      class: has_classes ? halves[at + 6] : null,
+      intensity: has_intensities ? all[k * kElementBytes + 14] / 255 : null,
+      layer: name,
+    });
+  }
+  return points;
+}
+
+/** Rejects as loading does. `coarse`: merged elements stand for the layer's own. */
+export async function slicePoints(layers: Layer[], slice: Slice, signal: AbortSignal) {
+  const frame = new SliceFrame(slice);
+  const points: SlicePoint[] = [];
+  let coarse = false;
+  for (const layer of layers.filter((l) => l.info.kind !== 'mesh')) {
+    const found = nodesOf(layer, frame);
+    coarse ||= found.coarse;
+    const waiting = found.nodes.filter((n) => layer.nodes[n].count > 0);
+    const worker = async () => {
+      for (let n = waiting.pop(); n !== undefined; n = waiting.pop())
+        points.push(...pointsOf(layer, n, await layer.load(n, signal), frame));
+    };
+    await Promise.all(Array.from({ length: kAtOnce }, worker));
+  }
+  points.sort((a, b) => a.along_m - b.along_m || a.position.z - b.position.z);
+  return { points, coarse, length_m: frame.length_m };
+}

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The place in the scene that a click means: an echo, else what the picture shows there, to the
+// precision of the server's own ray where that meets the same surface.
+
+import { Raycaster, type Vector3 } from 'three';
+import type { Place } from '../driving/pointer';
+import type { Live } from '../server/live';
+import type { ScanCloud } from '../picture/scan_cloud';
+import type { SceneView } from '../picture/scene_view';
+
+const kEchoPixels = 5;
+/** An echo lies on the surface that it is of. */
+const kEchoBeforeM = 0.3;
+/** Splats that are drawn merged, and their tips, are off by so much, of the distance and at least. */
+const kSameSurface = 0.01;
+const kSameSurfaceM = 0.15;
+
+export class SurfaceFinder {
+  constructor(
+    private readonly view: SceneView,
+    private readonly live: Live,
+    private readonly clouds: ScanCloud[],
+  ) {}
+
+  /** Null: nothing is there. */
+  async at({ screen, pixel }: Place): Promise<Vector3 | null> {
+    const { camera } = this.view.rig;
+    const eye = camera.position.clone();
+    const seen = this.view.surfaceAt(screen, pixel);
+    for (const cloud of this.clouds) {
+      const echo = cloud.nearest(camera, screen.x, screen.y, this.view.height_px, kEchoPixels);
+      if (!echo || !this.view.clip.shows(echo.position)) continue;
+      if (!seen || echo.position.distanceTo(eye) < seen.distanceTo(eye) + kEchoBeforeM)
+        return echo.position;
+    }
+    if (!seen) return null;
+    const caster = new Raycaster();
+    caster.setFromCamera(screen, camera);
+    const { origin, direction } = caster.ray;
+    const found = await this.live.pick(origin.toArray(), direction.toArray());
+    if (!found?.hit) return seen;
+    const exact = origin.clone().addScaledVector(direction, found.range_m);
+    const tolerance = Math.max(kSameSurfaceM, kSameSurface * seen.distanceTo(eye));
+    return exact.distanceTo(seen) < tolerance ? exact : seen;
+  }
+}
