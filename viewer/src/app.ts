@@ -10,6 +10,7 @@ import { button, byId, fill, make, short } from './panels/dom';
 import { DrivePanel } from './panels/drive_panel';
 import { DrivenSensor } from './driving/driven_sensor';
 import { publishHandle } from './handle';
+import { DroppedFiles } from './layers/dropped_files';
 import { fillHelp } from './panels/help';
 import { listenToKeys } from './driving/keyboard';
 import { showKeyHints } from './panels/key_hints';
@@ -61,6 +62,7 @@ export class App {
   private readonly dialog: CommandDialog;
   private readonly saving: SaveMenu;
   private readonly objects: WorldObjects;
+  private readonly files: DroppedFiles;
   private colorVersion = 0;
 
   constructor(scene: SceneInfo) {
@@ -106,6 +108,7 @@ export class App {
     this.scanPoints = new ScanPointsPanel(view, cloud, clouds, scene.can_simulate);
     const command = scene.can_simulate ? () => void this.dialog.show() : null;
     this.saving = new SaveMenu(view, scene, this.playback, command);
+    this.files = new DroppedFiles(view, scene.origin_m, () => this.loaded());
     this.panel = this.makePanel();
     view.stage.overlay.add(recorded.object, cloud.object, this.objects.object);
     view.stage.overlay.add(...this.sensor.objects);
@@ -167,7 +170,7 @@ export class App {
     const objects = new ObjectsPanel(this.objects, this.source.scene.origin_m);
     return new SidePanel(
       { view, lidar, drive, scanPoints, objects },
-      { colorsChanged: () => this.colorsChanged() },
+      { colorsChanged: () => this.colorsChanged(), addLayer: () => this.files.choose() },
     );
   }
 

@@ -111,6 +111,21 @@ function actionsOf(parts: HandleParts) {
       view.moved();
     },
     command: () => parts.command(),
+    /** Echoes of the live scan within `reach_m` of a place. */
+    echoesNear: (place: number[], reach_m: number) => {
+      const { packet, object } = parts.cloud;
+      if (!packet) return 0;
+      const { words } = packet;
+      const floats = new Float32Array(words.buffer, words.byteOffset, words.length);
+      const middle = new Vector3(...place);
+      const echo = new Vector3();
+      let found = 0;
+      for (let i = 0; i < floats.length; i += kScanPointWords) {
+        echo.set(floats[i], floats[i + 1], floats[i + 2]).applyMatrix4(object.matrix);
+        if (echo.distanceTo(middle) < reach_m) ++found;
+      }
+      return found;
+    },
     posesCsv: () => parts.poses(),
   };
 }

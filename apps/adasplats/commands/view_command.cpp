@@ -13,6 +13,7 @@ constexpr const char* kViewExamples =
     "  adasplats view place.ply --sequence sequences/00 --sensor velodyne-vlp-16\n"
     "  adasplats view place.ply --cloud mapping.ply --errors distances.ply --port 8123\n"
     "  adasplats view sequences/00\n"
+    "  adasplats view world.toml --poses drive.csv --layer other.ply\n"
     "Prints the address of a page to look at it, and to drive a LiDAR through it, with a browser "
     "on\n"
     "this machine. Ctrl-C ends it.\n";
@@ -25,8 +26,11 @@ class ViewCommand final : public Command {
     OptionSet& app = options();
     require(
         add_path(app, "INPUT", job_.input,
-                 "Splat model, point cloud, sequence, or a folder with a model and a sequence"));
+                 "Splat model, mesh, world file, point cloud, sequence, or a folder with a model "
+                 "and a sequence"));
     add_paths(app, "--cloud", job_.clouds, "Points to show beside the model: a file or a sequence");
+    add_paths(app, "--layer", job_.layers,
+              "Another model, mesh or cloud to show beside it; rays do not meet it");
     add_paths(app, "--errors", job_.errors, "Points with errors: what evaluate --errors wrote");
     add_paths(app, "--sequence", job_.sequences, "Recorded scans, and where they were taken");
     add_paths(app, "--poses", job_.trajectories,

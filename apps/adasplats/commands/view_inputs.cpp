@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 /// The inputs by what they are.
 struct Sorted {
-  fs::path model;  ///< empty: none
+  fs::path model;                ///< splats, a mesh or a world file; empty: none
+  std::vector<fs::path> places;  ///< splats and meshes beside it
   std::vector<fs::path> clouds, errors, sequences, trajectories;
 };
 
@@ -66,21 +67,37 @@ void sort_folder(const fs::path& folder, Sorted& sorted) {
   sorted.clouds.push_back(points);
 }
 
+bool is_world_file(const fs::path& path) { return path.extension() == ".toml"; }
+bool is_place(const fs::path& path) { return is_splat_model(path) || is_mesh_file(path); }
+
+/// By what it is, as the input itself.
+void sort_layer(const fs::path& path, Sorted& sorted) {
+  require_input(path);
+  if (is_world_file(path))
+    throw Error(ErrorKind::usage, path.string() + ": a world file is the input itself, no layer");
+  if (fs::is_directory(path))
+    sorted.clouds.push_back(resolve_cloud_input(path));
+  else if (is_place(path))
+    sorted.places.push_back(path);
+  else if (has_error_points(path))
+    sorted.errors.push_back(path);
+  else
+    sorted.clouds.push_back(path);
+}
+
 Sorted sorted_inputs(const ViewJob& job) {
   require_input(job.input);
   Sorted sorted;
   if (fs::is_directory(job.input)) {
     sort_folder(job.input, sorted);
-  } else if (is_splat_model(job.input)) {
+  } else if (is_world_file(job.input) || is_place(job.input)) {
     sorted.model = job.input;
-  } else if (is_mesh_file(job.input)) {
-    throw Error(ErrorKind::usage,
-                job.input.string() + ": a triangle mesh; the viewer shows splat models and points");
   } else if (has_error_points(job.input)) {
     sorted.errors.push_back(job.input);
   } else {
     sorted.clouds.push_back(job.input);
   }
+  for (const fs::path& layer : job.layers) sort_layer(layer, sorted);
   for (const fs::path& cloud : job.clouds) sorted.clouds.push_back(resolve_cloud_input(cloud));
   for (const fs::path& sequence : job.sequences)
     sorted.sequences.push_back(resolve_cloud_input(sequence));
@@ -106,6 +123,7 @@ class Loading {
     view_.scene.labels = label_scheme_for(job_.labels, inputs);
     for (const fs::path& errors : sorted_.errors) read_errors(errors);
     if (!sorted_.model.empty()) add_model();
+    for (const fs::path& place : sorted_.places) add_place(place);
     for (const fs::path& cloud : sorted_.clouds) add_cloud(cloud);
     for (std::size_t i = 0; i < errors_.size(); ++i)
       add_errors(name_of(sorted_.errors[i]), errors_[i]);
@@ -119,7 +137,8 @@ class Loading {
 
  private:
   void add_model() {
-    view_.model = std::make_unique<ModelScene>(sorted_.model, job_.labels, session_);
+    view_.model =
+        std::make_unique<ModelScene>(sorted_.model, job_.labels, session_, WorldFiles::taken);
     ViewScene& scene = view_.scene;
     scene.model = view_.model.get();
     set_place(view_.model->origin(), view_.model->middle_box());
@@ -127,9 +146,25 @@ class Loading {
     if (view_.model->labels() != nullptr) scene.labels = *view_.model->labels();
     scene.command = {"adasplats", "simulate", sorted_.model.string()};
     session_.progress.begin_step("levels of detail", 0);
-    scene.layers.push_back(splat_layer(name_of(sorted_.model), *view_.model->splats(),
-                                       errors_of_splats(*view_.model->splats()), scene.origin,
-                                       session_.executor));
+    const std::string name = name_of(sorted_.model);
+    const SplatModel* const splats = view_.model->splats();
+    scene.layers.push_back(
+        splats != nullptr
+            ? splat_layer(name, *splats, errors_of_splats(*splats), scene.origin, session_.executor)
+            : place_layer(name, view_.model->place(), scene.origin, session_.executor));
+    add_world(scene, session_.executor);
+    session_.progress.end_step();
+  }
+
+  void add_place(const fs::path& path) {
+    const Place place = load_place(path);
+    if (view_of(place).primitive_count() == 0)
+      throw Error(ErrorKind::data, path.string() + ": nothing in it");
+    crs_.add(path, crs_of(place));
+    if (view_.scene.layers.empty()) set_place(origin_of(place), world_box_of(place));
+    session_.progress.begin_step("levels of detail", 0);
+    view_.scene.layers.push_back(
+        place_layer(name_of(path), place, view_.scene.origin, session_.executor));
     session_.progress.end_step();
   }
 

@@ -16,8 +16,8 @@ struct LoadedView {
   ViewScene scene;                    ///< looks into `model`
 };
 
-/// Finds out what the inputs are and loads them. Errors: usage (a triangle mesh; a folder with
-/// several models or nothing to show), those of loading.
+/// Finds out what the inputs are and loads them. Errors: usage (a folder with several models or
+/// nothing to show, a world file as a layer), those of loading.
 LoadedView load_view(const ViewJob& job, Session& session);
 
 }  // namespace adasplats::app

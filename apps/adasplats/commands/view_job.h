@@ -15,8 +15,10 @@ namespace adasplats::app {
 
 /// What is shown, and where.
 struct ViewJob {
-  /// A splat model, a point cloud, a sequence, or a folder with a model and a sequence in it.
+  /// A splat model, a mesh, a world file, a point cloud, a sequence, or a folder with a model and a
+  /// sequence in it.
   std::filesystem::path input;
+  std::vector<std::filesystem::path> layers;        ///< models, meshes and clouds beside it
   std::vector<std::filesystem::path> clouds;        ///< points beside the model
   std::vector<std::filesystem::path> errors;        ///< points with errors, of `evaluate`
   std::vector<std::filesystem::path> sequences;     ///< recorded scans and where they were taken
@@ -33,8 +35,8 @@ struct ViewJob {
   bool browser = true;     ///< opens it
 };
 
-/// Serves until Ctrl-C. Errors: unavailable (no viewer in this build, port taken), usage (a mesh),
-/// those of loading.
+/// Serves until Ctrl-C. Errors: unavailable (no viewer in this build, port taken), those of
+/// loading.
 void run_view(const ViewJob& job, Session& session);
 
 }  // namespace adasplats::app

@@ -65,6 +65,9 @@ Vec3d vector_of(const Json& json, const std::string& name) {
   return {x, y, z};
 }
 
+/// Larger than any clock's seconds.
+constexpr double kLatest_s = 1e11;
+
 RigidTransform transform_of(const Json& json, Vec3d origin) {
   const auto [x, y, z, qx, qy, qz, qw] = numbers_of<7>(json, "pose");
   const double norm = std::sqrt(qx * qx + qy * qy + qz * qz + qw * qw);
@@ -196,7 +199,17 @@ LivePose parse_pose(const Json& json, Vec3d origin) {
     pose.velocity_m_s = vector_of(json["velocity_m_s"], "velocity_m_s");
   if (json.contains("yaw_rate_rad_s"))
     pose.yaw_rate_rad_s = number_of(json["yaw_rate_rad_s"], "yaw_rate_rad_s", -100, 100);
+  if (json.contains("time_s"))
+    pose.time_s = number_of(json["time_s"], "time_s", -kLatest_s, kLatest_s);
   return pose;
+}
+
+ObjectMessage parse_object(const Json& json, Vec3d origin) {
+  ObjectMessage object;
+  object.id = static_cast<std::size_t>(number_of(member(json, "id"), "id", 0, 1e9));
+  const Json& pose = member(json, "pose");
+  if (!pose.is_null()) object.world_from_object = transform_of(pose, origin);
+  return object;
 }
 
 PickMessage parse_pick(const Json& json, Vec3d origin) {
@@ -237,13 +250,13 @@ LiveSensor live_sensor(const std::string& name) {
 }
 
 ScanMotion motion_of(const LivePose& pose, const LiveSensor& sensor) {
-  const TimedPose reference = {0, pose.world_from_sensor};
+  const TimedPose reference = {pose.time_s, pose.world_from_sensor};
   const bool stands = length(pose.velocity_m_s) == 0 && pose.yaw_rate_rad_s == 0;
   if (!sensor.rolling_shutter || stands) return {reference, {}};
   const double duration_s = 1 / sensor.settings.sensor.rotation_hz;
   const auto at = [&](double time_s) {
     const Mat3d turn = rotation_from_yaw_pitch_roll(pose.yaw_rate_rad_s * time_s, 0, 0);
-    return TimedPose{time_s,
+    return TimedPose{pose.time_s + time_s,
                      {pose.world_from_sensor.rotation * turn,
                       pose.world_from_sensor.translation + time_s * pose.velocity_m_s}};
   };
@@ -260,6 +273,7 @@ LiveMessage parse_live_message(std::string_view text, Vec3d origin) {
   if (type == "sensor") return parse_sensor(json);
   if (type == "run") return RunMessage{truth_of(member(json, "on"), "on")};
   if (type == "pick") return parse_pick(json, origin);
+  if (type == "object") return parse_object(json, origin);
   refuse("unknown type '" + type.substr(0, 60) + "'");
 }
 

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -32,6 +34,7 @@ struct LivePose {
   RigidTransform world_from_sensor;
   Vec3d velocity_m_s;
   double yaw_rate_rad_s = 0;  ///< about its own z
+  double time_s = 0;          ///< of the world: what moves in it is where it is then
 };
 
 /// One revolution around that pose; still where the sensor does not move or has no rolling shutter.
@@ -47,7 +50,13 @@ struct PickMessage {
   Vec3d origin;     ///< world coordinates
   Vec3d direction;  ///< not zero; of any length
 };
-using LiveMessage = std::variant<LiveSensor, LivePose, RunMessage, ReadyMessage, PickMessage>;
+struct ObjectMessage {
+  std::size_t id = 0;  ///< in scene.json
+  /// Where it stands from now on; nothing: where the world file has it.
+  std::optional<RigidTransform> world_from_object;
+};
+using LiveMessage =
+    std::variant<LiveSensor, LivePose, RunMessage, ReadyMessage, PickMessage, ObjectMessage>;
 
 /// `origin`: of the page's positions, world coordinates. Errors: data (no JSON object), usage
 /// (anything else that is wrong: an unknown type, sensor or setting, a value out of range).

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -45,6 +46,7 @@ struct Client {
   std::uint64_t next_number = 0;
   Clock::time_point next_scan;
   std::deque<PickMessage> picks;
+  std::map<std::size_t, RigidTransform> placed;  ///< objects that the page took elsewhere
 
   bool wants_scan(Clock::time_point now) const {
     return running && under_way < kMostUnderWay && next_scan <= now;
@@ -62,6 +64,7 @@ struct Work {
   std::deque<PickMessage> picks;
   bool scan = false;
   LivePose pose;
+  std::map<std::size_t, RigidTransform> placed;
   std::uint64_t number = 0;
 };
 
@@ -97,12 +100,40 @@ class Simulators {
   std::vector<Simulator> kept_;  ///< last used first
 };
 
+/// Objects where the page has them whose scan is next, the others on their own way.
+class PlacedObjects {
+ public:
+  explicit PlacedObjects(const ViewScene& scene) : scene_(scene) {
+    for (const ViewObject& object : scene.objects)
+      own_.push_back(scene.model->world()->object(object.object).trajectory);
+  }
+
+  void place(const std::map<std::size_t, RigidTransform>& wanted) {
+    for (const std::size_t id : placed_)
+      if (!wanted.contains(id)) move(id, own_[id]);
+    placed_.clear();
+    for (const auto& [id, pose] : wanted) {
+      move(id, {{0, pose}});
+      placed_.push_back(id);
+    }
+  }
+
+ private:
+  void move(std::size_t id, Trajectory trajectory) {
+    scene_.model->move_object(scene_.objects[id].object, std::move(trajectory));
+  }
+
+  const ViewScene& scene_;
+  std::vector<Trajectory> own_;  ///< of the world file
+  std::vector<std::size_t> placed_;
+};
+
 }  // namespace
 
 class LiveScans::Implementation {
  public:
   Implementation(const ViewScene& scene, const Executor& executor)
-      : scene_(scene), executor_(executor), simulators_(*scene.model, executor) {
+      : scene_(scene), executor_(executor), simulators_(*scene.model, executor), objects_(scene) {
     first_sensor_ = std::make_shared<const LiveSensor>(live_sensor(scene.sensor));
     thread_ = std::thread([this] { simulate(); });
   }
@@ -140,6 +171,7 @@ class LiveScans::Implementation {
       const auto client = std::find_if(clients_.begin(), clients_.end(),
                                        [&](const Client& c) { return c.peer == peer; });
       if (client == clients_.end()) return;
+      if (const auto* const object = std::get_if<ObjectMessage>(&message)) check(*object);
       std::visit([&](auto&& part) { take(*client, std::forward<decltype(part)>(part)); },
                  std::move(message));
     }
@@ -155,6 +187,16 @@ class LiveScans::Implementation {
   static void take(Client& client, const RunMessage& run) { client.running = run.on; }
   static void take(Client& client, ReadyMessage /*ready*/) {
     client.under_way = std::max(client.under_way - 1, 0);
+  }
+  void check(const ObjectMessage& object) const {
+    if (object.id >= scene_.objects.size())
+      throw Error(ErrorKind::usage, "there is no object " + std::to_string(object.id));
+  }
+  static void take(Client& client, const ObjectMessage& object) {
+    if (object.world_from_object)
+      client.placed.insert_or_assign(object.id, *object.world_from_object);
+    else
+      client.placed.erase(object.id);
   }
   static void take(Client& client, const PickMessage& pick) {
     if (client.picks.size() >= kMostPicks)
@@ -189,6 +231,7 @@ class LiveScans::Implementation {
     work.picks = std::exchange(client.picks, {});
     work.scan = client.wants_scan(now);
     if (!work.scan) return work;
+    work.placed = client.placed;
     work.number = client.next_number++;
     client.next_scan = now + kLeastInterval;
     ++client.under_way;
@@ -228,6 +271,7 @@ class LiveScans::Implementation {
   }
 
   void send_scan(const Work& work, ScanSimulator& simulator, const ImageSize& size) {
+    objects_.place(work.placed);
     const Stopwatch watch;
     const ScanMotion motion = motion_of(work.pose, *work.sensor);
     const Scan scan = simulator.scan(motion, work.number);
@@ -253,7 +297,8 @@ class LiveScans::Implementation {
   const ViewScene& scene_;
   const Executor& executor_;
   std::shared_ptr<const LiveSensor> first_sensor_;
-  Simulators simulators_;  ///< of the simulating thread alone, as the next
+  Simulators simulators_;  ///< of the simulating thread alone, as the next two
+  PlacedObjects objects_;
   std::optional<float> full_intensity_;
   std::mutex mutex_;  ///< of all below
   std::condition_variable changed_;

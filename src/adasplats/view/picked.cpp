@@ -24,8 +24,19 @@ void add_attributes(Json& json, const ViewScene& scene, std::uint32_t primitive)
     json["intensity"] = attributes.intensities[primitive];
 }
 
-void add_disk(Json& json, const SceneView& view, std::uint32_t primitive) {
-  if (primitive >= view.disks.size()) return;
+void add_triangle(Json& json, const TriangleMesh& mesh, std::size_t number) {
+  const Triangle triangle = mesh.triangle(number);
+  const Vec3f across = cross(triangle.b - triangle.a, triangle.c - triangle.a);
+  const Vec3f normal = length(across) > 0 ? normalized(across) : Vec3f{0, 0, 1};
+  json["normal"] = {normal.x, normal.y, normal.z};
+}
+
+void add_geometry(Json& json, const SceneView& view, std::uint32_t primitive) {
+  if (primitive >= view.disks.size()) {
+    if (primitive < view.primitive_count())
+      add_triangle(json, *view.mesh, primitive - view.disk_count());
+    return;
+  }
   const Disk& disk = view.disks[primitive];
   json["normal"] = {disk.normal.x, disk.normal.y, disk.normal.z};
   json["radius_m"] = disk.radius;
@@ -46,7 +57,7 @@ std::string picked_message(const ViewScene& scene, const PickMessage& pick,
     json["range_m"] = hit.t;
     json["primitive"] = hit.primitive;
     json["position"] = {at.x, at.y, at.z};
-    add_disk(json, scene.model->view(), hit.primitive);
+    add_geometry(json, scene.model->view(), hit.primitive);
     add_attributes(json, scene, hit.primitive);
   }
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);

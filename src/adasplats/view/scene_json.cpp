@@ -14,28 +14,49 @@ using Json = nlohmann::ordered_json;
 Json json_of(Vec3d v) { return {v.x, v.y, v.z}; }
 Json json_of(ByteRange range) { return {range.low, range.high}; }
 
-Json box_of(const LevelTree& tree) {
-  const LevelNode& root = tree.nodes().front();
+Json box_of(const ViewLayer& layer) {
+  const LevelNode& root = nodes_of(layer).front();
   return {json_of(vec_cast<double>(root.low)), json_of(vec_cast<double>(root.high))};
 }
 
 Json layer_json(const ViewLayer& layer, std::size_t id) {
   return {{"id", id},
-          {"kind", layer.is_splats ? "splats" : "points"},
+          {"kind", layer.mesh        ? "mesh"
+                   : layer.is_splats ? "splats"
+                                     : "points"},
           {"name", layer.name},
-          {"count", layer.tree.input_size()},
-          {"nodes", layer.tree.nodes().size()},
+          {"count", size_of(layer)},
+          {"nodes", nodes_of(layer).size()},
           {"has_classes", layer.has_classes},
           {"has_intensities", layer.has_intensities},
           {"has_errors", layer.has_errors},
           {"part", layer.part},
           {"intensity_range", json_of(layer.tree.intensity_range())},
           {"error_range_m", json_of(layer.tree.error_range_m())},
-          {"box", box_of(layer.tree)}};
+          {"box", box_of(layer)}};
+}
+
+Json object_json(const ViewScene& scene, const ViewObject& placed) {
+  const WorldObject& object = scene.model->world()->object(placed.object);
+  Json json = {{"name", placed.name},
+               {"geometry", layer_json(scene.geometries[placed.geometry],
+                                       scene.layers.size() + placed.geometry)},
+               {"class_id", nullptr},
+               {"scale", object.scale},
+               {"only_during", object.only_during},
+               {"poses", Json::array()},
+               {"times_s", Json::array()}};
+  if (object.class_id) json["class_id"] = *object.class_id;
+  for (const TimedPose& pose : object.trajectory) {
+    json["poses"].push_back(pose_json(pose.world_from_sensor, scene.origin));
+    json["times_s"].push_back(pose.time_s);
+  }
+  return json;
 }
 
 Json trajectory_json(const std::string& name, const Trajectory& poses, Vec3d origin) {
   Json json = {{"name", name}, {"poses", Json::array()}, {"times_s", Json::array()}};
+  if (!poses.empty()) json["begin_s"] = poses.front().time_s;
   for (const TimedPose& pose : poses) {
     json["poses"].push_back(pose_json(pose.world_from_sensor, origin));
     json["times_s"].push_back(pose.time_s - poses.front().time_s);
@@ -103,6 +124,9 @@ std::string scene_json(const ViewScene& scene) {
   json["classes"] = classes_json(scene.labels);
   json["trajectories"] = trajectories_json(scene);
   json["scans"] = scans_json(scene);
+  json["objects"] = Json::array();
+  for (const ViewObject& object : scene.objects)
+    json["objects"].push_back(object_json(scene, object));
   json["can_simulate"] = scene.model != nullptr;
   json["sensors"] = scene.model != nullptr ? sensors_json() : Json::array();
   json["sensor"] = scene.sensor;

@@ -3,8 +3,10 @@
 #include "adasplats/view/view_pages.h"
 
 #include <charconv>
+#include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -54,7 +56,10 @@ HttpReply binary(SharedBytes bytes) {
 
 ViewPages::ViewPages(const ViewScene& scene)
     : scene_(scene), scene_json_(shared(adasplats::scene_json(scene))) {
-  for (const ViewLayer& layer : scene_.layers) nodes_.push_back(shared(layer.tree.nodes_bytes()));
+  for (const ViewLayer& layer : scene_.layers)
+    nodes_.push_back(shared(nodes_bytes(nodes_of(layer))));
+  for (const ViewLayer& layer : scene_.geometries)
+    nodes_.push_back(shared(nodes_bytes(nodes_of(layer))));
 }
 
 HttpReply ViewPages::get(std::string_view path) const {
@@ -73,14 +78,17 @@ HttpReply ViewPages::layer(std::string_view path) const {
   const std::size_t slash = path.find('/');
   if (slash == std::string_view::npos) return not_found();
   const auto number = number_of(path.substr(0, slash));
-  if (!number || *number >= scene_.layers.size()) return not_found();
+  if (!number || *number >= nodes_.size()) return not_found();
   const std::string_view rest = path.substr(slash + 1);
   if (rest == "nodes.bin") return binary(nodes_[*number]);
   if (!rest.starts_with("nodes/")) return not_found();
-  const LevelTree& tree = scene_.layers[*number].tree;
+  // What objects are made of follows the layers.
+  const ViewLayer& found = *number < scene_.layers.size()
+                               ? scene_.layers[*number]
+                               : scene_.geometries[*number - scene_.layers.size()];
   const auto node = binary_number(rest.substr(6));
-  if (!node || *node >= tree.nodes().size()) return not_found();
-  const auto bytes = std::as_bytes(tree.elements(*node));
+  if (!node || *node >= nodes_of(found).size()) return not_found();
+  const std::span<const std::byte> bytes = node_bytes(found, *node);
   // Bytes as characters: what a reply's body is made of.
   return binary(shared(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())));
 }

@@ -24,7 +24,7 @@ class ViewPages {
 
   const ViewScene& scene_;
   SharedBytes scene_json_;
-  std::vector<SharedBytes> nodes_;  ///< nodes.bin of each layer
+  std::vector<SharedBytes> nodes_;  ///< nodes.bin of each layer, and of each geometry
 };
 
 }  // namespace adasplats

@@ -35,8 +35,20 @@ bool has_intensities(std::span<const float> intensities) {
   return !intensities.empty() && tells(intensities, intensities.front());
 }
 
+/// Corners of triangles, every so many.
+std::vector<Vec3f> samples_of(const MeshTree& tree) {
+  const std::size_t step = 1 + tree.input_size() / kMostSamples;
+  std::vector<Vec3f> samples;
+  for (std::size_t n = 0; n < tree.nodes().size(); ++n)
+    for (std::size_t i = 0; i < tree.elements(n).size(); i += step)
+      samples.push_back(tree.elements(n)[i].corners[0]);
+  return samples;
+}
+
 /// Of the leaves, every so many, as the page gets them.
-std::vector<Vec3f> samples_of(const LevelTree& tree) {
+std::vector<Vec3f> samples_of(const ViewLayer& layer) {
+  if (layer.mesh) return samples_of(*layer.mesh);
+  const LevelTree& tree = layer.tree;
   const std::size_t step = 1 + tree.input_size() / kMostSamples;
   std::vector<Vec3f> samples;
   std::size_t number = 0;
@@ -56,6 +68,19 @@ std::vector<Vec3f> samples_of(const LevelTree& tree) {
 }
 
 }  // namespace
+
+std::span<const LevelNode> nodes_of(const ViewLayer& layer) {
+  return layer.mesh ? layer.mesh->nodes() : layer.tree.nodes();
+}
+
+std::span<const std::byte> node_bytes(const ViewLayer& layer, std::size_t node) {
+  return layer.mesh ? std::as_bytes(layer.mesh->elements(node))
+                    : std::as_bytes(layer.tree.elements(node));
+}
+
+std::size_t size_of(const ViewLayer& layer) {
+  return layer.mesh ? layer.mesh->input_size() : layer.tree.input_size();
+}
 
 ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const float> errors_m,
                       Vec3d origin, const Executor& executor) {
@@ -77,7 +102,27 @@ ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const
           has_intensities(model.intensities),
           !errors_m.empty(),
           LevelTree(input, {}, executor),
+          {},
           {}};
+}
+
+ViewLayer mesh_layer(std::string name, const MeshModel& model, std::span<const float> intensities,
+                     Vec3d origin) {
+  return {std::move(name),
+          false,
+          has_classes(model.mesh.classes),
+          has_intensities(intensities),
+          false,
+          LevelTree({}, {}, Executor(1)),
+          MeshTree(model.mesh, intensities, model.origin - origin),
+          {}};
+}
+
+ViewLayer place_layer(std::string name, const Place& place, Vec3d origin,
+                      const Executor& executor) {
+  if (const auto* const splats = std::get_if<SplatModel>(&place))
+    return splat_layer(std::move(name), *splats, {}, origin, executor);
+  return mesh_layer(std::move(name), std::get<MeshModel>(place), intensities_of(place), origin);
 }
 
 ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const float> errors_m,
@@ -95,7 +140,25 @@ ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const
           has_intensities(cloud.intensities),
           !errors_m.empty(),
           LevelTree(input, {}, executor),
+          {},
           {}};
+}
+
+void add_world(ViewScene& scene, const Executor& executor) {
+  const World* const world = scene.model == nullptr ? nullptr : scene.model->world();
+  if (world == nullptr) return;
+  std::vector<std::size_t> number_of(world->geometry_count(), world->geometry_count());
+  for (std::size_t i = 0; i < world->object_count(); ++i) {
+    const WorldObject& object = world->object(i);
+    if (object.only_scan) continue;
+    std::size_t& number = number_of[object.geometry];
+    if (number == world->geometry_count()) {
+      const Place& place = world->geometry(object.geometry);
+      number = scene.geometries.size();
+      scene.geometries.push_back(place_layer(object.name, place, {}, executor));
+    }
+    scene.objects.push_back({object.name, i, number});
+  }
 }
 
 RigidTransform start_pose_of(const ViewScene& scene, double mount_height_m,
@@ -106,7 +169,7 @@ RigidTransform start_pose_of(const ViewScene& scene, double mount_height_m,
   for (const auto& [name, poses] : scene.trajectories)
     if (!poses.empty()) return poses.front().world_from_sensor;
   if (!scene.layers.empty()) {
-    if (auto pose = street_pose(samples_of(scene.layers.front().tree), mount_height_m)) {
+    if (auto pose = street_pose(samples_of(scene.layers.front()), mount_height_m)) {
       pose->translation = pose->translation + scene.origin;
       return *pose;
     }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,9 +15,12 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/scene/mesh_model.h"
 #include "adasplats/sensors/lidar_model.h"
+#include "adasplats/splats/model/place.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/view/levels/level_tree.h"
+#include "adasplats/view/mesh_tree.h"
 
 namespace adasplats {
 
@@ -27,9 +31,21 @@ struct ViewLayer {
   bool has_classes = false;      ///< more than class 0
   bool has_intensities = false;  ///< not all the same
   bool has_errors = false;
-  LevelTree tree;
+  LevelTree tree;                ///< of splats or points
+  std::optional<MeshTree> mesh;  ///< instead, for triangles
   std::string part;  ///< of the beams with errors (error_layers.h); empty: all, or no such layer
 };
+
+/// The tree of a layer, whatever it is of.
+std::span<const LevelNode> nodes_of(const ViewLayer& layer);
+std::span<const std::byte> node_bytes(const ViewLayer& layer, std::size_t node);
+std::size_t size_of(const ViewLayer& layer);
+
+/// Triangles.
+ViewLayer mesh_layer(std::string name, const MeshModel& model, std::span<const float> intensities,
+                     Vec3d origin);
+/// Splats or triangles.
+ViewLayer place_layer(std::string name, const Place& place, Vec3d origin, const Executor& executor);
 
 /// `errors_m`: empty, or one a splat.
 ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const float> errors_m,
@@ -37,6 +53,13 @@ ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const
 /// `errors_m`: empty, or one a point.
 ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const float> errors_m,
                       Vec3d origin, const Executor& executor);
+
+/// Something of a world file, in all scans.
+struct ViewObject {
+  std::string name;
+  std::size_t object = 0;    ///< of the world
+  std::size_t geometry = 0;  ///< of ViewScene::geometries
+};
 
 /// Recorded scans; they are read when the page asks for one.
 struct ViewSequence {
@@ -52,8 +75,11 @@ struct ViewScene {
   std::vector<std::pair<std::string, Trajectory>> trajectories;  ///< besides those of `sequences`
   std::vector<ViewSequence> sequences;
   std::optional<LabelScheme> labels;
-  std::pair<Vec3d, Vec3d> middle_box;   ///< world coordinates: where to look first
-  const ModelScene* model = nullptr;    ///< that scans are simulated in; null: none
+  std::pair<Vec3d, Vec3d> middle_box;  ///< world coordinates: where to look first
+  /// That scans are simulated in, and whose objects a page may move; null: none.
+  ModelScene* model = nullptr;
+  std::vector<ViewLayer> geometries;  ///< of objects, each in a frame of its own
+  std::vector<ViewObject> objects;
   std::string sensor = kDefaultSensor;  ///< chosen at the start
   RigidTransform start_pose;            ///< of the sensor, world coordinates
   std::string device = "cpu";
@@ -65,6 +91,9 @@ struct ViewScene {
 /// middle.
 RigidTransform start_pose_of(const ViewScene& scene, double mount_height_m,
                              const Executor& executor);
+
+/// The objects of the model's world that are in all scans, and what they are made of.
+void add_world(ViewScene& scene, const Executor& executor);
 
 /// "scene.json".
 std::string scene_json(const ViewScene& scene);

@@ -5,7 +5,7 @@
 
 import { button, choice, fill, make, tick } from './dom';
 import { cssColor } from '../picture/color_maps';
-import type { SceneInfo } from '../server/protocol';
+import type { LayerInfo, SceneInfo } from '../server/protocol';
 import type { SceneView } from '../picture/scene_view';
 import { kColorModes, type ColorMode } from '../picture/shaders';
 
@@ -18,10 +18,10 @@ const kNames: Record<ColorMode, string> = {
   error: 'Error',
 };
 
-function available(scene: SceneInfo, mode: ColorMode): boolean {
-  if (mode === 'class') return scene.layers.some((l) => l.has_classes);
-  if (mode === 'intensity') return scene.layers.some((l) => l.has_intensities);
-  if (mode === 'error') return scene.layers.some((l) => l.has_errors);
+function available(layers: LayerInfo[], mode: ColorMode): boolean {
+  if (mode === 'class') return layers.some((l) => l.has_classes);
+  if (mode === 'intensity') return layers.some((l) => l.has_intensities);
+  if (mode === 'error') return layers.some((l) => l.has_errors);
   return true;
 }
 
@@ -42,13 +42,13 @@ export class ColorPanel {
 
   constructor(
     private readonly view: SceneView,
-    scene: SceneInfo,
     private readonly changed: () => void,
   ) {
+    const infos = view.layers.map((l) => l.info);
     const options = kColorModes.map((m) => ({
       value: m,
       text: kNames[m],
-      disabled: !available(scene, m),
+      disabled: !available(infos, m),
     }));
     this.select = choice('Colour by', options, view.colorMode, (value) =>
       this.choose(value as ColorMode),

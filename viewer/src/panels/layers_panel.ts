@@ -3,10 +3,10 @@
 
 // What is drawn: layers over each other or two side by side.
 
-import { choice, fill, make, row, segments, short, slider, tick } from './dom';
+import { button, choice, fill, make, row, segments, short, slider, tick } from './dom';
 import type { SceneView } from '../picture/scene_view';
 
-export function layersPanel(view: SceneView): HTMLElement {
+export function layersPanel(view: SceneView, add: () => void): HTMLElement {
   const element = make('div');
   const pair = make('div', { className: 'pair', hidden: true });
   const many = view.layers.length > 1;
@@ -71,6 +71,11 @@ export function layersPanel(view: SceneView): HTMLElement {
   fill(
     element,
     ...list,
+    make(
+      'div',
+      { className: 'buttons small' },
+      button('Add a file …', 'PLY points or splats; or drop them on the picture', add),
+    ),
     many ? split : null,
     many ? pair : null,
     hasPoints ? row('Points', points) : null,

@@ -15,6 +15,9 @@ import { PathsPanel } from './paths_panel';
 import type { SceneView } from '../picture/scene_view';
 import type { ColorMode } from '../picture/shaders';
 
+/** As in app.css. */
+const kNarrow = '(max-width: 640px)';
+
 export interface SidePanelParts {
   view: SceneView;
   lidar: LidarPanel;
@@ -25,6 +28,7 @@ export interface SidePanelParts {
 
 export interface SidePanelEvents {
   colorsChanged(): void;
+  addLayer(): void;
 }
 
 export class SidePanel {
@@ -36,18 +40,20 @@ export class SidePanel {
     private readonly events: SidePanelEvents,
   ) {
     byId('fold').onclick = () => this.fold();
+    // On a phone the picture comes first.
+    if (window.matchMedia(kNarrow).matches) this.fold();
   }
 
   show(scene: SceneInfo) {
     const { view, lidar, drive, scanPoints, objects } = this.parts;
     this.paths?.dispose();
-    this.colors = new ColorPanel(view, scene, () => this.events.colorsChanged());
+    this.colors = new ColorPanel(view, () => this.events.colorsChanged());
     this.paths = new PathsPanel(view, scene);
     const can = scene.can_simulate;
     scanPoints.style();
     fill(
       byId('sections'),
-      section('Layers', layersPanel(view)),
+      section('Layers', layersPanel(view, () => this.events.addLayer())),
       section('Colour', this.colors.element),
       can ? section('LiDAR', lidar.element) : null,
       section(can ? 'Drive and camera' : 'Camera', drive.element),

@@ -15,9 +15,11 @@ namespace {
 /// A world file that stands in a model's place.
 WorldFile place_with_objects(const std::filesystem::path& file, WorldFiles world_files) {
   if (world_files == WorldFiles::refused)
-    throw Error(ErrorKind::usage, file.string() +
-                                      ": a world file is for 'adasplats simulate' alone; name the "
-                                      "model that it names");
+    throw Error(
+        ErrorKind::usage,
+        file.string() +
+            ": a world file is for 'adasplats simulate' and 'adasplats view' alone; name the "
+            "model that it names");
   WorldFile world = read_world_file(file);
   if (world.model.empty())
     throw Error(ErrorKind::config, file.string() + ": names no model (model = \"street.ply\")");
@@ -73,6 +75,11 @@ void ModelScene::add_objects(FunctionRef<void(World&)> fill) {
   fill(*world_);
   attributes_ = world_->attributes(place_attributes());
   primitive_table_.reset();
+}
+
+void ModelScene::move_object(std::size_t object, Trajectory trajectory) {
+  if (!world_) throw std::logic_error("ModelScene: nothing was put into the place");
+  world_->move_object(object, std::move(trajectory));
 }
 
 std::shared_ptr<const PrimitiveTable> ModelScene::primitive_table() const {

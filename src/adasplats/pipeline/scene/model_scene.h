@@ -58,6 +58,9 @@ class ModelScene {
   std::shared_ptr<const PrimitiveTable> primitive_table() const;
   /// What was put into the place; null where nothing was.
   const World* world() const { return world_ ? &*world_ : nullptr; }
+  /// Gives an object of the world other poses (World::move_object()). Not while it is cast.
+  void move_object(std::size_t object, Trajectory trajectory);
+  const Place& place() const { return place_; }
   /// Null where it is a mesh.
   const SplatModel* splats() const { return std::get_if<SplatModel>(&place_); }
   const Executor& executor() const { return executor_; }

@@ -119,8 +119,19 @@ void World::add_object(WorldObject object) {
   impl_->next_primitive += geometry->primitives;
 }
 
+void World::move_object(std::size_t object, Trajectory trajectory) {
+  if (object >= impl_->objects.size()) throw std::logic_error("World: no such object");
+  WorldObject moved = impl_->objects[object].object;
+  moved.trajectory = std::move(trajectory);
+  check_object(moved);
+  impl_->objects[object].object = std::move(moved);
+}
+
 bool World::empty() const { return impl_->objects.empty(); }
 std::size_t World::object_count() const { return impl_->objects.size(); }
+const WorldObject& World::object(std::size_t object) const {
+  return impl_->objects.at(object).object;
+}
 Vec3d World::scene_origin() const { return impl_->scene_origin; }
 
 void World::add_hits(std::uint64_t scan_index, const LidarModel& sensor,
@@ -153,6 +164,9 @@ void World::sight(std::uint64_t scan_index, const ScanMotion& motion, double sca
 std::size_t World::geometry_count() const { return impl_->geometries.size(); }
 SceneView World::geometry_view(std::size_t geometry) const {
   return view_of(impl_->geometries.at(geometry)->place);
+}
+const Place& World::geometry(std::size_t geometry) const {
+  return impl_->geometries.at(geometry)->place;
 }
 bool World::is_in_all_scans(std::size_t geometry) const { return impl_->lasting.at(geometry); }
 std::shared_ptr<const int> World::identity() const { return impl_->identity; }

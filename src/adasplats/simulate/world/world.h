@@ -86,8 +86,14 @@ class World {
   /// primitives than have numbers); std::logic_error (no such geometry).
   void add_object(WorldObject object);
 
+  /// Gives an object other poses: one that a user takes somewhere else while scans are made. It
+  /// stays in the scans that it is in. Not while it is cast. Errors: as add_object(), and
+  /// std::logic_error (no such object).
+  void move_object(std::size_t object, Trajectory trajectory);
+
   bool empty() const;
   std::size_t object_count() const;
+  const WorldObject& object(std::size_t object) const;
   Vec3d scene_origin() const;
 
   /// Merges hits of the objects that are there in scan `scan_index` into hits[i * depth + k] of
@@ -105,6 +111,7 @@ class World {
              ObjectSightings& all) const;
   std::size_t geometry_count() const;
   SceneView geometry_view(std::size_t geometry) const;
+  const Place& geometry(std::size_t geometry) const;
   /// Whether objects that are there in many scans are made of it.
   bool is_in_all_scans(std::size_t geometry) const;
   /// Another one for every world, and after every geometry or object that is added: who keeps what

@@ -206,11 +206,11 @@ std::span<const LevelElement> LevelTree::elements(std::size_t n) const {
   return std::span(elements_).subspan(firsts_[n], firsts_[n + 1] - firsts_[n]);
 }
 
-std::string LevelTree::nodes_bytes() const {
-  const std::uint32_t head[2] = {static_cast<std::uint32_t>(nodes_.size()), 0};
-  std::string bytes(sizeof(head) + nodes_.size() * sizeof(LevelNode), '\0');
+std::string nodes_bytes(std::span<const LevelNode> nodes) {
+  const std::uint32_t head[2] = {static_cast<std::uint32_t>(nodes.size()), 0};
+  std::string bytes(sizeof(head) + nodes.size_bytes(), '\0');
   std::memcpy(bytes.data(), head, sizeof(head));
-  std::memcpy(bytes.data() + sizeof(head), nodes_.data(), nodes_.size() * sizeof(LevelNode));
+  std::memcpy(bytes.data() + sizeof(head), nodes.data(), nodes.size_bytes());
   return bytes;
 }
 

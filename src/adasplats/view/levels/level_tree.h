@@ -83,8 +83,6 @@ class LevelTree {
   std::span<const LevelNode> nodes() const { return nodes_; }
   /// Of node `n` (< nodes().size()).
   std::span<const LevelElement> elements(std::size_t n) const;
-  /// The layer's nodes.bin.
-  std::string nodes_bytes() const;
   std::size_t input_size() const { return input_size_; }
   ByteRange intensity_range() const { return intensity_range_; }
   ByteRange error_range_m() const { return error_range_m_; }
@@ -100,6 +98,9 @@ class LevelTree {
   /// where any error is negative, else from 0.
   ByteRange error_range_m_;
 };
+
+/// A layer's nodes.bin.
+std::string nodes_bytes(std::span<const LevelNode> nodes);
 
 /// The octahedral code of a unit vector, and back to 1e-4.
 struct OctahedralNormal {

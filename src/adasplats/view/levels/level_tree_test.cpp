@@ -145,7 +145,7 @@ void expect_well_formed(const LevelTree& tree, std::size_t leaf_size) {
 }
 
 std::string bytes_of(const LevelTree& tree) {
-  std::string bytes = tree.nodes_bytes();
+  std::string bytes = nodes_bytes(tree.nodes());
   for (std::size_t n = 0; n < tree.nodes().size(); ++n)
     bytes.append(reinterpret_cast<const char*>(tree.elements(n).data()),
                  tree.elements(n).size_bytes());
@@ -326,7 +326,7 @@ TEST(LevelTree, OfNoneAndOfOne) {
   EXPECT_EQ(none.nodes()[0].count, 0U);
   EXPECT_EQ(none.nodes()[0].child_count, 0U);
   EXPECT_TRUE(none.elements(0).empty());
-  EXPECT_EQ(none.nodes_bytes().size(), 8U + 48U);
+  EXPECT_EQ(nodes_bytes(none.nodes()).size(), 8U + 48U);
   const std::vector<Disk> one = {{{1e6F, -2, 0.5F}, 0.25F, {1, 0, 0}}};
   const LevelTree tree({one, {}, {}, {}, {}}, {.leaf_size = 1}, Executor(1));
   expect_well_formed(tree, 1);
@@ -417,7 +417,7 @@ TEST(LevelTree, ThreadsDoNotChangeAByte) {
 
 TEST(LevelTree, BytesStartWithTheCount) {
   const LevelTree tree({random_disks(1000), {}, {}, {}, {}}, kSmall, Executor(1));
-  const std::string bytes = tree.nodes_bytes();
+  const std::string bytes = nodes_bytes(tree.nodes());
   std::uint32_t head[2];
   std::memcpy(head, bytes.data(), sizeof(head));
   EXPECT_EQ(head[0], tree.nodes().size());

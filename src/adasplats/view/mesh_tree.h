@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adasplats/core/maths/vec3.h"
+#include "adasplats/scene/scene.h"
+#include "adasplats/view/levels/level_tree.h"
+
+namespace adasplats {
+
+/// One triangle as the page reads it (docs/viewer_protocol.md, "A layer's tree").
+struct MeshElement {
+  Vec3f corners[3];
+  std::uint16_t class_id = 0;
+  std::uint8_t intensity = 0;
+  std::uint8_t error = 0;
+};
+static_assert(sizeof(MeshElement) == 40);
+
+/// The triangles of a mesh in a tree of the form of a LevelTree: leaves hold at most `kLeafSize`
+/// triangles that lie near each other, inner nodes hold none, and are larger than any detail, so
+/// that they always give way to their children. Memory: 40 bytes a triangle.
+class MeshTree {
+ public:
+  static constexpr std::size_t kLeafSize = 16'384;
+
+  /// `shift` adds to the vertices to make them the page's. `intensities`: one a triangle (0..1), or
+  /// empty.
+  MeshTree(const TriangleMesh& mesh, std::span<const float> intensities, Vec3d shift);
+
+  std::span<const LevelNode> nodes() const { return nodes_; }
+  /// Of node `n` (< nodes().size()).
+  std::span<const MeshElement> elements(std::size_t n) const;
+  std::size_t input_size() const { return elements_.size(); }
+
+ private:
+  struct Part;
+  LevelNode node_of(const Part& part) const;
+  std::vector<Part> split(const Part& part);
+
+  std::vector<LevelNode> nodes_;
+  std::vector<std::size_t> firsts_;  ///< of each node in `elements_`; inner ones have no elements
+  std::vector<MeshElement> elements_;
+};
+
+}  // namespace adasplats

@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""Makes a small street with two cars in it and takes the tour of the viewer through it with
+headless Chromium: viewer/test/check_tour.mjs.
+
+usage: check_tour.py [--shots FOLDER]       (ADASPLATS_PROGRAM names the program)
+
+Exit code 77, and a message, without Node.js, Chromium or `npm ci` in viewer/.
+"""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SCRIPT = Path(__file__).resolve().parents[2] / "viewer" / "test" / "check_tour.mjs"
+CAR = (4.2, 1.8, 1.5)  # length, width, height, m
+
+
+def write_car(path):
+    """A box on the ground, its x along its length."""
+    length, width, height = CAR
+    corners = [(x * length / 2, y * width / 2, z * height)
+               for x in (-1, 1) for y in (-1, 1) for z in (0, 1)]
+    faces = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (2, 6, 8, 4), (1, 3, 7, 5)]
+    lines = ["v %g %g %g" % corner for corner in corners]
+    lines += ["f %d %d %d %d" % face for face in faces]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def start_of(trajectory):
+    """Position and heading (a unit vector in the plane) of the first pose of a CSV."""
+    head, row = (line.split(",") for line in trajectory.read_text().splitlines()[:2])
+    pose = {name: float(value) for name, value in zip(head, row)}
+    w, x, y, z = (pose[name] for name in ("qw", "qx", "qy", "qz"))
+    return [pose[name] for name in "xyz"], (1 - 2 * (y * y + z * z), 2 * (x * y + z * w))
+
+
+def write_world(folder):
+    """A car that stands beside the start, and one that drives ahead of it."""
+    (x, y, z), (u, v) = start_of(folder / "street/true_driving_trajectory.csv")
+    ground = z - 1.73
+    write_car(folder / "car.obj")
+    rows = ["time,x,y,z,qw,qx,qy,qz"]
+    for k in range(11):
+        away = 14 + 2 * k
+        rows.append("%g,%.4f,%.4f,%.4f,1,0,0,0" % (0.5 * k, x + away * u, y + away * v, ground))
+    (folder / "drive.csv").write_text("\n".join(rows) + "\n")
+    (folder / "world.toml").write_text(f"""model = "model.ply"
+
+[[object]]
+name = "parked car"
+geometry = "car.obj"
+class = "car"
+position = [{x + 7 * u - 2.2 * v:.4f}, {y + 7 * v + 2.2 * u:.4f}, {ground:.4f}]
+
+[[object]]
+name = "driving car"
+geometry = "car.obj"
+class = "moving-car"
+trajectory = "drive.csv"
+""")
+
+
+def main():
+    node = shutil.which("node") or shutil.which("nodejs")
+    if node is None:
+        print("skipped: no Node.js here to drive a browser with")
+        return 77
+    program = os.environ["ADASPLATS_PROGRAM"]
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        run = lambda *words: subprocess.run([program, *map(str, words)], cwd=folder, check=True,
+                                            timeout=120, stdout=subprocess.DEVNULL)
+        run("synth", "street", "-o", "street", "--points", "60000")
+        run("model", "street/mapping.ply", "--labels", "semantickitti", "--method", "basic", "-o",
+            "model.ply")
+        run("evaluate", "resimulate", "model.ply", "street/sequences/00", "--scans", "0:2",
+            "--errors", "errors.ply")
+        write_world(folder)
+        return subprocess.run(
+            [node, str(SCRIPT), program, str(folder / "world.toml"),
+             str(folder / "street/mapping.ply"), "--with",
+             f"--sequence={folder / 'street/sequences/00'}", "--with",
+             f"--errors={folder / 'errors.ply'}", *sys.argv[1:]], check=False).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())

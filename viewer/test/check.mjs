@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What tests of the page share: servers, a page with the questions that one asks it, and pictures.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+export const kSize = { width: 1100, height: 760 };
+const kSkipped = 77;
+const kPatienceMs = 40_000;
+const kToken = '0123456789abcdef0123456789abcdef';
+
+export function skip(why) {
+  console.log(`skipped: ${why}`);
+  process.exit(kSkipped);
+}
+
+export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+
+/** A server, that can be ended and started again at the same address. */
+class Server {
+  /** `words` of the command, to which the port is added. `program`: null for the made-up one. */
+  constructor(words, program) {
+    this.words = words;
+    this.program = program;
+    this.port = 0;
+  }
+
+  async start() {
+    const [command, ...words] = [...this.words, '--port', String(this.port)];
+    this.child = spawn(command, words, { stdio: ['ignore', 'pipe', 'pipe'] });
+    let said = '';
+    this.ended = new Promise((done) => this.child.on('exit', done));
+    this.url = await new Promise((found, failed) => {
+      const read = (text) => {
+        said += text;
+        const address = said.match(/http:\/\/127\.0\.0\.1:(\d+)\/\w+\//);
+        if (!address) return;
+        this.port = Number(address[1]);
+        found(address[0]);
+      };
+      this.child.stdout.on('data', read);
+      this.child.stderr.on('data', read);
+      void this.ended.then((code) => failed(new Error(`the server ended with ${code}: ${said}`)));
+    });
+    return this.url;
+  }
+
+  async stop() {
+    this.child.kill('SIGKILL');
+    await this.ended;
+  }
+}
+
+export function realServer(program, model, more) {
+  return new Server([program, 'view', model, '--token', kToken, '--no-browser', ...more], program);
+}
+
+export function madeUpServer(page, ...more) {
+  const script = join(dirname(fileURLToPath(import.meta.url)), 'mock_server.mjs');
+  return new Server([process.execPath, script, page, '--count', '120000', ...more], null);
+}
+
+export class Check {
+  constructor(server, seen, scene, shots) {
+    Object.assign(this, { server, seen, scene, shots, page: seen.page, failed: 0, passed: 0 });
+  }
+
+  /** A named part of the test: what fails is told, and the rest goes on. */
+  async part(name, body) {
+    const began = Date.now();
+    try {
+      await body();
+      assert.deepEqual(this.seen.faults, [], 'the page did what it must not');
+      ++this.passed;
+      console.log(`ok    ${name} (${((Date.now() - began) / 1000).toFixed(1)} s)`);
+    } catch (error) {
+      ++this.failed;
+      this.seen.faults.length = 0;
+      console.log(`FAIL  ${name}: ${error.message}`);
+      await this.shot(`failed-${this.failed}`).catch(() => {});
+    }
+  }
+
+  async shot(name) {
+    if (!this.shots) return;
+    // Pictures for people: what was asked for has come.
+    await this.settled().catch(() => {});
+    await this.page.screenshot({ path: join(this.shots, `${name}.png`) });
+  }
+
+  state() {
+    return this.page.evaluate(() => window.adasplats.state());
+  }
+
+  call(name, ...words) {
+    return this.page.evaluate(([n, w]) => window.adasplats[n](...w), [name, words]);
+  }
+
+  async until(what, holds, patience = kPatienceMs) {
+    const end = Date.now() + patience;
+    for (;;) {
+      const state = await this.state();
+      if (holds(state)) return state;
+      if (Date.now() > end)
+        throw new Error(`${what}: not within ${patience / 1000} s; ${JSON.stringify(state)}`);
+      await sleep(60);
+    }
+  }
+
+  /** All nodes have come that the camera wants, and the picture rests. */
+  async settled() {
+    await sleep(350);
+    await this.until('all nodes there', (s) => !s.loading && s.elements > 0);
+    await sleep(450);
+    return this.until('all nodes there', (s) => !s.loading);
+  }
+
+  /** Whose number is beyond all that is under way: made with what was asked for before. */
+  async freshScan() {
+    const before = await this.state();
+    const there = (s) => Math.hypot(...[0, 1].map((i) => s.scan.pose[i] - s.pose[i])) < 0.01;
+    const isFresh = (s) =>
+      s.scansReceived >= before.scansReceived + 4 &&
+      s.scan &&
+      s.scan.number !== before.scan?.number &&
+      there(s);
+    return (await this.until('a new scan', isFresh)).scan;
+  }
+
+  pixels() {
+    return this.call('pixels', 110, 70);
+  }
+
+  /** Looks at the middle of the scene from so many times its size. */
+  async lookFrom(times) {
+    const [low, high] = this.scene.middle_box;
+    const middle = low.map((v, i) => (v + high[i]) / 2);
+    const size = Math.hypot(...high.map((v, i) => v - low[i]));
+    const eye = middle.map((v, i) => v + times * size * [-0.55, -0.5, 0.6][i]);
+    await this.call('setCamera', { eye, target: middle });
+    return this.settled();
+  }
+}
+
+export const isBackground = ([r, g, b]) =>
+  Math.max(r, g, b) < 42 && Math.max(r, g, b) - Math.min(r, g, b) < 16;
+
+export function shareOf(pixels, holds) {
+  return pixels.filter(holds).length / pixels.length;
+}
+
+export function changed(a, b) {
+  return a.filter((p, i) => p.some((v, c) => Math.abs(v - b[i][c]) > 12)).length / a.length;
+}
+
+/** Of these classes so many are seen: pixels in their colour, however lit. */
+export function classesSeen(pixels, classes) {
+  const unit = (c) => {
+    const length = Math.hypot(...c);
+    return length > 0 ? c.map((v) => v / length) : [0.577, 0.577, 0.577];
+  };
+  const drawn = pixels.filter((p) => !isBackground(p)).map(unit);
+  return classes.filter(({ color }) => {
+    const wanted = unit(color);
+    return (
+      drawn.filter((p) => Math.hypot(...p.map((v, i) => v - wanted[i])) < 0.04).length >
+      drawn.length * 0.004
+    );
+  });
+}
