@@ -54,8 +54,59 @@ class ViewTest(ProgramTest):
         scene = self.scene(model, "--cloud", self.cloud, "--errors", errors, "--sequence", scans)
         self.assertEqual([layer["kind"] for layer in scene["layers"]],
                          ["splats", "points", "points"])
-        self.assertEqual([layer["has_errors"] for layer in scene["layers"]], [False, False, True])
+        self.assertEqual([layer["has_errors"] for layer in scene["layers"]], [True, False, True])
         self.assertEqual(len(scene["scans"]), 3)
+
+    def test_errors_with_a_sign_have_parts(self):
+        model = self.model()
+        errors = self.folder / "errors.ply"
+        rows = ["0 0 0 0.02", "1 0 0 -0.2", "2 0 0 0.3", "3 0 0 -2", "4 0 0 nan", "5 0 0 nan"]
+        errors.write_text("ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\n"
+                          "property float y\nproperty float z\nproperty float error_m\n"
+                          "end_header\n" + "\n".join(rows) + "\n")
+        scene = self.scene(model, "--errors", errors)
+        self.assertEqual([(layer["part"], layer["count"]) for layer in scene["layers"][1:]],
+                         [("", 6), ("early", 1), ("late", 1), ("ghosts", 1), ("holes", 2)])
+        low, high = scene["layers"][1]["error_range_m"]
+        self.assertAlmostEqual(high, 0.3, places=6)
+        self.assertEqual(low, -high)
+
+    def mesh(self):
+        mesh = self.folder / "mesh.obj"
+        mesh.write_text("v 0 0 0\nv 9 0 0\nv 0 9 0\nv 9 9 0\nf 1 2 3\nf 2 4 3\n")
+        return mesh
+
+    def test_a_mesh(self):
+        scene = self.scene(self.mesh())
+        self.assertEqual([(layer["kind"], layer["count"]) for layer in scene["layers"]],
+                         [("mesh", 2)])
+        self.assertTrue(scene["can_simulate"])
+
+    def test_layers_of_any_kind(self):
+        scene = self.scene(self.model(), "--layer", self.mesh(), "--layer", self.cloud, "--layer",
+                           self.model("other.ply"))
+        self.assertEqual(sorted(layer["kind"] for layer in scene["layers"]),
+                         ["mesh", "points", "splats", "splats"])
+
+    def test_a_world(self):
+        self.model("model.ply")
+        self.mesh()
+        (self.folder / "drive.csv").write_text(
+            "time,x,y,z,qw,qx,qy,qz\n3,0,0,0,1,0,0,0\n4,5,0,0,1,0,0,0\n")
+        (self.folder / "world.toml").write_text(
+            "model = 'model.ply'\n"
+            "[[object]]\nname = 'stands'\ngeometry = 'mesh.obj'\nposition = [1, 2, 0]\n"
+            "[[object]]\nname = 'drives'\ngeometry = 'mesh.obj'\ntrajectory = 'drive.csv'\n"
+            "class = 7\npresent = 'during'\n")
+        scene = self.scene(self.folder / "world.toml")
+        self.assertEqual([layer["kind"] for layer in scene["layers"]], ["splats"])
+        stands, drives = scene["objects"]
+        origin = scene["origin_m"]
+        self.assertEqual([p + o for p, o in zip(stands["poses"][0], origin)], [1, 2, 0])
+        self.assertEqual((drives["times_s"], drives["class_id"], drives["only_during"]),
+                         ([3, 4], 7, True))
+        self.assertEqual(stands["geometry"]["id"], drives["geometry"]["id"])
+        self.assertEqual(stands["geometry"]["kind"], "mesh")
 
     def test_points_alone(self):
         scene = self.scene(self.cloud)
@@ -82,9 +133,10 @@ class ViewTest(ProgramTest):
         self.run_bad(64, "view", model, "--sensor", self.sensor, says=["sensor"])
         self.run_bad(64, "view", model, "--port", "66000", says=["--port"])
         self.run_bad(64, "view", model, "--address", "nowhere", "--no-browser", says=["nowhere"])
-        mesh = self.folder / "mesh.obj"
-        mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-        self.run_bad(64, "view", mesh, says=["triangle mesh"])
+        world = self.folder / "world.toml"
+        world.write_text("model = 'model.ply'\n")
+        self.run_bad(64, "view", model, "--layer", world, says=["world.toml", "layer"])
+        self.run_bad(66, "view", model, "--layer", self.folder / "none.ply", says=["none.ply"])
 
     def test_a_port_that_is_taken(self):
         model = self.model()

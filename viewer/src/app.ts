@@ -3,6 +3,7 @@
 
 // The page, composed: what the user does, what the server says, and what is shown of it meet here.
 
+import { Group } from 'three';
 import { CameraModes } from './driving/camera_modes';
 import { firstMode } from './panels/color_panel';
 import { CommandDialog } from './panels/command_dialog';
@@ -63,6 +64,7 @@ export class App {
   private readonly saving: SaveMenu;
   private readonly objects: WorldObjects;
   private readonly files: DroppedFiles;
+  private readonly scanPictures = new Group();
   private colorVersion = 0;
 
   constructor(scene: SceneInfo) {
@@ -110,7 +112,8 @@ export class App {
     this.saving = new SaveMenu(view, scene, this.playback, command);
     this.files = new DroppedFiles(view, scene.origin_m, () => this.loaded());
     this.panel = this.makePanel();
-    view.stage.overlay.add(recorded.object, cloud.object, this.objects.object);
+    this.scanPictures.add(recorded.object, cloud.object);
+    view.stage.overlay.add(this.scanPictures, this.objects.object);
     view.stage.overlay.add(...this.sensor.objects);
     byId('strip').hidden = !scene.can_simulate && scene.scans.length === 0;
     fillHelp(byId('help'));
@@ -234,6 +237,8 @@ export class App {
 
   private colorsChanged() {
     ++this.colorVersion;
+    // Scans would lie on the errors.
+    this.scanPictures.visible = this.view.colorMode !== 'error';
     this.strip.draw();
     this.showLegend();
   }

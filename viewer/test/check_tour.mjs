@@ -136,7 +136,7 @@ async function cutsProfile(t) {
 async function plays(t) {
   await t.page.click('#scan-source [data-value=recorded]');
   const first = await t.until('the first scan', (s) => s.shownScan === 0);
-  await t.page.selectOption('#speed', '2');
+  await t.page.selectOption('#speed', '0.25');
   await t.page.click('#play');
   await t.until('time', (s) => s.time_s > first.time_s + 0.5);
   await t.page.click('#play');

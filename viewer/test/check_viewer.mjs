@@ -89,7 +89,7 @@ async function checkErrors(t) {
   await t.page.selectOption('#color', 'error');
   await t.settled();
   assert.ok(changed(before, await t.pixels()) > 0.2, 'errors are not seen');
-  assert.match(await t.page.textContent('#legend'), /Error, m/);
+  assert.match(await t.page.textContent('#legend'), /error, m|Distance, m/);
   await t.shot('error');
 }
 

@@ -131,7 +131,13 @@ function makeScene(trees) {
     trajectories: [{ name: '00', poses }],
     scans: poses
       .filter((_, i) => i % 10 === 0)
-      .map((pose, i) => ({ name: String(i).padStart(6, '0'), trajectory: 0, pose, points: 40000 })),
+      .map((pose, i) => ({
+        name: String(i).padStart(6, '0'),
+        trajectory: 0,
+        time_s: i,
+        pose,
+        points: 40000,
+      })),
     can_simulate: true,
     sensors: kSensors.map(({ name, title, rings, columns, rotation_hz, max_range_m }) => ({
       name,

@@ -42,24 +42,35 @@ std::vector<float> disk_errors(std::span<const Disk> disks, std::span<const Vec3
                                Vec3d shift, std::span<const float> errors_m,
                                const ErrorLimits& limits, const Executor& executor) {
   std::vector<Vec3f> centers, places;
+  std::vector<float> known_m;
   centers.reserve(disks.size());
   for (const Disk& disk : disks) centers.push_back(disk.center);
-  places.reserve(positions.size());
-  for (const Vec3f& p : positions) places.push_back(vec_cast<float>(vec_cast<double>(p) + shift));
-  const std::vector<Neighbor> nearest = PointIndex(centers, executor).nearest(places, executor);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (std::isnan(errors_m[i])) continue;
+    places.push_back(vec_cast<float>(vec_cast<double>(positions[i]) + shift));
+    known_m.push_back(errors_m[i]);
+  }
+  const PointIndex by_center(centers, executor), by_place(places, executor);
+  const auto is_near = [&](const Neighbor& found) {
+    return found.index != Neighbor::kNone &&
+           found.squared_distance <= limits.reach_m * limits.reach_m;
+  };
   std::vector<double> sums(disks.size(), 0);
   std::vector<std::uint32_t> counts(disks.size(), 0);
-  for (std::size_t i = 0; i < nearest.size(); ++i) {
-    const Neighbor& found = nearest[i];
-    if (found.index == Neighbor::kNone || std::isnan(errors_m[i]) ||
-        found.squared_distance > limits.reach_m * limits.reach_m)
-      continue;
-    sums[found.index] += static_cast<double>(errors_m[i]);
-    ++counts[found.index];
+  const std::vector<Neighbor> disk_of = by_center.nearest(places, executor);
+  for (std::size_t i = 0; i < disk_of.size(); ++i) {
+    if (!is_near(disk_of[i])) continue;
+    sums[disk_of[i].index] += static_cast<double>(known_m[i]);
+    ++counts[disk_of[i].index];
   }
   std::vector<float> means(disks.size(), std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t k = 0; k < means.size(); ++k)
-    if (counts[k] > 0) means[k] = static_cast<float>(sums[k] / counts[k]);
+  const std::vector<Neighbor> place_of = by_place.nearest(centers, executor);
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    if (counts[k] > 0)
+      means[k] = static_cast<float>(sums[k] / counts[k]);
+    else if (is_near(place_of[k]))
+      means[k] = known_m[place_of[k].index];
+  }
   return means;
 }
 

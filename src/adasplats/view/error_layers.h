@@ -22,8 +22,10 @@ struct ErrorLimits {
 };
 
 /// Of each disk the mean signed error of the points that it is the nearest disk of (by its center,
-/// within ErrorLimits::reach_m); NaN where there are none. `shift`: adds to positions to make them
-/// the disks'. Points whose error is NaN are holes of the model and tell of no disk.
+/// within ErrorLimits::reach_m); of one that is the nearest of none, the error of the point nearest
+/// to it, so that disks between the rings of a scan are told of, too; NaN beyond the reach.
+/// `shift`: adds to positions to make them the disks'. Points whose error is NaN are holes of the
+/// model and tell of no disk.
 std::vector<float> disk_errors(std::span<const Disk> disks, std::span<const Vec3f> positions,
                                Vec3d shift, std::span<const float> errors_m,
                                const ErrorLimits& limits, const Executor& executor);

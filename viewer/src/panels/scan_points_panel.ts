@@ -45,6 +45,7 @@ export class ScanPointsPanel {
 
   /** Of the scan that is drawn, for the legend; null: none is. */
   get subject() {
+    if (this.view.colorMode === 'error') return null;
     const cloud = this.clouds.find((c) => c.packet !== null && c.object.visible);
     if (!cloud?.packet) return null;
     const { max_range_m, rings } = cloud.packet;

@@ -64,7 +64,8 @@ export class LayerSet {
   showErrors(on: boolean) {
     if (on && this.layers.some((l) => l.info.has_errors)) {
       this.usual = new Map(this.layers.map((l) => [l, l.visible]));
-      for (const layer of this.layers) layer.visible = layer.info.has_errors;
+      for (const layer of this.layers)
+        layer.visible = layer.info.has_errors && layer.info.part === '';
     } else if (!on && this.usual) {
       for (const [layer, visible] of this.usual) layer.visible = visible;
       this.usual = null;

@@ -21,6 +21,7 @@ constexpr std::size_t kBatch = 64;
 /// A node is to have at most this share of the elements that it stands for.
 constexpr std::size_t kLeastReduction = 2;
 constexpr float kLeastErrorRange_m = 1e-3F;
+constexpr float kMostSignedErrorRange_m = 0.5F;
 /// Leaves are not wider, so that 16 bits hold their positions to 2 mm.
 constexpr float kWidestLeaf_m = 256;
 
@@ -61,8 +62,9 @@ ByteRange range_of_errors(std::span<const float> errors_m) {
   std::vector<float> values = finite_values(errors_m, true);
   const float most =
       values.empty() ? kLeastErrorRange_m : std::max(kLeastErrorRange_m, percentile(values, 98));
-  const bool is_signed = std::ranges::any_of(errors_m, [](float error_m) { return error_m < 0; });
-  return {is_signed ? -most : 0, most};
+  if (std::ranges::none_of(errors_m, [](float error_m) { return error_m < 0; })) return {0, most};
+  const float reach = std::min(most, kMostSignedErrorRange_m);
+  return {-reach, reach};
 }
 
 /// Makes the elements of nodes.

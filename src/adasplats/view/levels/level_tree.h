@@ -94,8 +94,9 @@ class LevelTree {
   std::vector<LevelElement> elements_;
   /// 2nd and 98th percentile of the intensities; {0, 1} without any or where they are equal.
   ByteRange intensity_range_;
-  /// To the 98th percentile of the errors' magnitudes, at least a millimetre; from its negative
-  /// where any error is negative, else from 0.
+  /// To the 98th percentile of the errors' magnitudes, at least a millimetre; where any error is
+  /// negative from the negative of that, which is half a metre then at most: few ghosts must not
+  /// take the colours from all others.
   ByteRange error_range_m_;
 };
 
