@@ -45,7 +45,7 @@ def write_world(folder):
     write_car(folder / "car.obj")
     rows = ["time,x,y,z,qw,qx,qy,qz"]
     for k in range(11):
-        away = 14 + 2 * k
+        away = 22 + 2 * k
         rows.append("%g,%.4f,%.4f,%.4f,1,0,0,0" % (0.5 * k, x + away * u, y + away * v, ground))
     (folder / "drive.csv").write_text("\n".join(rows) + "\n")
     (folder / "world.toml").write_text(f"""model = "model.ply"
@@ -54,7 +54,7 @@ def write_world(folder):
 name = "parked car"
 geometry = "car.obj"
 class = "car"
-position = [{x + 7 * u - 2.2 * v:.4f}, {y + 7 * v + 2.2 * u:.4f}, {ground:.4f}]
+position = [{x + 14 * u - 2.5 * v:.4f}, {y + 14 * v + 2.5 * u:.4f}, {ground:.4f}]
 
 [[object]]
 name = "driving car"

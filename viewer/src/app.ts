@@ -24,7 +24,7 @@ import { showToast } from './panels/notices';
 import { ObjectsPanel } from './panels/objects_panel';
 import { Picker } from './driving/picker';
 import { Playback } from './playback';
-import { Pointer } from './driving/pointer';
+import { Pointer, type Grabbable } from './driving/pointer';
 import { yawOf } from './driving/pose';
 import type { SceneInfo, SensorMessage } from './server/protocol';
 import { RangeStrip } from './panels/range_strip';
@@ -278,7 +278,14 @@ export class App {
 
   private listen(canvas: HTMLCanvasElement) {
     const { sensor, picker, toolBox } = this;
-    const grabbables = [this.tools.clip, sensor.grabbable, this.objects];
+    // A tool gets the clicks, also those on what could be dragged.
+    const free = (one: Grabbable): Grabbable => ({
+      isAt: (...at) => !toolBox.isTaken && one.isAt(...at),
+      highlight: (on) => one.highlight(on),
+      grab: (...at) => one.grab(...at),
+      drag: (ray) => one.drag(ray),
+    });
+    const grabbables = [this.tools.clip, free(sensor.grabbable), free(this.objects)];
     new Pointer(this.view, canvas, grabbables, (place) => {
       if (!toolBox.clicked(place)) void picker.pick(place.screen, sensor.body.object.position);
     });

@@ -71,10 +71,13 @@ async function follows(t) {
 async function measures(t) {
   const { pose } = await t.state();
   const ground = pose[2] - 1.73;
-  const ends = [
-    [pose[0] + t.ahead[0] * 4 - t.ahead[1] * 2, pose[1] + t.ahead[1] * 4 + t.ahead[0] * 2, ground],
-    [pose[0] + t.ahead[0] * 9 + t.ahead[1] * 2, pose[1] + t.ahead[1] * 9 - t.ahead[0] * 2, ground],
+  const [x, y] = t.ahead;
+  const place = (ahead, left) => [
+    pose[0] + ahead * x - left * y,
+    pose[1] + ahead * y + left * x,
+    ground,
   ];
+  const ends = [place(4, -2.5), place(9, -1)];
   await t.page.keyboard.press('m');
   for (const end of ends) {
     await t.page.mouse.click(...(await pageOf(t, ...end)));

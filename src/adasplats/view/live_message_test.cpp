@@ -52,6 +52,25 @@ TEST(LiveMessage, PosesComeToWorldCoordinates) {
   EXPECT_EQ(pose.yaw_rate_rad_s, 0.5);
 }
 
+TEST(LiveMessage, APoseMayHaveATime) {
+  constexpr const char* kTimed = R"({"type":"pose","pose":[0,0,0,0,0,0,1],"time_s":12.5})";
+  const auto pose = parsed<LivePose>(kTimed);
+  EXPECT_EQ(pose.time_s, 12.5);
+  EXPECT_EQ(motion_of(pose, live_sensor("velodyne-vlp-16")).reference.time_s, 12.5);
+  EXPECT_EQ(parsed<LivePose>(R"({"type":"pose","pose":[0,0,0,0,0,0,1]})").time_s, 0);
+  expect_refused(R"({"type":"pose","pose":[0,0,0,0,0,0,1],"time_s":"now"})", "time_s");
+}
+
+TEST(LiveMessage, ObjectsAreTakenElsewhereAndLetGo) {
+  const auto taken = parsed<ObjectMessage>(R"({"type":"object","id":3,"pose":[1,2,3,0,0,0,1]})");
+  EXPECT_EQ(taken.id, 3U);
+  ASSERT_TRUE(taken.world_from_object);
+  EXPECT_EQ(taken.world_from_object->translation.x, 1001);
+  EXPECT_FALSE(parsed<ObjectMessage>(R"({"type":"object","id":0,"pose":null})").world_from_object);
+  expect_refused(R"({"type":"object","id":0})", "pose");
+  expect_refused(R"({"type":"object","id":-1,"pose":null})", "id");
+}
+
 TEST(LiveMessage, WordsWithoutMoreInThem) {
   EXPECT_TRUE(parsed<RunMessage>(R"({"type":"run","on":true})").on);
   EXPECT_FALSE(parsed<RunMessage>(R"({"type":"run","on":false})").on);

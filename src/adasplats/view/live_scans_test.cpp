@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
@@ -106,6 +107,62 @@ constexpr const char* kRun = R"({"type":"run","on":true})";
 constexpr const char* kReady = R"({"type":"ready"})";
 constexpr const char* kVlp16 =
     R"({"type":"sensor","name":"velodyne-vlp-16","settings":{"noise":false}})";
+
+/// A wall of 10 m x 10 m across x in the room, 4 m before the sensor.
+struct RoomWithWall : Room {
+  RoomWithWall() {
+    MeshModel wall;
+    wall.mesh.vertices = {{0, -5, -5}, {0, 5, -5}, {0, 5, 5}, {0, -5, 5}};
+    wall.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    model.add_objects([&](World& world) {
+      WorldObject object;
+      object.name = "wall";
+      object.geometry = world.add_geometry(wall);
+      object.trajectory.emplace_back();
+      object.trajectory.back().world_from_sensor.translation = {5005.5, 6000, 1.7};
+      object.class_id = 99;
+      world.add_object(std::move(object));
+    });
+    view.model = &model;
+    add_world(view, executor);
+  }
+};
+
+/// Least x of the echoes of a class in the sensor's frame; 1000: there are none.
+float nearest_of_class(const SharedBytes& packet, std::uint16_t class_id) {
+  float nearest = 1000;
+  for (std::size_t i = 0; i < word(packet, 3); ++i)
+    if (word(packet, 20 + 6 * i + 3) >> 16 == class_id)
+      nearest = std::min(nearest, number(packet, 20 + 6 * i));
+  return nearest;
+}
+
+// Oracle: where the wall was put.
+TEST(LiveScans, AnObjectIsWhereThePageTookIt) {
+  RoomWithWall room;
+  ASSERT_EQ(room.view.objects.size(), 1U);
+  LiveScans live(room.view, room.executor);
+  Page page(live), other(live);
+  const auto nearest = [](Page& each, const std::string& said) {
+    each.say(kVlp16);
+    each.say(R"({"type":"pose","pose":[1.5,0,1.7,0,0,0,1]})");
+    if (!said.empty()) each.say(said);
+    each.say(kRun);
+    // Two may have been under way before.
+    for (int i = 0; i < 3; ++i) {
+      each.ear->packet();
+      each.say(kReady);
+    }
+    return nearest_of_class(each.ear->packet(), 99);
+  };
+  EXPECT_NEAR(nearest(page, ""), 4, 0.01);
+  EXPECT_NEAR(nearest(page, R"({"type":"object","id":0,"pose":[3.5,0,1.7,0,0,0,1]})"), 2, 0.01);
+  EXPECT_NEAR(nearest(other, ""), 4, 0.01) << "another page's is where it was";
+  EXPECT_NEAR(nearest(page, R"({"type":"object","id":0,"pose":null})"), 4, 0.01);
+  page.say(R"({"type":"object","id":1,"pose":null})");
+  EXPECT_NE(page.ear->text("error")["message"].get<std::string>().find("object 1"),
+            std::string::npos);
+}
 
 TEST(LiveScans, APageIsToldItsSensorAndGetsNoScanBeforeItAsks) {
   const Room room;

@@ -44,6 +44,8 @@ export class SceneView {
   readonly shared: SharedUniforms;
   readonly set: LayerSet;
   arrangement: Arrangement = { split: false };
+  /** What moves in the scene, and can be measured. */
+  movable: Object3D[] = [];
   /** Called before each frame with the seconds since the last. */
   beforeFrame: (dt: number) => void = () => {};
   /** Called when layers were shown or hidden by other means than the user's. */
@@ -186,6 +188,11 @@ export class SceneView {
   /** What the picture of the model shows at a pixel of the canvas; null: nothing. */
   surfaceAt(screen: Vector2, pixel: Vector2): Vector3 | null {
     if (this.modelDirty) this.drawNow();
+    if (this.movable.length > 0) {
+      // They are drawn over the picture; for its depth they are put into it, and it is made anew.
+      for (const area of this.areas) this.stage.drawModel(this.movable, area, this.rig.camera);
+      this.invalidateModel();
+    }
     const depth = this.stage.depthAt(pixel);
     if (depth >= 1) return null;
     return new Vector3(screen.x, screen.y, 2 * depth - 1).unproject(this.rig.camera);

@@ -3,8 +3,16 @@
 
 // What a world file put into the place: drawn where it is at a time, or where it was dragged to.
 
-import { Group, Matrix4, Plane, Ray, Vector3, type PerspectiveCamera, type Vector2 } from 'three';
-import { Raycaster } from 'three';
+import {
+  Group,
+  Matrix4,
+  Plane,
+  Raycaster,
+  Vector3,
+  type PerspectiveCamera,
+  type Ray,
+  type Vector2,
+} from 'three';
 import type { Grabbable } from '../driving/pointer';
 import { matrixOf } from '../driving/pose';
 import { poseAt } from '../driving/timeline';
@@ -84,6 +92,7 @@ export class WorldObjects implements Grabbable {
       placed.group.add(...placed.layer.instances(placed.info.class_id));
       this.object.add(placed.group);
     }
+    this.view.movable = this.objects.map((placed) => placed.group);
     this.step(this.world_s);
   }
 

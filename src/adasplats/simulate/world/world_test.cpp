@@ -127,6 +127,24 @@ class WorldTest : public testing::Test {
   std::vector<Firing> firings_;
 };
 
+// Oracle: a world in which it has stood there from the first.
+TEST_F(WorldTest, AnObjectThatIsMovedIsAsIfItHadAlwaysBeenThere) {
+  World moved = world(), there = world();
+  for (World* const each : {&moved, &there})
+    each->add_object(object(each->add_geometry(wall_mesh(4, 3)), {{0, pose(20, 0, 0)}}));
+  const Trajectory place = {{0, in_world(pose(9, 2, 0.5))}};
+  moved.move_object(0, place);
+  World fresh = world();
+  fresh.add_object(object(fresh.add_geometry(wall_mesh(4, 3)), {{0, pose(9, 2, 0.5)}}));
+  const std::vector<Hit> hits = hits_of(moved, standing());
+  EXPECT_TRUE(std::ranges::any_of(hits, [](const Hit& hit) { return hit.valid(); }));
+  EXPECT_EQ(hits, hits_of(fresh, standing()));
+  EXPECT_NE(hits, hits_of(there, standing()));
+  EXPECT_EQ(moved.object(0).trajectory.size(), 1U);
+  EXPECT_THROW(moved.move_object(1, place), std::logic_error);
+  EXPECT_THROW(moved.move_object(0, {}), Error);
+}
+
 // Oracle: the ray of each firing, at its time, against the plane where the wall is then.
 TEST_F(WorldTest, MovingWallBesideADrivingSensor) {
   constexpr double kSpeed = 12, kTurn = 0.6, kWallSpeed = -20, kWall_m = 25;
