@@ -7,7 +7,7 @@ import { Group } from 'three';
 import { CameraModes } from './driving/camera_modes';
 import { firstMode } from './panels/color_panel';
 import { CommandDialog } from './panels/command_dialog';
-import { button, byId, fill, make, short } from './panels/dom';
+import { button, byId, fill, make } from './panels/dom';
 import { DrivePanel } from './panels/drive_panel';
 import { DrivenSensor } from './driving/driven_sensor';
 import { publishHandle } from './handle';
@@ -20,6 +20,7 @@ import { Legend } from './panels/legend';
 import { LidarPanel } from './panels/lidar_panel';
 import { showLiveFigures } from './panels/live_figures';
 import { LiveScans } from './live_scans';
+import { showLoading } from './panels/loading';
 import { showToast } from './panels/notices';
 import { ObjectsPanel } from './panels/objects_panel';
 import { Picker } from './driving/picker';
@@ -132,7 +133,7 @@ export class App {
     view.rig.followSensor(position, yawOf(quaternion), 0);
     this.cameras.choose('follow');
     this.playback.choose(this.playback.source);
-    this.showLoading();
+    showLoading(view, scene);
     showKeyHints(this.playback.timeline !== null);
     view.beforeFrame = (dt) => this.step(dt);
     view.start();
@@ -144,27 +145,17 @@ export class App {
       lidar.setRunning(true);
       live.connect();
     }
-    this.publish();
-  }
-
-  private publish() {
-    const { view, sensor, lidar } = this;
-    const { live, rate, cloud } = this.scans;
     publishHandle({
+      ...this.scans,
       view,
-      live,
-      driver: sensor.driver,
       lidar,
-      rate,
-      cloud,
+      sensor,
       playback: this.playback,
       tools: this.tools,
       objects: this.objects,
-      setPose: (pose) => sensor.setPose(pose),
-      setCameraMode: (mode) => this.cameras.choose(mode),
-      setColor: (mode) => this.panel.chooseColor(mode),
-      command: () => this.dialog.command,
-      poses: () => this.dialog.poses,
+      cameras: this.cameras,
+      panel: this.panel,
+      dialog: this.dialog,
     });
   }
 
@@ -223,16 +214,6 @@ export class App {
     this.strip.step(this.scans.step());
     this.saving.step();
     this.labels.place(view.rig.camera);
-  }
-
-  /** Until something is seen. */
-  private showLoading() {
-    const { layers, name } = this.source.scene;
-    const what = layers.slice(0, 2).map((l) => `${short(l.count)} ${l.kind}`);
-    const note = byId('loading');
-    note.textContent = `Loading ${name}: ${what.join(', ')}`;
-    note.hidden = false;
-    this.view.firstShown = () => (note.hidden = true);
   }
 
   private colorsChanged() {

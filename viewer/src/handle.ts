@@ -6,33 +6,35 @@
 import { Vector3 } from 'three';
 import type { CameraMode } from './driving/camera_rig';
 import { byId } from './panels/dom';
-import type { Driver } from './driving/driver';
+import type { CameraModes } from './driving/camera_modes';
+import type { CommandDialog } from './panels/command_dialog';
+import type { DrivenSensor } from './driving/driven_sensor';
+import type { SidePanel } from './panels/side_panel';
 import type { LidarPanel } from './panels/lidar_panel';
 import type { Live } from './server/live';
-import { kScanPointWords, type Pose, type ScanPacket } from './server/protocol';
+import { kScanPointWords, type ScanPacket } from './server/binary';
+import type { Pose } from './server/protocol';
 import type { Playback } from './playback';
 import type { Tools } from './tools/tools';
 import type { WorldObjects } from './picture/world_objects';
 import type { ScanCloud } from './picture/scan_cloud';
 import type { ScanRate } from './panels/scan_rate';
 import type { SceneView } from './picture/scene_view';
-import { kColorModes, type ColorMode } from './picture/shaders';
+import { kColorModes } from './picture/shaders';
 
 export interface HandleParts {
   view: SceneView;
   live: Live;
-  driver: Driver;
-  lidar: LidarPanel;
   rate: ScanRate;
   cloud: ScanCloud;
+  sensor: DrivenSensor;
+  lidar: LidarPanel;
   playback: Playback;
   tools: Tools;
   objects: WorldObjects;
-  setPose(pose: Pose): void;
-  setCameraMode(mode: CameraMode): void;
-  setColor(mode: ColorMode): void;
-  command(): string;
-  poses(): string;
+  cameras: CameraModes;
+  panel: SidePanel;
+  dialog: CommandDialog;
 }
 
 export function publishHandle(parts: HandleParts) {
@@ -41,7 +43,8 @@ export function publishHandle(parts: HandleParts) {
 }
 
 function stateOf(parts: HandleParts) {
-  const { view, live, driver, lidar, rate, cloud } = parts;
+  const { view, live, lidar, rate, cloud } = parts;
+  const { driver } = parts.sensor;
   return {
     ...workState(parts),
     ...view.statistics,
@@ -97,20 +100,20 @@ function scanState(packet: ScanPacket) {
 function actionsOf(parts: HandleParts) {
   const { view, lidar } = parts;
   return {
-    setPose: (pose: Pose) => parts.setPose(pose),
+    setPose: (pose: Pose) => parts.sensor.setPose(pose),
     setColor: (mode: string) => {
       const known = kColorModes.find((m) => m === mode);
-      if (known) parts.setColor(known);
+      if (known) parts.panel.chooseColor(known);
     },
     setSensor: (name: string) => lidar.chooseSensor(name),
     setSetting: (key: string, value: number | boolean | null) => lidar.set(key, value),
     setRunning: (on: boolean) => lidar.setRunning(on),
-    setCameraMode: (mode: CameraMode) => parts.setCameraMode(mode),
+    setCameraMode: (mode: CameraMode) => parts.cameras.choose(mode),
     setCamera: ({ eye, target }: { eye: number[]; target: number[] }) => {
       view.rig.set(new Vector3(...eye), new Vector3(...target));
       view.moved();
     },
-    command: () => parts.command(),
+    command: () => parts.dialog.command,
     /** Echoes of the live scan within `reach_m` of a place. */
     echoesNear: (place: number[], reach_m: number) => {
       const { packet, object } = parts.cloud;
@@ -126,7 +129,7 @@ function actionsOf(parts: HandleParts) {
       }
       return found;
     },
-    posesCsv: () => parts.poses(),
+    posesCsv: () => parts.dialog.poses,
   };
 }
 

@@ -5,7 +5,7 @@
 
 import { Live, type LiveEvents } from './server/live';
 import { showBanner } from './panels/notices';
-import type { ScanPacket } from './server/protocol';
+import type { ScanPacket } from './server/binary';
 import { ScanCloud } from './picture/scan_cloud';
 import { ScanRate } from './panels/scan_rate';
 import type { SceneView } from './picture/scene_view';

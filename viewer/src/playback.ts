@@ -6,7 +6,8 @@
 
 import type { DrivenSensor } from './driving/driven_sensor';
 import { Timeline, tracksOf } from './driving/timeline';
-import type { SceneInfo, ScanPacket } from './server/protocol';
+import type { ScanPacket } from './server/binary';
+import type { SceneInfo } from './server/protocol';
 import { RecordedScans } from './server/recorded_scans';
 import type { ScanCloud } from './picture/scan_cloud';
 import type { SceneView } from './picture/scene_view';

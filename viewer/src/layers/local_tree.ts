@@ -3,7 +3,8 @@
 
 // The tree of a layer that no server has: as docs/viewer_protocol.md has it, of samples.
 
-import { kElementBytes, type LayerInfo, type TreeNode, type Vec3 } from '../server/protocol';
+import { kElementBytes, type TreeNode } from '../server/binary';
+import type { LayerInfo, Vec3 } from '../server/protocol';
 import type { FilePoints } from './ply_file';
 
 const kLeaf = 16_384;

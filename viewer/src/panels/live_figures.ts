@@ -4,7 +4,7 @@
 // Figures of the live scan: how often, how long, how much.
 
 import { fill, grouped, make } from './dom';
-import type { ScanPacket } from '../server/protocol';
+import type { ScanPacket } from '../server/binary';
 import type { ScanRate } from './scan_rate';
 
 export function showLiveFigures(

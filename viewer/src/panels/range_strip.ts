@@ -7,7 +7,7 @@ import { byId, fill, make, segments } from './dom';
 import type { ClassPalette } from '../picture/class_palette';
 import type { ColorMaps } from '../picture/color_maps';
 import { RangeImage, type ImageMode } from '../picture/range_image';
-import type { ScanPacket } from '../server/protocol';
+import type { ScanPacket } from '../server/binary';
 
 const kImageMs = 60;
 const kModes: ImageMode[] = ['range', 'class', 'intensity'];

@@ -19,13 +19,8 @@ import {
   type IUniform,
 } from 'three';
 import { nodeBox, parentsOf, type Tree } from './lod';
-import {
-  elementBytes,
-  kTriangleBytes,
-  parseElements,
-  type LayerInfo,
-  type TreeNode,
-} from '../server/protocol';
+import { elementBytes, kTriangleBytes, parseElements, type TreeNode } from '../server/binary';
+import type { LayerInfo } from '../server/protocol';
 import {
   kDiskFragment,
   kDiskVertex,

@@ -7,7 +7,8 @@ import type { Box3 } from 'three';
 import { Layer, type SharedUniforms } from './layer';
 import { ancestors, type Cut } from './lod';
 import { FetchQueue } from '../server/node_store';
-import { parseNodes, type LayerInfo, type SceneInfo } from '../server/protocol';
+import { parseNodes } from '../server/binary';
+import type { LayerInfo, SceneInfo } from '../server/protocol';
 
 /** A node that was used so lately is not unloaded. */
 const kKeepMs = 2000;

@@ -4,7 +4,7 @@
 // Level of detail: which nodes of the layers' trees are drawn, within a budget of elements.
 
 import { Box3, Frustum, Vector3 } from 'three';
-import type { TreeNode } from '../server/protocol';
+import type { TreeNode } from '../server/binary';
 
 /** A tree whose nodes come one by one. */
 export interface Tree {

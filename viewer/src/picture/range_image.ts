@@ -5,7 +5,7 @@
 
 import type { ClassPalette } from './class_palette';
 import type { ColorMaps } from './color_maps';
-import { kScanPointWords, type ScanPacket } from '../server/protocol';
+import { kScanPointWords, type ScanPacket } from '../server/binary';
 
 export type ImageMode = 'range' | 'class' | 'intensity';
 

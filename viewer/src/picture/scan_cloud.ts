@@ -16,7 +16,7 @@ import {
   Vector3,
 } from 'three';
 import { matrixOf } from '../driving/pose';
-import { kScanPointWords, type ScanPacket } from '../server/protocol';
+import { kScanPointWords, type ScanPacket } from '../server/binary';
 import type { SharedUniforms } from './layer';
 import { kPointFragment, kScanModes, kScanVertex, type ScanMode } from './shaders';
 

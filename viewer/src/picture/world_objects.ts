@@ -17,7 +17,8 @@ import type { Grabbable } from '../driving/pointer';
 import { matrixOf } from '../driving/pose';
 import { poseAt } from '../driving/timeline';
 import { Layer } from './layer';
-import { parseNodes, type ObjectInfo, type Pose, type SceneInfo } from '../server/protocol';
+import { parseNodes } from '../server/binary';
+import type { ObjectInfo, Pose, SceneInfo } from '../server/protocol';
 import type { SceneView } from './scene_view';
 
 /** Elements of an object's geometry that are drawn. */

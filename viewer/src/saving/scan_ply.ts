@@ -4,7 +4,8 @@
 // A scan as a PLY in world coordinates, as `adasplats` and other programs read it.
 
 import { matrixOf } from '../driving/pose';
-import { kScanPointWords, type ScanPacket, type Vec3 } from '../server/protocol';
+import { kScanPointWords, type ScanPacket } from '../server/binary';
+import type { Vec3 } from '../server/protocol';
 import { Vector3 } from 'three';
 
 const kColumns = [

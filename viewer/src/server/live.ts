@@ -3,12 +3,11 @@
 
 // The live channel: keeps itself connected, and tells a new server what the last one knew.
 
+import { parseScan, type ScanPacket } from './binary';
 import {
   parseMessage,
-  parseScan,
   type PickedMessage,
   type Pose,
-  type ScanPacket,
   type SensorMessage,
   type Settings,
 } from './protocol';

@@ -163,7 +163,7 @@ function numbers<T extends number[]>(value: unknown, what: string, size: number)
   return found as T;
 }
 
-function pose(value: unknown, what: string): Pose {
+export function parsePose(value: unknown, what: string): Pose {
   const found = numbers<Pose>(value, what, 7);
   const norm = Math.hypot(found[3], found[4], found[5], found[6]);
   if (!(Math.abs(norm - 1) < 0.01)) throw new ProtocolError(`${what} is no rotation`);
@@ -228,7 +228,7 @@ function sensorInfo(value: unknown, what: string): SensorInfo {
 
 function trajectory(value: unknown, what: string): TrajectoryInfo {
   const v = fields(value, what);
-  const poses = list(v.poses, `${what}.poses`, pose);
+  const poses = list(v.poses, `${what}.poses`, parsePose);
   const told = list(v.times_s, `${what}.times_s`, number);
   const ascend = told.length === poses.length && told.every((t, i) => i === 0 || t > told[i - 1]);
   // Without times: one every tenth of a second, as most LiDARs turn.
@@ -242,7 +242,7 @@ function recordedScan(value: unknown, what: string): RecordedScan {
   return {
     name: text(v.name, `${what}.name`),
     trajectory: number(v.trajectory, `${what}.trajectory`),
-    pose: pose(v.pose, `${what}.pose`),
+    pose: parsePose(v.pose, `${what}.pose`),
     time_s: typeof v.time_s === 'number' ? v.time_s : 0,
     points: typeof v.points === 'number' ? v.points : null,
   };
@@ -250,7 +250,7 @@ function recordedScan(value: unknown, what: string): RecordedScan {
 
 function objectInfo(value: unknown, what: string): ObjectInfo {
   const v = fields(value, what);
-  const poses = list(v.poses, `${what}.poses`, pose);
+  const poses = list(v.poses, `${what}.poses`, parsePose);
   const times_s = list(v.times_s, `${what}.times_s`, number);
   if (poses.length === 0 || times_s.length !== poses.length)
     throw new ProtocolError(`${what} has ${poses.length} poses at ${times_s.length} times`);
@@ -284,7 +284,7 @@ export function parseScene(value: unknown): SceneInfo {
     sensors: list(v.sensors, 'sensors', sensorInfo),
     sensor: typeof v.sensor === 'string' ? v.sensor : '',
     start_pose: Array.isArray(v.start_pose)
-      ? pose(v.start_pose, 'start_pose')
+      ? parsePose(v.start_pose, 'start_pose')
       : [0, 0, 0, 0, 0, 0, 1],
     device: typeof v.device === 'string' ? v.device : '',
     command: list(v.command, 'command', text),
@@ -346,109 +346,5 @@ function picked(v: Fields): PickedMessage {
     class: typeof v.class === 'number' ? v.class : undefined,
     class_name: typeof v.class_name === 'string' ? v.class_name : undefined,
     intensity: typeof v.intensity === 'number' ? v.intensity : undefined,
-  };
-}
-
-export interface TreeNode {
-  low: Vec3;
-  high: Vec3;
-  spacing_m: number;
-  largest_radius_m: number;
-  first_child: number;
-  child_count: number;
-  count: number;
-  level: number;
-}
-
-const kNodeBytes = 48;
-export const kElementBytes = 16;
-export const kTriangleBytes = 40;
-
-/** Of one element of a node. */
-export function elementBytes(kind: LayerKind): number {
-  return kind === 'mesh' ? kTriangleBytes : kElementBytes;
-}
-
-function treeNode(view: DataView, index: number, nodes: number): TreeNode {
-  const at = 8 + kNodeBytes * index;
-  const float = (i: number) => view.getFloat32(at + 4 * i, true);
-  const word = (i: number) => view.getUint32(at + 4 * i, true);
-  const node: TreeNode = {
-    low: [float(0), float(1), float(2)],
-    high: [float(3), float(4), float(5)],
-    spacing_m: float(6),
-    largest_radius_m: float(7),
-    first_child: word(8),
-    child_count: word(9),
-    count: word(10),
-    level: word(11),
-  };
-  // Children come later than their parent: so a tree that lies cannot make the page loop.
-  const end = node.first_child + node.child_count;
-  if (node.child_count > 8 || (node.child_count > 0 && (node.first_child <= index || end > nodes)))
-    throw new ProtocolError(`nodes.bin: node ${index} has children that cannot be`);
-  if (![...node.low, ...node.high, node.spacing_m, node.largest_radius_m].every(Number.isFinite))
-    throw new ProtocolError(`nodes.bin: node ${index} has a box that is not finite`);
-  return node;
-}
-
-/** nodes.bin. */
-export function parseNodes(bytes: ArrayBuffer): TreeNode[] {
-  if (bytes.byteLength < 8) throw new ProtocolError('nodes.bin: too short');
-  const view = new DataView(bytes);
-  const count = view.getUint32(0, true);
-  if (bytes.byteLength !== 8 + kNodeBytes * count)
-    throw new ProtocolError(`nodes.bin: ${bytes.byteLength} bytes for ${count} nodes`);
-  return Array.from({ length: count }, (_, i) => treeNode(view, i, count));
-}
-
-/** nodes/N.bin: four words an element, ten a triangle. */
-export function parseElements(bytes: ArrayBuffer, count: number, kind: LayerKind): Uint32Array {
-  if (bytes.byteLength !== count * elementBytes(kind))
-    throw new ProtocolError(`a node: ${bytes.byteLength} bytes for ${count} elements`);
-  return new Uint32Array(bytes);
-}
-
-export interface ScanPacket {
-  number: number;
-  points: number;
-  rays: number;
-  rings: number;
-  columns: number;
-  has_classes: boolean;
-  has_intensities: boolean;
-  pose: Pose;
-  seconds: number;
-  max_range_m: number;
-  /** Six words a point. */
-  words: Uint32Array;
-}
-
-const kScanMagic = 0x4e435341;
-const kScanHeaderBytes = 80;
-export const kScanPointWords = 6;
-
-/** A scan packet, recorded or live. */
-export function parseScan(bytes: ArrayBuffer): ScanPacket {
-  if (bytes.byteLength < kScanHeaderBytes) throw new ProtocolError('a scan: too short');
-  const head = new Uint32Array(bytes, 0, 20);
-  const floats = new Float32Array(bytes, 0, 20);
-  if (head[0] !== kScanMagic || head[1] !== 1)
-    throw new ProtocolError('a scan: no packet of version 1');
-  const points = head[3];
-  if (bytes.byteLength !== kScanHeaderBytes + points * kScanPointWords * 4)
-    throw new ProtocolError(`a scan: ${bytes.byteLength} bytes for ${points} points`);
-  return {
-    number: head[2],
-    points,
-    rays: head[4],
-    rings: head[5],
-    columns: head[6],
-    has_classes: (head[7] & 1) !== 0,
-    has_intensities: (head[7] & 2) !== 0,
-    pose: pose(Array.from(floats.subarray(8, 15)), 'the pose of a scan'),
-    seconds: floats[15],
-    max_range_m: floats[16],
-    words: new Uint32Array(bytes, kScanHeaderBytes),
   };
 }

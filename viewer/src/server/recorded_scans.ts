@@ -3,7 +3,7 @@
 
 // Recorded scans, read when they are asked for and kept for a while.
 
-import { parseScan, type ScanPacket } from './protocol';
+import { parseScan, type ScanPacket } from './binary';
 
 const kKept = 24;
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A profile as a picture: height over the way along the slice, in equal scales, with ticks.
+// A profile as a picture: height over the way along the slice, with ticks. Of flat ones heights are
+// drawn larger, by a whole number that the picture tells.
 
 import type { Vec3 } from '../server/protocol';
 import type { SlicePoint } from './slice';
@@ -10,6 +11,7 @@ const kMargin = { left: 52, right: 12, top: 10, bottom: 30 };
 const kGround = '#0d1014';
 const kInk = '#8c99a8';
 const kLine = '#2b343e';
+const kMostTimes = 10;
 
 /** 1, 2 or 5 times a power of ten, for about `count` steps. */
 export function tickStep(span: number, count: number): number {
@@ -43,10 +45,16 @@ export function drawProfile(canvas: HTMLCanvasElement, plot: Plot) {
     x: width - kMargin.left - kMargin.right,
     y: height - kMargin.top - kMargin.bottom,
   };
-  const scale = Math.min(room.x / length_m, room.y / Math.max(high - low, 0.5));
+  const scale = Math.min(room.x / length_m, room.y / Math.max(high - low, 0.05));
+  const larger = Math.floor(room.y / (Math.max(high - low, 0.05) * scale));
+  const times = Math.min(Math.max(larger, 1), kMostTimes);
   const x = (along: number) => kMargin.left + along * scale;
-  const y = (z: number) => kMargin.top + room.y - (z - low) * scale;
+  const y = (z: number) => kMargin.top + room.y - (z - low) * scale * times;
   drawTicks(context, { x, y, low, high, length_m, up_m: origin_m[2], width, height });
+  if (times > 1) {
+    context.textAlign = 'right';
+    context.fillText(`heights ${times} ×`, width - kMargin.right, kMargin.top + 10);
+  }
   for (const point of points) {
     context.fillStyle = plot.color(point);
     context.fillRect(x(point.along_m) - 1, y(point.position.z) - 1, 2, 2);
@@ -79,7 +87,7 @@ function drawTicks(context: CanvasRenderingContext2D, axes: Axes) {
     context.fillText(`${Number(at.toFixed(6))} m`, x(at), height - kMargin.bottom + 14);
   }
   context.textAlign = 'right';
-  const rise = tickStep(Math.max(high - low, 0.5), 4);
+  const rise = tickStep(Math.max(high - low, 0.05), 4);
   for (let z = Math.ceil((low + up_m) / rise) * rise; z <= high + up_m + 1e-9; z += rise) {
     context.beginPath();
     context.moveTo(x(0), y(z - up_m));

@@ -5,7 +5,7 @@
 
 import { Vector3 } from 'three';
 import type { Layer } from '../picture/layer';
-import { kElementBytes, type TreeNode } from '../server/protocol';
+import { kElementBytes, type TreeNode } from '../server/binary';
 
 /** A wall of air between two places, so thick. */
 export interface Slice {

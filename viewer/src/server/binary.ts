@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What the server sends as bytes, read with distrust: trees, their nodes, scans.
+
+import { parsePose, ProtocolError, type LayerKind, type Pose, type Vec3 } from './protocol';
+
+export interface TreeNode {
+  low: Vec3;
+  high: Vec3;
+  spacing_m: number;
+  largest_radius_m: number;
+  first_child: number;
+  child_count: number;
+  count: number;
+  level: number;
+}
+
+const kNodeBytes = 48;
+export const kElementBytes = 16;
+export const kTriangleBytes = 40;
+
+/** Of one element of a node. */
+export function elementBytes(kind: LayerKind): number {
+  return kind === 'mesh' ? kTriangleBytes : kElementBytes;
+}
+
+function treeNode(view: DataView, index: number, nodes: number): TreeNode {
+  const at = 8 + kNodeBytes * index;
+  const float = (i: number) => view.getFloat32(at + 4 * i, true);
+  const word = (i: number) => view.getUint32(at + 4 * i, true);
+  const node: TreeNode = {
+    low: [float(0), float(1), float(2)],
+    high: [float(3), float(4), float(5)],
+    spacing_m: float(6),
+    largest_radius_m: float(7),
+    first_child: word(8),
+    child_count: word(9),
+    count: word(10),
+    level: word(11),
+  };
+  // Children come later than their parent: so a tree that lies cannot make the page loop.
+  const end = node.first_child + node.child_count;
+  if (node.child_count > 8 || (node.child_count > 0 && (node.first_child <= index || end > nodes)))
+    throw new ProtocolError(`nodes.bin: node ${index} has children that cannot be`);
+  if (![...node.low, ...node.high, node.spacing_m, node.largest_radius_m].every(Number.isFinite))
+    throw new ProtocolError(`nodes.bin: node ${index} has a box that is not finite`);
+  return node;
+}
+
+/** nodes.bin. */
+export function parseNodes(bytes: ArrayBuffer): TreeNode[] {
+  if (bytes.byteLength < 8) throw new ProtocolError('nodes.bin: too short');
+  const view = new DataView(bytes);
+  const count = view.getUint32(0, true);
+  if (bytes.byteLength !== 8 + kNodeBytes * count)
+    throw new ProtocolError(`nodes.bin: ${bytes.byteLength} bytes for ${count} nodes`);
+  return Array.from({ length: count }, (_, i) => treeNode(view, i, count));
+}
+
+/** nodes/N.bin: four words an element, ten a triangle. */
+export function parseElements(bytes: ArrayBuffer, count: number, kind: LayerKind): Uint32Array {
+  if (bytes.byteLength !== count * elementBytes(kind))
+    throw new ProtocolError(`a node: ${bytes.byteLength} bytes for ${count} elements`);
+  return new Uint32Array(bytes);
+}
+
+export interface ScanPacket {
+  number: number;
+  points: number;
+  rays: number;
+  rings: number;
+  columns: number;
+  has_classes: boolean;
+  has_intensities: boolean;
+  pose: Pose;
+  seconds: number;
+  max_range_m: number;
+  /** Six words a point. */
+  words: Uint32Array;
+}
+
+const kScanMagic = 0x4e435341;
+const kScanHeaderBytes = 80;
+export const kScanPointWords = 6;
+
+/** A scan packet, recorded or live. */
+export function parseScan(bytes: ArrayBuffer): ScanPacket {
+  if (bytes.byteLength < kScanHeaderBytes) throw new ProtocolError('a scan: too short');
+  const head = new Uint32Array(bytes, 0, 20);
+  const floats = new Float32Array(bytes, 0, 20);
+  if (head[0] !== kScanMagic || head[1] !== 1)
+    throw new ProtocolError('a scan: no packet of version 1');
+  const points = head[3];
+  if (bytes.byteLength !== kScanHeaderBytes + points * kScanPointWords * 4)
+    throw new ProtocolError(`a scan: ${bytes.byteLength} bytes for ${points} points`);
+  return {
+    number: head[2],
+    points,
+    rays: head[4],
+    rings: head[5],
+    columns: head[6],
+    has_classes: (head[7] & 1) !== 0,
+    has_intensities: (head[7] & 2) !== 0,
+    pose: parsePose(Array.from(floats.subarray(8, 15)), 'the pose of a scan'),
+    seconds: floats[15],
+    max_range_m: floats[16],
+    words: new Uint32Array(bytes, kScanHeaderBytes),
+  };
+}
