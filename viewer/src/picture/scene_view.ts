@@ -56,6 +56,8 @@ export class SceneView {
   private cuts: Cut[] = [];
   private modelDirty = true;
   private screenDirty = true;
+  /** Nodes have come that no picture shows yet. */
+  private arrived = false;
   private movedMs = 0;
   private lastFrameMs = 0;
   private lastModelMs = 0;
@@ -223,9 +225,7 @@ export class SceneView {
     this.rig.controls.update(dt);
     const still = now - this.movedMs > kRestMs;
     const refine = still && !this.wasStill && this.cuts.some((c) => c.limited);
-    // What comes is shown soon, but drawing must not be all that a slow machine does.
-    const pause = this.stage.software ? Math.min(Math.max(350, this.modelMs), 1500) : 60;
-    if (this.set.arrivals && (now - this.lastModelMs > pause || !still)) this.invalidateModel();
+    this.takeArrivals(still, now);
     if (this.modelInLastFrame && !still)
       this.budget.frame(
         ms,
@@ -240,7 +240,7 @@ export class SceneView {
 
   private drawModel(still: boolean, now: number) {
     this.wasStill = still;
-    this.modelDirty = this.set.arrivals = false;
+    this.modelDirty = this.set.arrivals = this.arrived = false;
     this.lastModelMs = now;
     const { areas, rig } = this;
     rig.camera.aspect = areas[0].width / areas[0].height;
@@ -249,16 +249,36 @@ export class SceneView {
     rig.camera.updateMatrixWorld();
     const view = this.view(areas[0].height);
     this.shared.focal_px.value = view.focal_px;
-    const budget = (still ? this.budget.still : this.budget.interactive) / areas.length;
-    this.cuts = areas.map((_, i) => chooseCut(this.layersOf(i), view, budget));
-    this.set.keepUsed(this.cuts, now);
-    this.set.want(this.cuts);
+    this.chooseCuts(view, still, now);
     this.stage.beginModel();
     areas.forEach((area, i) => this.stage.drawModel(objectsOf(this.cuts[i]), area, rig.camera));
     if (!this.stage.software) return;
     // Without a GPU pictures would queue up behind each other, and the page stand still for them.
     this.stage.finish();
     this.modelMs = performance.now() - now;
+  }
+
+  private chooseCuts(view: View, still: boolean, now: number) {
+    const { areas } = this;
+    const budget = (still ? this.budget.still : this.budget.interactive) / areas.length;
+    this.cuts = areas.map((_, i) => chooseCut(this.layersOf(i), view, budget));
+    this.set.keepUsed(this.cuts, now);
+    this.set.want(this.cuts);
+  }
+
+  /**
+   * Nodes that came are shown soon. Without a GPU a picture is dear: there what they lead to is
+   * asked for at once, but drawn seldom, until all has come.
+   */
+  private takeArrivals(still: boolean, now: number) {
+    if (this.set.arrivals) {
+      this.set.arrivals = false;
+      this.arrived = true;
+      if (still) this.chooseCuts(this.view(this.areas[0].height), still, now);
+    }
+    const pause = this.stage.software ? Math.min(Math.max(700, 2 * this.modelMs), 3000) : 60;
+    const all = this.stage.software && !this.set.busy;
+    if (this.arrived && (all || !still || now - this.lastModelMs > pause)) this.invalidateModel();
   }
 
   private drawScreen() {
