@@ -25,7 +25,7 @@ function available(layers: LayerInfo[], mode: ColorMode): boolean {
   return true;
 }
 
-/** The mode that tells most of a scene: what the first layer has, errors where there is no model. */
+/** The mode that tells most of a scene: by its first layer. */
 export function firstMode({ layers, classes }: SceneInfo): ColorMode {
   const [first] = layers;
   if (!first) return 'shading';

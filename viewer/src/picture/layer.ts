@@ -156,7 +156,9 @@ export class Layer implements Tree {
   /** What is loaded once more, to stand elsewhere: for one of the objects that are made of it. */
   instances(oneClass: number | null): (Mesh | Points)[] {
     return [...this.loaded].map(([node, { object }]) => {
-      const copy = object instanceof Mesh ? new Mesh(object.geometry, this.material) : new Points(object.geometry, this.material);
+      const { geometry } = object;
+      const isMesh = object instanceof Mesh;
+      const copy = isMesh ? new Mesh(geometry, this.material) : new Points(geometry, this.material);
       copy.frustumCulled = false;
       copy.onBeforeRender = () => this.setNode(node, oneClass);
       return copy;

@@ -38,7 +38,7 @@ export class LayerSet {
     this.queue.retry();
   }
 
-  /** Replaces all layers of the server, keeps what the page added. False: another call came since. */
+  /** Replaces the server's layers, keeps what the page added. False: another call came since. */
   async load(scene: SceneInfo): Promise<boolean> {
     const generation = ++this.generation;
     const layers = await Promise.all(scene.layers.map((info) => this.loadLayer(info)));

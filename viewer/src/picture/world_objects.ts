@@ -17,7 +17,7 @@ import type { Grabbable } from '../driving/pointer';
 import { matrixOf } from '../driving/pose';
 import { poseAt } from '../driving/timeline';
 import { Layer } from './layer';
-import { parseNodes } from '../server/binary';
+import { parseNodes, type TreeNode } from '../server/binary';
 import type { ObjectInfo, Pose, SceneInfo } from '../server/protocol';
 import type { SceneView } from './scene_view';
 
@@ -88,7 +88,9 @@ export class WorldObjects implements Grabbable {
       return;
     }
     this.object.clear();
-    this.objects = scene.objects.map((info) => new PlacedObject(info, layers.get(info.geometry.id)!));
+    this.objects = scene.objects.map(
+      (info) => new PlacedObject(info, layers.get(info.geometry.id)!),
+    );
     for (const placed of this.objects) {
       placed.group.add(...placed.layer.instances(placed.info.class_id));
       this.object.add(placed.group);
@@ -180,8 +182,9 @@ export class WorldObjects implements Grabbable {
 /** The finest level of the tree that is not too much; leaves above it, too. */
 function detailOf({ nodes }: Layer): number[] {
   const deepest = Math.max(0, ...nodes.map((n) => n.level));
-  const cut = (level: number) =>
-    nodes.flatMap((n, i) => (n.level === level || (n.level < level && n.child_count === 0) ? [i] : []));
+  const isIn = (n: TreeNode, level: number) =>
+    n.level === level || (n.level < level && n.child_count === 0);
+  const cut = (level: number) => nodes.flatMap((n, i) => (isIn(n, level) ? [i] : []));
   for (let level = deepest; level > 0; --level) {
     const found = cut(level);
     if (found.reduce((sum, n) => sum + nodes[n].count, 0) <= kMostElements) return found;

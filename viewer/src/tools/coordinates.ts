@@ -6,7 +6,7 @@
 import type { Vector3 } from 'three';
 import type { Vec3 } from '../server/protocol';
 
-/** "650003.215, 6860011.040, 41.730": double precision, so UTM coordinates keep their millimetres. */
+/** "650003.215, 6860011.040, 41.730": doubles, so that UTM coordinates keep their millimetres. */
 export function worldText(position: Vector3, origin_m: Vec3): string {
   return position
     .toArray()

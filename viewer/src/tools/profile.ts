@@ -5,7 +5,7 @@
 
 import { Vector3 } from 'three';
 import type { Place } from '../driving/pointer';
-import { button, download, fill, grouped, make } from '../panels/dom';
+import { button, download, fill, grouped, make, row } from '../panels/dom';
 import { cssColor } from '../picture/color_maps';
 import { Marks } from '../picture/marks';
 import type { SceneView } from '../picture/scene_view';
@@ -101,7 +101,8 @@ export class ProfileTool implements Tool {
       this.points = found.points.filter((p) => this.isSeen(p));
       this.length_m = found.length_m;
       const merged = found.coarse ? ', merged ones: the slice is large' : '';
-      this.state = `${grouped(this.points.length)} elements on ${found.length_m.toFixed(2)} m${merged}`;
+      const length = `${found.length_m.toFixed(2)} m`;
+      this.state = `${grouped(this.points.length)} elements on ${length}${merged}`;
     } catch (error) {
       if (signal.aborted) return;
       this.state = 'The slice could not be loaded.';
@@ -166,7 +167,7 @@ export class ProfileTool implements Tool {
       this.card,
       make('p', { className: 'facts', role: 'status' }, this.state),
       this.plot,
-      make('div', { className: 'row' }, make('span', { className: 'name' }, 'Thick, m'), width, csv, picture),
+      row('Thick, m', width, csv, picture),
     );
   }
 }

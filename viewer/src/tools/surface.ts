@@ -13,7 +13,7 @@ import type { SceneView } from '../picture/scene_view';
 const kEchoPixels = 5;
 /** An echo lies on the surface that it is of. */
 const kEchoBeforeM = 0.3;
-/** Splats that are drawn merged, and their tips, are off by so much, of the distance and at least. */
+/** Splats drawn merged, and their tips, are off by so much: of the distance, and at least. */
 const kSameSurface = 0.01;
 const kSameSurfaceM = 0.15;
 
