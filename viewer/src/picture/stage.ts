@@ -38,6 +38,8 @@ const kLargestPixelRatio = 2;
 export class Stage {
   readonly renderer: WebGLRenderer;
   readonly overlay = new Scene();
+  /** What tools draw: over all else, as it is drawn last. */
+  readonly marks = new Scene();
   /** Drawn by a renderer without a GPU: everything costs a hundred times as much. */
   readonly software: boolean;
   outline = 0.6;
@@ -124,6 +126,7 @@ export class Stage {
       renderer.setViewport(x, y, w, h);
       renderer.setScissor(x, y, w, h);
       renderer.render(this.overlay, camera);
+      renderer.render(this.marks, camera);
     }
     renderer.setScissorTest(false);
   }

@@ -58,7 +58,7 @@ export class ClipTool implements Tool, Grabbable {
     private readonly origin_m: Vec3,
     private readonly sensor: () => { position: Vector3; yaw_rad: number },
   ) {
-    view.stage.overlay.add(this.marks.object);
+    view.stage.marks.add(this.marks.object);
     this.marks.object.visible = false;
     this.modes = segments(
       'Clipping',

@@ -8,6 +8,7 @@ import type { Place } from '../driving/pointer';
 import { button, fill, make } from '../panels/dom';
 import type { Label, Labels } from '../picture/labels';
 import { Marks } from '../picture/marks';
+import { showToast } from '../panels/notices';
 import type { SceneView } from '../picture/scene_view';
 import type { Vec3 } from '../server/protocol';
 import { differenceText, lengthText, worldText } from './coordinates';
@@ -50,7 +51,7 @@ export class MeasureTool implements Tool {
     private readonly texts: Labels,
     private readonly origin_m: Vec3,
   ) {
-    view.stage.overlay.add(this.marks.object);
+    view.stage.marks.add(this.marks.object);
     this.draw();
   }
 
@@ -69,7 +70,7 @@ export class MeasureTool implements Tool {
 
   private async add(place: Place) {
     const at = await this.surface.at(place);
-    if (!at) return;
+    if (!at) return showToast('Nothing is there: click on the scene');
     if (this.from) {
       this.all.push(measurementOf(this.from, at));
       this.from = null;

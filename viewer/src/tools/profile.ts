@@ -8,6 +8,7 @@ import type { Place } from '../driving/pointer';
 import { button, download, fill, grouped, make, row } from '../panels/dom';
 import { cssColor } from '../picture/color_maps';
 import { Marks } from '../picture/marks';
+import { showToast } from '../panels/notices';
 import type { SceneView } from '../picture/scene_view';
 import type { Vec3 } from '../server/protocol';
 import { drawProfile } from './profile_plot';
@@ -53,7 +54,7 @@ export class ProfileTool implements Tool {
   ) {
     this.plot.role = 'img';
     this.plot.ariaLabel = 'Profile: height over the way along the slice';
-    view.stage.overlay.add(this.marks.object);
+    view.stage.marks.add(this.marks.object);
     this.draw();
   }
 
@@ -73,7 +74,7 @@ export class ProfileTool implements Tool {
 
   private async add(place: Place) {
     const at = await this.surface.at(place);
-    if (!at) return;
+    if (!at) return showToast('Nothing is there: click on the scene');
     if (!this.from || this.to) {
       this.from = at;
       this.to = null;
