@@ -20,7 +20,7 @@ import { Check, changed, isBackground, realServer, shareOf, skip, sleep } from '
 
 const kSize = { width: 1280, height: 800 };
 const kPhone = { width: 390, height: 844 };
-/** Measured with two cores to itself: bench/results; here others may run beside it. */
+/** Far beyond what it takes: others may run beside the test. */
 const kFirstPictureMs = 15_000;
 
 /** Where places of the scene are on the page. */
