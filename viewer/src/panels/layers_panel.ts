@@ -3,7 +3,8 @@
 
 // What is drawn: layers over each other or two side by side.
 
-import { button, choice, fill, make, row, segments, short, slider, tick } from './dom';
+import { button, choice, fill, make, row, segments, slider, tick } from './dom';
+import { sizeText } from './loading';
 import type { SceneView } from '../picture/scene_view';
 
 export function layersPanel(view: SceneView, add: () => void): HTMLElement {
@@ -33,7 +34,7 @@ export function layersPanel(view: SceneView, add: () => void): HTMLElement {
         'span',
         {},
         layer.info.name,
-        make('small', {}, `${short(layer.info.count)} ${layer.info.kind}`),
+        make('small', {}, sizeText(layer.info)),
       ),
       layer.visible,
       (on) => {
