@@ -47,9 +47,9 @@ struct VelodynePlace {
 /// Where Velodyne's sensors put the two returns of a firing, of a packet with the mode byte kDual:
 /// in a pair of blocks with one azimuth, the last return and the strongest or, where that is the
 /// last one, the second strongest, which are the same where there is but one (VLP-16 User Manual
-/// 63-9243, chapter 9, "Sensor Data", and that of the VLP-32C; HDL-32E, VLS-128: as other drivers). A
-/// firing does not span packets, so a VLS-128 leaves the last 4 blocks empty. An HDL-64E, which has
-/// no mode byte, has the two blocks of the strongest and then the two of the last returns.
+/// 63-9243, chapter 9, "Sensor Data", and that of the VLP-32C; HDL-32E, VLS-128: as other drivers).
+/// A firing does not span packets, so a VLS-128 leaves the last 4 blocks empty. An HDL-64E, which
+/// has no mode byte, has the two blocks of the strongest and then the two of the last returns.
 inline constexpr std::uint8_t kDualMode = 0x39;
 /// The blocks of both returns in the place of block `block` of a packet with one.
 constexpr std::pair<std::size_t, std::size_t> dual_blocks(PacketFormat format, std::size_t block) {
