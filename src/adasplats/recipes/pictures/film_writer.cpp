@@ -13,7 +13,6 @@
 #include "adasplats/core/child_process.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/arrays/png.h"
-#include "adasplats/io/base/atomic_file.h"
 #include "adasplats/recipes/pictures/webp_film.h"
 
 namespace adasplats {
@@ -55,7 +54,9 @@ class Mp4Film final : public FilmWriter {
     const ChildResult result = run_child(child, progress);
     if (result.end != ChildEnd::done)
       throw Error(ErrorKind::unavailable, path_.string() + ": ffmpeg failed: " + result.message);
-    write_file(path_, read_file(made));
+    std::error_code error;
+    fs::rename(made, path_, error);  // of one file system: the folder stands beside the film
+    if (error) throw Error(ErrorKind::io, path_.string() + ": " + error.message());
   }
 
  private:
