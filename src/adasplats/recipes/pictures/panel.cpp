@@ -106,12 +106,12 @@ void Panel::prepare(const PanelLook& look, SharedRange& range) {
                                       : default_color(cloud_, labels_ ? &*labels_ : nullptr));
   if (!has_values(color_) || !point_errors_m_.empty()) return;
   const float lift = color_ == ImageColor::height ? static_cast<float>(origin_z()) : 0.0F;
-  if (!range) {
+  if (!range.contains(color_)) {
     const ValueRange own =
         model_ ? shown_range(model_->image_scene(), color_) : shown_range(cloud_, color_);
-    range = ValueRange{own.low + lift, own.high + lift};
+    range[color_] = {own.low + lift, own.high + lift};
   }
-  range_ = ValueRange{range->low - lift, range->high - lift};
+  range_ = ValueRange{range[color_].low - lift, range[color_].high - lift};
 }
 
 Image Panel::draw_model(const Camera& camera, const PanelLook& look) const {

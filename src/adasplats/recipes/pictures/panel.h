@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,9 +25,9 @@ struct PanelLook {
   bool captions = true;  ///< title, legend, scale and north
 };
 
-/// Values that the ends of a colour scale stand for, in the world: panels of one picture share
-/// them.
-using SharedRange = std::optional<ValueRange>;
+/// Values that the ends of the scale of each colour stand for, in the world: panels of one picture
+/// that show the same share them.
+using SharedRange = std::map<ImageColor, ValueRange>;
 
 /// Whether a file is a splat model or a mesh; other inputs are points.
 bool is_model_file(const std::filesystem::path& input);
@@ -46,7 +47,7 @@ class Panel {
   void show_errors(const ErrorPoints& errors, const std::filesystem::path& name);
 
   ShownPart shown_part() const;
-  /// Chooses the panel's scale: `range` where it is there and what it shows is the same.
+  /// Chooses what the panel shows and its scale: that of `range`, which else gets the panel's own.
   void prepare(const PanelLook& look, SharedRange& range);
   /// Without captions.
   Image draw(const Camera& camera, const PanelLook& look, const Executor& executor) const;
