@@ -63,7 +63,8 @@ struct Table {
   std::vector<Row> rows;
   std::vector<Fact> definitions;
   std::vector<ChartPlan> charts;
-  bool folded = false;  ///< the chart is shown, the figures behind it on demand
+  bool folded = false;     ///< the chart is shown, the figures behind it on demand
+  bool on_demand = false;  ///< a part of the section that readers open
 };
 
 enum class PlotStyle { lines, steps, marks };

@@ -181,8 +181,10 @@ std::string section_html(const Section& section, const std::filesystem::path& fo
   html += facts_html(section.facts, section.facts_as_tiles ? "tiles" : "facts");
   for (const Table& table : section.tables) {
     if (table.folded) continue;
-    html += element("h3", "", html_escape(table.title)) + table_html(table);
-    html += facts_html(table.definitions, "defs");
+    const std::string body = table_html(table) + facts_html(table.definitions, "defs");
+    html += table.on_demand
+                ? element("details", "", element("summary", "", html_escape(table.title)) + body)
+                : element("h3", "", html_escape(table.title)) + body;
   }
   html += figures_html(section.tables) + plots_html(section.plots);
   if (section.scale) html += scale_html(*section.scale);

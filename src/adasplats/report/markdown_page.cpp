@@ -95,9 +95,15 @@ std::string section_markdown(const Section& section) {
   for (const std::string& paragraph : section.paragraphs) text += escaped(paragraph) + "\n\n";
   text += facts_markdown(section.facts);
   for (const Table& table : section.tables) {
+    const std::string body = table_markdown(table) + facts_markdown(table.definitions);
+    if (table.on_demand) {
+      text += "<details><summary>" + html_escape(table.title) + "</summary>\n\n" + body +
+              "</details>\n\n";
+      continue;
+    }
     text += "### " + escaped(table.title);
     if (table.folded) text += ": " + escaped(table.charts.front().value_title);
-    text += "\n\n" + table_markdown(table) + facts_markdown(table.definitions);
+    text += "\n\n" + body;
   }
   for (const Picture& picture : section.pictures) {
     const std::string title = escaped(picture.title);

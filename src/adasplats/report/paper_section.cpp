@@ -66,16 +66,8 @@ std::vector<Competitor> resampling_pairs(const std::vector<Competitor>& competit
   return pairs;
 }
 
-Table resampling_table(const std::vector<Competitor>& pairs, const Json& results) {
-  std::vector<const Json*> rows;
-  for (const Json* row : paper_rows_of(results)) {
-    const std::string name = text_at(*row, {"name"});
-    if (std::any_of(pairs.begin(), pairs.end(),
-                    [&](const Competitor& competitor) { return competitor.name == name; })) {
-      rows.push_back(row);
-    }
-  }
-  return table_of("Without and with resampling", pairs, rows,
+Table resampling_table(const std::vector<Competitor>& pairs) {
+  return table_of("Without and with resampling", pairs, {},
                   {generation_time(), primitives(), lidar_frequency(), c2c()});
 }
 
@@ -89,7 +81,9 @@ std::optional<double> mean_of(const std::vector<Reader>& readers, const Json& js
   return sum / static_cast<double>(readers.size());
 }
 
-Table thin_table(const std::vector<Competitor>& competitors, const Json& results) {
+/// `paper_rows`: empty for what was measured here alone.
+Table thin_table(const std::vector<Competitor>& competitors,
+                 const std::vector<const Json*>& paper_rows) {
   std::vector<Measure> measures;
   std::vector<Reader> here;
   std::vector<Reader> paper;
@@ -109,7 +103,7 @@ Table thin_table(const std::vector<Competitor>& competitors, const Json& results
                         return printed ? printed : mean_of(paper, row);
                       },
                       short_text});
-  Table table = table_of("C2C of thin structures", competitors, paper_rows_of(results), measures);
+  Table table = table_of("C2C of thin structures", competitors, paper_rows, measures);
   table.definitions = {
       {"C2C of a class",
        "C2C of the simulated points of the class to the original points of the same class; where "
@@ -120,10 +114,9 @@ Table thin_table(const std::vector<Competitor>& competitors, const Json& results
        "of the three classes, each with the same weight, only where all three are there; the "
        "paper’s "
        "printed average where the results have it."}};
-  ChartPlan plan{ChartKind::bars, "C2C of thin structures, measured here", "", "C2C (cm)", {}};
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    if (table.columns[c].name != "paper") plan.columns.push_back(c);
-  }
+  if (!paper_rows.empty()) return table;
+  ChartPlan plan{ChartKind::bars, "C2C of thin structures", "", "C2C (cm)", {}};
+  for (std::size_t c = 0; c < table.columns.size(); ++c) plan.columns.push_back(c);
   table.charts.push_back(std::move(plan));
   return table;
 }
@@ -136,35 +129,45 @@ bool has_thin_classes(const std::vector<Competitor>& competitors) {
   });
 }
 
+/// What the columns of a table with the paper's figures are.
+std::string paper_note(const Json& results) {
+  std::string cpu = text_at(results, {"machine", "cpu"});
+  if (cpu.empty()) cpu = "this machine";
+  return "“here” was measured on " + text_at(results, {"title"}) + " with " + cpu +
+         "; “paper” is printed in the paper’s table for " + text_at(results, {"paper", "table"}) +
+         " and was measured on the paper’s own data with an NVIDIA GeForce RTX 2070 SUPER. Other "
+         "data and another machine: the order of the models can be compared, the figures cannot.";
+}
+
 }  // namespace
 
 Section paper_section(const Json& results, const std::vector<Competitor>& competitors) {
   Section section;
   section.id = "paper";
-  section.title = "The paper’s tables";
-  const auto paper_rows = paper_rows_of(results);
-  if (!paper_rows.empty()) {
-    std::string cpu = text_at(results, {"machine", "cpu"});
-    if (cpu.empty()) cpu = "this machine";
-    section.paragraphs.push_back(
-        "Columns “here” were measured on " + text_at(results, {"title"}) + " with " + cpu +
-        ". Columns “paper” are printed in the paper’s table for " +
-        text_at(results, {"paper", "table"}) +
-        "; they were measured on the paper’s own data with an NVIDIA GeForce RTX 2070 SUPER. Other "
-        "data and another machine: the order of the models can be compared, the figures cannot.");
-  }
-  std::vector<Measure> measures = {
+  section.title = "The paper’s measures";
+  const std::vector<Measure> measures = {
       generation_time(),
       primitives(),
       {"Render (Hz)", Better::higher, read({"render", "images_per_second"}), measure_text,
        read({"render_hz"})},
       lidar_frequency(),
       c2c()};
-  section.tables.push_back(table_of("Models, speed and C2C", competitors, paper_rows, measures));
+  section.tables.push_back(table_of("Models, speed and C2C", competitors, {}, measures));
   section.tables.back().definitions = paper_definitions();
   const auto pairs = resampling_pairs(competitors);
-  if (!pairs.empty()) section.tables.push_back(resampling_table(pairs, results));
-  if (has_thin_classes(competitors)) section.tables.push_back(thin_table(competitors, results));
+  if (!pairs.empty()) section.tables.push_back(resampling_table(pairs));
+  const bool thin = has_thin_classes(competitors);
+  if (thin) section.tables.push_back(thin_table(competitors, {}));
+  const auto paper_rows = paper_rows_of(results);
+  if (paper_rows.empty()) return section;
+  section.tables.push_back(table_of("Beside the paper’s figures: models, speed and C2C",
+                                    competitors, paper_rows, measures));
+  section.tables.back().definitions = {{"columns", paper_note(results)}};
+  section.tables.back().on_demand = true;
+  if (!thin) return section;
+  section.tables.push_back(thin_table(competitors, paper_rows));
+  section.tables.back().title = "Beside the paper’s figures: C2C of thin structures";
+  section.tables.back().on_demand = true;
   return section;
 }
 
