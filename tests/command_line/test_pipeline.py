@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 """From points to numbers on a tiny place, end to end."""
+import html
 import json
-import pathlib
 import math
+import re
 import struct
 import unittest
 
@@ -232,8 +233,8 @@ class Pipeline(ProgramTest):
 
     def test_demo(self):
         demo = self.folder / "demo"
-        text = self.run_good("demo", "-o", demo, "--points", "5000", "--driving-spacing",
-                             "25").stdout
+        text = self.run_good("demo", "-o", "demo", "--points", "5000", "--driving-spacing", "25",
+                             cwd=self.folder).stdout
         for word in ["basic", "descriptors", "semantic", "consistent", "thin C2C"]:
             self.assertIn(word, text)
         self.assertIn("adasplats view", text)
@@ -243,9 +244,13 @@ class Pipeline(ProgramTest):
             self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         page = (demo / "index.html").read_text(encoding="utf-8")
         self.assertEqual(page.count("data:image/png"), len(pictures))
-        for line in text.splitlines():  # what it names is there
-            if line.startswith("  /"):
-                self.assertTrue(pathlib.Path(line.split("  ")[1]).is_file(), line)
+        named = [line.split()[0] for line in text.splitlines() if line.startswith("  demo/")]
+        self.assertEqual(named, ["demo/demo.png", "demo/index.html"])
+        for name in named:
+            self.assertTrue((self.folder / name).is_file(), name)
+        # A command that the page shows runs as it stands there.
+        command = re.search(r"<pre>adasplats (simulate [^<]*)</pre>", page).group(1)
+        self.run_good(*html.unescape(command).split(), cwd=self.folder)
 
 
 class ManyPlaces(ProgramTest):

@@ -89,7 +89,7 @@ std::string demo_page(const DemoResult& result, const std::filesystem::path& fol
            (name / "consistent-errors.ply").string()},
       {"your own points", "adasplats model YOUR_POINTS -o model.ply && adasplats view model.ply"},
       {"scans of another sensor", "adasplats simulate " + (name / "consistent.ply").string() +
-                                      " --sensor vlp-16 --trajectory " +
+                                      " --sensor velodyne-vlp-16 --trajectory " +
                                       (name / "street" / "sequences" / "00").string() +
                                       " -o scans"}};
   document.sections = {std::move(seen), std::move(figures), std::move(more), std::move(next)};

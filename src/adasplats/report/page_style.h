@@ -79,6 +79,7 @@ svg .small{fill:var(--dim);font-size:11px}svg .middle{text-anchor:middle}svg .en
 details{margin:6px 0 0;font-size:.92rem}summary{cursor:pointer;color:var(--accent);font-size:.86rem}
 details[open] summary{margin-bottom:8px}
 .pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,370px),1fr));gap:20px}
+.pictures figure:only-child{grid-column:1/-1}
 .pictures img{display:block;width:100%;height:auto;border-radius:6px;border:1px solid var(--rule);
 cursor:zoom-in}
 .pictures figcaption{font-size:.9rem;margin:0 0 6px;font-weight:500}
