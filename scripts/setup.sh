@@ -62,6 +62,7 @@ maybe-test python3-torch   -             the data set of examples/torch_dataset.
 maybe-test libopenvdb-dev  -             IMLS meshes
 maybe-test libopen3d-dev   -             Poisson meshes
 maybe-test cloudcompare    CloudCompare  distances to compare ours with
+maybe-test patchelf        patchelf      wheels that hold their libraries (scripts/package.sh)
 maybe-test zsh             zsh           completion of the program in it
 maybe-test fish            fish          likewise
 maybe-test groff-base      groff         the program's manual pages

@@ -42,9 +42,11 @@ Image draw_difference(const ModelScene& first, const ModelScene& second, const C
     std::vector<Ray> rays((end - begin) * width);
     std::vector<Hit> hits[2] = {std::vector<Hit>(rays.size()), std::vector<Hit>(rays.size())};
     for (int k = 0; k < 2; ++k) {
-      for (std::size_t i = 0; i < rays.size(); ++i)
-        rays[i] = rays_of[k].ray(static_cast<double>(i % width) + 0.5,
-                                 static_cast<double>(begin + i / width) + 0.5);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const std::size_t row = begin + i / width;
+        rays[i] =
+            rays_of[k].ray(static_cast<double>(i % width) + 0.5, static_cast<double>(row) + 0.5);
+      }
       tracers[k]->nearest(rays, hits[k], executor);
     }
     for (std::size_t i = 0; i < rays.size(); ++i) {
