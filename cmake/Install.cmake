@@ -21,6 +21,7 @@ install(FILES ${CMAKE_BINARY_DIR}/adasplatsConfig.cmake
               ${CMAKE_CURRENT_LIST_DIR}/FindLZ4.cmake
               ${CMAKE_CURRENT_LIST_DIR}/FindOpenBLAS.cmake
               ${CMAKE_CURRENT_LIST_DIR}/FindOpenVDB.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/FindWebP.cmake
               ${CMAKE_CURRENT_LIST_DIR}/FindZSTD.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adasplats)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md

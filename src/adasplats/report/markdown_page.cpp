@@ -5,6 +5,7 @@
 
 #include "adasplats/report/report_page.h"
 #include "adasplats/report/sections.h"
+#include "adasplats/report/text_format.h"
 
 namespace adasplats {
 namespace page {

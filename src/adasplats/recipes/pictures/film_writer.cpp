@@ -75,7 +75,7 @@ std::optional<fs::path> needed_program(const fs::path& path) {
   }
   if (kind != ".mp4")
     throw Error(ErrorKind::usage, path.string() + ": a film is a .webp or an .mp4");
-  const std::optional<fs::path> ffmpeg = find_on_path("ffmpeg");
+  std::optional<fs::path> ffmpeg = find_on_path("ffmpeg");
   if (!ffmpeg)
     throw Error(ErrorKind::unavailable,
                 path.string() +

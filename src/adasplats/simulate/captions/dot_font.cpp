@@ -60,6 +60,12 @@ constexpr DotLetter kLetters[] = {
     {'<', "........#...#...#...#.....#.....#......."},
 };
 
+/// Where column x of row y is in rows of such a width.
+std::size_t at(int x, int y, int width) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+         static_cast<std::size_t>(x);
+}
+
 }  // namespace
 
 Glyph dot_glyph(char32_t letter, int height_px) {
@@ -75,8 +81,8 @@ Glyph dot_glyph(char32_t letter, int height_px) {
     if (static_cast<char32_t>(known.letter) != letter) continue;
     for (int y = 0; y < glyph.height; ++y)
       for (int x = 0; x < glyph.width; ++x)
-        if (known.dots[static_cast<std::size_t>(y / dot_px * kDotsAcross + x / dot_px)] == '#')
-          glyph.ink[static_cast<std::size_t>(y * glyph.width + x)] = 255;
+        if (known.dots[at(x / dot_px, y / dot_px, kDotsAcross)] == '#')
+          glyph.ink[at(x, y, glyph.width)] = 255;
   }
   return glyph;
 }

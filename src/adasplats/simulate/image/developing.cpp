@@ -40,7 +40,7 @@ Developer::Developer(const Camera& from, const ImageOptions& options)
         std::max(kRadii_px[static_cast<std::size_t>(scale)] * size, scale + 1.0);
     fill_pairs(
         scale, radius_px,
-        std::span(pairs).subspan(static_cast<std::size_t>(scale * kDirections), kDirections));
+        std::span(pairs).subspan(static_cast<std::size_t>(scale) * kDirections, kDirections));
   }
   hole_px = std::max(2, static_cast<int>(std::lround(28 * size)));
 }

@@ -82,19 +82,22 @@ class Renderer {
     tracer_.nearest(rays, hits, executor_);
 
     const int width = (right - corner.x) * axis;
+    const auto place = [width](int x, int y) {
+      return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+             static_cast<std::size_t>(x);
+    };
     std::vector<std::uint32_t> ray_at(samples.size());  // row by row
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const int x = samples[i].x - corner.x * axis, y = samples[i].y - corner.y * axis;
-      ray_at[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-             static_cast<std::size_t>(x)] = static_cast<std::uint32_t>(i);
+      ray_at[place(x, y)] = static_cast<std::uint32_t>(i);
     }
     for (int y = corner.y; y < bottom; ++y) {
       for (int x = corner.x; x < right; ++x) {
         PixelSum sum;
-        const int first = (y - corner.y) * axis * width + (x - corner.x) * axis;
+        const int first_row = (y - corner.y) * axis, first_column = (x - corner.x) * axis;
         for (int v = 0; v < axis; ++v)
           for (int u = 0; u < axis; ++u) {
-            const std::uint32_t i = ray_at[static_cast<std::size_t>(first + v * width + u)];
+            const std::uint32_t i = ray_at[place(first_column + u, first_row + v)];
             sum.add(shading_.tables(), camera_rays_, rays[i], hits[i]);
           }
         frame.set(frame.at(x, y), sum.pixel, sum.hits);
