@@ -118,7 +118,7 @@ run_tests() {
   sed -n '/^ *[0-9]*\/[0-9]* Test/s/^/    /p' "$log"
   echo "         $label ($((SECONDS - begin)) s)"
   if grep -q 'tests failed out of' "$log"; then
-    grep -n -B 3 -A 12 ': Failure$\|ERROR:\|FAIL:\|runtime error\|terminate called' "$log" |
+    grep -n -B 3 -A 12 ': Failure$\|ERROR:\|FAIL:\|FAIL  \|runtime error\|terminate called' "$log" |
       head -n 200 | sed 's/^/    /'
   fi
 }

@@ -110,6 +110,17 @@ export class Check {
     }
   }
 
+  /** A part of the page comes to say something. */
+  async says(part, words, patience = kPatienceMs) {
+    const end = Date.now() + patience;
+    for (;;) {
+      const text = await this.page.textContent(part);
+      if (words.test(text)) return;
+      if (Date.now() > end) throw new Error(`${part} says: ${text}, not ${words}`);
+      await sleep(60);
+    }
+  }
+
   /** All nodes have come that the camera wants, and the picture rests. */
   async settled() {
     await sleep(350);

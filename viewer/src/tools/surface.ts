@@ -18,14 +18,23 @@ const kSameSurface = 0.01;
 const kSameSurfaceM = 0.15;
 
 export class SurfaceFinder {
+  private before: Promise<unknown> = Promise.resolve();
+
   constructor(
     private readonly view: SceneView,
     private readonly live: Live,
     private readonly clouds: ScanCloud[],
   ) {}
 
-  /** Null: nothing is there. */
-  async at({ screen, pixel }: Place): Promise<Vector3 | null> {
+  /** Null: nothing is there. Answers come in the order of the clicks. */
+  at(place: Place): Promise<Vector3 | null> {
+    const { before } = this;
+    const found = this.find(place);
+    this.before = found.catch(() => {});
+    return before.then(() => found);
+  }
+
+  private async find({ screen, pixel }: Place): Promise<Vector3 | null> {
     const { camera } = this.view.rig;
     const eye = camera.position.clone();
     const seen = this.view.surfaceAt(screen, pixel);
