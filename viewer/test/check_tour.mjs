@@ -187,7 +187,9 @@ async function dragsObject(t) {
   const [object] = (await t.state()).objects;
   const before = object.pose.slice(0, 3);
   await t.freshScan();
-  const echoes = await t.call('echoesNear', before, 3);
+  // About its roof and its sides, above the ground: what is there is the car.
+  const echoesOnCar = ([x, y, z]) => t.call('echoesNear', [x, y, z + 1.6], 1.5);
+  const echoes = await echoesOnCar(before);
   const at = await pageOf(t, before[0], before[1], before[2] + 0.7);
   await t.shot('6-object');
   await t.page.mouse.move(...at);
@@ -198,9 +200,10 @@ async function dragsObject(t) {
   assert.ok(distance(after, before) > 1, `the object moved ${distance(after, before)} m`);
   assert.equal(after[2], before[2], 'it left the ground');
   await t.freshScan();
-  const there = await t.call('echoesNear', [after[0], after[1], after[2] + 0.7], 1.2);
-  console.log(`      ${echoes} echoes about it before, ${there} on it after`);
-  assert.ok(there > 20, `${there} echoes where it was dragged to`);
+  const there = await echoesOnCar(after);
+  const moved = distance(after, before).toFixed(2);
+  console.log(`      ${echoes} echoes on it before, ${there} after it was dragged ${moved} m`);
+  assert.ok(echoes > 50 && there > 0.2 * echoes, `${there} echoes where it was dragged to`);
   await t.shot('7-dragged');
 }
 
