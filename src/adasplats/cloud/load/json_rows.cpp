@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
@@ -18,9 +19,13 @@ constexpr std::size_t kMostValuesOfRow = 100'000;
 constexpr int kDeepest = 32;
 constexpr std::size_t kMostTextsBytes = std::size_t{1} << 24;
 
-Error no_json(const std::filesystem::path& file, const json::parse_error& problem) {
-  return {ErrorKind::data, file.string() + ": byte " + std::to_string(problem.byte) +
-                               ": is no JSON there: it is damaged or cut"};
+/// What ended the parsing. A number beyond the range of a double (1e999) is no parse_error.
+Error no_json(const std::filesystem::path& file, const json::exception& problem) {
+  const auto* const damage = dynamic_cast<const json::parse_error*>(&problem);
+  return {ErrorKind::data,
+          file.string() + (damage != nullptr ? ": byte " + std::to_string(damage->byte) +
+                                                   ": is no JSON there: it is damaged or cut"
+                                             : ": has a number beyond the range of real numbers")};
 }
 
 double finite_real(const json& value, const JsonRow& row, const std::string& what) {
@@ -60,7 +65,11 @@ double JsonRow::real() const { return finite_real(*value_, *this, ""); }
 
 std::int64_t JsonRow::integer(const char* key) const {
   const json& value = member(key);
-  if (!value.is_number_integer()) throw fault("expected a whole number" + quoted(key));
+  // Beyond 63 bits it would become a negative one.
+  const bool fits =
+      value.is_number_integer() &&
+      (!value.is_number_unsigned() || std::in_range<std::int64_t>(value.get<std::uint64_t>()));
+  if (!fits) throw fault("expected a whole number" + quoted(key));
   return value.get<std::int64_t>();
 }
 
@@ -120,11 +129,9 @@ void for_each_json_row(const std::filesystem::path& file,
   };
   try {
     [[maybe_unused]] const json rest = json::parse(stream, look);
-  } catch (const json::parse_error& problem_there) {
+  } catch (const json::exception& problem_there) {
     if (stream.bad()) throw Error(ErrorKind::io, file.string() + ": cannot be read further");
     throw no_json(file, problem_there);
-  } catch (const json::exception&) {
-    throw Error(ErrorKind::data, file.string() + ": has a number that is none");
   }
 }
 
@@ -136,7 +143,7 @@ void for_each_json_text(const std::filesystem::path& file,
   json texts;
   try {
     texts = json::parse(read_file(file));
-  } catch (const json::parse_error& problem) {
+  } catch (const json::exception& problem) {
     throw no_json(file, problem);
   }
   if (!texts.is_object()) throw Error(ErrorKind::data, file.string() + ": expected an object");

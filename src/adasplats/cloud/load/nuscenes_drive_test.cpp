@@ -219,6 +219,8 @@ TEST(NuscenesDrive, DamagedTreesNameTheFile) {
   expect_broken({"ego_pose.json", "has no pose e3"}, with_row("ego_pose", "token", "x"));
   expect_broken({"sample_data.json", "element 0", "'timestamp'"},
                 with_row("sample_data", "timestamp", "noon"));
+  expect_broken({"sample_data.json", "element 0", "whole number 'timestamp'"},
+                with_row("sample_data", "timestamp", 18'446'744'073'709'551'615U));
   expect_broken({"sample_data.json", "same time"},
                 with_row("sample_data", "timestamp", 1'500'000'000'000'000));
   expect_broken({"sample_data.json", "element 0", "data root"},

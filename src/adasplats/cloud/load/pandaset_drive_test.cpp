@@ -159,6 +159,20 @@ TEST(PandaSetDrive, LabelSchemeIsThatOfTheNames) {
   EXPECT_EQ(labels_of_tree(court.path())->name(), "semantickitti");
 }
 
+// nlohmann throws another exception for a number beyond double's range than for what is no JSON.
+TEST(PandaSetDrive, DamagedClassNamesAreErrors) {
+  const PandaCourt court(1, false);
+  const auto expect_broken = [&](const std::string& text, const std::string& said) {
+    court.put("annotations/semseg/classes.json", text);
+    expect_error(ErrorKind::data, {"classes.json", said}, [&] { labels_of_tree(court.path()); });
+  };
+  expect_broken("[[5555555555555e5555555", "beyond the range of real numbers");
+  expect_broken(R"({"7": -1e400})", "beyond the range of real numbers");
+  expect_broken(R"({"7": "Road")", "byte");
+  expect_broken(R"({"7": 1})", "expected a text");
+  expect_broken("[]", "expected an object");
+}
+
 using Damage = std::function<void(const PandaCourt&)>;
 
 void expect_damage(const std::vector<std::string>& parts, const Damage& damage,
@@ -192,6 +206,8 @@ TEST(PandaSetDrive, DamagedTreesNameTheFile) {
     c.put("lidar/poses.json", R"([{"position": {"x":0,"y":0,"z":0}}])");
   });
   expect_damage({"poses.json", "byte"}, [](const auto& c) { c.put("lidar/poses.json", "[{"); });
+  expect_damage({"timestamps.json", "beyond the range"},
+                [](const auto& c) { c.put("lidar/timestamps.json", "[0.1, 1e999]"); });
   expect_damage({"poses.json", "array"}, [](const auto& c) { c.put("lidar/poses.json", "{}"); });
   expect_damage(
       {"poses.json", "no such file"},
