@@ -23,6 +23,7 @@ TEST(PathBehindToken, IsDecodedAndWithoutQuery) {
   EXPECT_EQ(path_of("/tok/a?b=/../c"), "a");
   EXPECT_EQ(path_of("/tok/?"), "");
   EXPECT_EQ(path_of("/tok/a%20b%C3%a4"), "a b\u00e4");
+  EXPECT_EQ(path_of("/tok/l\xd5..\xd5#\xd5/../a&b"), "l\xd5..\xd5");
   EXPECT_EQ(path_of("/tok/...") + path_of("/tok/a..b") + path_of("/tok/.a"), "...a..b.a");
 }
 
