@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "adasplats/cloud/labels/label_scheme.h"
+#include "adasplats/core/maths/vec3.h"
 #include "adasplats/recipes/segment/output_classes.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/sensors/ray_drop_model.h"
@@ -15,8 +16,13 @@ namespace adasplats::fuzz {
 void read_lidar_file(const Input& input) {
   const LidarModel model = load_lidar_model(input.file.string());
   require(model.max_range_m > model.min_range_m && model.rotation_hz > 0, "a sensor that can be");
+  require(std::isfinite(model.rotation_hz), "turns that are finite");
   for (const double elevation : model.elevations_rad)
     require(std::isfinite(elevation), "elevations that are finite");
+  for (const Vec3d& origin : model.beam_origins_m)
+    require(is_finite(vec_cast<float>(origin)), "origins that a float holds");
+  for (const Firing& firing : model.free_pattern)
+    require(is_finite(firing.direction) && std::isfinite(firing.time_s), "rays that are finite");
 }
 
 void read_ray_drop(const Input& input) {

@@ -19,6 +19,11 @@ namespace {
 constexpr std::array<std::string_view, 4> kFields = {"azimuth_deg", "elevation_deg", "time_s",
                                                      "ring"};
 
+/// Longer than any scan of a standing scanner takes, and far from where a float has no more
+/// seconds.
+constexpr double kLongestScan_s = 86'400;
+constexpr double kMostScans_hz = 1e6;  // as in files of sensors
+
 std::uint16_t parse_ring(std::string_view text, const FilePlace& place) {
   const std::optional<std::uint16_t> ring = parse_number<std::uint16_t>(text);
   if (!ring)
@@ -75,6 +80,9 @@ Firing parse_ray(std::string_view line, const Columns& columns, std::uint32_t in
   const double time_s = has(2) ? number(2) : 0.0;
   if (!(time_s >= 0))
     throw data_error(place, "time_s is negative, expected seconds since the start of the scan");
+  if (time_s > kLongestScan_s)
+    throw data_error(place, "time_s is " + shown(fields[static_cast<std::size_t>(columns[2])]) +
+                                ", expected seconds since the start of the scan, at most a day");
   const std::uint16_t ring =
       has(3) ? parse_ring(fields[static_cast<std::size_t>(columns[3])], place) : std::uint16_t{0};
   return {direction_of(radians(number(0)), radians(number(1))),
@@ -126,6 +134,10 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
   }
   if (firings.empty()) throw data_error({path, {}, {}}, "a pattern with no rays");
   file.model.rotation_hz = rotation_hz_of(firings);
+  if (file.model.rotation_hz > kMostScans_hz)
+    throw data_error({path, {}, {}},
+                     "its times are those of " + exact_text(file.model.rotation_hz) +
+                         " scans a second, expected at most a million: time_s is in seconds");
   return file;
 }
 

@@ -49,6 +49,9 @@ LidarFile read_velodyne_xml(std::string_view text, const std::filesystem::path& 
 constexpr std::size_t kMostBeams = 65536;
 constexpr std::uint32_t kMostColumns = 1U << 24;
 
+/// Lengths of a sensor, and ranges, are below this, which a float holds as well.
+constexpr double kFar_m = 1e6;
+
 /// What a file without these numbers has: 0.2 degrees a column at 10 Hz, clockwise.
 LidarFile unknown_turning_lidar();
 

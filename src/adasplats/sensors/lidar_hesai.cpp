@@ -165,6 +165,10 @@ void add_firing_times(const fs::path& path, const std::vector<Channel>& channels
   double first_us = 0;
   for (const FiringTime& firing : times) first_us = std::min(first_us, firing.time_us);
   LidarModel& model = file.model;
+  if (!(-1e-6 * first_us * model.rotation_hz < 1))
+    throw data_error({path, {}, {}},
+                     "a channel fires " + exact_text(-first_us) +
+                         " us before its column begins, which is longer than a turn takes");
   for (const Channel& channel : channels) {
     const auto firing = std::ranges::find(times, channel.number, &FiringTime::channel);
     if (firing == times.end())

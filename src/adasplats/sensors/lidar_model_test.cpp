@@ -516,6 +516,17 @@ TEST_F(LidarFiles, TheTimesOfACsvTellHowLongAScanIs) {
   expect_contains(csv_failure("0,0,-1\n"), "time_s is negative");
 }
 
+// A time beyond float's range was an infinite one, and the sensor turned 0 times a second.
+TEST_F(LidarFiles, TheTimesOfACsvAreThoseOfAScan) {
+  expect_contains(csv_failure("0,0,0\n2,0,11" + std::string(60, '1') + "2\n"),
+                  "bad.csv:2: time_s is '1111");
+  expect_contains(csv_failure("0,0,1e39\n"), "bad.csv:1: time_s is '1e39', expected seconds");
+  expect_contains(csv_failure("0,0,0\n0,1,86401\n"), "at most a day");
+  EXPECT_DOUBLE_EQ(load_lidar_model(write("t.csv", "0,0,0\n1,0,86400\n")).rotation_hz,
+                   1.0 / (2 * 86'400));
+  expect_contains(csv_failure("0,0,0\n0,1,1e-44\n"), "scans a second, expected at most a million");
+}
+
 // Random changes, the same in each run: nothing but Error may escape.
 TEST_F(LidarFiles, ChangedFilesAreErrorsNotCrashes) {
   const std::vector<std::pair<std::string, std::string>> seeds = {

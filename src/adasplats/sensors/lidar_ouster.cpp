@@ -147,6 +147,9 @@ void read_frames(const Metadata& metadata, LidarModel& model) {
     throw metadata.fault("lidar_to_sensor_transform moves the axis off the sensor's origin");
   model.first_azimuth_rad = std::atan2(matrix[4], matrix[0]);
   const Vec3d origin = beam_origin(metadata) + Vec3d{0, 0, kMillimetre_m * matrix[11]};
+  if (!(length(origin) <= kFar_m))
+    throw metadata.fault("its beams begin " + exact_text(length(origin)) +
+                         " m away from the sensor");
   model.beam_origins_m.assign(model.elevations_rad.size(), origin);
 }
 

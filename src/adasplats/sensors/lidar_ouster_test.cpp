@@ -113,6 +113,8 @@ TEST_F(OusterJson, WrongFilesAreRefused) {
   expect_data_error(with("512x20", "99999999999x10"), "lidar_mode");
   expect_data_error(with("\"lidar_mode\"", "\"lidar_mod\""), "lidar_mode is ''");
   expect_data_error(with("_mm\": 15", "_mm\": \"15\""), "is not a number");
+  expect_data_error(with("_mm\": 15", "_mm\": 1e300"), "its beams begin");
+  expect_data_error(with("0,0,1,36", "0,0,1,1e60"), "its beams begin");
   expect_data_error(with("0,0,1,36", "0,1,0,36"), "not a turn around z");
   expect_data_error(with("0,0,1,36, ", ""), "not a turn around z");
   expect_data_error(with("-1,0,0,0, 0", "-1,0,0,5, 0"), "moves the axis");

@@ -26,7 +26,6 @@ namespace adasplats {
 
 namespace {
 
-constexpr double kFar_m = 1e6;
 constexpr double kMicrosecond_s = 1e-6;
 
 using Keys = std::vector<std::string>;

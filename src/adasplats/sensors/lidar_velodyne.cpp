@@ -45,6 +45,14 @@ struct Laser {
     if (found == values.end()) throw data_error(place, "a laser without " + std::string(key));
     return found->second;
   }
+  /// A length that a sensor can have; 0 where the file says none.
+  double length_m(std::string_view key) const {
+    const double length = value(key, 0);
+    if (!(std::fabs(length) <= kFar_m))
+      throw data_error(place, std::string(key) + " is " + exact_text(length) +
+                                  " m, expected at most " + exact_text(kFar_m));
+    return length;
+  }
   /// An angle in [-limit, limit] rad.
   double angle_rad(std::string_view key, double limit) const {
     const double angle = key == "vert_correction" ? needed(key) : value(key, 0);
@@ -190,8 +198,8 @@ std::optional<Family> family_of(const Calibration& calibration, const std::strin
 /// computes x = right, y = forward of xy = r cos e - v sin e, z = r sin e + v cos e, and shifts
 /// that by h to the left of the beam.
 Vec3d origin_of(const Laser& laser, double elevation_rad, double offset_rad) {
-  const double up_m = laser.value("vert_offset_correction", 0);
-  const double left_m = laser.value("horiz_offset_correction", 0);
+  const double up_m = laser.length_m("vert_offset_correction");
+  const double left_m = laser.length_m("horiz_offset_correction");
   const double ahead_m = -up_m * std::sin(elevation_rad);
   const double cos = std::cos(offset_rad);
   const double sin = std::sin(offset_rad);
@@ -308,11 +316,14 @@ LidarFile lidar_of_calibration(const Calibration& calibration, const std::filesy
       model.packets->laser_ids.push_back(static_cast<std::uint32_t>(id));
     }
     for (const Laser& laser : calibration.lasers)
-      model.packets->range_offsets_m.push_back(laser.value("dist_correction", 0));
+      model.packets->range_offsets_m.push_back(laser.length_m("dist_correction"));
   }
   const auto resolution = calibration.header.find("distance_resolution");
-  if (resolution != calibration.header.end() && resolution->second >= 0)
-    model.range_resolution_m = resolution->second;
+  if (resolution == calibration.header.end()) return file;
+  model.range_resolution_m = resolution->second;
+  if (!(model.range_resolution_m >= 0 && model.range_resolution_m <= kFar_m))
+    throw data_error(place, "distance_resolution is " + exact_text(model.range_resolution_m) +
+                                " m, expected 0 to " + exact_text(kFar_m));
   return file;
 }
 

@@ -117,6 +117,16 @@ TEST_F(VelodyneYaml, WrongFilesAreRefusedWithTheLine) {
   expect_data_error("lasers:\n- {vert_correction}\n", "expected 'key: value'");
   expect_data_error("lasers:\n- {vert_correction: 0}\nnum_lasers: 2\n", "num_lasers");
   expect_data_error("lasers:\n  vert_correction: 0\n", "no lasers");
+  for (const char* key : {"vert_offset_correction", "horiz_offset_correction"})
+    expect_data_error("lasers:\n- {vert_correction: 0, " + std::string(key) + ": -1e300}\n",
+                      "mine.yaml:2: " + std::string(key) + " is -1e+300 m");
+  expect_data_error("lasers:\n- {vert_correction: 0}\ndistance_resolution: 1e9\n",
+                    "distance_resolution");
+  expect_data_error("lasers:\n- {vert_correction: 0}\ndistance_resolution: -1\n",
+                    "distance_resolution");
+  std::string far = lasers(16, 0);
+  far.replace(far.find("laser_id: 7"), 11, "laser_id: 7, dist_correction: 1e7");
+  expect_data_error(far, "mine.yaml:9: dist_correction");
   std::string twice = lasers(16, 0);
   twice.replace(twice.find("laser_id: 7"), 11, "laser_id: 6");
   expect_data_error(twice, "mine.yaml:9: laser_id");
