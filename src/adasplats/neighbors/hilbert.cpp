@@ -83,19 +83,20 @@ struct Extent {
   }
 };
 
-Extent extent_of(std::span<const Vec3f> points, const Executor& executor) {
-  return executor.sum_chunks(points.size(), kCoarseGrain, Extent{},
-                             [&](std::size_t begin, std::size_t end) {
-                               Extent extent;
-                               for (std::size_t i = begin; i < end; ++i) {
-                                 extent.low = min(extent.low, points[i]);
-                                 extent.high = max(extent.high, points[i]);
-                               }
-                               return extent;
-                             });
-}
-
 }  // namespace
+
+CurveBox curve_box_of(std::span<const Vec3f> points, const Executor& executor) {
+  const Extent all = executor.sum_chunks(points.size(), kCoarseGrain, Extent{},
+                                         [&](std::size_t begin, std::size_t end) {
+                                           Extent extent;
+                                           for (std::size_t i = begin; i < end; ++i) {
+                                             extent.low = min(extent.low, points[i]);
+                                             extent.high = max(extent.high, points[i]);
+                                           }
+                                           return extent;
+                                         });
+  return {all.low, all.high};
+}
 
 std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   constexpr int kStepBits = StepTable::kStepBits;
@@ -111,8 +112,12 @@ std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
 }
 
 std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const Executor& executor) {
-  const Extent extent = extent_of(points, executor);
-  const HilbertGrid grid(extent.low, extent.high);
+  return hilbert_order(points, curve_box_of(points, executor), executor);
+}
+
+std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const CurveBox& box,
+                                         const Executor& executor) {
+  const HilbertGrid grid(box.low, box.high);
   std::vector<std::uint64_t> keys(points.size());
   executor.for_chunks(points.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

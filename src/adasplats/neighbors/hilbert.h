@@ -56,6 +56,15 @@ ADASPLATS_HD constexpr std::uint64_t hilbert_key_by_turns(std::uint32_t x, std::
   return key;
 }
 
+/// The box that a curve runs over. Parts of a cloud whose curve runs over the box of the whole
+/// come in the order that they have in the whole.
+struct CurveBox {
+  Vec3f low, high;
+};
+
+/// Of the points; an empty one is inverted.
+CurveBox curve_box_of(std::span<const Vec3f> points, const Executor& executor);
+
 /// The cells of the curve over a bounding box: those of the cube over its longest side.
 struct HilbertGrid {
   static constexpr float kCells = static_cast<float>(1U << kHilbertBits) - 1.0F;
@@ -88,5 +97,8 @@ std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z);
 /// x, y, z and then by index. Consecutive points are near each other, and runs of them fill
 /// compact boxes, which Morton order does not give.
 std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const Executor& executor);
+/// The same over a box that holds them all.
+std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const CurveBox& box,
+                                         const Executor& executor);
 
 }  // namespace adasplats

@@ -154,9 +154,9 @@ void make_splats(const PaperOptions& options, const ModelEngine& engine, PointCl
 
 /// Their steps change the points that they have, so those that were measured are kept beside them.
 void run(const PaperOptions& options, const ModelEngine& engine, PointCloud cloud,
-         const ClassTables& tables, bool reflectances, StepSink step, SplatModel& model,
+         const ClassTables& tables, const BuildOptions& build, StepSink step, SplatModel& model,
          BuildReport& report) {
-  const PointCloud measured = reflectances ? rays_with_intensities(cloud) : PointCloud();
+  const PointCloud measured = build.reflectances ? rays_with_intensities(cloud) : PointCloud();
   make_splats(options, engine, std::move(cloud), tables, step, model, report);
   if (measured.empty() || model.intensities.empty()) return;
   step("reflectances", 1);
@@ -201,14 +201,14 @@ void report_beyond(std::size_t removed, std::size_t all, double reach_m, Progres
 
 /// Ours.
 void run(const ConsistentOptions& options, const ModelEngine& engine, PointCloud cloud,
-         const ClassTables& tables, bool reflectances, StepSink step, SplatModel& model,
+         const ClassTables& tables, const BuildOptions& build, StepSink step, SplatModel& model,
          BuildReport& report) {
   const std::unique_ptr<ConsistentSteps> made = engine.consistent_steps();
   ConsistentSteps& steps = *made;
   step("order", 0);
   const bool has_rays = cloud.has_beams();
-  const bool has_reflectances = reflectances && shows_reflectances(cloud);
-  report.points_used = steps.load(std::move(cloud), tables);
+  const bool has_reflectances = build.reflectances && shows_reflectances(cloud);
+  report.points_used = steps.load(std::move(cloud), tables, build.whole);
   report.points_dynamic = report.points_in - report.points_noise - report.points_used;
   require_points(report.points_used);
   report.consistent = consistent_disks(steps, has_rays, options, step);
@@ -255,6 +255,10 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
   const SplatMethod method = method_of(options.recipe);
   const auto* ours = std::get_if<ConsistentOptions>(&options.recipe);
   if (cloud.empty()) throw Error(ErrorKind::data, "no points: there is nothing to model");
+  if (options.whole != nullptr && ours == nullptr)
+    throw Error(ErrorKind::usage,
+                "pieces of a place are modelled by the method consistent alone, not by " +
+                    std::string(word_of(method, kSplatMethods)));
   if (method == SplatMethod::semantic && (labels == nullptr || cloud.classes.empty()))
     throw Error(ErrorKind::data,
                 "the semantic method needs labels, and the input has none; "
@@ -289,7 +293,7 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
     const auto step = [&](std::string_view name, int passes) { clock.begin(name, passes); };
     std::visit(
         [&](const auto& chosen) {
-          run(chosen, *engine, std::move(cloud), tables, options.reflectances, step, model, report);
+          run(chosen, *engine, std::move(cloud), tables, options, step, model, report);
         },
         options.recipe);
     clock.end();

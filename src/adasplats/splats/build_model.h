@@ -13,6 +13,7 @@
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
+#include "adasplats/splats/consistent/whole_place.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/splats/recipe.h"
 
@@ -24,6 +25,8 @@ struct BuildOptions {
   /// Intensities become reflectances with the sensor's response, where points have known beams and
   /// intensities (ReflectancesOn); else they stay as measured.
   bool reflectances = true;
+  /// The cloud is a piece of this place (method consistent alone); nullptr: it is all there is.
+  const WholePlace* whole = nullptr;
 };
 
 /// One step of the work and what it took.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "adasplats/neighbors/hilbert.h"
 #include "adasplats/surface/fusion_cell.h"
 
 namespace adasplats {
@@ -51,12 +50,13 @@ std::vector<Vec3f> means_of(std::span<const Vec3f> points, const Cells& cells,
 /// Cells with their means, along the curve.
 template <class PointsOf>
 FusedPoints in_curve_order(const std::vector<Vec3f>& means, std::size_t points,
-                           const PointsOf& points_of, const Executor& executor) {
+                           const PointsOf& points_of, const CurveBox& box,
+                           const Executor& executor) {
   FusedPoints fused;
   fused.positions.reserve(means.size());
   fused.members.reserve(points);
   fused.begins.reserve(means.size() + 1);
-  for (const std::uint32_t cell : hilbert_order(means, executor)) {
+  for (const std::uint32_t cell : hilbert_order(means, box, executor)) {
     fused.positions.push_back(means[cell]);
     fused.begins.push_back(static_cast<std::uint32_t>(fused.members.size()));
     const auto members = points_of(cell);
@@ -68,14 +68,25 @@ FusedPoints in_curve_order(const std::vector<Vec3f>& means, std::size_t points,
 
 }  // namespace
 
-FusedPoints fuse_points(std::span<const Vec3f> points, double cell_m, const Executor& executor) {
+FusedPoints fuse_points(std::span<const Vec3f> points, double cell_m, const CurveBox& box,
+                        const Executor& executor) {
   const Cells cells = sort_into_cells(points, cell_m, executor);
   const auto points_of = [&](std::size_t cell) { return cells.points_of(cell); };
-  return in_curve_order(means_of(points, cells, executor), points.size(), points_of, executor);
+  return in_curve_order(means_of(points, cells, executor), points.size(), points_of, box, executor);
+}
+
+FusedPoints fuse_points(std::span<const Vec3f> points, double cell_m, const Executor& executor) {
+  return fuse_points(points, cell_m, curve_box_of(points, executor), executor);
 }
 
 FusedPoints split_cells(std::span<const Vec3f> points, const FusedPoints& fused,
                         std::span<const std::uint8_t> split, double cell_m,
+                        const Executor& executor) {
+  return split_cells(points, fused, split, cell_m, curve_box_of(points, executor), executor);
+}
+
+FusedPoints split_cells(std::span<const Vec3f> points, const FusedPoints& fused,
+                        std::span<const std::uint8_t> split, double cell_m, const CurveBox& box,
                         const Executor& executor) {
   // The points of the split cells in ascending order, so that small cells list theirs so too.
   std::vector<std::uint32_t> loose;
@@ -101,7 +112,7 @@ FusedPoints split_cells(std::span<const Vec3f> points, const FusedPoints& fused,
   const auto points_of = [&](std::size_t cell) {
     return cell < small_count ? small.points_of(cell) : fused.points_of(whole[cell - small_count]);
   };
-  return in_curve_order(means, points.size(), points_of, executor);
+  return in_curve_order(means, points.size(), points_of, box, executor);
 }
 
 }  // namespace adasplats

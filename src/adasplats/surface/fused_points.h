@@ -9,6 +9,7 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/host_device.h"
 #include "adasplats/core/maths/vec3.h"
+#include "adasplats/neighbors/hilbert.h"
 
 namespace adasplats {
 
@@ -43,13 +44,20 @@ struct FusedPoints {
   }
 };
 
-/// Fuses points in cells of side `cell_m`. The result depends on the order of the points only in
-/// the rounding of the means. Coordinates must be within 2^20 cells of zero (a float holds no
-/// finer ones there anyway); farther points share the outermost cells.
+/// Fuses points in cells of side `cell_m`; their curve runs over `box`, which holds them. The
+/// result depends on the order of the points only in the rounding of the means. Coordinates must be
+/// within 2^20 cells of zero (a float holds no finer ones there anyway); farther points share the
+/// outermost cells.
+FusedPoints fuse_points(std::span<const Vec3f> points, double cell_m, const CurveBox& box,
+                        const Executor& executor);
+/// Over the box of the points.
 FusedPoints fuse_points(std::span<const Vec3f> points, double cell_m, const Executor& executor);
 
 /// The same with some cells split: their points are fused again in cells of side `cell_m`, finer
 /// than before, for surfaces that are no larger than a cell. One flag a cell.
+FusedPoints split_cells(std::span<const Vec3f> points, const FusedPoints& fused,
+                        std::span<const std::uint8_t> split, double cell_m, const CurveBox& box,
+                        const Executor& executor);
 FusedPoints split_cells(std::span<const Vec3f> points, const FusedPoints& fused,
                         std::span<const std::uint8_t> split, double cell_m,
                         const Executor& executor);

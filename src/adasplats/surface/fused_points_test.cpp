@@ -53,7 +53,8 @@ void expect_equals_grid(const std::vector<Vec3f>& points, double cell_m, const F
   }
   std::vector<std::uint32_t> in_order(fused.size());
   std::iota(in_order.begin(), in_order.end(), 0U);
-  EXPECT_EQ(hilbert_order(fused.positions, Executor(1)), in_order);
+  EXPECT_EQ(hilbert_order(fused.positions, curve_box_of(points, Executor(1)), Executor(1)),
+            in_order);
 }
 
 std::vector<Vec3f> random_points(std::size_t n, double low_m, double high_m) {
@@ -191,7 +192,8 @@ TEST(SplitCells, WithSomeFlagsEqualsTwoGridsByBruteForce) {
   EXPECT_EQ(times, std::vector<int>(points.size(), 1));
   std::vector<std::uint32_t> in_order(mixed.size());
   std::iota(in_order.begin(), in_order.end(), 0U);
-  EXPECT_EQ(hilbert_order(mixed.positions, Executor(1)), in_order);
+  EXPECT_EQ(hilbert_order(mixed.positions, curve_box_of(points, Executor(1)), Executor(1)),
+            in_order);
 }
 
 TEST(SplitCells, SplitCellsCanBeSplitAgain) {

@@ -48,9 +48,18 @@ DeviceBuffer<std::uint32_t> extent_of(const Vec3f* points, std::size_t count, cu
   return extent;
 }
 
+DeviceBuffer<std::uint32_t> extent_on_device(const CurveBox& box, cudaStream_t stream) {
+  DeviceBuffer<std::uint32_t> extent(6, stream);
+  for_each(6, stream, "order points", [box, to = extent.data()] __device__(std::uint64_t i) {
+    const int axis = static_cast<int>(i % 3);
+    to[i] = sortable_bits(i < 3 ? box.low[axis] : box.high[axis]);
+  });
+  return extent;
+}
+
 DeviceBuffer<std::uint64_t> curve_keys(const Vec3f* points, std::size_t count,
+                                       const DeviceBuffer<std::uint32_t>& extent,
                                        cudaStream_t stream) {
-  const DeviceBuffer<std::uint32_t> extent = extent_of(points, count, stream);
   DeviceBuffer<std::uint64_t> keys(count, stream);
   for_each(
       count, stream, "order points",
@@ -134,14 +143,26 @@ void sort_within_cells(const Vec3f* points, const DeviceBuffer<std::uint64_t>& k
                std::uint64_t i) { order[places[i]] = crowded[i]; });
 }
 
+DeviceBuffer<std::uint32_t> ordered(const Vec3f* points, std::size_t count,
+                                    const DeviceBuffer<std::uint32_t>& extent, cudaStream_t stream,
+                                    std::span<const TieBreaker> more) {
+  DeviceBuffer<std::uint64_t> keys = curve_keys(points, count, extent, stream);
+  DeviceBuffer<std::uint32_t> order = sort_order(keys, stream, 0, 3 * kHilbertBits);
+  sort_within_cells(points, keys, more, order, stream);
+  return order;
+}
+
 }  // namespace
 
 DeviceBuffer<std::uint32_t> hilbert_order(const Vec3f* points, std::size_t count,
                                           cudaStream_t stream, std::span<const TieBreaker> more) {
-  DeviceBuffer<std::uint64_t> keys = curve_keys(points, count, stream);
-  DeviceBuffer<std::uint32_t> order = sort_order(keys, stream, 0, 3 * kHilbertBits);
-  sort_within_cells(points, keys, more, order, stream);
-  return order;
+  return ordered(points, count, extent_of(points, count, stream), stream, more);
+}
+
+DeviceBuffer<std::uint32_t> hilbert_order(const Vec3f* points, std::size_t count,
+                                          const CurveBox& box, cudaStream_t stream,
+                                          std::span<const TieBreaker> more) {
+  return ordered(points, count, extent_on_device(box, stream), stream, more);
 }
 
 }  // namespace adasplats::gpu

@@ -8,6 +8,7 @@
 
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/gpu/base/device_memory.h"
+#include "adasplats/neighbors/hilbert.h"
 
 namespace adasplats::gpu {
 
@@ -32,6 +33,10 @@ struct TieBreaker {
 /// then the index. Any number of points may be equal. Waits for the stream.
 DeviceBuffer<std::uint32_t> hilbert_order(const Vec3f* points, std::size_t count,
                                           cudaStream_t stream,
+                                          std::span<const TieBreaker> more = {});
+/// The same over a box that holds them all.
+DeviceBuffer<std::uint32_t> hilbert_order(const Vec3f* points, std::size_t count,
+                                          const CurveBox& box, cudaStream_t stream,
                                           std::span<const TieBreaker> more = {});
 
 }  // namespace adasplats::gpu

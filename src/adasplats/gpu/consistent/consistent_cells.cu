@@ -48,9 +48,10 @@ struct LooseCells {
   DeviceBuffer<std::uint32_t> members;
 };
 
-DeviceCells in_curve_order(const LooseCells& loose, std::size_t points, cudaStream_t stream) {
+DeviceCells in_curve_order(const LooseCells& loose, std::size_t points, const CurveBox& box,
+                           cudaStream_t stream) {
   const std::size_t size = loose.means.size();
-  const DeviceBuffer<std::uint32_t> order = hilbert_order(loose.means.data(), size, stream);
+  const DeviceBuffer<std::uint32_t> order = hilbert_order(loose.means.data(), size, box, stream);
   DeviceCells cells{DeviceBuffer<Vec3f>(size, stream),
                     DeviceBuffer<std::uint32_t>(size + 1, stream),
                     DeviceBuffer<std::uint32_t>(points, stream)};
@@ -111,7 +112,7 @@ FusedPoints DeviceCells::download() const {
 }
 
 DeviceCells fuse_on_device(const Vec3f* points, std::size_t count, double cell_m,
-                           cudaStream_t stream) {
+                           const CurveBox& box, cudaStream_t stream) {
   SortedCells sorted = sort_into_cells(points, count, cell_m, stream);
   const std::size_t size = sorted.size();
   LooseCells loose{DeviceBuffer<Vec3f>(size, stream),
@@ -122,11 +123,12 @@ DeviceCells fuse_on_device(const Vec3f* points, std::size_t count, double cell_m
   put_cells({nullptr, sorted.begins.data(), nullptr, static_cast<std::uint32_t>(size)}, 0, 0, loose,
             stream);
   loose.members = std::move(sorted.members);
-  return in_curve_order(loose, count, stream);
+  return in_curve_order(loose, count, box, stream);
 }
 
 DeviceCells split_on_device(const Vec3f* points, const DeviceCells& cells,
-                            const std::uint8_t* split, double cell_m, cudaStream_t stream) {
+                            const std::uint8_t* split, double cell_m, const CurveBox& box,
+                            cudaStream_t stream) {
   const std::size_t count = cells.members.size();
   const DeviceBuffer<std::uint32_t> numbers = points_to_split(cells.view(), split, count, stream);
   DeviceBuffer<Vec3f> loose_points(numbers.size(), stream);
@@ -163,7 +165,7 @@ DeviceCells split_on_device(const Vec3f* points, const DeviceCells& cells,
              first[i] = static_cast<std::uint32_t>(first_member + view.begins[cell]);
              lengths[i] = view.begins[cell + 1] - view.begins[cell];
            });
-  return in_curve_order(loose, count, stream);
+  return in_curve_order(loose, count, box, stream);
 }
 
 }  // namespace adasplats::gpu

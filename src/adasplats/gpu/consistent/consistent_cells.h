@@ -9,6 +9,7 @@
 #include "adasplats/core/host_device.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/gpu/base/device_memory.h"
+#include "adasplats/neighbors/hilbert.h"
 #include "adasplats/surface/fused_points.h"
 
 namespace adasplats::gpu {
@@ -29,10 +30,11 @@ struct DeviceCells {
 
 /// fuse_points() of points in device memory: the same bits.
 DeviceCells fuse_on_device(const Vec3f* points, std::size_t count, double cell_m,
-                           cudaStream_t stream);
+                           const CurveBox& box, cudaStream_t stream);
 
 /// split_cells() in device memory: the same bits. One flag a cell.
 DeviceCells split_on_device(const Vec3f* points, const DeviceCells& cells,
-                            const std::uint8_t* split, double cell_m, cudaStream_t stream);
+                            const std::uint8_t* split, double cell_m, const CurveBox& box,
+                            cudaStream_t stream);
 
 }  // namespace adasplats::gpu

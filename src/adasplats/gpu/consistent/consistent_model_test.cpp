@@ -185,7 +185,7 @@ TEST_F(ConsistentOnGpu, ScannedRoomIsTheSameAfterEveryStep) {
 
 TEST_F(ConsistentOnGpu, EveryRayAndAllItsDisksCount) {
   ConsistentOptions options;
-  options.evidence.stride = 1;
+  options.evidence.parts = 1;
   options.cover.overlap = 0.95;  // leaves gaps to fill
   EXPECT_GT(compare(scanned_room(), options), 1000U);
 }

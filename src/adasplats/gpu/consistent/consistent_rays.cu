@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <span>
 
 #include "adasplats/gpu/base/launch.cuh"
 #include "adasplats/gpu/base/sort_keys.h"
 #include "adasplats/gpu/consistent/consistent_rays.h"
+#include "adasplats/gpu/neighbors/cloud_on_device.h"
 #include "adasplats/gpu/trace/cuda_scene.h"
 #include "adasplats/gpu/trace/wide_traversal.cuh"
 #include "adasplats/splats/rays/measured_ray.h"
-#include "adasplats/splats/rays/present_disks.h"
 #include "adasplats/trace/castable.h"
 
 namespace adasplats::gpu {
@@ -24,18 +25,13 @@ __device__ void add_to(std::int64_t& sum, std::int64_t value) {
   atomicAdd(reinterpret_cast<unsigned long long*>(&sum), static_cast<unsigned long long>(value));
 }
 
-/// How many rays there are of which every `stride`-th is taken, the first at `first`.
-std::size_t taken_of(std::size_t rays, std::size_t first, std::size_t stride) {
-  return rays > first ? (rays - first + stride - 1) / stride : 0;
-}
-
-/// Calls body(i, point, ray, hit) on the device for the rays of `casting`, i counting them, with
-/// the nearest hit of each, which may be none.
+/// Calls body(i, point, ray, hit) on the device for all rays, i counting them, with the nearest hit
+/// of each up to `beyond_m` behind its end, which may be none.
 template <class Body>
 void cast_nearest(const Disk* disks, std::size_t count, const MeasuredPoints& points,
-                  const DeviceBuffer<std::uint32_t>& numbers, const RayCasting& casting,
-                  cudaStream_t stream, Body body) {
-  const std::size_t wanted = taken_of(numbers.size(), casting.first, casting.stride);
+                  const DeviceBuffer<std::uint32_t>& numbers, float beyond_m, cudaStream_t stream,
+                  Body body) {
+  const std::size_t wanted = numbers.size();
   if (wanted == 0) return;
   const std::unique_ptr<DeviceScene> scene = make_cuda_scene_of_device_disks(disks, count, stream);
   const std::size_t at_once = std::min(wanted, kMostRays);
@@ -45,19 +41,16 @@ void cast_nearest(const Disk* disks, std::size_t count, const MeasuredPoints& po
   source.rays = rays.data();
   for (std::size_t done = 0; done < wanted; done += at_once) {
     const std::size_t batch = std::min(at_once, wanted - done);
-    const std::uint32_t* first = numbers.data() + casting.first + done * casting.stride;
+    const std::uint32_t* first = numbers.data() + done;
     for_each(batch, stream, "make rays",
-             [points, first, casting, to = rays.data()] __device__(std::uint64_t k) {
-               const std::uint32_t point = first[k * casting.stride];
-               to[k] =
-                   measured_ray(points.sensors[point], points.positions[point], casting.beyond_m);
+             [points, first, beyond_m, to = rays.data()] __device__(std::uint64_t k) {
+               const std::uint32_t point = first[k];
+               to[k] = measured_ray(points.sensors[point], points.positions[point], beyond_m);
              });
     scene->cast(source, batch, 1, hits.data(), stream);
     for_each(batch, stream, "count rays",
-             [first, done, stride = casting.stride, from = rays.data(), found = hits.data(),
-              body] __device__(std::uint64_t k) {
-               body(done + k, first[k * stride], from[k], found[k]);
-             });
+             [first, done, from = rays.data(), found = hits.data(),
+              body] __device__(std::uint64_t k) { body(done + k, first[k], from[k], found[k]); });
   }
 }
 
@@ -79,16 +72,16 @@ struct EvidenceOfRay {
   }
 };
 
-/// Counts the disks of `tree` that the rays `numbers` of `points` cross.
-void count_rays(const MeasuredPoints& points, const DeviceBuffer<std::uint32_t>& numbers,
-                RayEnds ends, const Disk* disks, const WideTree<LeafDisk>& tree,
+/// Counts the disks of `tree` that rays cross.
+void count_rays(const DeviceRays& rays, const Disk* disks, const WideTree<LeafDisk>& tree,
                 const EvidenceOptions& options, EvidenceView counts, cudaStream_t stream) {
-  const bool nowhere = ends == RayEnds::nowhere;
+  const bool nowhere = rays.ends() == RayEnds::nowhere;
   const float beyond_m = nowhere ? 0 : options.most_margin_m();
-  for_each(taken_of(numbers.size(), options.phase, options.stride), stream, "count rays",
-           [disks, counts, points, options, nowhere, beyond_m, tree = tree.view(),
-            numbers = numbers.data()] __device__(std::uint64_t k) {
-             const std::uint32_t point = numbers[options.phase + k * options.stride];
+  const std::span<const std::uint32_t> cast = rays.points_of(options.parts, options.part);
+  for_each(cast.size(), stream, "count rays",
+           [disks, counts, points = rays.measured(), options, nowhere, beyond_m, tree = tree.view(),
+            numbers = cast.data()] __device__(std::uint64_t k) {
+             const std::uint32_t point = numbers[k];
              const Vec3f sensor = points.sensors[point], end = points.positions[point];
              const Ray ray = measured_ray(sensor, end, beyond_m);
              if (!castable(ray)) return;
@@ -132,28 +125,55 @@ DeviceBuffer<std::uint32_t> points_of_rays(const MeasuredPoints& points, std::si
   return numbers;
 }
 
+/// The points of the rays of one part, in the order of the rays.
+DeviceBuffer<std::uint32_t> points_of_part(const MeasuredPoints& points,
+                                           const DeviceBuffer<std::uint32_t>& numbers,
+                                           std::uint32_t part, cudaStream_t stream) {
+  DeviceBuffer<std::uint8_t> is_in(numbers.size(), stream);
+  for_each(numbers.size(), stream, "order rays",
+           [points, part, from = numbers.data(), to = is_in.data()] __device__(std::uint64_t i) {
+             const std::uint32_t point = from[i];
+             to[i] = ray_part(points.sensors[point], points.positions[point]) == part;
+           });
+  return gather(numbers, flagged(is_in.data(), is_in.size(), stream), stream);
+}
+
 }  // namespace
 
 DeviceRays::DeviceRays(const MeasuredPoints& points, std::size_t count, double least_range_m,
                        cudaStream_t stream, RayEnds ends)
-    : points_(points),
+    : measured_(points),
       point_count_(count),
       stream_(stream),
       ends_(ends),
-      numbers_(points_of_rays(points, count, least_range_m, stream)) {}
+      numbers_(points_of_rays(points, count, least_range_m, stream)),
+      by_part_(numbers_.size(), stream) {
+  for (std::uint32_t part = 0; part < kRayParts; ++part) {
+    const DeviceBuffer<std::uint32_t> own = points_of_part(measured_, numbers_, part, stream_);
+    cuda_check(cudaMemcpyAsync(by_part_.data() + begins_.at[part], own.data(), own.bytes(),
+                               cudaMemcpyDeviceToDevice, stream_),
+               "order rays");
+    begins_.at[part + 1] = begins_.at[part] + own.size();
+  }
+}
 
-DeviceEvidence DeviceRays::evidence(const Disk* disks, std::size_t count,
-                                    const EvidenceOptions& options, const DeviceRays* empty) const {
+std::span<const std::uint32_t> DeviceRays::points_of(std::uint32_t parts,
+                                                     std::uint32_t part) const {
+  if (parts == 1) return {numbers_.data(), numbers_.size()};
+  return {by_part_.data() + begins_.first(parts, part), begins_.count(parts, part)};
+}
+
+DeviceEvidence evidence_on_device(const Disk* disks, std::size_t count,
+                                  std::span<const DeviceRays* const> rays,
+                                  const EvidenceOptions& options, cudaStream_t stream) {
   const std::size_t bins = count * EvidenceView::kBins;
-  DeviceEvidence evidence{DeviceBuffer<std::uint32_t>(bins, stream_),
-                          DeviceBuffer<std::uint32_t>(bins, stream_)};
+  DeviceEvidence evidence{DeviceBuffer<std::uint32_t>(bins, stream),
+                          DeviceBuffer<std::uint32_t>(bins, stream)};
   evidence.confirmed.fill_bytes(0);
   evidence.contradicted.fill_bytes(0);
-  const WideTree<LeafDisk> tree = build_tree(disks, count, TreeOptions{}, stream_);
-  count_rays(points_, numbers_, ends_, disks, tree, options, evidence.view(), stream_);
-  if (empty != nullptr)
-    count_rays(empty->points_, empty->numbers_, empty->ends_, disks, tree, options, evidence.view(),
-               stream_);
+  const WideTree<LeafDisk> tree = build_tree(disks, count, TreeOptions{}, stream);
+  for (const DeviceRays* cast : rays)
+    count_rays(*cast, disks, tree, options, evidence.view(), stream);
   return evidence;
 }
 
@@ -161,10 +181,8 @@ DeviceBuffer<ShiftSums> DeviceRays::shifts(const Disk* disks, std::size_t count,
                                            const SettleOptions& options) const {
   DeviceBuffer<ShiftSums> sums(count, stream_);
   sums.fill_bytes(0);
-  RayCasting casting;
-  casting.beyond_m = static_cast<float>(options.reach_m);
-  cast_nearest(disks, count, points_, numbers_, casting, stream_,
-               [disks, options, points = points_, to = sums.data()] __device__(
+  cast_nearest(disks, count, measured_, numbers_, static_cast<float>(options.reach_m), stream_,
+               [disks, options, points = measured_, to = sums.data()] __device__(
                    std::uint64_t, std::uint32_t point, const Ray& ray, Hit hit) {
                  if (!hit.valid()) return;
                  const float range_m = length(points.positions[point] - points.sensors[point]);
@@ -182,10 +200,8 @@ DeviceBuffer<std::uint8_t> DeviceRays::missed(const Disk* disks, std::size_t cou
   DeviceBuffer<std::uint8_t> missed(point_count_, stream_);
   missed.fill_bytes(0);
   if (!any_present(disks, count, stream_)) return missed;
-  RayCasting casting;
-  casting.beyond_m = beyond_m;
   cast_nearest(
-      disks, count, points_, numbers_, casting, stream_,
+      disks, count, measured_, numbers_, beyond_m, stream_,
       [to = missed.data()] __device__(std::uint64_t, std::uint32_t point, const Ray&, Hit hit) {
         if (!hit.valid()) to[point] = 1;
       });
@@ -193,11 +209,9 @@ DeviceBuffer<std::uint8_t> DeviceRays::missed(const Disk* disks, std::size_t cou
 }
 
 void DeviceRays::observe(const Disk* disks, std::size_t count, const ObserveRay& observe) const {
-  RayCasting casting;
-  casting.beyond_m = ObserveRay::kBeyond_m;
-  cast_nearest(disks, count, points_, numbers_, casting, stream_,
-               [observe, points = points_] __device__(std::uint64_t i, std::uint32_t point,
-                                                      const Ray& ray, Hit hit) {
+  cast_nearest(disks, count, measured_, numbers_, ObserveRay::kBeyond_m, stream_,
+               [observe, points = measured_] __device__(std::uint64_t i, std::uint32_t point,
+                                                        const Ray& ray, Hit hit) {
                  const float range_m = length(points.positions[point] - points.sensors[point]);
                  observe(i, point, ray, range_m, hit);
                });

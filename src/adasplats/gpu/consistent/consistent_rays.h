@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "adasplats/core/host_device.h"
 #include "adasplats/gpu/base/device_memory.h"
@@ -37,9 +38,11 @@ class DeviceRays {
   /// The rays' points, in the order of the rays.
   const DeviceBuffer<std::uint32_t>& points() const { return numbers_; }
 
-  /// collect_evidence() on disks [0, count).
-  DeviceEvidence evidence(const Disk* disks, std::size_t count, const EvidenceOptions& options,
-                          const DeviceRays* empty = nullptr) const;
+  /// Those of one part of so many, in device memory.
+  std::span<const std::uint32_t> points_of(std::uint32_t parts, std::uint32_t part) const;
+  const MeasuredPoints& measured() const { return measured_; }
+  RayEnds ends() const { return ends_; }
+
   /// What every disk's rays say of its place: one sum a disk.
   DeviceBuffer<ShiftSums> shifts(const Disk* disks, std::size_t count,
                                  const SettleOptions& options) const;
@@ -50,11 +53,18 @@ class DeviceRays {
   DeviceBuffer<std::uint8_t> missed(const Disk* disks, std::size_t count, float beyond_m) const;
 
  private:
-  MeasuredPoints points_;
+  MeasuredPoints measured_;
   std::size_t point_count_;
   cudaStream_t stream_;
   RayEnds ends_;
   DeviceBuffer<std::uint32_t> numbers_;
+  DeviceBuffer<std::uint32_t> by_part_;  ///< the rays' points part by part
+  RayPartBegins begins_;
 };
+
+/// collect_evidence() on disks [0, count).
+DeviceEvidence evidence_on_device(const Disk* disks, std::size_t count,
+                                  std::span<const DeviceRays* const> rays,
+                                  const EvidenceOptions& options, cudaStream_t stream);
 
 }  // namespace adasplats::gpu

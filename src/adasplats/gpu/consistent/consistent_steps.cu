@@ -25,12 +25,13 @@ class ConsistentOnGpu : public RaysOnGpu {
   using Cover = DeviceCover;
   using RaysOnGpu::RaysOnGpu;
 
-  DeviceCells fuse(const DeviceCloud& cloud, double cell_m) const {
-    return fuse_on_device(cloud.positions.data(), cloud.size(), cell_m, stream());
+  DeviceCells fuse(const DeviceCloud& cloud, double cell_m, const CurveBox& box) const {
+    return fuse_on_device(cloud.positions.data(), cloud.size(), cell_m, box, stream());
   }
   DeviceCells split(const DeviceCloud& cloud, const DeviceCells& cells,
-                    const DeviceBuffer<std::uint8_t>& flags, double cell_m) const {
-    return split_on_device(cloud.positions.data(), cells, flags.data(), cell_m, stream());
+                    const DeviceBuffer<std::uint8_t>& flags, double cell_m,
+                    const CurveBox& box) const {
+    return split_on_device(cloud.positions.data(), cells, flags.data(), cell_m, box, stream());
   }
   DevicePointIndex index(const DeviceCells& cells) const {
     return {cells.positions.data(), cells.size(), stream()};
@@ -47,9 +48,9 @@ class ConsistentOnGpu : public RaysOnGpu {
                   RayEnds ends) const {
     return {points, cloud.size(), least_range_m, stream(), ends};
   }
-  DeviceEvidence evidence(const DeviceBuffer<Disk>& disks, const DeviceRays& rays,
-                          const DeviceRays* empty, const EvidenceOptions& options) const {
-    return rays.evidence(disks.data(), disks.size(), options, empty);
+  DeviceEvidence evidence(const DeviceBuffer<Disk>& disks, std::span<const DeviceRays* const> rays,
+                          const EvidenceOptions& options) const {
+    return evidence_on_device(disks.data(), disks.size(), rays, options, stream());
   }
   DeviceBuffer<ShiftSums> shifts(const DeviceBuffer<Disk>& disks, const DeviceRays& rays,
                                  const SettleOptions& options) const {

@@ -146,7 +146,10 @@ bool has_all_origins(const DeviceCloud& cloud, cudaStream_t stream) {
   return read_value(unknown.data(), stream) == 0;
 }
 
-DeviceBuffer<std::uint32_t> canonical_order(const DeviceCloud& cloud, cudaStream_t stream) {
+namespace {
+
+/// What decides between points at one place, the least important first.
+std::vector<TieBreaker> tie_breakers(const DeviceCloud& cloud) {
   std::map<int, std::vector<TieBreaker>> ranked;
   for_each_attribute([&](const auto& attribute) {
     const auto& values = attribute.of(cloud);
@@ -155,14 +158,21 @@ DeviceBuffer<std::uint32_t> canonical_order(const DeviceCloud& cloud, cudaStream
   std::vector<TieBreaker> more;
   for (const auto& [rank, breakers] : ranked)
     more.insert(more.end(), breakers.begin(), breakers.end());
-  std::reverse(more.begin(), more.end());  // the least important first
-  return hilbert_order(cloud.positions.data(), cloud.size(), stream, more);
+  std::reverse(more.begin(), more.end());
+  return more;
 }
 
-DeviceCloud load_in_order(const PointCloud& cloud, std::span<const std::uint8_t> removed,
-                          cudaStream_t stream) {
+}  // namespace
+
+DeviceBuffer<std::uint32_t> canonical_order(const DeviceCloud& cloud, cudaStream_t stream) {
+  return hilbert_order(cloud.positions.data(), cloud.size(), stream, tie_breakers(cloud));
+}
+
+DeviceCloud load_in_order(const PointCloud& cloud, const CurveBox& box,
+                          std::span<const std::uint8_t> removed, cudaStream_t stream) {
   const DeviceCloud unordered = copy_to_device(cloud, stream);
-  DeviceBuffer<std::uint32_t> order = canonical_order(unordered, stream);
+  DeviceBuffer<std::uint32_t> order = hilbert_order(unordered.positions.data(), unordered.size(),
+                                                    box, stream, tie_breakers(unordered));
   if (!removed.empty() && !order.empty())
     order = without_classes(order, unordered.classes, removed, stream);
   return gather(unordered, order, stream);

@@ -8,6 +8,7 @@
 
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/gpu/base/device_memory.h"
+#include "adasplats/neighbors/hilbert.h"
 
 namespace adasplats::gpu {
 
@@ -48,9 +49,10 @@ bool has_all_origins(const DeviceCloud& cloud, cudaStream_t stream);
 /// The order that canonical_order() gives (splats/model/canonical_order.h).
 DeviceBuffer<std::uint32_t> canonical_order(const DeviceCloud& cloud, cudaStream_t stream);
 
-/// What both methods begin with: the cloud on the device in canonical order, without the points of
+/// What both methods begin with: the cloud on the device in canonical order along a curve over
+/// `box`, which holds it, without the points of
 /// classes that have a flag in `removed` (ClassTables::removed; may be empty).
-DeviceCloud load_in_order(const PointCloud& cloud, std::span<const std::uint8_t> removed,
-                          cudaStream_t stream);
+DeviceCloud load_in_order(const PointCloud& cloud, const CurveBox& box,
+                          std::span<const std::uint8_t> removed, cudaStream_t stream);
 
 }  // namespace adasplats::gpu

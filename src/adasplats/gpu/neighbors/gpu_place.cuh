@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "adasplats/core/executor.h"
 #include "adasplats/gpu/base/cuda_check.h"
 #include "adasplats/gpu/base/device_memory.h"
 #include "adasplats/gpu/base/launch.cuh"
@@ -101,8 +102,19 @@ class GpuPlace {
     return values.download();
   }
 
+  static CurveBox box_of(const PointCloud& cloud) {
+    return curve_box_of(cloud.positions, Executor(1));
+  }
+  DeviceCloud load(const PointCloud& cloud, const CurveBox& box,
+                   std::span<const std::uint8_t> removed) const {
+    return load_in_order(cloud, box, removed, stream());
+  }
   DeviceCloud load(const PointCloud& cloud, std::span<const std::uint8_t> removed) const {
-    return load_in_order(cloud, removed, stream());
+    return load(cloud, box_of(cloud), removed);
+  }
+  /// In no other order.
+  DeviceCloud load_as_it_is(const PointCloud& cloud) const {
+    return copy_to_device(cloud, stream());
   }
   template <class Values>
   Values gather(const Values& values, const DeviceBuffer<std::uint32_t>& at) const {

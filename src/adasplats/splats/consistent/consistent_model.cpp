@@ -3,6 +3,7 @@
 #include "adasplats/splats/consistent/consistent_model.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "adasplats/core/error.h"
 #include "adasplats/splats/consistent/consistent_steps.h"
@@ -21,8 +22,10 @@ void check(const ConsistentOptions& consistent) {
           "sectors must be 0, 1, 2, 4, 8 or 16");
   require(consistent.judge.core_rings >= 1 && consistent.judge.core_rings <= RayEvidence::kBins,
           "the rings of a disk's middle must be 1 to 16");
-  require(consistent.evidence_rays > 0 && consistent.evidence.stride > 0,
-          "evidence rays and their stride must be greater than 0");
+  require(consistent.evidence_rays > 0, "evidence rays must be greater than 0");
+  require(consistent.evidence.parts == 1 || consistent.evidence.parts == 2 ||
+              consistent.evidence.parts == kRayParts,
+          "rays are cast in 1, 2 or 4 parts");
 }
 
 AdaptivePlaneOptions ConsistentOptions::planes_for_splitting() const {
@@ -34,9 +37,9 @@ AdaptivePlaneOptions ConsistentOptions::planes_for_splitting() const {
 
 EvidenceOptions ConsistentOptions::evidence_of_round(int round, std::size_t rays) const {
   EvidenceOptions chosen = evidence;
-  const std::size_t stride = std::clamp<std::size_t>(rays / evidence_rays, 1, chosen.stride);
-  chosen.stride = static_cast<std::uint32_t>(stride);
-  chosen.phase = static_cast<std::uint32_t>(round) % chosen.stride;
+  const std::size_t parts = std::clamp<std::size_t>(rays / evidence_rays, 1, chosen.parts);
+  chosen.parts = static_cast<std::uint32_t>(std::bit_floor(parts));
+  chosen.part = static_cast<std::uint32_t>(round) % chosen.parts;
   return chosen;
 }
 

@@ -35,7 +35,7 @@ struct ConsistentOptions {
   double least_range_m = 0.1;  ///< nearer points have no ray: no LiDAR measures them
   int balance_rounds = 4;      ///< of shrinking and removing seeds; 0: no ray check
   JudgeOptions judge;          ///< of seeds
-  EvidenceOptions evidence;    ///< its stride is the largest: of few rays more are taken
+  EvidenceOptions evidence;    ///< its parts are the most: of few rays more are taken
   std::size_t evidence_rays = 2'000'000;  ///< enough of them for a round
   CoverOptions cover;
   int strict_rounds = 5;            ///< of limiting chosen disks

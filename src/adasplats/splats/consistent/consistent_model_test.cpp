@@ -409,7 +409,7 @@ TEST(ConsistentModel, OptionsOutOfRangeAreAnError) {
   for (const double cell_m : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_EQ(kind_with([&](ConsistentOptions& o) { o.cell_m = cell_m; }), ErrorKind::usage);
   EXPECT_EQ(kind_with([](ConsistentOptions& o) { o.evidence_rays = 0; }), ErrorKind::usage);
-  EXPECT_EQ(kind_with([](ConsistentOptions& o) { o.evidence.stride = 0; }), ErrorKind::usage);
+  EXPECT_EQ(kind_with([](ConsistentOptions& o) { o.evidence.parts = 3; }), ErrorKind::usage);
 }
 
 TEST(ConsistentModel, DegenerateCloudsFinish) {

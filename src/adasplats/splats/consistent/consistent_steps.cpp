@@ -19,6 +19,11 @@
 namespace adasplats {
 namespace {
 
+/// 0 of none.
+double median_spacing(std::vector<float>& spacings) {
+  return spacings.empty() ? 0 : static_cast<double>(upper_median_of(spacings));
+}
+
 /// What the steps of the consistent method need of the CPU.
 class ConsistentOnCpu : public RaysOnCpu {
  public:
@@ -31,12 +36,12 @@ class ConsistentOnCpu : public RaysOnCpu {
   static const FusedPoints& on_host(const FusedPoints& cells) { return cells; }
   static RayEvidence on_host(RayEvidence evidence) { return evidence; }
 
-  FusedPoints fuse(const PointCloud& cloud, double cell_m) const {
-    return fuse_points(cloud.positions, cell_m, executor());
+  FusedPoints fuse(const PointCloud& cloud, double cell_m, const CurveBox& box) const {
+    return fuse_points(cloud.positions, cell_m, box, executor());
   }
   FusedPoints split(const PointCloud& cloud, const FusedPoints& cells,
-                    std::span<const std::uint8_t> flags, double cell_m) const {
-    return split_cells(cloud.positions, cells, flags, cell_m, executor());
+                    std::span<const std::uint8_t> flags, double cell_m, const CurveBox& box) const {
+    return split_cells(cloud.positions, cells, flags, cell_m, box, executor());
   }
   PointIndex index(const FusedPoints& cells) const {
     return PointIndex::from_sorted(cells.positions, executor());
@@ -49,9 +54,9 @@ class ConsistentOnCpu : public RaysOnCpu {
                     RayEnds ends) const {
     return {cloud, least_range_m, executor(), ends};
   }
-  RayEvidence evidence(std::span<const Disk> disks, const MeasuredRays& rays,
-                       const MeasuredRays* empty, const EvidenceOptions& options) const {
-    return collect_evidence(disks, rays, options, executor(), empty);
+  RayEvidence evidence(std::span<const Disk> disks, std::span<const MeasuredRays* const> rays,
+                       const EvidenceOptions& options) const {
+    return collect_evidence(disks, rays, options, executor());
   }
   std::vector<ShiftSums> shifts(std::span<const Disk> disks, const MeasuredRays& rays,
                                 const SettleOptions& options) const {
@@ -90,8 +95,7 @@ class ConsistentOnCpu : public RaysOnCpu {
     for (std::size_t i = 0; i < planes.size(); ++i) {
       if (units_m[i] > 0) spacings.push_back(planes[i].spacing_m / units_m[i]);
     }
-    if (spacings.empty()) return 0;
-    return static_cast<double>(upper_median_of(spacings));
+    return adasplats::median_spacing(spacings);
   }
 
   /// The disks that have a radius, with the attributes of their cells' points.
@@ -117,6 +121,10 @@ class ConsistentOnCpu : public RaysOnCpu {
 };
 
 }  // namespace
+
+TypicalSpacing typical_spacing(std::vector<float> with_beam, std::vector<float> without) {
+  return {median_spacing(with_beam), median_spacing(without)};
+}
 
 std::unique_ptr<ConsistentSteps> make_cpu_consistent_steps(const Executor& executor) {
   return std::make_unique<ConsistentStepsOn<ConsistentOnCpu>>(executor);

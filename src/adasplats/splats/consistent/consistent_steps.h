@@ -11,6 +11,7 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/scene/intersect.h"
 #include "adasplats/splats/consistent/consistent_model.h"
+#include "adasplats/splats/consistent/whole_place.h"
 #include "adasplats/splats/model/class_tables.h"
 #include "adasplats/splats/reflectance/reflectance.h"
 
@@ -39,11 +40,16 @@ class ConsistentSteps {
   virtual ~ConsistentSteps() = default;
 
   /// Takes the cloud, without the points of removed classes, in canonical order (of all points).
-  /// Gives the number of points kept and whether they have sensor positions.
-  virtual std::size_t load(PointCloud cloud, const ClassTables& tables) = 0;
+  /// `whole`: the cloud is a piece of a place of which this is known; nullptr: it is all. Gives the
+  /// number of points kept.
+  virtual std::size_t load(PointCloud cloud, const ClassTables& tables,
+                           const WholePlace* whole = nullptr) = 0;
 
   /// Points in cells.
   virtual void fuse(const ConsistentOptions& options) = 0;
+  /// Of the cells that points were fused in, for WholePlace::typical. May be called before
+  /// fit_seeds() alone.
+  virtual std::vector<CellSpacing> spacings(const ConsistentOptions& options) = 0;
   /// Splits cells where nothing is flat, fits planes, turns normals to the sensors, makes seeds.
   virtual void fit_seeds(const ConsistentOptions& options) = 0;
   /// Orders the measured rays; needs known beams. Those below come after it.

@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "adasplats/splats/consistent/consistent_state.h"
 #include "adasplats/splats/consistent/consistent_steps.h"
 #include "adasplats/splats/consistent/element_steps.h"
+#include "adasplats/splats/consistent/whole_place.h"
 #include "adasplats/splats/model/canonical_order.h"
 #include "adasplats/splats/reflectance/reflectances_on.h"
 
@@ -25,21 +27,45 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   template <class Where>
   explicit ConsistentStepsOn(const Where& where) : place_(where) {}
 
-  std::size_t load(PointCloud cloud, const ClassTables& tables) override {
+  std::size_t load(PointCloud cloud, const ClassTables& tables, const WholePlace* whole) override {
     [[maybe_unused]] const auto entered = place_.enter();
     const std::vector<EmptyBeam> empty = std::exchange(cloud.empty_beams, {});
-    if (!empty.empty()) empty_ = place_.load(ends_of(empty, empty_reach_m(cloud)), {});
+    if (whole != nullptr) {
+      whole_ = {whole->typical, whole->rays, whole->response};
+      empty_ = place_.load_as_it_is(whole->empty);
+      passing_ = place_.load_as_it_is(whole->passing);
+    } else if (!empty.empty()) {
+      empty_ = place_.load_as_it_is(ends_of(empty, empty_reach_m(cloud)));
+    }
     if (cloud.has_beams() && !cloud.intensities.empty())
-      removed_ = place_.load(points_of_classes(cloud, tables.removed), {});
-    cloud_ = place_.load(cloud, tables.removed);
+      removed_ = place_.load_as_it_is(points_of_classes(cloud, tables.removed));
+    box_ = whole != nullptr ? whole->box : place_.box_of(cloud);
+    cloud_ = place_.load(cloud, box_, tables.removed);
     place_.wait("order the points");
     return cloud_.size();
   }
 
   void fuse(const ConsistentOptions& options) override {
     [[maybe_unused]] const auto entered = place_.enter();
-    cells_ = place_.fuse(cloud_, options.cell_m);
+    cells_ = place_.fuse(cloud_, options.cell_m, box_);
     place_.wait("fuse points");
+  }
+
+  std::vector<CellSpacing> spacings(const ConsistentOptions& options) override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    const auto index = place_.index(cells_);
+    const auto planes = place_.planes(cells_, index, options.planes_for_splitting());
+    const auto with_beam = place_.on_host(spacing_units(true));
+    const auto without = place_.on_host(spacing_units(false));
+    const auto places = place_.on_host(cells_.positions);
+    const auto found = place_.on_host(planes);
+    std::vector<CellSpacing> spacings(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const bool beam = with_beam[i] > 0;
+      const float unit_m = beam ? with_beam[i] : without[i];
+      spacings[i] = {places[i], unit_m > 0 ? found[i].spacing_m / unit_m : 0, beam};
+    }
+    return spacings;
   }
 
   void fit_seeds(const ConsistentOptions& options) override {
@@ -60,12 +86,15 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
         place_.rays(cloud_, points_of(cloud_), options.least_range_m, RayEnds::at_surfaces));
     if (options.empty_beams && empty_.size() > 0)
       empty_rays_.emplace(place_.rays(empty_, points_of(empty_), 0, RayEnds::nowhere));
+    if (passing_.size() > 0)
+      passing_rays_.emplace(
+          place_.rays(passing_, points_of(passing_), options.least_range_m, RayEnds::at_surfaces));
   }
 
   /// What stands behind seeds that went is judged better in the next round.
   void balance_seeds(int round, const ConsistentOptions& options) override {
     [[maybe_unused]] const auto entered = place_.enter();
-    auto counts = count(seeds_, options.evidence_of_round(round, rays_->size()));
+    auto counts = count(seeds_, options.evidence_of_round(round, rays_of_all()));
     place_.for_each(seeds_.size(), "judge seeds",
                     JudgeSeed{seeds_.data(), counts.view(), options.judge});
     place_.wait("judge seeds");
@@ -85,7 +114,7 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   void limit_overhangs(int round, const ConsistentOptions& options) override {
     [[maybe_unused]] const auto entered = place_.enter();
     chosen_ = place_.choose(*cover_);
-    auto counts = count(chosen_, options.evidence_of_round(round, rays_->size()));
+    auto counts = count(chosen_, options.evidence_of_round(round, rays_of_all()));
     place_.for_each(
         chosen_.size(), "limit disks",
         LimitOverhang{cover_->limits(), chosen_.data(), counts.view(), options.most_contradicted});
@@ -149,7 +178,8 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
           place_.rays(removed_, points_of(removed_), options.least_range_m, RayEnds::at_surfaces));
       measured.push_back({&*others, &removed_.intensities});
     }
-    return ReflectancesOn<Place>(place_, disks, fallback).run(measured);
+    const IntensityResponse* response = whole_ && whole_->response ? &*whole_->response : nullptr;
+    return ReflectancesOn<Place>(place_, disks, fallback, response).run(measured);
   }
 
   ConsistentState state() const override {
@@ -181,39 +211,59 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   MeasuredPoints points() const { return points_of(cloud_); }
 
   auto count(const Array<Disk>& disks, const EvidenceOptions& options) const {
-    return place_.evidence(disks, *rays_, empty_rays_ ? &*empty_rays_ : nullptr, options);
+    std::vector<const typename Place::Rays*> rays = {&*rays_};
+    if (empty_rays_) rays.push_back(&*empty_rays_);
+    if (passing_rays_) rays.push_back(&*passing_rays_);
+    return place_.evidence(disks, std::span<const typename Place::Rays* const>(rays), options);
   }
+  std::size_t rays_of_all() const { return whole_ ? whole_->rays : rays_->size(); }
 
-  double median_spacing(const Array<LocalPlane>& planes, bool with_beam) {
+  /// spacing_unit_m() of every cell.
+  Array<float> spacing_units(bool with_beam) const {
     auto units_m = place_.template array<float>(cells_.size());
     place_.for_each(cells_.size(), "find the spacing of cells",
                     FindSpacingUnit{points(), cells_.view(), with_beam, units_m.data()});
-    return place_.median_spacing(planes, units_m);
+    return units_m;
+  }
+  TypicalSpacing typical_spacing(const Array<LocalPlane>& planes) const {
+    if (whole_) return whole_->typical;
+    return {place_.median_spacing(planes, spacing_units(true)),
+            place_.median_spacing(planes, spacing_units(false))};
   }
 
   /// Splits cells where nothing is flat. Gives the median spacings of the cells before.
   TypicalSpacing split_where_not_flat(const ConsistentOptions& options) {
     const auto index = place_.index(cells_);
     const auto planes = place_.planes(cells_, index, options.planes_for_splitting());
-    const TypicalSpacing spacing = {median_spacing(planes, true), median_spacing(planes, false)};
+    const TypicalSpacing spacing = typical_spacing(planes);
     if (options.small_cell_m == 0) return spacing;
     auto split = place_.template array<std::uint8_t>(cells_.size());
     place_.for_each(cells_.size(), "split cells",
                     FlagNotFlat{planes.data(), options.split_scale, split.data()});
-    cells_ = place_.split(cloud_, cells_, split, options.small_cell_m);
+    cells_ = place_.split(cloud_, cells_, split, options.small_cell_m, box_);
     return spacing;
   }
 
+  /// What was said of the whole of which the cloud is a piece.
+  struct Whole {
+    TypicalSpacing typical;
+    std::size_t rays = 0;
+    std::optional<IntensityResponse> response;
+  };
+
   // In the order in which they are made; memory goes back to the place before it ends.
   Place place_;
+  std::optional<Whole> whole_;
+  CurveBox box_;
   typename Place::Cloud cloud_;
   typename Place::Cloud empty_;    ///< ends_of() empty beams
+  typename Place::Cloud passing_;  ///< WholePlace::passing
   typename Place::Cloud removed_;  ///< points of removed classes, where intensities are measured
   typename Place::Cells cells_;
   std::optional<typename Place::Index> index_;  ///< of the cells
   Array<LocalPlane> planes_;
   Array<Disk> seeds_;
-  std::optional<typename Place::Rays> rays_, empty_rays_;
+  std::optional<typename Place::Rays> rays_, empty_rays_, passing_rays_;
   std::optional<typename Place::Cover> cover_;
   Array<Disk> chosen_;
 };

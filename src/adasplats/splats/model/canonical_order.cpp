@@ -7,8 +7,6 @@
 #include <functional>
 #include <utility>
 
-#include "adasplats/neighbors/hilbert.h"
-
 namespace adasplats {
 namespace {
 
@@ -61,7 +59,12 @@ class TieBreakers {
 }  // namespace
 
 std::vector<std::uint32_t> canonical_order(const PointCloud& cloud, const Executor& executor) {
-  std::vector<std::uint32_t> order = hilbert_order(cloud.positions, executor);
+  return canonical_order(cloud, curve_box_of(cloud.positions, executor), executor);
+}
+
+std::vector<std::uint32_t> canonical_order(const PointCloud& cloud, const CurveBox& box,
+                                           const Executor& executor) {
+  std::vector<std::uint32_t> order = hilbert_order(cloud.positions, box, executor);
   const TieBreakers breakers(cloud);
   for (auto begin = order.begin(); begin != order.end();) {
     const auto end = std::find_if(begin + 1, order.end(), [&](std::uint32_t i) {
@@ -73,9 +76,9 @@ std::vector<std::uint32_t> canonical_order(const PointCloud& cloud, const Execut
   return order;
 }
 
-PointCloud load_in_order(const PointCloud& cloud, std::span<const std::uint8_t> removed,
-                         const Executor& executor) {
-  std::vector<std::uint32_t> order = canonical_order(cloud, executor);
+PointCloud load_in_order(const PointCloud& cloud, const CurveBox& box,
+                         std::span<const std::uint8_t> removed, const Executor& executor) {
+  std::vector<std::uint32_t> order = canonical_order(cloud, box, executor);
   if (!removed.empty() && !cloud.classes.empty())
     std::erase_if(order, [&](std::uint32_t i) { return removed[cloud.classes[i]] != 0; });
   return gather(cloud, order);

@@ -68,8 +68,10 @@ TEST(CanonicalOrder, RemovedClassesAreLeftOutWhenTheOrderIsKnown) {
   cloud.classes = {7, 5, 6};
   std::vector<std::uint8_t> removed(65536);
   removed[6] = 1;
-  EXPECT_EQ(load_in_order(cloud, removed, Executor(1)).classes, (std::vector<std::uint16_t>{5, 7}));
-  EXPECT_EQ(load_in_order(cloud, {}, Executor(1)).size(), 3U);
+  const CurveBox box = curve_box_of(cloud.positions, Executor(1));
+  EXPECT_EQ(load_in_order(cloud, box, removed, Executor(1)).classes,
+            (std::vector<std::uint16_t>{5, 7}));
+  EXPECT_EQ(load_in_order(cloud, box, {}, Executor(1)).size(), 3U);
 }
 
 }  // namespace

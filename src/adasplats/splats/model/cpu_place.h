@@ -19,9 +19,18 @@ class CpuPlace : public CpuArrays {
 
   using CpuArrays::CpuArrays;
 
-  PointCloud load(const PointCloud& cloud, std::span<const std::uint8_t> removed) const {
-    return load_in_order(cloud, removed, executor());
+  CurveBox box_of(const PointCloud& cloud) const {
+    return curve_box_of(cloud.positions, executor());
   }
+  PointCloud load(const PointCloud& cloud, const CurveBox& box,
+                  std::span<const std::uint8_t> removed) const {
+    return load_in_order(cloud, box, removed, executor());
+  }
+  PointCloud load(const PointCloud& cloud, std::span<const std::uint8_t> removed) const {
+    return load(cloud, box_of(cloud), removed);
+  }
+  /// In no other order.
+  static PointCloud load_as_it_is(PointCloud cloud) { return cloud; }
   using CpuArrays::gather;
   PointCloud gather(const PointCloud& cloud, std::span<const std::uint32_t> at) const {
     return adasplats::gather(cloud, at);

@@ -19,8 +19,9 @@ struct EvidenceOptions {  // numbers: docs/fidelity.md
   /// leans a little wrong is crossed far from there by grazing rays.
   float height_margin_m = 0.01F;
   float least_cosine = 0.1F;  ///< rays that graze more have no wider margins
-  std::uint32_t stride = 4;   ///< every n-th ray
-  std::uint32_t phase = 0;    ///< begins with this one
+  /// Rays are cast in turns: one part of so many (kRayParts or a power of two below)...
+  std::uint32_t parts = 4;
+  std::uint32_t part = 0;  ///< ...and this one
 
   /// How far behind its end a ray may cross a disk at which it ends.
   float most_margin_m() const { return range_margin_m + height_margin_m / least_cosine; }

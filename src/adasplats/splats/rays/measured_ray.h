@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "adasplats/core/host_device.h"
@@ -52,10 +54,41 @@ ADASPLATS_HD inline std::uint32_t place_key(Vec3f sensor) {
   return hash;
 }
 
+/// Rays are in so many parts of about one size each, which can be cast by turns.
+inline constexpr std::uint32_t kRayParts = 4;
+
+/// Which part a ray is in: says nothing of where it is, and depends on the ray alone, so that a
+/// piece of a place has its rays in the parts in which the whole has them.
+ADASPLATS_HD inline std::uint32_t ray_part(Vec3f sensor, Vec3f point) {
+  std::uint32_t hash = 2166136261U;
+  for (int axis = 0; axis < 3; ++axis) {
+    hash = (hash ^ std::bit_cast<std::uint32_t>(sensor[axis])) * 16777619U;
+    hash = (hash ^ std::bit_cast<std::uint32_t>(point[axis])) * 16777619U;
+  }
+  hash ^= hash >> 16;
+  hash *= 0x85ebca6bU;  // the last steps of MurmurHash3: every bit decides
+  hash ^= hash >> 13;
+  hash *= 0xc2b2ae35U;
+  return hash >> 30;
+}
+static_assert(kRayParts == 4);
+
 /// Rays in the order of these start and point like their neighbours.
 ADASPLATS_HD inline std::uint64_t measured_ray_key(Vec3f sensor, Vec3f point) {
   return std::uint64_t{place_key(sensor)} << 32 | direction_key(point - sensor);
 }
+
+/// Where the parts begin in rays that stand part by part; where they end is the last.
+struct RayPartBegins {
+  std::size_t at[kRayParts + 1] = {};
+
+  std::size_t first(std::uint32_t parts, std::uint32_t part) const {
+    return at[kRayParts / parts * part];
+  }
+  std::size_t count(std::uint32_t parts, std::uint32_t part) const {
+    return at[kRayParts / parts * (part + 1)] - first(parts, part);
+  }
+};
 
 /// From the sensor through the point and `beyond_m` farther.
 ADASPLATS_HD inline Ray measured_ray(Vec3f sensor, Vec3f point, float beyond_m) {

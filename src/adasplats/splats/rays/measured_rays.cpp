@@ -3,10 +3,11 @@
 #include "adasplats/splats/rays/measured_rays.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <iterator>
 #include <limits>
 
-#include "adasplats/splats/rays/measured_ray.h"
 #include "adasplats/splats/rays/present_disks.h"
 
 namespace adasplats {
@@ -32,6 +33,24 @@ MeasuredRays::MeasuredRays(const PointCloud& cloud, double least_range_m, const 
     return !is_beam(cloud.origin_kind(i)) ||
            !has_measured_ray(cloud.sensor_positions[i], cloud.positions[i], least_range_m);
   });
+  order_by_part(executor);
+}
+
+void MeasuredRays::order_by_part(const Executor& executor) {
+  std::vector<std::uint8_t> parts(size());
+  executor.for_chunks(size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      parts[i] = static_cast<std::uint8_t>(
+          ray_part(cloud_.sensor_positions[points_[i]], cloud_.positions[points_[i]]));
+    }
+  });
+  for (const std::uint8_t part : parts) ++begins_.at[part + 1];
+  for (std::uint32_t part = 0; part < kRayParts; ++part) begins_.at[part + 1] += begins_.at[part];
+  std::array<std::size_t, kRayParts> next{};
+  std::copy_n(std::begin(begins_.at), kRayParts, next.begin());
+  by_part_.resize(size());
+  for (std::size_t i = 0; i < size(); ++i)
+    by_part_[next[parts[i]]++] = static_cast<std::uint32_t>(i);
 }
 
 float MeasuredRays::range_m(std::size_t i) const {
@@ -57,15 +76,34 @@ PointCloud ends_of(const std::vector<EmptyBeam>& beams, float reach_m) {
 }
 
 float empty_reach_m(const PointCloud& cloud) {
-  constexpr std::size_t kFarther = 20;  // one in so many
-  std::vector<float> ranges_m;
+  RangeCounts counts;
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (is_beam(cloud.origin_kind(i)))
-      ranges_m.push_back(length(cloud.positions[i] - cloud.sensor_positions[i]));
-  if (ranges_m.empty()) return 0;
-  const auto reach = ranges_m.end() - 1 - static_cast<std::ptrdiff_t>(ranges_m.size() / kFarther);
-  std::nth_element(ranges_m.begin(), reach, ranges_m.end());
-  return *reach;
+      counts.add(length(cloud.positions[i] - cloud.sensor_positions[i]));
+  return counts.empty_reach_m();
+}
+
+void RangeCounts::add(float range_m) {
+  const auto cm = static_cast<std::size_t>(std::min(range_m, kMost_m) / kUnit_m);
+  if (cm >= counts_.size()) counts_.resize(cm + 1);
+  ++counts_[cm];
+  ++all_;
+}
+
+void RangeCounts::add(const RangeCounts& other) {
+  counts_.resize(std::max(counts_.size(), other.counts_.size()));
+  for (std::size_t cm = 0; cm < other.counts_.size(); ++cm) counts_[cm] += other.counts_[cm];
+  all_ += other.all_;
+}
+
+float RangeCounts::empty_reach_m() const {
+  constexpr std::uint64_t kFarther = 20;  // one in so many
+  std::uint64_t beyond = all_ / kFarther;
+  for (std::size_t cm = counts_.size(); cm-- > 0;) {
+    if (counts_[cm] > beyond) return static_cast<float>(cm) * kUnit_m;
+    beyond -= counts_[cm];
+  }
+  return 0;
 }
 
 DiskEvidence evidence_of(const RayEvidence& evidence, std::size_t disk) {
@@ -75,9 +113,8 @@ DiskEvidence evidence_of(const RayEvidence& evidence, std::size_t disk) {
   return {part(evidence.confirmed), part(evidence.contradicted)};
 }
 
-RayEvidence collect_evidence(std::span<const Disk> disks, const MeasuredRays& rays,
-                             const EvidenceOptions& options, const Executor& executor,
-                             const MeasuredRays* empty) {
+RayEvidence collect_evidence(std::span<const Disk> disks, std::span<const MeasuredRays* const> rays,
+                             const EvidenceOptions& options, const Executor& executor) {
   RayEvidence evidence;
   evidence.confirmed.resize(disks.size() * RayEvidence::kBins);
   evidence.contradicted.resize(disks.size() * RayEvidence::kBins);
@@ -101,11 +138,11 @@ RayEvidence collect_evidence(std::span<const Disk> disks, const MeasuredRays& ra
       for (std::uint32_t* counter : counters) count_one(*counter);
     };
     const float beyond_m = cast.ends() == RayEnds::nowhere ? 0 : options.most_margin_m();
-    present.cast(cast, {options.phase, options.stride, beyond_m, RayCasting::Hits::all}, executor,
-                 count);
+    RayCasting casting = {{}, beyond_m, RayCasting::Hits::all};
+    if (options.parts > 1) casting.numbers = cast.part(options.parts, options.part);
+    present.cast(cast, casting, executor, count);
   };
-  count_rays(rays);
-  if (empty != nullptr) count_rays(*empty);
+  for (const MeasuredRays* cast : rays) count_rays(*cast);
   return evidence;
 }
 

@@ -11,6 +11,7 @@
 #include "adasplats/core/maths/ray.h"
 #include "adasplats/scene/intersect.h"
 #include "adasplats/splats/rays/disk_evidence.h"
+#include "adasplats/splats/rays/measured_ray.h"
 
 namespace adasplats {
 
@@ -37,6 +38,10 @@ class MeasuredRays {
   RayEnds ends() const { return ends_; }
   /// From the sensor through the point and `beyond_m` farther.
   Ray ray(std::size_t i, float beyond_m) const;
+  /// Numbers of the rays of one part of so many, 2 or kRayParts, in their order by kRayParts.
+  std::span<const std::uint32_t> part(std::uint32_t parts, std::uint32_t part) const {
+    return std::span(by_part_).subspan(begins_.first(parts, part), begins_.count(parts, part));
+  }
   /// Begins to load what ray(i) reads: rays that stand side by side have points all over the cloud.
   void prefetch(std::size_t i) const {
     __builtin_prefetch(&cloud_.positions[points_[i]]);
@@ -44,18 +49,38 @@ class MeasuredRays {
   }
 
  private:
+  void order_by_part(const Executor& executor);
+
   const PointCloud& cloud_;
   RayEnds ends_;
   std::vector<std::uint32_t> points_;
+  std::vector<std::uint32_t> by_part_;  ///< numbers of the rays part by part
+  RayPartBegins begins_;
 };
 
 /// Empty beams as points for rays that end nowhere: `reach_m` from where they left the sensor.
 PointCloud ends_of(const std::vector<EmptyBeam>& beams, float reach_m);
 
 /// How far empty beams say that nothing is: as far as all but one in twenty of the points with a
-/// beam are from their sensor. Farther off what returns nothing may still be there. 0 without
-/// points.
+/// beam are from their sensor, in whole centimetres. Farther off what returns nothing may still be
+/// there. 0 without points.
 float empty_reach_m(const PointCloud& cloud);
+
+/// How many beams are how long, of points that need not be in memory together.
+class RangeCounts {
+ public:
+  void add(float range_m);
+  void add(const RangeCounts& other);
+  float empty_reach_m() const;  ///< of the points that were added
+  std::uint64_t all() const { return all_; }
+
+ private:
+  static constexpr float kUnit_m = 0.01F;
+  static constexpr float kMost_m = 10'000;  ///< longer beams are counted as such
+
+  std::vector<std::uint64_t> counts_;
+  std::uint64_t all_ = 0;
+};
 
 /// How measured rays bear disks out, by how far from a disk's middle they cross it: bin b holds
 /// squared distances from b to b + 1 of kBins parts of the squared radius (rings of equal area).
@@ -69,10 +94,9 @@ struct RayEvidence {
 
 DiskEvidence evidence_of(const RayEvidence& evidence, std::size_t disk);
 
-/// Counts, for every disk that `rays` (and `empty` ones) cross, however many they are; disks with
-/// no radius are not there. Whole numbers: the same on any number of threads.
-RayEvidence collect_evidence(std::span<const Disk> disks, const MeasuredRays& rays,
-                             const EvidenceOptions& options, const Executor& executor,
-                             const MeasuredRays* empty = nullptr);
+/// Counts, for every disk that rays cross, however many they are; disks with no radius are not
+/// there. Whole numbers: the same on any number of threads.
+RayEvidence collect_evidence(std::span<const Disk> disks, std::span<const MeasuredRays* const> rays,
+                             const EvidenceOptions& options, const Executor& executor);
 
 }  // namespace adasplats

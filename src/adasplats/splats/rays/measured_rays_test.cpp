@@ -7,6 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <set>
+#include <span>
+#include <vector>
 
 #include "adasplats/core/maths/random.h"
 
@@ -48,10 +52,13 @@ EvidenceOptions tested_options() {
   options.range_margin_m = 0.15F;
   options.height_margin_m = 0.03F;
   options.least_cosine = 0.2F;
-  options.stride = 1;
-  options.phase = 0;
+  options.parts = 1;
+  options.part = 0;
   return options;
 }
+
+/// One set of rays as several may be.
+std::vector<const MeasuredRays*> one(const MeasuredRays& rays) { return {&rays}; }
 
 /// Oracle: every ray with every disk.
 RayEvidence by_brute_force(std::span<const Disk> disks, const MeasuredRays& rays,
@@ -59,7 +66,13 @@ RayEvidence by_brute_force(std::span<const Disk> disks, const MeasuredRays& rays
   RayEvidence evidence;
   evidence.confirmed.resize(disks.size() * RayEvidence::kBins);
   evidence.contradicted.resize(disks.size() * RayEvidence::kBins);
-  for (std::size_t i = options.phase; i < rays.size(); i += options.stride) {
+  std::vector<std::uint32_t> numbers(rays.size());
+  std::iota(numbers.begin(), numbers.end(), 0U);
+  if (options.parts > 1) {
+    const auto part = rays.part(options.parts, options.part);
+    numbers.assign(part.begin(), part.end());
+  }
+  for (const std::uint32_t i : numbers) {
     const Ray ray = rays.ray(i, 0.3F);  // 0.15 + 0.03 / 0.2
     for (std::size_t d = 0; d < disks.size(); ++d) {
       if (!(disks[d].radius > 0)) continue;
@@ -151,46 +164,69 @@ TEST(CollectEvidence, EqualsBruteForce) {
   }
   const Executor executor(2);
   const MeasuredRays rays(cloud, 2, executor);
-  for (const std::uint32_t phase : {0U, 2U}) {
+  for (const std::uint32_t part : {0U, 3U}) {
     EvidenceOptions options = tested_options();
-    options.stride = 3;
-    options.phase = phase;
-    const RayEvidence found = collect_evidence(disks, rays, options, executor);
+    options.parts = 4;
+    options.part = part;
+    const RayEvidence found = collect_evidence(disks, one(rays), options, executor);
     const RayEvidence expected = by_brute_force(disks, rays, options);
     EXPECT_GT(total(expected.confirmed), 500U);
-    EXPECT_GT(total(expected.contradicted), 4000U);
+    EXPECT_GT(total(expected.contradicted), 3000U);
     expect_equal_but(4, found.confirmed, expected.confirmed);
     expect_equal_but(4, found.contradicted, expected.contradicted);
   }
 }
 
-TEST(CollectEvidence, PhasesPartitionTheRaysAndThreadsDoNotMatter) {
+TEST(CollectEvidence, PartsAreAllRaysTogetherAndThreadsDoNotMatter) {
   // More rays than one batch of the implementation holds, in 1, and in 3 parts.
   const PointCloud cloud = random_cloud(200000);
   const Executor executor(2);
   const MeasuredRays rays(cloud, 2, executor);
   const std::vector<Disk> disks = random_disks(20);
   EvidenceOptions options = tested_options();
-  const RayEvidence all = collect_evidence(disks, rays, options, executor);
+  const RayEvidence all = collect_evidence(disks, one(rays), options, executor);
   expect_equal_but(40, all.confirmed, by_brute_force(disks, rays, options).confirmed);
   for (const int threads : {1, 3}) {
-    const RayEvidence again = collect_evidence(disks, rays, options, Executor(threads));
+    const RayEvidence again = collect_evidence(disks, one(rays), options, Executor(threads));
     EXPECT_EQ(again.confirmed, all.confirmed);
     EXPECT_EQ(again.contradicted, all.contradicted);
   }
-  RayEvidence sum;
-  sum.confirmed.resize(all.confirmed.size());
-  sum.contradicted.resize(all.confirmed.size());
-  options.stride = 3;
-  for (options.phase = 0; options.phase < 3; ++options.phase) {
-    const RayEvidence part = collect_evidence(disks, rays, options, executor);
-    for (std::size_t k = 0; k < sum.confirmed.size(); ++k) {
-      sum.confirmed[k] += part.confirmed[k];
-      sum.contradicted[k] += part.contradicted[k];
+  for (const std::uint32_t parts : {2U, 4U}) {
+    RayEvidence sum;
+    sum.confirmed.resize(all.confirmed.size());
+    sum.contradicted.resize(all.confirmed.size());
+    options.parts = parts;
+    for (options.part = 0; options.part < parts; ++options.part) {
+      const std::size_t count = rays.part(parts, options.part).size();
+      EXPECT_NEAR(static_cast<double>(count * parts), static_cast<double>(rays.size()), 4000);
+      const RayEvidence part = collect_evidence(disks, one(rays), options, executor);
+      for (std::size_t k = 0; k < sum.confirmed.size(); ++k) {
+        sum.confirmed[k] += part.confirmed[k];
+        sum.contradicted[k] += part.contradicted[k];
+      }
     }
+    EXPECT_EQ(sum.confirmed, all.confirmed);
+    EXPECT_EQ(sum.contradicted, all.contradicted);
   }
-  EXPECT_EQ(sum.confirmed, all.confirmed);
-  EXPECT_EQ(sum.contradicted, all.contradicted);
+}
+
+TEST(MeasuredRays, APieceHasItsRaysInThePartsOfTheWhole) {
+  const PointCloud cloud = random_cloud(4000);
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t i = 0; i < cloud.size(); i += 3) some.push_back(i);
+  const PointCloud piece = gather(cloud, some);
+  const Executor executor(2);
+  const MeasuredRays all(cloud, 2, executor), few(piece, 2, executor);
+  const auto part_of = [](const MeasuredRays& rays, std::uint32_t part) {
+    std::set<std::uint32_t> points;
+    for (const std::uint32_t i : rays.part(4, part)) points.insert(rays.point(i));
+    return points;
+  };
+  for (std::uint32_t part = 0; part < 4; ++part) {
+    const std::set<std::uint32_t> whole = part_of(all, part), own = part_of(few, part);
+    ASSERT_GT(own.size(), 200U);
+    for (const std::uint32_t i : own) ASSERT_TRUE(whole.contains(some[i]));
+  }
 }
 
 TEST(CollectEvidence, DisksWithNoRadiusAreNotThere) {
@@ -198,13 +234,13 @@ TEST(CollectEvidence, DisksWithNoRadiusAreNotThere) {
   const Executor executor(2);
   const MeasuredRays rays(cloud, 2, executor);
   std::vector<Disk> disks = random_disks(40);
-  const RayEvidence before = collect_evidence(disks, rays, tested_options(), executor);
+  const RayEvidence before = collect_evidence(disks, one(rays), tested_options(), executor);
   const Disk absent = {{0, 0, 0}, 0, {0, 0, 1}};
   Disk not_a_number = absent, negative = absent;
   not_a_number.radius = std::numeric_limits<float>::quiet_NaN();
   negative.radius = -1;
   disks.insert(disks.begin(), {absent, not_a_number, negative});
-  const RayEvidence after = collect_evidence(disks, rays, tested_options(), executor);
+  const RayEvidence after = collect_evidence(disks, one(rays), tested_options(), executor);
   constexpr std::ptrdiff_t kFirst = 3 * RayEvidence::kBins;
   for (const auto& [a, b] : {std::pair(&before.confirmed, &after.confirmed),
                              std::pair(&before.contradicted, &after.contradicted)}) {
@@ -212,12 +248,13 @@ TEST(CollectEvidence, DisksWithNoRadiusAreNotThere) {
     EXPECT_TRUE(std::all_of(b->begin(), b->begin() + kFirst, [](auto n) { return n == 0; }));
   }
   const RayEvidence none =
-      collect_evidence(std::span(disks).first(3), rays, tested_options(), executor);
+      collect_evidence(std::span(disks).first(3), one(rays), tested_options(), executor);
   EXPECT_EQ(none.confirmed, std::vector<std::uint32_t>(3 * RayEvidence::kBins));
-  EXPECT_TRUE(collect_evidence({}, rays, tested_options(), executor).confirmed.empty());
+  EXPECT_TRUE(collect_evidence({}, one(rays), tested_options(), executor).confirmed.empty());
   const PointCloud empty;
   const MeasuredRays no_rays(empty, 2, executor);
-  EXPECT_EQ(total(collect_evidence(disks, no_rays, tested_options(), executor).contradicted), 0U);
+  EXPECT_EQ(total(collect_evidence(disks, one(no_rays), tested_options(), executor).contradicted),
+            0U);
 }
 
 TEST(CollectEvidence, RingsAndMarginByHand) {
@@ -240,7 +277,7 @@ TEST(CollectEvidence, RingsAndMarginByHand) {
   const EvidenceOptions options = tested_options();
   const Executor executor(1);
   const MeasuredRays rays(cloud, 2, executor);
-  const RayEvidence evidence = collect_evidence(disk, rays, options, executor);
+  const RayEvidence evidence = collect_evidence(disk, one(rays), options, executor);
   using Counts = std::vector<std::uint32_t>;
   EXPECT_EQ(evidence.confirmed, (Counts{2, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(evidence.contradicted, (Counts{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 1}));
@@ -284,7 +321,8 @@ TEST(CollectEvidence, EmptyBeamsContradictAllThatTheyCross) {
                                    {{9.99F, 5, 0}, 1, {1, 0, 0}},
                                    {{10.01F, 0, 0}, 1, {1, 0, 0}},
                                    {{20, 0, 0}, 1, {1, 0, 0}}};
-  const RayEvidence evidence = collect_evidence(disks, rays, tested_options(), executor, &empty);
+  const RayEvidence evidence =
+      collect_evidence(disks, {{&rays, &empty}}, tested_options(), executor);
   const auto no = [&](std::size_t i) {
     const DiskEvidence own = evidence_of(evidence, i);
     return total({own.contradicted.begin(), own.contradicted.end()});
@@ -320,7 +358,7 @@ TEST(CollectEvidence, SeesEveryDiskOfARay) {
       std::vector<Disk> disks;
       for (int i = 0; i < count; ++i)
         disks.push_back({{5 + step_m * static_cast<float>(i), 0, 0}, 1, {1, 0, 0}});
-      const RayEvidence evidence = collect_evidence(disks, rays, options, executor);
+      const RayEvidence evidence = collect_evidence(disks, one(rays), options, executor);
       // The first ray goes through the middle, the second farther out; the third ends at the disks
       // up to the margin of 0.15 + 0.03 m behind its point.
       for (std::size_t i = 0; i < disks.size(); ++i) {

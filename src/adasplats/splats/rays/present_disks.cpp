@@ -70,17 +70,17 @@ void PresentDisks::cast(Batch& batch, std::size_t depth, bool all, const Executo
 
 void PresentDisks::cast(const MeasuredRays& rays, const RayCasting& casting,
                         const Executor& executor, Body body) const {
-  if (empty() || rays.size() <= casting.first) return;
+  const std::size_t count = casting.numbers ? casting.numbers->size() : rays.size();
+  if (empty() || count == 0) return;
+  const auto number_of = [&](std::size_t k) { return casting.numbers ? (*casting.numbers)[k] : k; };
   const bool all = casting.hits == RayCasting::Hits::all;
-  const std::size_t count = (rays.size() - casting.first + casting.stride - 1) / casting.stride;
   const std::size_t depth = all ? std::min(kHitsAtFirst, disks_.size()) : 1;
   const ProgressPass pass(executor, count);
   executor.for_chunks(count, kFineGrain, [&](std::size_t begin, std::size_t end) {
     Batch batch;
     for (std::size_t k = begin; k < end; ++k) {
-      const std::size_t number = casting.first + k * casting.stride;
-      const std::size_t later = number + kLoadedAhead * casting.stride;
-      if (later < rays.size()) rays.prefetch(later);
+      const std::size_t number = number_of(k);
+      if (k + kLoadedAhead < count) rays.prefetch(number_of(k + kLoadedAhead));
       batch.numbers.push_back(number);
       batch.rays.push_back(rays.ray(number, casting.beyond_m));
       batch.ranges_m.push_back(rays.range_m(number));

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,9 +19,8 @@ namespace adasplats {
 
 /// Which of some measured rays are cast, and how.
 struct RayCasting {
-  std::size_t first = 0;
-  std::size_t stride = 1;  ///< every n-th ray
-  float beyond_m = 0;      ///< so much farther than the points
+  std::optional<std::span<const std::uint32_t>> numbers;  ///< of the rays; nothing: all of them
+  float beyond_m = 0;                                     ///< so much farther than the points
   enum class Hits : std::uint8_t { nearest, all } hits = Hits::nearest;
 };
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -40,11 +41,18 @@ template <class Place>
 class ReflectancesOn {
  public:
   /// `fallback`: values for disks in cells that no ray met, one a disk; NaN: the mean of all.
+  /// `response`: of the sensor, as result() has it, which then is not looked for; may be null.
   ReflectancesOn(const Place& place, const std::vector<Disk>& disks,
-                 const std::vector<float>& fallback)
-      : place_(place), disks_(disks), fallback_(fallback) {
+                 const std::vector<float>& fallback, const IntensityResponse* response = nullptr)
+      : place_(place), disks_(disks), fallback_(fallback), is_response_known_(response != nullptr) {
     gains_.of_ranges.fill(1.0F);
     gains_.of_cosines.fill(1.0F);
+    if (response == nullptr) return;
+    if (response->range_gains.size() != gains_.of_ranges.size() ||
+        response->incidence_gains.size() != gains_.of_cosines.size())
+      throw std::logic_error("ReflectancesOn: a response with other nodes");
+    std::ranges::copy(response->range_gains, gains_.of_ranges.begin());
+    std::ranges::copy(response->incidence_gains, gains_.of_cosines.begin());
   }
 
   /// Without rays, or with fewer than 1000 rays that meet their point: the fallback and an empty
@@ -53,13 +61,13 @@ class ReflectancesOn {
     if (disks_.empty()) return {fallback_, {}};
     const auto& disks = place_.copied(disks_);
     observe(disks, measured);
-    if (ray_count_ < kLeastRays) return {fallback_, {}};
+    if (ray_count_ < (is_response_known_ ? 1 : kLeastRays)) return {fallback_, {}};
     order_cells(disks);
     sums_ = place_.template array<ValueSums>(disks_.size());
     values_ = place_.template array<float>(disks_.size());
     const auto& fallback = place_.copied(fallback_);
     fit_values(fallback.data());
-    for (int turn = 0; turn < kTurns; ++turn) {
+    for (int turn = 0; turn < (is_response_known_ ? 0 : kTurns); ++turn) {
       fit_gains();
       fit_values(fallback.data());
     }
@@ -173,6 +181,7 @@ class ReflectancesOn {
   const Place& place_;
   const std::vector<Disk>& disks_;
   const std::vector<float>& fallback_;
+  bool is_response_known_;
   double intensity_unit_ = 1;
   std::uint64_t ray_count_ = 0;
   ResponseGains gains_;
