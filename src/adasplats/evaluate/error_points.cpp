@@ -132,25 +132,22 @@ ErrorPoints distance_points(PointCloud simulated, const PointCloud& original,
   return points;
 }
 
-ErrorPoints beam_points(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
-                        const KittiSequence& sequence, const LabelScheme& labels,
-                        const ResimulateOptions& options, const Executor& executor,
-                        ProgressSink& progress) {
+ErrorPoints beam_points(std::vector<ScanErrors> scans, const Trajectory& trajectory,
+                        std::size_t primitive_count) {
+  if (scans.size() != trajectory.size())
+    throw std::logic_error("beam_points: " + std::to_string(scans.size()) + " scans, " +
+                           std::to_string(trajectory.size()) + " poses");
   ErrorPoints points;
-  points.primitive_count = scene.primitive_count();
+  points.primitive_count = primitive_count;
   std::vector<Vec3d> places;
-  progress.begin_step("errors of beams", sequence.scans.size());
-  for (std::size_t index = 0; index < sequence.scans.size(); ++index) {
-    const ScanErrors scan =
-        resimulate_scan(tracer, scene, scene_origin, sequence, index, labels, options, executor);
-    const RigidTransform& world_from_sensor = sequence.trajectory[index].world_from_sensor;
+  for (std::size_t index = 0; index < scans.size(); ++index) {
+    const ScanErrors scan = std::move(scans[index]);  // its memory is given back
+    const RigidTransform& world_from_sensor = trajectory[index].world_from_sensor;
     for (const Vec3f p : scan.measured) places.push_back(world_from_sensor * vec_cast<double>(p));
     points.errors_m.insert(points.errors_m.end(), scan.errors_m.begin(), scan.errors_m.end());
     points.primitives.insert(points.primitives.end(), scan.primitives.begin(),
                              scan.primitives.end());
-    progress.advance(index + 1);
   }
-  progress.end_step();
   std::vector<std::uint32_t> rows(places.size());
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<std::uint32_t>(i);
   set_positions(points.cloud, places, rows);

@@ -3,18 +3,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
-#include <span>
 #include <vector>
 
-#include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/cloud/points/point_cloud.h"
-#include "adasplats/cloud/sequence/kitti_sequence.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/executor.h"
-#include "adasplats/core/progress.h"
 #include "adasplats/evaluate/resimulate.h"
-#include "adasplats/scene/scene.h"
-#include "adasplats/trace/tracer.h"
 
 namespace adasplats {
 
@@ -33,12 +29,12 @@ struct ErrorPoints {
 ErrorPoints distance_points(PointCloud simulated, const PointCloud& original,
                             const Executor& executor);
 
-/// The measured points of all scans, in world coordinates, with predicted minus measured range: the
-/// beams that `resimulate` takes. Errors: as resimulate's.
-ErrorPoints beam_points(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
-                        const KittiSequence& sequence, const LabelScheme& labels,
-                        const ResimulateOptions& options, const Executor& executor,
-                        ProgressSink& progress);
+/// The measured points of all scans, in world coordinates, with predicted minus measured range.
+/// `scans`: what resimulate() kept of single beams; `trajectory`: one pose a scan, those that they
+/// were cast with; `primitive_count`: of the model. Throws std::logic_error where there are not as
+/// many poses as scans.
+ErrorPoints beam_points(std::vector<ScanErrors> scans, const Trajectory& trajectory,
+                        std::size_t primitive_count);
 
 /// Writes a PLY: x y z error_m [intensity] [label] [splat] (x y z as doubles where the origin is
 /// not zero; splat: the primitive, -1 for none; how many there were is a comment), which load_cloud

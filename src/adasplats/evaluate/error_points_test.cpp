@@ -142,37 +142,28 @@ TEST(ErrorPoints, DistancesAreThoseOfC2C) {
   expect_error(ErrorKind::data, {"no points"}, [&] { distance_points({}, original, executor); });
 }
 
-// Oracle: a wall 10 m ahead, by hand.
+// Oracle: by hand; +x of the sensor is +y of the world.
 TEST(ErrorPoints, BeamsStandInTheWorld) {
-  const TemporaryFolder folder;
-  KittiSequence sequence;
-  sequence.folder = folder.path();
   const Vec3d positions[] = {{7000, 100, 2}, {7001, 100, 2}};
-  for (int k = 0; k < 2; ++k) {
-    sequence.scans.push_back(
-        folder.write("velodyne/" + std::to_string(k) + ".bin",
-                     std::vector<float>{10, 0, 0, 0, 9.75F, 0, 0, 0, -10, 0, 0, 0, 0.5F, 0, 0, 0}));
-    sequence.trajectory.emplace_back();
-    // +x of the sensor is +y of the world.
-    sequence.trajectory.back().world_from_sensor = {{{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}},
-                                                    positions[k]};
-  }
-  const Vec3d scene_origin = {7000, 0, 0};
-  const std::vector<Disk> disks = {{{0, 110, 2}, 1000, {0, 1, 0}}};
-  const SceneView scene{disks, nullptr};
-  const auto tracer = make_brute_force_tracer(scene);
-  ProgressSink quiet;
-  const ErrorPoints points = beam_points(*tracer, scene, scene_origin, sequence,
-                                         semantickitti_labels(), {}, Executor(1), quiet);
-  ASSERT_EQ(points.cloud.size(), 6U);  // one of each is nearer than 2.5 m
+  Trajectory trajectory(2);
+  for (std::size_t k = 0; k < 2; ++k)
+    trajectory[k].world_from_sensor = {{{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}}, positions[k]};
+  const ScanErrors scan = {
+      {{10, 0, 0}, {9.75F, 0, 0}, {-10, 0, 0}}, {0, 0.25F, kNaN}, {4, 2, Hit::kNone}};
+  const ErrorPoints points = beam_points({scan, scan}, trajectory, 5);
+  EXPECT_EQ(points.primitive_count, 5U);
+  ASSERT_EQ(points.cloud.size(), 6U);
   ASSERT_EQ(points.errors_m.size(), 6U);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_LT(length(points.cloud.world(3 * k) - (positions[k] + Vec3d{0, 10, 0})), 1e-4);
     EXPECT_LT(length(points.cloud.world(3 * k + 2) - (positions[k] - Vec3d{0, 10, 0})), 1e-4);
-    EXPECT_NEAR(points.errors_m[3 * k], 0, 1e-5F);
-    EXPECT_NEAR(points.errors_m[3 * k + 1], 0.25F, 1e-5F);
+    EXPECT_EQ(points.errors_m[3 * k + 1], 0.25F);
     EXPECT_TRUE(std::isnan(points.errors_m[3 * k + 2]));
+    EXPECT_EQ(points.primitives[3 * k], 4U);
+    EXPECT_EQ(points.primitives[3 * k + 2], Hit::kNone);
   }
+  EXPECT_TRUE(beam_points({}, {}, 5).cloud.empty());
+  EXPECT_THROW(beam_points({scan}, trajectory, 5), std::logic_error);
 }
 
 }  // namespace

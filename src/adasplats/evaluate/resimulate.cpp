@@ -170,6 +170,19 @@ CastScan cast_scan(const CastPlace& setting, const KittiSequence& sequence, std:
   return result;
 }
 
+/// What is kept of a scan's single beams.
+ScanErrors errors_of(CastScan scan) {
+  ScanErrors errors;
+  errors.measured = std::move(scan.measured.positions);
+  errors.errors_m.reserve(scan.beams.size());
+  errors.primitives.reserve(scan.beams.size());
+  for (const Beam& beam : scan.beams) {
+    errors.errors_m.push_back(beam.error_m);
+    errors.primitives.push_back(beam.primitive);
+  }
+  return errors;
+}
+
 /// Means of the scans' distances, as lidar-nerf and LiDAR4D average them over frames.
 class MeanCloudDistance {
  public:
@@ -209,30 +222,47 @@ BeamAccuracy accuracy_where(const std::vector<Beam>& beams, const Predicate& pre
   return accuracy_of(errors_m);
 }
 
+/// The errors of the beams of each of `parts`, in their order. `part_of`: of a beam; beyond the
+/// last part: of none. The beams are gone through once, however many parts there are.
+template <class PartOf>
+std::vector<std::vector<float>> errors_by_part(const std::vector<Beam>& beams, std::size_t parts,
+                                               const PartOf& part_of) {
+  std::vector<std::vector<float>> errors_m(parts);
+  for (const Beam& beam : beams)
+    if (const std::size_t part = part_of(beam); part < parts)
+      errors_m[part].push_back(beam.error_m);
+  return errors_m;
+}
+
 void add_breakdowns(ResimulateResult& result, const std::vector<Beam>& beams,
                     const CastPlace& setting, bool labelled) {
-  for (std::size_t bin = 0; bin < setting.ranges.size(); ++bin) {
-    result.by_range.emplace_back(
-        setting.ranges.name_of(bin),
-        accuracy_where(beams, [&](const Beam& beam) { return beam.range_bin == bin; }));
-  }
-  for (std::size_t bin = 0; bin < setting.incidences.size(); ++bin) {
-    result.by_incidence.emplace_back(
-        setting.incidences.name_of(bin), accuracy_where(beams, [&](const Beam& beam) {
-          return !std::isnan(beam.error_m) && beam.incidence_bin == bin;
-        }));
-  }
-  for (int elevation = -90; elevation <= 90; ++elevation) {
-    BeamAccuracy accuracy =
-        accuracy_where(beams, [&](const Beam& beam) { return beam.elevation_deg == elevation; });
-    if (accuracy.rays == 0) continue;
-    result.by_elevation.emplace_back(std::to_string(elevation) + " deg", std::move(accuracy));
+  const Bins& ranges = setting.ranges;
+  const auto by_range =
+      errors_by_part(beams, ranges.size(), [](const Beam& beam) { return beam.range_bin; });
+  for (std::size_t bin = 0; bin < ranges.size(); ++bin)
+    result.by_range.emplace_back(ranges.name_of(bin), accuracy_of(by_range[bin]));
+  const Bins& incidences = setting.incidences;
+  const auto by_incidence = errors_by_part(beams, incidences.size(), [&](const Beam& beam) {
+    return std::isnan(beam.error_m) ? incidences.size() : beam.incidence_bin;
+  });
+  for (std::size_t bin = 0; bin < incidences.size(); ++bin)
+    result.by_incidence.emplace_back(incidences.name_of(bin), accuracy_of(by_incidence[bin]));
+  constexpr int kDown_deg = -90, kUp_deg = 90;
+  const auto by_elevation = errors_by_part(beams, kUp_deg - kDown_deg + 1, [](const Beam& beam) {
+    return static_cast<std::size_t>(beam.elevation_deg - kDown_deg);
+  });
+  for (int elevation = kDown_deg; elevation <= kUp_deg; ++elevation) {
+    const auto& errors_m = by_elevation[static_cast<std::size_t>(elevation - kDown_deg)];
+    if (errors_m.empty()) continue;
+    result.by_elevation.emplace_back(std::to_string(elevation) + " deg", accuracy_of(errors_m));
   }
   if (!labelled) return;
+  constexpr std::size_t kClassIds = 0x10000;
+  const auto by_class =
+      errors_by_part(beams, kClassIds, [](const Beam& beam) { return beam.class_id; });
   for (const SemanticClass& semantic_class : setting.labels.classes()) {
-    BeamAccuracy accuracy =
-        accuracy_where(beams, [&](const Beam& beam) { return beam.class_id == semantic_class.id; });
-    if (accuracy.rays > 0) result.by_class.emplace_back(semantic_class.name, std::move(accuracy));
+    const auto& errors_m = by_class[semantic_class.id];
+    if (!errors_m.empty()) result.by_class.emplace_back(semantic_class.name, accuracy_of(errors_m));
   }
 }
 
@@ -250,15 +280,16 @@ void check(const ResimulateOptions& options) {
 ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
                             const KittiSequence& sequence, const LabelScheme& labels,
                             const ResimulateOptions& options, const Executor& executor,
-                            ProgressSink& progress) {
+                            ProgressSink& progress, KeepBeams keep) {
   check(options);
   const CastPlace setting{
       tracer, scene, scene_origin, labels, options, range_bins(options), incidence_bins()};
   std::vector<Beam> beams;
   MeanCloudDistance clouds;
+  ResimulateResult result;
   progress.begin_step("re-simulate", sequence.scans.size());
   for (std::size_t index = 0; index < sequence.scans.size(); ++index) {
-    const CastScan scan = cast_scan(setting, sequence, index, executor);
+    CastScan scan = cast_scan(setting, sequence, index, executor);
     beams.insert(beams.end(), scan.beams.begin(), scan.beams.end());
     if (!scan.predicted.empty()) {
       clouds.add(cloud_distance(scan.predicted, scan.measured, executor));
@@ -266,6 +297,7 @@ ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d 
       progress.warn(sequence.scans[index].string() +
                     ": no beam hit the model; the scan is left out of the cloud distances");
     }
+    if (keep == KeepBeams::yes) result.errors.push_back(errors_of(std::move(scan)));
     progress.advance(index + 1);
   }
   progress.end_step();
@@ -273,28 +305,11 @@ ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d 
     throw Error(ErrorKind::data, sequence.folder.string() +
                                      ": no measured beams within the ranges and classes kept");
   }
-  ResimulateResult result;
   result.all = accuracy_where(beams, [](const Beam&) { return true; });
   result.upward = accuracy_where(beams, [](const Beam& beam) { return beam.upward; });
   result.clouds = clouds.mean();
   result.beams = sequence.beams.description();
   add_breakdowns(result, beams, setting, !sequence.labels.empty());
-  return result;
-}
-
-ScanErrors resimulate_scan(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
-                           const KittiSequence& sequence, std::size_t index,
-                           const LabelScheme& labels, const ResimulateOptions& options,
-                           const Executor& executor) {
-  check(options);
-  const CastPlace setting{
-      tracer, scene, scene_origin, labels, options, range_bins(options), incidence_bins()};
-  CastScan scan = cast_scan(setting, sequence, index, executor);
-  ScanErrors result{std::move(scan.measured.positions), {}, {}};
-  for (const Beam& beam : scan.beams) {
-    result.errors_m.push_back(beam.error_m);
-    result.primitives.push_back(beam.primitive);
-  }
   return result;
 }
 

@@ -40,6 +40,16 @@ struct BeamAccuracy {
   double spread_m = 0;  ///< median of |error - bias_m|
 };
 
+/// What single beams of one scan gave.
+struct ScanErrors {
+  std::vector<Vec3f> measured;            ///< sensor frame, m
+  std::vector<float> errors_m;            ///< predicted - measured range; NaN: no hit
+  std::vector<std::uint32_t> primitives;  ///< that they hit; Hit::kNone: none
+};
+
+/// Whether what single beams gave is kept: 20 bytes a beam.
+enum class KeepBeams : std::uint8_t { no, yes };
+
 struct ResimulateResult {
   BeamAccuracy all;
   /// Of the beams that go as far up in the world as those that are known to have returned nothing
@@ -55,6 +65,7 @@ struct ResimulateResult {
   /// "-25 deg", ...: of the beam in the sensor's frame, rounded down. Where the biases differ, the
   /// lasers do: what one of them measures, no model can predict for all.
   std::vector<std::pair<std::string, BeamAccuracy>> by_elevation;
+  std::vector<ScanErrors> errors;  ///< one a scan of the sequence; empty unless beams are kept
 };
 
 /// Casts each measured beam of a held-out sequence again, from where it started (sequence.beams)
@@ -62,19 +73,6 @@ struct ResimulateResult {
 ResimulateResult resimulate(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
                             const KittiSequence& sequence, const LabelScheme& labels,
                             const ResimulateOptions& options, const Executor& executor,
-                            ProgressSink& progress);
-
-/// What single beams of one scan gave, for pictures.
-struct ScanErrors {
-  std::vector<Vec3f> measured;            ///< sensor frame, m
-  std::vector<float> errors_m;            ///< predicted - measured range; NaN: no hit
-  std::vector<std::uint32_t> primitives;  ///< that they hit; Hit::kNone: none
-};
-
-/// The beams of one scan that `resimulate` takes. Errors: as resimulate's.
-ScanErrors resimulate_scan(const Tracer& tracer, const SceneView& scene, Vec3d scene_origin,
-                           const KittiSequence& sequence, std::size_t index,
-                           const LabelScheme& labels, const ResimulateOptions& options,
-                           const Executor& executor);
+                            ProgressSink& progress, KeepBeams keep = KeepBeams::no);
 
 }  // namespace adasplats

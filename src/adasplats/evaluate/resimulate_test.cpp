@@ -52,14 +52,15 @@ class Resimulate : public ::testing::Test {
   }
 
   /// A wall 10 m ahead of the sensor: a disk of 1 km in the plane y = 110 of the world.
-  ResimulateResult run(const KittiSequence& held_out, const ResimulateOptions& options = {}) {
+  ResimulateResult run(const KittiSequence& held_out, const ResimulateOptions& options = {},
+                       KeepBeams keep = KeepBeams::no) {
     const std::vector<Disk> disks = {
         {vec_cast<float>(position_ + Vec3d{0, 10, 0} - origin_), 1000.0F, {0, 1, 0}}};
     const SceneView scene{disks, nullptr};
     const auto tracer = make_brute_force_tracer(scene);
     ProgressSink quiet;
     return resimulate(*tracer, scene, origin_, held_out, semantickitti_labels(), options,
-                      Executor(2), quiet);
+                      Executor(2), quiet, keep);
   }
 
   std::filesystem::path folder_;
@@ -89,20 +90,19 @@ TEST_F(Resimulate, KnownOffsetsGiveExactShares) {
   EXPECT_TRUE(r.by_class.empty());
 }
 
-TEST_F(Resimulate, SingleBeamsOfAScan) {
+TEST_F(Resimulate, SingleBeamsAreKeptWhereTheyAreAskedFor) {
   const KittiSequence held_out = sequence({{10, 0, 0}, {0.5F, 0, 0}, {9.75F, 0, 0}, {-10, 0, 0}});
-  const std::vector<Disk> disks = {
-      {vec_cast<float>(position_ + Vec3d{0, 10, 0} - origin_), 1000.0F, {0, 1, 0}}};
-  const SceneView scene{disks, nullptr};
-  const auto tracer = make_brute_force_tracer(scene);
-  const ScanErrors scan = resimulate_scan(*tracer, scene, origin_, held_out, 0,
-                                          semantickitti_labels(), {}, Executor(1));
+  EXPECT_TRUE(run(held_out).errors.empty());
+  const ResimulateResult kept = run(held_out, {}, KeepBeams::yes);
+  ASSERT_EQ(kept.errors.size(), 1U);
+  const ScanErrors& scan = kept.errors[0];
   ASSERT_EQ(scan.measured.size(), 3U);  // the second is nearer than 2.5 m
   EXPECT_EQ(scan.measured[1].x, 9.75F);
   ASSERT_EQ(scan.errors_m.size(), 3U);
   EXPECT_NEAR(scan.errors_m[0], 0.0F, 1e-5F);
   EXPECT_NEAR(scan.errors_m[1], 0.25F, 1e-5F);
   EXPECT_TRUE(std::isnan(scan.errors_m[2]));
+  EXPECT_EQ(scan.primitives, (std::vector<std::uint32_t>{0, 0, Hit::kNone}));
 }
 
 TEST_F(Resimulate, IncidenceIsAgainstTheSurfaceOfHitsAlone) {
@@ -202,6 +202,21 @@ TEST_F(Resimulate, UpwardIsInTheWorld) {
   const ResimulateResult nodding = run(held_out);
   EXPECT_EQ(nodding.upward.rays, 2U);
   EXPECT_DOUBLE_EQ(nodding.upward.no_hit, 0.0);  // what is behind went down
+}
+
+// Oracle: beams of each elevation and incidence, counted by hand; what falls into none is in none.
+TEST_F(Resimulate, BreakdownsAddUp) {
+  const ResimulateResult r =
+      run(sequence({{10, 0, 0.1F}, {10, 0, 0.2F}, {10, 0, -0.1F}, {-10, 0, 0.1F}}));
+  ASSERT_EQ(r.by_elevation.size(), 3U);
+  EXPECT_EQ(r.by_elevation[0].first, "-1 deg");
+  EXPECT_EQ(r.by_elevation[0].second.rays, 1U);
+  EXPECT_EQ(r.by_elevation[1].first, "0 deg");
+  EXPECT_EQ(r.by_elevation[1].second.rays, 2U);
+  EXPECT_DOUBLE_EQ(r.by_elevation[1].second.no_hit, 0.5);
+  EXPECT_EQ(r.by_elevation[2].first, "1 deg");
+  EXPECT_EQ(r.by_elevation[2].second.rays, 1U);
+  EXPECT_EQ(r.by_incidence[0].second.rays, 3U) << "the beam without a hit has no incidence";
 }
 
 TEST_F(Resimulate, NothingHitGivesNoDistances) {

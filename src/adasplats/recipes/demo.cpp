@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/recipes/demo.h"
 
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "adasplats/evaluate/error_points.h"
 #include "adasplats/io/arrays/png.h"
@@ -23,6 +25,7 @@ namespace fs = std::filesystem;
 
 /// Paper section "New Trajectory Simulation": the shift of the trajectory, m.
 constexpr Vec3d kShift_m = {1, 1, -0.5};
+constexpr const char* kDemoLabels = "semantickitti";
 
 /// The paper's thin structures among the classes of SemanticKITTI.
 const std::vector<std::string>& thin_classes() {
@@ -30,11 +33,11 @@ const std::vector<std::string>& thin_classes() {
   return names;
 }
 
-ViewChoice street_view(const fs::path& folder, std::size_t poses, int width) {
+ViewChoice street_view(const fs::path& sequence, std::size_t poses, int width) {
   ViewChoice view;
   view.width = width;
   view.height = width * 9 / 16;
-  view.trajectory = folder / "street" / "sequences" / "00";
+  view.trajectory = sequence;
   view.pose = poses / 2;
   return view;
 }
@@ -47,9 +50,9 @@ class DemoMosaic {
       : view_(std::move(view)),
         picture_(blank_image(view_.width * static_cast<int>(methods), 2 * view_.height)) {}
 
-  void add(const std::string& name, const fs::path& model, const ErrorPoints& errors,
-           Session& session) {
-    Panel panel(model, "", session);
+  void add(const std::string& name, std::shared_ptr<const ModelScene> model,
+           const ErrorPoints& errors, Session& session) {
+    Panel panel(std::move(model));
     const Camera camera = camera_of(view_, panel.shown_part());
     for (int row = 0; row < 2; ++row) {
       if (row == 1) panel.show_errors(errors, name);
@@ -70,62 +73,73 @@ class DemoMosaic {
   int left_ = 0;
 };
 
-DemoRow run_method(const std::string& name, SplatMethod method, const fs::path& folder,
-                   DemoMosaic& mosaic, Session& session) {
-  const fs::path street = folder / "street";
+/// What all methods are tried on.
+struct Drive {
+  fs::path folder;         ///< of the demo
+  KittiSequence held_out;  ///< scans that no model has seen
+  std::size_t poses() const { return held_out.scans.size(); }
+  fs::path mapping() const { return folder / "street" / "mapping.ply"; }
+  fs::path sequence() const { return folder / "street" / "sequences" / "00"; }
+};
+
+/// A method's row and what else is drawn: the model, which is loaded once.
+struct DemoMethod {
   DemoRow row;
+  std::shared_ptr<const ModelScene> scene;
+  ErrorPoints errors;  ///< of held-out beams
+};
+
+DemoMethod run_method(const std::string& name, SplatMethod method, const Drive& drive,
+                      Session& session) {
+  DemoMethod result;
+  DemoRow& row = result.row;
   row.method = name;
 
   ModelFileJob model;
-  model.inputs = {street / "mapping.ply"};
-  model.output = folder / (name + ".ply");
-  model.labels = "semantickitti";
+  model.inputs = {drive.mapping()};
+  model.output = drive.folder / (name + ".ply");
+  model.labels = kDemoLabels;
   model.build.recipe = RecipeChoice{.method = method}.recipe();
   row.model = run_model(model, session);
+  result.scene = std::make_shared<const ModelScene>(model.output, "", session);
 
   SimulateJob simulation;
   simulation.model = model.output;
-  simulation.drive.trajectory = street / "sequences" / "00";
+  simulation.drive.trajectory = drive.sequence();
   simulation.drive.offset_m = kShift_m;
-  simulation.output = folder / (name + "-scans");
-  row.simulation = run_simulate(simulation, session);
+  simulation.output = drive.folder / (name + "-scans");
+  row.simulation = run_simulate(simulation, *result.scene, session);
 
-  const CloudPair clouds =
-      load_clouds({simulation.output, street / "mapping.ply", model.labels}, session);
+  const CloudPair clouds = load_clouds({simulation.output, drive.mapping(), kDemoLabels}, session);
   row.comparison =
       evaluate_clouds(clouds.simulated, clouds.original, ByClass::own, &*clouds.labels, session);
   row.thin_c2c_m = c2c_of_classes(row.comparison, thin_classes());
 
   ResimulateOptions held_out;
   held_out.drop_movable = true;  // parked cars are not in the models
-  KittiSequence scans = open_held_out({.sequence = simulation.drive.trajectory}, session);
-  const ModelScene scene(model.output, "", session);
-  row.held_out = evaluate_resimulation(scene, scans, model.labels, held_out, {}, session);
-  const ErrorPoints errors =
-      beam_points(scene.tracer(), scene.view(), scene.origin(), scans,
-                  load_label_scheme(model.labels), held_out, session.executor, session.progress);
-  // Of our own method for the viewer; of all they would be the larger part of the demo.
-  if (method == SplatMethod::consistent)
-    write_error_points(folder / (name + "-errors.ply"), errors);
-  mosaic.add(name, model.output, errors, session);
-  return row;
+  KittiSequence scans = drive.held_out;
+  row.held_out = evaluate_resimulation(*result.scene, scans, kDemoLabels, held_out,
+                                       {.keep = KeepBeams::yes}, session);
+  result.errors = beam_points(std::exchange(row.held_out.errors, {}), scans.trajectory,
+                              result.scene->view().primitive_count());
+  return result;
 }
 
 /// A street-level view from the middle of the drive and one from above.
-std::vector<fs::path> draw(const std::string& name, std::size_t poses, const fs::path& folder,
-                           Session& session) {
+std::vector<fs::path> draw(const DemoMethod& method, const Drive& drive, Session& session) {
+  const std::string& name = method.row.method;
   RenderJob ahead;
-  ahead.models = {folder / (name + ".ply")};
-  ahead.output = folder / (name + "-street.png");
-  ahead.view = street_view(folder, poses, 1280);
-  run_render(ahead, session);
+  ahead.models = {drive.folder / (name + ".ply")};
+  ahead.output = drive.folder / (name + "-street.png");
+  ahead.view = street_view(drive.sequence(), drive.poses(), 1280);
+  run_render(ahead, method.scene, session);
   RenderJob above;
   above.models = ahead.models;
-  above.output = folder / (name + "-above.png");
+  above.output = drive.folder / (name + "-above.png");
   above.view.width = 1280;
   above.view.height = 720;
   above.view.birds_eye = true;
-  run_render(above, session);
+  run_render(above, method.scene, session);
   return {ahead.output.filename(), above.output.filename()};
 }
 
@@ -141,15 +155,17 @@ DemoResult run_demo(const DemoJob& job, Session& session) {
   synth.scan.driving_spacing_m = job.driving_spacing_m;
   DemoResult result;
   result.street = run_synth_street(synth, session);
-  DemoMosaic mosaic(street_view(folder.path(), result.street.driving_scans, 800),
-                    std::size(kSplatMethods));
+  Drive drive{folder.path(), {}};
+  drive.held_out = open_held_out({.sequence = drive.sequence()}, session);
+  DemoMosaic mosaic(street_view(drive.sequence(), drive.poses(), 800), std::size(kSplatMethods));
   for (const auto& [word, method] : kSplatMethods) {
-    const std::string name(word);
-    result.rows.push_back(run_method(name, method, folder.path(), mosaic, session));
-    for (const fs::path& picture :
-         draw(name, result.street.driving_scans, folder.path(), session)) {
-      result.pictures.push_back(picture);
-    }
+    DemoMethod made = run_method(std::string(word), method, drive, session);
+    // Of our own method for the viewer; of all they would be the larger part of the demo.
+    if (method == SplatMethod::consistent)
+      write_error_points(folder.path() / (made.row.method + "-errors.ply"), made.errors);
+    mosaic.add(made.row.method, made.scene, made.errors, session);
+    for (const fs::path& picture : draw(made, drive, session)) result.pictures.push_back(picture);
+    result.rows.push_back(std::move(made.row));
   }
   result.picture = "demo.png";
   write_png(folder.path() / result.picture, mosaic.picture().width, mosaic.picture().height,

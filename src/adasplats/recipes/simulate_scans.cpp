@@ -127,32 +127,40 @@ ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> sc
   return times;
 }
 
-}  // namespace
+/// What is known of a simulation before its model is.
+struct Plan {
+  ScanSettings settings;
+  std::vector<ScanMotion> scans;  ///< empty: the model says where they are
+};
 
-SimulateResult run_simulate(const SimulateJob& job, Session& session) {
-  const Stopwatch total;
+/// Checks the job: before long work.
+Plan plan_of(const SimulateJob& job, Session& session) {
   require_input(job.model);
-  ScanSettings settings = job.scan.settings(session.seed);
-  settings.fields = fields_of(job.format);
+  Plan plan{job.scan.settings(session.seed), {}};
+  plan.settings.fields = fields_of(job.format);
   check_drive(job.drive);
   if (job.format == ScanFormat::pcap)
-    require_packets(settings.sensor, packet_options(settings, job.drive));
-  std::vector<ScanMotion> scans;
+    require_packets(plan.settings.sensor, packet_options(plan.settings, job.drive));
   if (!job.drive.trajectory.empty())
-    scans = scans_along(job.drive, settings.sensor, session.progress);
-  checked_output_folder(job.output, job.overwrite, kCommand);  // before long work
-  const ModelScene scene(job.model, job.labels, session, WorldFiles::taken);
+    plan.scans = scans_along(job.drive, plan.settings.sensor, session.progress);
+  checked_output_folder(job.output, job.overwrite, kCommand);
+  return plan;
+}
+
+SimulateResult simulate_in(const ModelScene& scene, Plan plan, const SimulateJob& job,
+                           Session& session) {
   if (job.drive.trajectory.empty())
-    scans = scans_along(job.drive, settings.sensor, scene, session.executor, session.progress);
+    plan.scans =
+        scans_along(job.drive, plan.settings.sensor, scene, session.executor, session.progress);
   ResumableFolder folder(job.output, job.overwrite, kCommand,
-                         simulate_content(job, settings, scene));
-  ScanSimulator simulator(scene, settings, session.executor);
+                         simulate_content(job, plan.settings, scene));
+  ScanSimulator simulator(scene, plan.settings, session.executor);
   SimulateResult result;
-  session.progress.begin_step("simulate", scans.size());
+  session.progress.begin_step("simulate", plan.scans.size());
   const Stopwatch all;
   ReportTimes times;
   try {
-    times = write_scans(simulator, scans, job, folder, session, result);
+    times = write_scans(simulator, plan.scans, job, folder, session, result);
     session.progress.end_step();
     folder.commit(nlohmann::ordered_json::object(), {});
   } catch (const Error&) {
@@ -161,6 +169,23 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   result.seconds_traced = times.traced_s;
   result.seconds_assembled = times.reported_s;
   result.seconds_written = all.seconds();
+  return result;
+}
+
+}  // namespace
+
+SimulateResult run_simulate(const SimulateJob& job, Session& session) {
+  const Stopwatch total;
+  Plan plan = plan_of(job, session);
+  const ModelScene scene(job.model, job.labels, session, WorldFiles::taken);
+  SimulateResult result = simulate_in(scene, std::move(plan), job, session);
+  result.seconds = total.seconds();
+  return result;
+}
+
+SimulateResult run_simulate(const SimulateJob& job, const ModelScene& scene, Session& session) {
+  const Stopwatch total;
+  SimulateResult result = simulate_in(scene, plan_of(job, session), job, session);
   result.seconds = total.seconds();
   return result;
 }

@@ -10,6 +10,7 @@
 
 #include "adasplats/dataset/scan_writer.h"
 #include "adasplats/pipeline/scene/drive.h"
+#include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/scene/scan_simulator.h"
 #include "adasplats/pipeline/session/session.h"
 
@@ -46,6 +47,9 @@ struct SimulateResult {
 /// another version), io (also where the disk has no room for the scans), data (no ray met
 /// anything).
 SimulateResult run_simulate(const SimulateJob& job, Session& session);
+/// The same in a model that is loaded already, from the file that `job` names; loading is not in
+/// the seconds.
+SimulateResult run_simulate(const SimulateJob& job, const ModelScene& scene, Session& session);
 
 /// The keys of a simulation's --report.
 nlohmann::ordered_json to_json(const SimulateResult& result);

@@ -34,27 +34,23 @@ HeldOutResult run_resimulate(const ResimulateJob& job, Session& session) {
   require_input(job.model);
   if (!job.picture.empty()) check_output_file(job.picture);
   if (!job.errors.empty()) check_output_file(job.errors);
-  const LabelScheme labels = load_label_scheme(job.labels);
+  load_label_scheme(job.labels);  // what is wrong with it is said before long work
   KittiSequence sequence = open_held_out(job, session);
   if (sequence.labels.empty() && job.options.drop_movable) {
     throw Error(ErrorKind::usage,
                 "--drop-movable has no effect: " + sequence.folder.string() + " has no labels");
   }
   const ModelScene scene(job.model, "", session);
+  HeldOutExtras extras = job.extras;
+  if (!job.picture.empty() || !job.errors.empty()) extras.keep = KeepBeams::yes;
   HeldOutResult result =
-      evaluate_resimulation(scene, sequence, job.labels, job.options, job.extras, session);
-  if (!job.picture.empty()) {
-    const std::size_t middle = sequence.scans.size() / 2;
-    write_beam_picture(job.picture,
-                       resimulate_scan(scene.tracer(), scene.view(), scene.origin(), sequence,
-                                       middle, labels, job.options, session.executor),
-                       job.picture_width, session);
-  }
-  if (!job.errors.empty()) {
-    const ErrorPoints points = beam_points(scene.tracer(), scene.view(), scene.origin(), sequence,
-                                           labels, job.options, session.executor, session.progress);
-    write_error_points(job.errors, points);
-  }
+      evaluate_resimulation(scene, sequence, job.labels, job.options, extras, session);
+  if (!job.picture.empty())
+    write_beam_picture(job.picture, result.errors[sequence.scans.size() / 2], job.picture_width,
+                       session);
+  if (!job.errors.empty())
+    write_error_points(job.errors, beam_points(std::move(result.errors), sequence.trajectory,
+                                               scene.view().primitive_count()));
   return result;
 }
 

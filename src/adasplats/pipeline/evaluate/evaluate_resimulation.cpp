@@ -107,15 +107,15 @@ HeldOutResult evaluate_resimulation(const ModelScene& scene, KittiSequence& sequ
                                     const std::string& labels, const ResimulateOptions& options,
                                     const HeldOutExtras& extras, Session& session) {
   const LabelScheme scheme = load_label_scheme(labels);
-  const auto cast = [&](const KittiSequence& scans) {
+  const auto cast = [&](const KittiSequence& scans, KeepBeams keep = KeepBeams::no) {
     return resimulate(scene.tracer(), scene.view(), scene.origin(), scans, scheme, options,
-                      session.executor, session.progress);
+                      session.executor, session.progress, keep);
   };
   HeldOutResult result;
   if (extras.all_poses) result.with_given = cast(sequence);
   const std::optional<std::size_t> of_model = scans_of_model(scene, sequence);
   result.poses = calibrate_held_out(scene, sequence, session.progress);
-  static_cast<ResimulateResult&>(result) = cast(sequence);
+  static_cast<ResimulateResult&>(result) = cast(sequence, extras.keep);
   result.empty = cast_empty_beams(scene.tracer(), scene.origin(), sequence, session.executor);
   result.returns = beam_returns(result.all, result.empty);
   result.upward_returns = beam_returns(result.upward, result.empty);

@@ -78,7 +78,8 @@ struct HeldOutResult : ResimulateResult {
 
 /// What is evaluated besides.
 struct HeldOutExtras {
-  bool all_poses = false;  ///< also with the poses as given, and registered to the model
+  bool all_poses = false;          ///< also with the poses as given, and registered to the model
+  KeepBeams keep = KeepBeams::no;  ///< of the default, for pictures and files of errors
   std::optional<HeldOutProtocol> protocol;
 };
 

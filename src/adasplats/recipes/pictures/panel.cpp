@@ -60,7 +60,7 @@ bool is_model_file(const std::filesystem::path& input) {
 
 Panel::Panel(const std::filesystem::path& input, const std::string& labels, Session& session) {
   if (is_model_file(input)) {
-    model_ = std::make_unique<ModelScene>(input, labels, session);
+    model_ = std::make_shared<const ModelScene>(input, labels, session);
     return;
   }
   const std::filesystem::path resolved = resolve_cloud_input(input);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "adasplats/cloud/points/point_cloud.h"
@@ -38,6 +39,8 @@ class Panel {
   /// `labels` as load_label_scheme takes it; empty: what the input says. Errors: those of the
   /// input; data (no points).
   Panel(const std::filesystem::path& input, const std::string& labels, Session& session);
+  /// Of a model that is loaded already.
+  explicit Panel(std::shared_ptr<const ModelScene> model) : model_(std::move(model)) {}
 
   /// Colours the splats of a model by what held-out beams say of them (evaluate resimulate
   /// --errors); beams that fell through it become dots. Errors: usage (no splat model); data (the
@@ -68,7 +71,7 @@ class Panel {
   double origin_z() const;
   const Crs& crs() const { return model_ ? model_->crs() : cloud_.crs; }
 
-  std::unique_ptr<ModelScene> model_;
+  std::shared_ptr<const ModelScene> model_;
   PointCloud cloud_;
   std::optional<LabelScheme> labels_;  ///< of the cloud
   std::vector<float> point_errors_m_;  ///< of the cloud's points, where it has them

@@ -32,10 +32,10 @@ constexpr int kMostPixels = 1 << 28;
 /// The panels of a picture side by side.
 class Panels {
  public:
-  Panels(const RenderJob& job, Session& session) : job_(job), session_(session) {
+  Panels(const RenderJob& job, std::vector<Panel> panels, Session& session)
+      : job_(job), session_(session), panels_(std::move(panels)) {
     SharedRange range;
-    for (const auto& input : job.models) {
-      Panel& panel = panels_.emplace_back(input, job.labels, session);
+    for (Panel& panel : panels_) {
       if (!job.errors.empty()) panel.show_errors(job.errors);
       panel.prepare(job.look, range);
     }
@@ -159,6 +159,23 @@ RenderResult draw_film(const RenderJob& job, Panels& panels, Session& session) {
   return result;
 }
 
+RenderResult draw(const RenderJob& job, std::vector<Panel> parts, Session& session) {
+  Panels panels(job, std::move(parts), session);
+  if (job.film != Film::none) return draw_film(job, panels, session);
+  session.progress.begin_step("render", 0);
+  const Image picture = panels.draw(camera_of(job.view, panels.part()));
+  session.progress.end_step();
+  write_png(job.output, picture.width, picture.height, picture.pixels);
+  return {static_cast<std::size_t>(panels.columns()), panels.seconds()};
+}
+
+/// Before anything is loaded.
+void check_before(const RenderJob& job) {
+  check(job);
+  check_output_file(job.output);
+  check_inputs(job);
+}
+
 }  // namespace
 
 bool draws_a_model(const RenderJob& job) {
@@ -167,16 +184,18 @@ bool draws_a_model(const RenderJob& job) {
 }
 
 RenderResult run_render(const RenderJob& job, Session& session) {
-  check(job);
-  check_output_file(job.output);
-  check_inputs(job);
-  Panels panels(job, session);
-  if (job.film != Film::none) return draw_film(job, panels, session);
-  session.progress.begin_step("render", 0);
-  const Image picture = panels.draw(camera_of(job.view, panels.part()));
-  session.progress.end_step();
-  write_png(job.output, picture.width, picture.height, picture.pixels);
-  return {static_cast<std::size_t>(panels.columns()), panels.seconds()};
+  check_before(job);
+  std::vector<Panel> panels;
+  for (const auto& input : job.models) panels.emplace_back(input, job.labels, session);
+  return draw(job, std::move(panels), session);
+}
+
+RenderResult run_render(const RenderJob& job, std::shared_ptr<const ModelScene> model,
+                        Session& session) {
+  check_before(job);
+  std::vector<Panel> panels;
+  panels.emplace_back(std::move(model));
+  return draw(job, std::move(panels), session);
 }
 
 }  // namespace adasplats

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "adasplats/core/setting.h"
+#include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/scene/view_choice.h"
 #include "adasplats/pipeline/session/session.h"
 #include "adasplats/recipes/pictures/panel.h"
@@ -82,5 +84,8 @@ bool draws_a_model(const RenderJob& job);
 /// Renders and writes a PNG, or a film (film_writer.h). Errors: usage (sizes or settings out of
 /// range; what cannot be drawn together), those of the inputs and of check_film().
 RenderResult run_render(const RenderJob& job, Session& session);
+/// The same of one model that is loaded already: the file that `job` names.
+RenderResult run_render(const RenderJob& job, std::shared_ptr<const ModelScene> model,
+                        Session& session);
 
 }  // namespace adasplats
