@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures and films of 'adasplats render'."""
 
+import re
 import shutil
 import unittest
 
@@ -51,6 +52,27 @@ class Render(ProgramTest):
         self.run_bad(64, "render", model, "--difference", "-o", picture, says=["two models"])
         self.run_bad(64, "render", model, self.folder / "half.ply", "--difference", "-o", picture,
                      says=["two models"])
+
+    def test_a_difference_needs_a_place_in_common(self):
+        model, picture = self.model(), self.folder / "p.png"
+        shifted = self.folder / "shifted.ply"
+        for dx, dy, dz in [(1000, 0, 0), (0, -50, 0), (0, 0, 20)]:
+            write_cloud(self.folder / "far.ply",
+                        [(x + dx, y + dy, z + dz, label) for x, y, z, label in tiny_place()])
+            self.run_good("model", self.folder / "far.ply", "-o", shifted, "--labels",
+                          "semantickitti")
+            line = self.run_bad(65, "render", model, shifted, "--difference", "-o", picture, *SMALL,
+                                says=["do not overlap", str(model), str(shifted)]).stderr
+            # Oracle: the points' own bounds; splats reach a little beyond them.
+            boxes = re.findall(r"x (\S+) \.\. (\S+), y (\S+) \.\. (\S+), z (\S+) \.\. (\S+)",
+                               line)
+            self.assertEqual(len(boxes), 2, line)
+            bounds = [(0, 14.75), (-5, 5), (0, 4)]
+            for box, shift in zip(boxes, [(0, 0, 0), (dx, dy, dz)]):
+                for k, (low, high) in enumerate(bounds):
+                    self.assertAlmostEqual(float(box[2 * k]), low + shift[k], delta=0.7)
+                    self.assertAlmostEqual(float(box[2 * k + 1]), high + shift[k], delta=0.7)
+            self.assertFalse(picture.exists())
 
     def test_films(self):
         model = self.model()

@@ -26,7 +26,7 @@
 #include "adasplats/core/large_vector.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/bags/recording.h"
-#include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/box_text.h"
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/io/packets/capture_reader.h"
 
@@ -133,16 +133,6 @@ void require_options_that_fit(const LoadOptions& options, std::span<const Source
   const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
   if (states_origins && !any_file)
     throw usage("a sensor position is given, but every input has its own");
-}
-
-std::string box_text(Vec3d low, Vec3d high) {
-  std::string text;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!std::isfinite(low[axis]) && !std::isfinite(high[axis])) continue;
-    text += (text.empty() ? "" : ", ") + std::string(1, "xyz"[axis]) + " " +
-            decimal_text(low[axis]) + " .. " + decimal_text(high[axis]);
-  }
-  return text;
 }
 
 /// In whole steps of a file's coordinates, as its points are: headers may hold more digits.

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/recipes/pictures/difference.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/box_text.h"
 #include "adasplats/simulate/captions/color_bar.h"
 #include "adasplats/simulate/image/color_map.h"
 #include "adasplats/simulate/image/developing.h"
@@ -15,6 +19,15 @@ namespace {
 constexpr float kMost_m = 0.2F;
 constexpr Rgb kOnlyFirst = {120, 190, 90}, kOnlySecond = {190, 110, 200};
 constexpr std::size_t kRowsPerChunk = 16;
+
+/// To centimetres.
+std::string rounded_box(Vec3d low, Vec3d high) {
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = std::round(100 * low[axis]) / 100;
+    high[axis] = std::round(100 * high[axis]) / 100;
+  }
+  return box_text(low, high);
+}
 
 /// The colour of a pixel in which at least one of them is hit.
 Vec3f pixel_color(const Hit& first, const Hit& second) {
@@ -58,6 +71,19 @@ Image draw_difference(const ModelScene& first, const ModelScene& second, const C
     }
   }
   return develop(frame, developer, executor);
+}
+
+void require_overlap(const ModelScene& first, const std::filesystem::path& first_file,
+                     const ModelScene& second, const std::filesystem::path& second_file) {
+  const auto [first_low, first_high] = world_box_of(first.place());
+  const auto [second_low, second_high] = world_box_of(second.place());
+  const Vec3d apart = max(first_low - second_high, second_low - first_high);
+  if (std::max({apart.x, apart.y, apart.z}) <= 0) return;
+  throw Error(ErrorKind::data,
+              "a difference is of models of one place, and the boxes of these do "
+              "not overlap: " +
+                  first_file.string() + " is in " + rounded_box(first_low, first_high) + " and " +
+                  second_file.string() + " in " + rounded_box(second_low, second_high));
 }
 
 void write_difference_legend(Image& image, const std::string& first, const std::string& second) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "adasplats/pipeline/scene/model_scene.h"
@@ -14,6 +15,11 @@ namespace adasplats {
 /// one of them is, a colour of its own.
 Image draw_difference(const ModelScene& first, const ModelScene& second, const Camera& camera,
                       const Executor& executor);
+
+/// Refuses models that have no place in common; `first_file`, `second_file`: of them, for the
+/// message. Errors: data (their boxes do not overlap).
+void require_overlap(const ModelScene& first, const std::filesystem::path& first_file,
+                     const ModelScene& second, const std::filesystem::path& second_file);
 
 void write_difference_legend(Image& image, const std::string& first, const std::string& second);
 

@@ -34,6 +34,8 @@ class Panels {
  public:
   Panels(const RenderJob& job, std::vector<Panel> panels, Session& session)
       : job_(job), session_(session), panels_(std::move(panels)) {
+    if (job.difference)
+      require_overlap(*panels_[0].model(), job.models[0], *panels_[1].model(), job.models[1]);
     SharedRange range;
     for (Panel& panel : panels_) {
       if (!job.errors.empty()) panel.show_errors(job.errors);
