@@ -6,6 +6,7 @@ import json
 import math
 import re
 import struct
+import subprocess
 import unittest
 
 from support import ProgramTest, run, tiny_place, write_cloud
@@ -251,6 +252,27 @@ class Pipeline(ProgramTest):
         # A command that the page shows runs as it stands there.
         command = re.search(r"<pre>adasplats (simulate [^<]*)</pre>", page).group(1)
         self.run_good(*html.unescape(command).split(), cwd=self.folder)
+
+    def test_commands_of_a_demo_are_quoted(self):
+        name = "it's a \"$HOME\" `id` & b;c"
+        text = self.run_good("demo", "-o", name, "--points", "5000", "--driving-spacing", "25",
+                             cwd=self.folder).stdout
+        page = (self.folder / name / "index.html").read_text(encoding="utf-8")
+        shown = [html.unescape(command) for command in re.findall("<pre>(.*?)</pre>", page)]
+        shown = [command for command in shown if "YOUR_POINTS" not in command]
+        printed = next(line for line in text.splitlines() if line.startswith("  adasplats view"))
+        self.assertEqual(printed.strip(), shown[0])
+        self.assertEqual(len(shown), 3)
+        for command in shown:
+            # Oracle: the words that the system's shell makes of it.
+            words = subprocess.run(["sh", "-c", 'printf "%s\\n" ' + command], check=True,
+                                   stdout=subprocess.PIPE, encoding="utf-8").stdout.splitlines()
+            self.assertEqual(words[0], "adasplats")
+            paths = [word for word in words if "/" in word]
+            self.assertEqual(len(paths), 2, command)
+            for path in paths:
+                self.assertTrue(path.startswith(name), command)
+                self.assertTrue((self.folder / path).exists(), path)
 
 
 class ManyPlaces(ProgramTest):

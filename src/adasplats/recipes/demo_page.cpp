@@ -3,7 +3,9 @@
 #include "adasplats/recipes/demo_page.h"
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
+#include "adasplats/pipeline/provenance/provenance.h"
 #include "adasplats/report/document.h"
 #include "adasplats/report/html_page.h"
 #include "adasplats/report/text_format.h"
@@ -47,11 +49,31 @@ page::Table table_of(const DemoResult& result) {
   return page::with_best_marked(std::move(table));
 }
 
+std::string model_in(const std::filesystem::path& folder) {
+  return (folder / "consistent.ply").string();
+}
+
+std::string sequence_in(const std::filesystem::path& folder) {
+  return (folder / "street" / "sequences" / "00").string();
+}
+
+/// What to do next, as it is typed in a shell.
+std::vector<page::Fact> commands_for(const std::filesystem::path& name) {
+  return {
+      {"look around, drive a sensor", view_command(name)},
+      {"errors of held-out beams in the viewer",
+       command_text(
+           {"view", model_in(name), "--errors", (name / "consistent-errors.ply").string()})},
+      {"your own points", "adasplats model YOUR_POINTS -o model.ply && adasplats view model.ply"},
+      {"scans of another sensor",
+       command_text({"simulate", model_in(name), "--sensor", "velodyne-vlp-16", "--trajectory",
+                     sequence_in(name), "-o", "scans"})}};
+}
+
 }  // namespace
 
 std::string view_command(const std::filesystem::path& name) {
-  return "adasplats view " + (name / "consistent.ply").string() + " --sequence " +
-         (name / "street" / "sequences" / "00").string();
+  return command_text({"view", model_in(name), "--sequence", sequence_in(name)});
 }
 
 std::string demo_page(const DemoResult& result, const std::filesystem::path& folder,
@@ -82,16 +104,7 @@ std::string demo_page(const DemoResult& result, const std::filesystem::path& fol
   page::Section next;
   next.id = "next";
   next.title = "Go on";
-  next.commands = {
-      {"look around, drive a sensor", view_command(name)},
-      {"errors of held-out beams in the viewer",
-       "adasplats view " + (name / "consistent.ply").string() + " --errors " +
-           (name / "consistent-errors.ply").string()},
-      {"your own points", "adasplats model YOUR_POINTS -o model.ply && adasplats view model.ply"},
-      {"scans of another sensor", "adasplats simulate " + (name / "consistent.ply").string() +
-                                      " --sensor velodyne-vlp-16 --trajectory " +
-                                      (name / "street" / "sequences" / "00").string() +
-                                      " -o scans"}};
+  next.commands = commands_for(name);
   document.sections = {std::move(seen), std::move(figures), std::move(more), std::move(next)};
   return page::html_page(document, folder);
 }

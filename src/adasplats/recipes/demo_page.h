@@ -14,7 +14,8 @@ namespace adasplats {
 std::string demo_page(const DemoResult& result, const std::filesystem::path& folder,
                       const std::filesystem::path& name);
 
-/// The command that opens the viewer on the demo's best model and its held-out scans.
+/// The command (for a POSIX shell) that opens the viewer on the demo's best model and its held-out
+/// scans.
 std::string view_command(const std::filesystem::path& name);
 
 }  // namespace adasplats

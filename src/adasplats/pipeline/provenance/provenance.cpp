@@ -59,6 +59,12 @@ std::string shell_word(const std::string& word) {
   return text + "'";
 }
 
+std::string command_text(const std::vector<std::string>& arguments) {
+  std::string text = "adasplats";
+  for (const std::string& argument : arguments) text += " " + shell_word(argument);
+  return text;
+}
+
 std::string own_command_line() {
   std::error_code failure;
   std::string text =

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "adasplats/pipeline/session/device_choice.h"
 
@@ -29,8 +30,11 @@ Provenance provenance_of(int threads, const DeviceChoice& device = {});
 /// device_json(); null: unknown.
 nlohmann::ordered_json to_json(const Provenance& provenance);
 
-/// A word as a shell takes it.
+/// A word as a POSIX shell takes it: in quotes where it needs them.
 std::string shell_word(const std::string& word);
+
+/// The program with these arguments as a user types it in a shell.
+std::string command_text(const std::vector<std::string>& arguments);
 
 /// How this process was started, the program without its folder; empty where the system does not
 /// say.

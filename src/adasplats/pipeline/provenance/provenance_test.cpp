@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <string>
 
 #include "adasplats/pipeline/provenance/machine.h"
 
@@ -32,6 +34,28 @@ TEST(Provenance, QuotesWordsForAShell) {
   EXPECT_EQ(shell_word("a/b=1,2"), "a/b=1,2");
   EXPECT_EQ(shell_word(""), "''");
   EXPECT_EQ(shell_word("it's here"), R"('it'\''s here')");
+}
+
+// Oracle: what the system's shell makes of it.
+TEST(Provenance, AShellTakesWordsAsTheyAre) {
+  for (const std::string word :
+       {"plain/a-b_c.ply", "two words", "it's", "\"double\"", "$HOME", "`id`",
+        "$(id)",           "a\\b",      "*",    "~",          "#x",    "a;b",
+        "a&b|c",           "(x)",       "<in>", "!x",         "{a,b}", "ä ö",
+        "tab\there",       "new\nline", "",     "'",          "[ab]",  "?"}) {
+    FILE* const shell = popen(("printf '%s|' " + shell_word(word)).c_str(), "r");
+    ASSERT_NE(shell, nullptr);
+    std::string said;
+    for (int c = std::fgetc(shell); c != EOF; c = std::fgetc(shell)) said += static_cast<char>(c);
+    EXPECT_EQ(pclose(shell), 0);
+    EXPECT_EQ(said, word + "|");
+  }
+}
+
+TEST(Provenance, CommandsAreOfTheProgramAndQuoted) {
+  EXPECT_EQ(command_text({}), "adasplats");
+  EXPECT_EQ(command_text({"view", "my street/a.ply", "--sensor=x"}),
+            "adasplats view 'my street/a.ply' --sensor=x");
 }
 
 TEST(DeviceJson, NamesWhatComputes) {

@@ -196,15 +196,6 @@ Json build_of_program(const fs::path& program, const fs::path& folder, ProgressS
   return {{"version", build["version"]}, {"commit", build["commit"]}, {"dirty", build["dirty"]}};
 }
 
-std::string command_text(const std::vector<std::string>& arguments) {
-  std::string text = kProgramName;
-  for (const std::string& argument : arguments) {
-    text += ' ';
-    text += shell_word(argument);
-  }
-  return text;
-}
-
 std::string end_name(ChildEnd end) { return kEndNames.at(static_cast<std::size_t>(end)); }
 
 StepRunner::StepRunner(fs::path folder, StepRules rules, ProgressSink& progress)

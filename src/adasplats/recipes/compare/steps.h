@@ -66,9 +66,6 @@ class StepRunner {
   ProgressSink& progress_;
 };
 
-/// The program with these arguments as a user types it in a shell.
-std::string command_text(const std::vector<std::string>& arguments);
-
 /// "done", "failed", "timeout", "out of memory".
 std::string end_name(ChildEnd end);
 
