@@ -54,8 +54,32 @@ class ViewTest(ProgramTest):
         scene = self.scene(model, "--cloud", self.cloud, "--errors", errors, "--sequence", scans)
         self.assertEqual([layer["kind"] for layer in scene["layers"]],
                          ["splats", "points", "points"])
-        self.assertEqual([layer["has_errors"] for layer in scene["layers"]], [True, False, True])
+        self.assertEqual([layer["has_errors"] for layer in scene["layers"]], [False, False, True])
         self.assertEqual(len(scene["scans"]), 3)
+
+    def test_errors_of_the_splats_that_beams_hit(self):
+        model, errors = self.model(), self.folder / "errors.ply"
+        scans = self.simulate(model)
+        self.run_good("evaluate", "resimulate", model, scans / "sequences" / "00", "--errors",
+                      errors)
+        scene = self.scene(model, "--errors", errors)
+        self.assertEqual([layer["has_errors"] for layer in scene["layers"]][:2], [True, True])
+        # Another model's: an error, as of `render`; as points they are shown without a model.
+        other = self.model("other.ply", "--method", "basic")
+        self.run_bad(65, "view", other, "--errors", errors, "--no-browser",
+                     says=["errors.ply", "another model"])
+        self.assertTrue(self.scene(errors)["layers"][0]["has_errors"])
+
+    def test_errors_that_name_no_splats(self):
+        model, errors = self.model(), self.folder / "errors.ply"
+        self.run_good("evaluate", "c2c", self.cloud, self.cloud, "--errors", errors)
+        process, url = self.serve(model, "--errors", errors)
+        with urllib.request.urlopen(url + "scene.json", timeout=20) as answer:
+            layers = json.load(answer)["layers"]
+        self.assertEqual([layer["has_errors"] for layer in layers], [False, True])
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=20)[1]
+        self.assertRegex(said, "warning: .*errors.ply: does not say which splats")
 
     def test_errors_with_a_sign_have_parts(self):
         model = self.model()

@@ -12,6 +12,7 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/error_points.h"
+#include "adasplats/evaluate/splat_errors.h"
 #include "adasplats/pipeline/scene/view_choice.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/view/error_layers.h"
@@ -168,18 +169,22 @@ class Loading {
     session_.progress.end_step();
   }
 
-  /// Of all files of errors; empty without any.
+  /// Of all files of errors that say which splats their beams hit; empty without any.
   std::vector<float> errors_of_splats(const SplatModel& model) const {
-    if (errors_.empty()) return {};
-    std::vector<Vec3f> positions;
-    std::vector<float> errors_m;
-    for (const ErrorPoints& points : errors_) {
-      const Vec3d shift = points.cloud.origin - model.origin;
-      for (const Vec3f& p : points.cloud.positions)
-        positions.push_back(vec_cast<float>(vec_cast<double>(p) + shift));
-      errors_m.insert(errors_m.end(), points.errors_m.begin(), points.errors_m.end());
+    SplatErrors errors(model.size());
+    bool any = false;
+    for (std::size_t i = 0; i < errors_.size(); ++i) {
+      const fs::path& file = sorted_.errors[i];
+      if (tells_of_splats(errors_[i])) {
+        errors.add(errors_[i], file);
+        any = true;
+      } else {
+        session_.progress.warn(file.string() +
+                               ": does not say which splats its beams hit (column 'splat' of "
+                               "'evaluate resimulate --errors'), so its points alone are shown");
+      }
     }
-    return disk_errors(model.disks, positions, {}, errors_m, {}, session_.executor);
+    return any ? errors.means_m() : std::vector<float>();
   }
 
   void add_cloud(const fs::path& path) {

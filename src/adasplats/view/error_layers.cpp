@@ -7,9 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-
-#include "adasplats/neighbors/point_index.h"
 
 namespace adasplats {
 namespace {
@@ -37,42 +34,6 @@ PointCloud chosen_rows(const PointCloud& cloud, std::span<const std::uint32_t> r
 }
 
 }  // namespace
-
-std::vector<float> disk_errors(std::span<const Disk> disks, std::span<const Vec3f> positions,
-                               Vec3d shift, std::span<const float> errors_m,
-                               const ErrorLimits& limits, const Executor& executor) {
-  std::vector<Vec3f> centers, places;
-  std::vector<float> known_m;
-  centers.reserve(disks.size());
-  for (const Disk& disk : disks) centers.push_back(disk.center);
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (std::isnan(errors_m[i])) continue;
-    places.push_back(vec_cast<float>(vec_cast<double>(positions[i]) + shift));
-    known_m.push_back(errors_m[i]);
-  }
-  const PointIndex by_center(centers, executor), by_place(places, executor);
-  const auto is_near = [&](const Neighbor& found) {
-    return found.index != Neighbor::kNone &&
-           found.squared_distance <= limits.reach_m * limits.reach_m;
-  };
-  std::vector<double> sums(disks.size(), 0);
-  std::vector<std::uint32_t> counts(disks.size(), 0);
-  const std::vector<Neighbor> disk_of = by_center.nearest(places, executor);
-  for (std::size_t i = 0; i < disk_of.size(); ++i) {
-    if (!is_near(disk_of[i])) continue;
-    sums[disk_of[i].index] += static_cast<double>(known_m[i]);
-    ++counts[disk_of[i].index];
-  }
-  std::vector<float> means(disks.size(), std::numeric_limits<float>::quiet_NaN());
-  const std::vector<Neighbor> place_of = by_place.nearest(centers, executor);
-  for (std::size_t k = 0; k < means.size(); ++k) {
-    if (counts[k] > 0)
-      means[k] = static_cast<float>(sums[k] / counts[k]);
-    else if (is_near(place_of[k]))
-      means[k] = known_m[place_of[k].index];
-  }
-  return means;
-}
 
 std::vector<ViewLayer> error_part_layers(const PointCloud& cloud, std::span<const float> errors_m,
                                          const ErrorLimits& limits, Vec3d origin,

@@ -3,13 +3,11 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/maths/vec3.h"
-#include "adasplats/scene/intersect.h"
 #include "adasplats/view/view_scene.h"
 
 namespace adasplats {
@@ -18,17 +16,7 @@ namespace adasplats {
 struct ErrorLimits {
   float fits_m = 0.1F;   ///< errors up to it are none of the parts
   float ghost_m = 0.5F;  ///< a surface that much before the measured point was passed by the beam
-  float reach_m = 0.5F;  ///< beams farther from a splat's center tell nothing of it
 };
-
-/// Of each disk the mean signed error of the points that it is the nearest disk of (by its center,
-/// within ErrorLimits::reach_m); of one that is the nearest of none, the error of the point nearest
-/// to it, so that disks between the rings of a scan are told of, too; NaN beyond the reach.
-/// `shift`: adds to positions to make them the disks'. Points whose error is NaN are holes of the
-/// model and tell of no disk.
-std::vector<float> disk_errors(std::span<const Disk> disks, std::span<const Vec3f> positions,
-                               Vec3d shift, std::span<const float> errors_m,
-                               const ErrorLimits& limits, const Executor& executor);
 
 /// Layers "early" (the model's surface stands before the measured point), "late" (behind it),
 /// "ghosts" (so early that the beam passed through it) and "holes" (the beam meets nothing), each

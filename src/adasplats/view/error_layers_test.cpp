@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -13,25 +12,6 @@ namespace adasplats {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
-// Oracle: by hand.
-TEST(ErrorLayers, ADiskHasTheMeanOfItsBeams) {
-  const std::vector<Disk> disks = {{{0, 0, 0}, 0.1F, {0, 0, 1}},
-                                   {{1, 0, 0}, 0.1F, {0, 0, 1}},
-                                   {{5, 0, 0}, 0.1F, {0, 0, 1}},
-                                   {{1, 0.4F, 0}, 0.1F, {0, 0, 1}}};
-  // 100 m beside the disks' frame; the last is too far from all of them.
-  const std::vector<Vec3f> points = {
-      {100.1F, 0, 0}, {99.9F, 0, 0}, {101, 0.1F, 0}, {101, 0, 0}, {107, 0, 0}};
-  const std::vector<float> errors_m = {-0.3F, 0.1F, 0.2F, kNaN, 9};
-  const std::vector<float> means =
-      disk_errors(disks, points, {-100, 0, 0}, errors_m, {}, Executor(1));
-  ASSERT_EQ(means.size(), 4U);
-  EXPECT_NEAR(means[0], -0.1F, 1e-6F);
-  EXPECT_NEAR(means[1], 0.2F, 1e-6F) << "a hole tells of no disk";
-  EXPECT_TRUE(std::isnan(means[2]));
-  EXPECT_NEAR(means[3], 0.2F, 1e-6F) << "the nearest of none, but near one";
-}
 
 PointCloud line(std::size_t count) {
   PointCloud cloud;

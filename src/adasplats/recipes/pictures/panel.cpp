@@ -8,6 +8,7 @@
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
+#include "adasplats/evaluate/splat_errors.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/recipes/pictures/panel_legend.h"
 #include "adasplats/report/text_format.h"
@@ -84,7 +85,9 @@ void Panel::show_errors(const ErrorPoints& points, const std::filesystem::path& 
   if (!model_ || model_->splats() == nullptr)
     throw Error(ErrorKind::usage, "errors are shown on splat models; draw " + name.string() +
                                       " by itself to see its points");
-  splat_errors_m_ = splat_errors(points, model_->splats()->size(), name);
+  SplatErrors errors(model_->splats()->size());
+  errors.add(points, name);
+  splat_errors_m_ = errors.means_m();
   holes_.clear();
   for (std::size_t i = 0; i < points.cloud.size(); ++i)
     if (std::isnan(points.errors_m[i])) holes_.push_back(points.cloud.world(i));

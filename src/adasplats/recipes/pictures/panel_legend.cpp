@@ -3,10 +3,7 @@
 #include "adasplats/recipes/pictures/panel_legend.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include "adasplats/core/error.h"
 #include "adasplats/simulate/image/class_colors.h"
 #include "adasplats/simulate/image/shading_maths.h"
 
@@ -57,34 +54,6 @@ ClassLegend legend_of(const ImageScene& scene) {
   }
   for (const SemanticGroup group : scene.groups) ++entries[static_cast<std::size_t>(group)].count;
   return commonest(std::move(entries), scene.groups.size());
-}
-
-std::vector<float> splat_errors(const ErrorPoints& points, std::size_t splats,
-                                const std::filesystem::path& path) {
-  constexpr double kMost_m = 0.5;
-  if (points.primitives.empty())
-    throw Error(ErrorKind::data, path.string() +
-                                     ": does not say which splats its beams hit (column 'splat'); "
-                                     "write it anew with 'evaluate resimulate --errors'");
-  if (points.primitive_count != splats)
-    throw Error(ErrorKind::data, path.string() + ": the errors are of another model, of " +
-                                     std::to_string(points.primitive_count) +
-                                     " splats; this one has " + std::to_string(splats));
-  std::vector<double> sums(splats, 0);
-  std::vector<std::uint32_t> counts(splats, 0);
-  for (std::size_t i = 0; i < points.primitives.size(); ++i) {
-    const std::uint32_t splat = points.primitives[i];
-    if (splat == Hit::kNone || std::isnan(points.errors_m[i])) continue;
-    if (splat >= splats)
-      throw Error(ErrorKind::data, path.string() + ": a beam hit splat " + std::to_string(splat) +
-                                       " of " + std::to_string(splats));
-    sums[splat] += std::clamp(static_cast<double>(points.errors_m[i]), -kMost_m, kMost_m);
-    ++counts[splat];
-  }
-  std::vector<float> errors(splats, std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t i = 0; i < splats; ++i)
-    if (counts[i] > 0) errors[i] = static_cast<float>(sums[i] / counts[i]);
-  return errors;
 }
 
 }  // namespace adasplats

@@ -3,13 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "adasplats/evaluate/error_points.h"
 #include "adasplats/simulate/image/image.h"
 #include "adasplats/simulate/image/point_image.h"
 
@@ -20,11 +18,5 @@ namespace adasplats {
 using ClassLegend = std::vector<std::pair<Rgb, std::string>>;
 ClassLegend legend_of(const ImageScene& scene);
 ClassLegend legend_of(std::span<const std::uint16_t> classes, const LabelScheme* labels);
-
-/// The mean error of each splat over the beams that hit it, m, early below 0; NaN where none did.
-/// Single beams count for at most half a metre. Errors: data (`path`'s beams are not said to have
-/// hit splats, or hit other ones than a model of `splats` has).
-std::vector<float> splat_errors(const ErrorPoints& points, std::size_t splats,
-                                const std::filesystem::path& path);
 
 }  // namespace adasplats

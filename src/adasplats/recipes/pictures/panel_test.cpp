@@ -4,19 +4,14 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <fstream>
-#include <limits>
 
-#include "adasplats/core/error.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/pipeline/session/own_session.h"
 #include "adasplats/recipes/pictures/panel_legend.h"
 
 namespace adasplats {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 /// A slope of points, 1 m high per metre from `low` on, with or without intensities.
 std::filesystem::path slope(const std::filesystem::path& file, double low, bool intensities) {
@@ -74,23 +69,6 @@ TEST(ClassLegend, HasWhatIsThereTheCommonestFirst) {
   EXPECT_EQ(legend[0].second, "wall");
   EXPECT_EQ(legend[1].second, "road");
   EXPECT_TRUE(legend_of(classes, nullptr).empty());
-}
-
-// Analytic: means of errors of at most half a metre; splats without a beam have none.
-TEST(SplatErrors, AreTheMeansOfTheBeamsThatHitThem) {
-  ErrorPoints points;
-  points.errors_m = {0.1F, 0.3F, -9, kNaN};
-  points.primitives = {0, 0, 2, Hit::kNone};
-  points.primitive_count = 3;
-  const std::vector<float> errors = splat_errors(points, 3, "e.ply");
-  EXPECT_NEAR(errors[0], 0.2, 1e-6);
-  EXPECT_TRUE(std::isnan(errors[1]));
-  EXPECT_NEAR(errors[2], -0.5, 1e-6);
-  EXPECT_THROW(splat_errors(points, 4, "e.ply"), Error) << "of another model";
-  points.primitives[2] = 3;
-  EXPECT_THROW(splat_errors(points, 3, "e.ply"), Error);
-  points.primitives.clear();
-  EXPECT_THROW(splat_errors(points, 3, "e.ply"), Error) << "an old file";
 }
 
 }  // namespace

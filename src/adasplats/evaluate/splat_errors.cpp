@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/evaluate/splat_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+namespace {
+
+constexpr double kMost_m = 0.5;  // that one beam counts for
+
+/// Throws data where the beams are not of a model of `splats`.
+void check(const ErrorPoints& points, std::size_t splats, const std::filesystem::path& path) {
+  if (!tells_of_splats(points))
+    throw Error(ErrorKind::data, path.string() +
+                                     ": does not say which splats its beams hit (column 'splat'); "
+                                     "write it anew with 'evaluate resimulate --errors'");
+  if (points.primitive_count == 0)
+    throw Error(ErrorKind::data,
+                path.string() +
+                    ": does not say of how many splats its model is (comment "
+                    "'adasplats.splats N'); write it anew with 'evaluate resimulate "
+                    "--errors'");
+  if (points.primitive_count != splats)
+    throw Error(ErrorKind::data, path.string() + ": the errors are of another model, of " +
+                                     std::to_string(points.primitive_count) +
+                                     " splats; this one has " + std::to_string(splats));
+  for (const std::uint32_t splat : points.primitives)
+    if (splat != Hit::kNone && splat >= splats)
+      throw Error(ErrorKind::data, path.string() + ": a beam hit splat " + std::to_string(splat) +
+                                       " of " + std::to_string(splats));
+}
+
+}  // namespace
+
+void SplatErrors::add(const ErrorPoints& points, const std::filesystem::path& path) {
+  check(points, counts_.size(), path);
+  for (std::size_t i = 0; i < points.primitives.size(); ++i) {
+    const std::uint32_t splat = points.primitives[i];
+    if (splat == Hit::kNone || std::isnan(points.errors_m[i])) continue;
+    sums_m_[splat] += std::clamp(static_cast<double>(points.errors_m[i]), -kMost_m, kMost_m);
+    ++counts_[splat];
+  }
+}
+
+std::vector<float> SplatErrors::means_m() const {
+  std::vector<float> means(counts_.size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < means.size(); ++i)
+    if (counts_[i] > 0) means[i] = static_cast<float>(sums_m_[i] / counts_[i]);
+  return means;
+}
+
+}  // namespace adasplats
