@@ -13,6 +13,7 @@ import time
 import unittest
 from pathlib import Path
 
+from pictures import png_size
 from support import PROGRAM, run, tiny_place, write_cloud, write_network
 
 # The tests work with relative paths in folders of their own.
@@ -193,7 +194,7 @@ class Street(CompareTest):
                          {f"pictures/{p.name}" for p in (self.output / "pictures").iterdir()})
         self.assertEqual(len(pictures), 1 + 2 * 3)
         for picture in pictures:
-            self.assertTrue((self.output / picture).read_bytes().startswith(b"\x89PNG"), picture)
+            self.assertGreater(png_size(self.output / picture)[0], 0)
         # Who gave relative paths can pass the reports on without telling of the own disk.
         for name in ["compare.json", "report.md", "report.html"]:
             text = (self.output / name).read_text(encoding="utf-8")

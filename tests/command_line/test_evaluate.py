@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The adasplats authors
 # SPDX-License-Identifier: Apache-2.0
 """Exact truth and the pictures of measurements."""
-import struct
 import unittest
 
+from pictures import png_size
 from support import BUILDING, ROAD, ProgramTest
 
 RANGE_KEYS = {"rays", "no_hit", "early_50cm", "late_50cm", "within", "range_error_m"}
@@ -98,9 +98,6 @@ class Presence(ProgramTest):
 
 
 class Pictures(ProgramTest):
-    def size(self, picture):
-        return struct.unpack(">II", picture.read_bytes()[16:24])
-
     def test_distances_and_beams(self):
         model = self.model()
         scans = self.simulate(model)
@@ -108,10 +105,10 @@ class Pictures(ProgramTest):
         pictures = set()
         for view in [[], ["--eye", "-3,-3,2"], ["--eye", "-3,-3,2", "--target", "6,3,1"]]:
             self.run_good("evaluate", "c2c", scans, self.cloud, "--picture", picture, *view)
-            self.assertEqual(self.size(picture), (1920, 1080))
+            self.assertEqual(png_size(picture), (1920, 1080))
             pictures.add(picture.read_bytes())
         self.run_good("evaluate", "resimulate", model, scans, "--picture", picture)
-        self.assertEqual(self.size(picture), (1920, 1080))
+        self.assertEqual(png_size(picture), (1920, 1080))
         pictures.add(picture.read_bytes())
         self.assertEqual(len(pictures), 4)
         c2c = ["evaluate", "c2c", scans, self.cloud]
@@ -125,13 +122,13 @@ class Pictures(ProgramTest):
         pictures = set()
         for options in [[], ["--labels", "semantickitti"], ["--color", "range"]]:
             self.run_good("render", self.cloud, "-o", picture, *size, *options)
-            self.assertEqual(self.size(picture), (64, 48))
+            self.assertEqual(png_size(picture), (64, 48))
             pictures.add(picture.read_bytes())
         self.assertEqual(len(pictures), 3)
         scans = self.simulate(self.model())
         self.run_good("render", self.cloud, scans, write_mesh(self.folder / "mesh.ply"), "-o",
                       picture, *size)
-        self.assertEqual(self.size(picture), (3 * 64, 48))
+        self.assertEqual(png_size(picture), (3 * 64, 48))
         self.run_bad(64, "render", self.cloud, "-o", picture, "--color", "normal")
 
 

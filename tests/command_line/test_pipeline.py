@@ -9,6 +9,7 @@ import struct
 import subprocess
 import unittest
 
+from pictures import png_size
 from support import ProgramTest, run, tiny_place, write_cloud
 
 
@@ -178,12 +179,11 @@ class Pipeline(ProgramTest):
         contents = set()
         for view in views:
             self.run_good("render", model, "-o", picture, "--width", "64", "--height", "48", *view)
-            data = picture.read_bytes()
-            self.assertEqual(struct.unpack(">II", data[16:24]), (64, 48))
-            contents.add(data)
+            self.assertEqual(png_size(picture), (64, 48))
+            contents.add(picture.read_bytes())
         self.assertEqual(len(contents), len(views))
         self.run_good("render", model, model, "-o", picture, "--width", "64", "--height", "48")
-        self.assertEqual(struct.unpack(">II", picture.read_bytes()[16:24]), (128, 48))
+        self.assertEqual(png_size(picture), (128, 48))
 
     def test_info(self):
         model = self.model()
@@ -242,7 +242,7 @@ class Pipeline(ProgramTest):
         pictures = sorted(demo.glob("*.png"))
         self.assertEqual(len(pictures), 2 * 4 + 1)  # two views of every method, and all in one
         for picture in pictures:
-            self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+            self.assertGreater(png_size(picture)[0], 0)
         page = (demo / "index.html").read_text(encoding="utf-8")
         self.assertEqual(page.count("data:image/png"), len(pictures))
         named = [line.split()[0] for line in text.splitlines() if line.startswith("  demo/")]
