@@ -26,10 +26,10 @@ __device__ void add_to(std::int64_t& sum, std::int64_t value) {
 }
 
 /// Calls body(i, point, ray, hit) on the device for all rays, i counting them, with the nearest hit
-/// of each up to `beyond_m` behind its end, which may be none.
+/// of each within `reach`, which may be none.
 template <class Body>
 void cast_nearest(const Disk* disks, std::size_t count, const MeasuredPoints& points,
-                  const DeviceBuffer<std::uint32_t>& numbers, float beyond_m, cudaStream_t stream,
+                  const DeviceBuffer<std::uint32_t>& numbers, RayReach reach, cudaStream_t stream,
                   Body body) {
   const std::size_t wanted = numbers.size();
   if (wanted == 0) return;
@@ -43,9 +43,9 @@ void cast_nearest(const Disk* disks, std::size_t count, const MeasuredPoints& po
     const std::size_t batch = std::min(at_once, wanted - done);
     const std::uint32_t* first = numbers.data() + done;
     for_each(batch, stream, "make rays",
-             [points, first, beyond_m, to = rays.data()] __device__(std::uint64_t k) {
+             [points, first, reach, to = rays.data()] __device__(std::uint64_t k) {
                const std::uint32_t point = first[k];
-               to[k] = measured_ray(points.sensors[point], points.positions[point], beyond_m);
+               to[k] = measured_ray(points.sensors[point], points.positions[point], reach);
              });
     scene->cast(source, batch, 1, hits.data(), stream);
     for_each(batch, stream, "count rays",
@@ -83,7 +83,7 @@ void count_rays(const DeviceRays& rays, const Disk* disks, const WideTree<LeafDi
             numbers = cast.data()] __device__(std::uint64_t k) {
              const std::uint32_t point = numbers[k];
              const Vec3f sensor = points.sensors[point], end = points.positions[point];
-             const Ray ray = measured_ray(sensor, end, beyond_m);
+             const Ray ray = measured_ray(sensor, end, {beyond_m});
              if (!castable(ray)) return;
              const float range_m =
                  nowhere ? std::numeric_limits<float>::infinity() : length(end - sensor);
@@ -181,7 +181,7 @@ DeviceBuffer<ShiftSums> DeviceRays::shifts(const Disk* disks, std::size_t count,
                                            const SettleOptions& options) const {
   DeviceBuffer<ShiftSums> sums(count, stream_);
   sums.fill_bytes(0);
-  cast_nearest(disks, count, measured_, numbers_, static_cast<float>(options.reach_m), stream_,
+  cast_nearest(disks, count, measured_, numbers_, settling_reach(options), stream_,
                [disks, options, points = measured_, to = sums.data()] __device__(
                    std::uint64_t, std::uint32_t point, const Ray& ray, Hit hit) {
                  if (!hit.valid()) return;
@@ -196,12 +196,12 @@ DeviceBuffer<ShiftSums> DeviceRays::shifts(const Disk* disks, std::size_t count,
 }
 
 DeviceBuffer<std::uint8_t> DeviceRays::missed(const Disk* disks, std::size_t count,
-                                              float beyond_m) const {
+                                              RayReach reach) const {
   DeviceBuffer<std::uint8_t> missed(point_count_, stream_);
   missed.fill_bytes(0);
   if (!any_present(disks, count, stream_)) return missed;
   cast_nearest(
-      disks, count, measured_, numbers_, beyond_m, stream_,
+      disks, count, measured_, numbers_, reach, stream_,
       [to = missed.data()] __device__(std::uint64_t, std::uint32_t point, const Ray&, Hit hit) {
         if (!hit.valid()) to[point] = 1;
       });
@@ -209,7 +209,7 @@ DeviceBuffer<std::uint8_t> DeviceRays::missed(const Disk* disks, std::size_t cou
 }
 
 void DeviceRays::observe(const Disk* disks, std::size_t count, const ObserveRay& observe) const {
-  cast_nearest(disks, count, measured_, numbers_, ObserveRay::kBeyond_m, stream_,
+  cast_nearest(disks, count, measured_, numbers_, RayReach{ObserveRay::kBeyond_m}, stream_,
                [observe, points = measured_] __device__(std::uint64_t i, std::uint32_t point,
                                                         const Ray& ray, Hit hit) {
                  const float range_m = length(points.positions[point] - points.sensors[point]);

@@ -48,9 +48,9 @@ class DeviceRays {
                                  const SettleOptions& options) const;
   /// Calls `observe` for all rays with their nearest hits.
   void observe(const Disk* disks, std::size_t count, const ObserveRay& observe) const;
-  /// One flag a point: whether its ray meets no disk up to `beyond_m` behind it. Where there is no
+  /// One flag a point: whether its ray meets no disk near it. Where there is no
   /// disk at all, none is missed. Waits for the stream.
-  DeviceBuffer<std::uint8_t> missed(const Disk* disks, std::size_t count, float beyond_m) const;
+  DeviceBuffer<std::uint8_t> missed(const Disk* disks, std::size_t count, RayReach reach) const;
 
  private:
   MeasuredPoints measured_;

@@ -57,8 +57,8 @@ class ConsistentOnGpu : public RaysOnGpu {
     return rays.shifts(disks.data(), disks.size(), options);
   }
   DeviceBuffer<std::uint8_t> missed(const DeviceBuffer<Disk>& disks, const DeviceRays& rays,
-                                    std::size_t /*points*/, float beyond_m) const {
-    return rays.missed(disks.data(), disks.size(), beyond_m);
+                                    std::size_t /*points*/, RayReach reach) const {
+    return rays.missed(disks.data(), disks.size(), reach);
   }
   DeviceCover cover(const DeviceBuffer<Disk>& seeds, const DeviceBuffer<std::uint8_t>& unchecked,
                     const DevicePointIndex& index, const CoverOptions& options) const {

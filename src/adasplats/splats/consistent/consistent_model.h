@@ -44,7 +44,8 @@ struct ConsistentOptions {
   SettleOptions settle;
   bool empty_beams = true;  ///< that are known say what is free
   bool fill = true;         ///< where rays fall between splats, seeds are put back...
-  float missed_m = 0.15F;   ///< ...if there is nothing up to so far behind the rays' ends
+  float missed_m = 0.15F;   ///< ...if there is nothing up to so far behind the rays' ends...
+  float met_m = 0.4F;       ///< ...and so far before them
 
   double smallest_cell_m() const { return small_cell_m > 0 ? small_cell_m : cell_m; }
   /// Cells are split up to `split_scale`: planes at larger scales than the first that decides need

@@ -3,6 +3,7 @@
 #include "adasplats/splats/consistent/consistent_steps.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "adasplats/core/maths/median.h"
 #include "adasplats/neighbors/point_index.h"
@@ -73,12 +74,12 @@ class ConsistentOnCpu : public RaysOnCpu {
         std::ranges::count_if(disks, [](const Disk& disk) { return disk.radius > 0; }));
   }
 
-  /// One flag a point: whether its ray meets no disk up to `beyond_m` behind it.
+  /// One flag a point: whether its ray meets no disk near it.
   std::vector<std::uint8_t> missed(std::span<const Disk> disks, const MeasuredRays& rays,
-                                   std::size_t points, float beyond_m) const {
+                                   std::size_t points, RayReach reach) const {
     std::vector<std::uint8_t> missed(points);
     RayCasting casting;
-    casting.beyond_m = beyond_m;
+    casting.reach = reach;
     PresentDisks(disks, executor())
         .cast(rays, casting, executor(),
               [&](std::size_t i, const Ray&, float, std::span<const Hit> hits) {
@@ -122,8 +123,15 @@ class ConsistentOnCpu : public RaysOnCpu {
 
 }  // namespace
 
+double rounded_spacing(double median) {
+  constexpr int kSteps = 256;  // of the mantissa, 0.5 to 1
+  int exponent = 0;
+  const double mantissa = std::frexp(median, &exponent);
+  return std::ldexp(std::round(mantissa * kSteps) / kSteps, exponent);
+}
+
 TypicalSpacing typical_spacing(std::vector<float> with_beam, std::vector<float> without) {
-  return {median_spacing(with_beam), median_spacing(without)};
+  return {rounded_spacing(median_spacing(with_beam)), rounded_spacing(median_spacing(without))};
 }
 
 std::unique_ptr<ConsistentSteps> make_cpu_consistent_steps(const Executor& executor) {

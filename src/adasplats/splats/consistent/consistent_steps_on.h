@@ -142,7 +142,8 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
 
   void fill_gaps(const ConsistentOptions& options) override {
     [[maybe_unused]] const auto entered = place_.enter();
-    const auto missed = place_.missed(chosen_, *rays_, cloud_.size(), options.missed_m);
+    const auto missed =
+        place_.missed(chosen_, *rays_, cloud_.size(), RayReach{options.missed_m, options.met_m});
     place_.for_each(chosen_.size(), "fill gaps",
                     PutBackSeed{chosen_.data(), seeds_.data(), cells_.view(), missed.data()});
     place_.wait("fill gaps");
@@ -227,8 +228,8 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   }
   TypicalSpacing typical_spacing(const Array<LocalPlane>& planes) const {
     if (whole_) return whole_->typical;
-    return {place_.median_spacing(planes, spacing_units(true)),
-            place_.median_spacing(planes, spacing_units(false))};
+    return {rounded_spacing(place_.median_spacing(planes, spacing_units(true))),
+            rounded_spacing(place_.median_spacing(planes, spacing_units(false)))};
   }
 
   /// Splits cells where nothing is flat. Gives the median spacings of the cells before.

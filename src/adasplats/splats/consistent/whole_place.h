@@ -36,7 +36,11 @@ struct CellSpacing {
   bool with_beam = false;
 };
 
-/// Medians of spacings; what there is none of is 0. Their order does not matter.
+/// In steps of a two hundredth or less: a few cells more or less, which a piece sees other
+/// neighbours of, must not change all disks.
+double rounded_spacing(double median);
+
+/// Medians of spacings, rounded; what there is none of is 0. Their order does not matter.
 TypicalSpacing typical_spacing(std::vector<float> with_beam, std::vector<float> without);
 
 }  // namespace adasplats

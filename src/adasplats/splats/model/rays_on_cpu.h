@@ -24,7 +24,7 @@ class RaysOnCpu : public CpuPlace {
   void observe(const std::vector<Disk>& disks,
                std::span<const std::pair<const MeasuredRays*, ObserveRay>> parts) const {
     RayCasting casting;
-    casting.beyond_m = ObserveRay::kBeyond_m;
+    casting.reach = {ObserveRay::kBeyond_m};
     const PresentDisks present(disks, executor());
     for (const auto& part : parts) {
       const auto look = [&](std::size_t i, const Ray& ray, float range_m,

@@ -8,6 +8,7 @@
 
 #include "adasplats/core/host_device.h"
 #include "adasplats/scene/intersect.h"
+#include "adasplats/splats/rays/measured_ray.h"
 
 namespace adasplats {
 
@@ -20,6 +21,13 @@ struct SettleOptions {        // numbers: docs/fidelity.md
   double most_shift_m = 0.1;
 };
 
+/// What of a ray is cast to settle disks: what stands farther before its end says nothing of the
+/// surface there, and may not be known where a place is cut into pieces.
+ADASPLATS_HD inline RayReach settling_reach(const SettleOptions& options) {
+  const auto reach_m = static_cast<float>(options.reach_m);
+  return {reach_m, reach_m};
+}
+
 /// Sums over the rays of one disk, in units of kUnit: whole numbers, the same in every order.
 struct ShiftSums {
   static constexpr double kUnit = 1.0 / (1 << 20);  // 1e-6 of a ray, 1e-6 m
@@ -28,7 +36,8 @@ struct ShiftSums {
   std::uint32_t rays = 0;
 };
 
-/// What one ray, of measured range `range_m`, says of the disk that it meets first, at `hit_t`.
+/// What one ray, of measured range `range_m`, says of the disk that it meets first near its end, at
+/// `hit_t`.
 ADASPLATS_HD inline ShiftSums shift_of_ray(const Disk& disk, const Ray& ray, float hit_t,
                                            float range_m, const SettleOptions& options) {
   const double error_m = static_cast<double>(hit_t) - static_cast<double>(range_m);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "adasplats/core/host_device.h"
 #include "adasplats/core/maths/ray.h"
@@ -90,14 +91,22 @@ struct RayPartBegins {
   }
 };
 
-/// From the sensor through the point and `beyond_m` farther.
-ADASPLATS_HD inline Ray measured_ray(Vec3f sensor, Vec3f point, float beyond_m) {
+/// Of a measured ray what is cast: up to so far behind its end, and from so far before it; from the
+/// sensor where that is farther.
+struct RayReach {
+  float beyond_m = 0;
+  float before_m = std::numeric_limits<float>::infinity();
+};
+
+/// From the sensor through the point.
+ADASPLATS_HD inline Ray measured_ray(Vec3f sensor, Vec3f point, RayReach reach) {
   const Vec3f along = point - sensor;
   const float range_m = length(along);
   Ray ray;
   ray.origin = sensor;
   ray.direction = along / range_m;
-  ray.t_max = range_m + beyond_m;
+  ray.t_min = std::max(0.0F, range_m - reach.before_m);
+  ray.t_max = range_m + reach.beyond_m;
   return ray;
 }
 

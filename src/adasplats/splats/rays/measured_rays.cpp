@@ -59,9 +59,9 @@ float MeasuredRays::range_m(std::size_t i) const {
   return length(cloud_.positions[point] - cloud_.sensor_positions[point]);
 }
 
-Ray MeasuredRays::ray(std::size_t i, float beyond_m) const {
+Ray MeasuredRays::ray(std::size_t i, RayReach reach) const {
   const std::uint32_t point = points_[i];
-  return measured_ray(cloud_.sensor_positions[point], cloud_.positions[point], beyond_m);
+  return measured_ray(cloud_.sensor_positions[point], cloud_.positions[point], reach);
 }
 
 PointCloud ends_of(const std::vector<EmptyBeam>& beams, float reach_m) {
@@ -138,7 +138,7 @@ RayEvidence collect_evidence(std::span<const Disk> disks, std::span<const Measur
       for (std::uint32_t* counter : counters) count_one(*counter);
     };
     const float beyond_m = cast.ends() == RayEnds::nowhere ? 0 : options.most_margin_m();
-    RayCasting casting = {{}, beyond_m, RayCasting::Hits::all};
+    RayCasting casting = {{}, {beyond_m}, RayCasting::Hits::all};
     if (options.parts > 1) casting.numbers = cast.part(options.parts, options.part);
     present.cast(cast, casting, executor, count);
   };

@@ -36,8 +36,9 @@ class MeasuredRays {
   /// Infinite where rays end nowhere.
   float range_m(std::size_t i) const;
   RayEnds ends() const { return ends_; }
+  Ray ray(std::size_t i, RayReach reach) const;
   /// From the sensor through the point and `beyond_m` farther.
-  Ray ray(std::size_t i, float beyond_m) const;
+  Ray ray(std::size_t i, float beyond_m) const { return ray(i, RayReach{beyond_m}); }
   /// Numbers of the rays of one part of so many, 2 or kRayParts, in their order by kRayParts.
   std::span<const std::uint32_t> part(std::uint32_t parts, std::uint32_t part) const {
     return std::span(by_part_).subspan(begins_.first(parts, part), begins_.count(parts, part));

@@ -82,7 +82,7 @@ void PresentDisks::cast(const MeasuredRays& rays, const RayCasting& casting,
       const std::size_t number = number_of(k);
       if (k + kLoadedAhead < count) rays.prefetch(number_of(k + kLoadedAhead));
       batch.numbers.push_back(number);
-      batch.rays.push_back(rays.ray(number, casting.beyond_m));
+      batch.rays.push_back(rays.ray(number, casting.reach));
       batch.ranges_m.push_back(rays.range_m(number));
     }
     cast(batch, depth, all, executor, body);

@@ -12,6 +12,7 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/function_ref.h"
 #include "adasplats/scene/intersect.h"
+#include "adasplats/splats/rays/measured_ray.h"
 #include "adasplats/splats/rays/measured_rays.h"
 #include "adasplats/trace/tracer.h"
 
@@ -20,7 +21,7 @@ namespace adasplats {
 /// Which of some measured rays are cast, and how.
 struct RayCasting {
   std::optional<std::span<const std::uint32_t>> numbers;  ///< of the rays; nothing: all of them
-  float beyond_m = 0;                                     ///< so much farther than the points
+  RayReach reach;
   enum class Hits : std::uint8_t { nearest, all } hits = Hits::nearest;
 };
 

@@ -30,7 +30,7 @@ std::vector<ShiftSums> sum_shifts(std::span<const Disk> disks, const MeasuredRay
     add(sums[id].rays, part.rays);
   };
   RayCasting casting;
-  casting.beyond_m = static_cast<float>(options.reach_m);
+  casting.reach = settling_reach(options);
   present.cast(rays, casting, executor, add_ray);
   return sums;
 }

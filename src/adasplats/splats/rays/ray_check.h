@@ -13,8 +13,8 @@
 
 namespace adasplats {
 
-/// What the rays that meet each disk first say of its place. Sums are whole numbers: the same on
-/// any number of threads.
+/// What the rays that meet each disk first near their ends say of its place. Sums are whole
+/// numbers: the same on any number of threads.
 std::vector<ShiftSums> sum_shifts(std::span<const Disk> disks, const MeasuredRays& rays,
                                   const SettleOptions& options, const Executor& executor);
 
