@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "adasplats/city/city_manifest.h"
 #include "adasplats/pipeline/model/make_model.h"
 #include "adasplats/pipeline/model/unused_settings.h"
 #include "adasplats/pipeline/output/output_check.h"
@@ -178,7 +179,7 @@ std::shared_ptr<ModelObject> load_model_object(py::handle path) {
   const std::filesystem::path file = path_of(path, "path");
   auto object = std::make_shared<ModelObject>();
   const py::gil_scoped_release released;
-  object->model = load_model(file);
+  object->model = load_splats(file);
   return object;
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "adasplats/city/city_manifest.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/pipeline/session/inputs.h"
@@ -84,6 +85,7 @@ class InfoCommand final : public Command {
            "Files, sequence folders and recordings; without any: as --devices")
         ->type_name("PATH");
     app.add_flag("--devices", devices_, "List the GPUs of this machine, or why there are none");
+    app.add_flag("--verify", verify_, "Check every tile of a city by its SHA-256");
     app.add_option("--labels", labels_,
                    "Names the classes: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or "
                    "a TOML file")
@@ -93,7 +95,7 @@ class InfoCommand final : public Command {
 
   void run(Session& session) override {
     if (inputs_.empty()) {
-      refuse({"--labels"}, "without a file");
+      refuse({"--labels", "--verify"}, "without a file");
       const std::string option = given_load_option(options());
       if (!option.empty()) refuse({option.c_str()}, "without a file");
     }
@@ -106,6 +108,7 @@ class InfoCommand final : public Command {
     }
     std::set<std::string> kinds;
     for (const std::filesystem::path& input : all_inputs()) {
+      if (verify_ && is_city(input)) verify_city(input, load_city_manifest(input));
       const FileFacts facts = run_info(input, labels_, load_, session);
       kinds.insert(facts.kind);
       nlohmann::ordered_json json = {{"path", input.string()}, {"kind", facts.kind}};
@@ -122,6 +125,7 @@ class InfoCommand final : public Command {
   void refuse_what_does_not_fit(const std::set<std::string>& kinds) {
     if (kinds.empty() || kinds.contains("capture")) return;
     const std::string why = "on a " + *kinds.begin();
+    if (!kinds.contains("city of splats")) refuse({"--verify"}, why);
     refuse({"--packets-of"}, why);
     if (kinds.contains("point cloud") || kinds.contains("folder of scans") ||
         kinds.contains("recording") || kinds.contains("PandaSet sequence") ||
@@ -138,13 +142,19 @@ class InfoCommand final : public Command {
   /// With the sequences of a tree one by one.
   std::vector<std::filesystem::path> all_inputs() const {
     std::vector<std::filesystem::path> all;
-    for (const std::filesystem::path& input : inputs_)
+    for (const std::filesystem::path& input : inputs_) {
+      if (is_city(input)) {
+        all.push_back(input);
+        continue;
+      }
       for (const std::filesystem::path& one : resolve_cloud_inputs(input)) all.push_back(one);
+    }
     return all;
   }
 
   std::vector<std::filesystem::path> inputs_;
   bool devices_ = false;
+  bool verify_ = false;
   std::string labels_;
   LoadOptions load_;
 };

@@ -9,6 +9,7 @@
 #include <optional>
 #include <unordered_set>
 
+#include "adasplats/city/city_manifest.h"
 #include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/cloud/load/packet_drive.h"
@@ -174,7 +175,7 @@ FileFacts cloud_facts(const fs::path& input, std::optional<LabelScheme> scheme,
 }
 
 FileFacts model_facts(const fs::path& input, std::optional<LabelScheme> scheme) {
-  const SplatModel model = load_model(input);
+  const SplatModel model = load_splats(input);
   FileFacts facts;
   facts.kind = "splat model";
   if (!model.method.empty()) facts.rows.emplace_back("method", model.method);
@@ -198,6 +199,25 @@ FileFacts model_facts(const fs::path& input, std::optional<LabelScheme> scheme) 
   }
   if (!scheme && !model.label_scheme.empty()) scheme = load_label_scheme(model.label_scheme);
   survey.describe_classes(facts, scheme);
+  return facts;
+}
+
+FileFacts city_facts(const fs::path& input, std::optional<LabelScheme> scheme) {
+  const CityManifest city = load_city_manifest(input);
+  FileFacts facts = model_facts(input, std::move(scheme));
+  facts.kind = "city of splats";
+  std::size_t most = 0;
+  for (const CityTile& tile : city.tiles) most = std::max(most, tile.splats);
+  const std::vector<std::pair<std::string, std::string>> rows = {
+      {"tiles", grouped(city.tiles.size()) + " of " + fixed(city.grid.side_m, 0) +
+                    " m, made with " + fixed(city.halo_m, 0) + " m around"},
+      {"points", grouped(city.points())},
+      {"splats of the largest tile", grouped(most)}};
+  facts.rows.insert(facts.rows.begin(), rows.begin(), rows.end());
+  facts.json["tiles"] = city.tiles.size();
+  facts.json["tile_m"] = city.grid.side_m;
+  facts.json["halo_m"] = city.halo_m;
+  facts.json["points"] = city.points();
   return facts;
 }
 
@@ -420,6 +440,7 @@ FileFacts capture_facts(const fs::path& input, const std::optional<LabelScheme>&
 
 FileFacts run_info(const fs::path& input, const std::string& labels, const LoadOptions& options,
                    Session& session) {
+  if (is_city(input)) return city_facts(input, label_scheme_for(labels, {}));
   if (is_capture(input))
     return capture_facts(input, label_scheme_for(labels, {}), options, session);
   if (is_recording(input))

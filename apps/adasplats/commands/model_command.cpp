@@ -5,6 +5,8 @@
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/point_format.h"
 #include "adasplats/pipeline/model/unused_settings.h"
+#include "adasplats/pipeline/output/output_check.h"
+#include "adasplats/recipes/city/make_city.h"
 #include "adasplats/recipes/model_file.h"
 #include "cli/commands.h"
 #include "cli/options/build_options.h"
@@ -22,7 +24,8 @@ constexpr const char* kModelExamples =
     "  adasplats model street/mapping.ply -o street.ply --method semantic --labels semantickitti\n"
     "  adasplats model sequences/00 -o place.ply --scans 0:100:2 --remove moving\n"
     "  adasplats model cloud.laz -o place.ply --method semantic --segment\n"
-    "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n";
+    "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n"
+    "  adasplats model strips/ -o city --tile 64 --trajectory drive.csv\n";
 
 /// What the method itself counts and measures.
 std::string figures_of(const BuildReport& built) {
@@ -65,7 +68,11 @@ class ModelCommand final : public Command {
                        "), SemanticKITTI sequence folders and recordings (" +
                        recording_format_names() + ", PCAP)")
                 ->type_name("PATH"));
-    require(writes(add_path(app, "-o,--output", job_.output, "Model to write, PLY"), {".ply"}));
+    require(writes(add_path(app, "-o,--output", job_.output,
+                            "Model to write, PLY; with --tile the folder of a city"),
+                   {".ply", ""}));
+    app.add_flag("--overwrite", job_.overwrite, "Replace an earlier city");
+    add_settings(app, job_.tiles);
     app.add_option(
            "--labels", job_.labels,
            "What labels mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
@@ -92,7 +99,14 @@ class ModelCommand final : public Command {
     job_.removal_is_asked = is_given("--remove");
     // OptiX casts rays; models are made with CUDA alone.
     if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
-    const ModelResult result = run_model(job_, session);
+    if (job_.tiles.tile_m > 0) {
+      require_folder_apart(job_.output, job_.inputs);
+      run_city(session);
+      return;
+    }
+    refuse({"--halo", "--overwrite"}, "without --tile");
+    require_ending(job_.output, ".ply");
+    const ModelResult result = run_model({job_, job_.output}, session);
     session.report.update(to_json(result));
     TextTable table({"step", "seconds"});
     for (const StepTime& step : result.steps) table.add_row({step.name, fixed(step.seconds, 2)});
@@ -107,7 +121,22 @@ class ModelCommand final : public Command {
   }
 
  private:
-  ModelFileJob job_;
+  void run_city(Session& session) {
+    const CityResult result = make_city(job_, session);
+    session.report.update(to_json(result));
+    TextTable table({"step", "seconds"});
+    for (const StepTime& step : result.steps) table.add_row({step.name, fixed(step.seconds, 2)});
+    table.add_row({"total", fixed(result.seconds, 2)});
+    print(table.text() + "\n" + job_.output.string() + ": " + grouped(result.city.splats()) +
+          " splats in " + grouped(result.city.tiles.size()) + " tiles of " +
+          fixed(job_.tiles.tile_m, 0) + " m from " + grouped(result.city.points()) + " points" +
+          (result.tiles_resumed == 0
+               ? std::string()
+               : ", " + grouped(result.tiles_resumed) + " of the tiles made by an earlier run") +
+          "\n");
+  }
+
+  CityJob job_;
   RecipeChoice recipe_;
 };
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/city/city_manifest.h"
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
@@ -56,7 +57,7 @@ fs::path sequence_beside(const fs::path& folder) {
 }
 
 void sort_folder(const fs::path& folder, Sorted& sorted) {
-  sorted.model = model_in(folder);
+  sorted.model = is_city(folder) ? folder : model_in(folder);
   if (!sorted.model.empty()) {
     const fs::path sequence = sequence_beside(folder);
     if (!sequence.empty()) sorted.sequences.push_back(sequence);
@@ -76,7 +77,7 @@ void sort_layer(const fs::path& path, Sorted& sorted) {
   require_input(path);
   if (is_world_file(path))
     throw Error(ErrorKind::usage, path.string() + ": a world file is the input itself, no layer");
-  if (fs::is_directory(path))
+  if (fs::is_directory(path) && !is_city(path))
     sorted.clouds.push_back(resolve_cloud_input(path));
   else if (is_place(path))
     sorted.places.push_back(path);
@@ -158,7 +159,7 @@ class Loading {
   }
 
   void add_place(const fs::path& path) {
-    const Place place = load_place(path);
+    const Place place = load_place_or_city(path);
     if (view_of(place).primitive_count() == 0)
       throw Error(ErrorKind::data, path.string() + ": nothing in it");
     crs_.add(path, crs_of(place));

@@ -4,44 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <string>
-#include <string_view>
+#include <utility>
 
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/cloud_part.h"
 
 namespace adasplats {
-
-/// Hears the loading of pieces within a longer step: says each warning once, whatever the numbers
-/// in it, and then how many more pieces had the like.
-class DrivePieces::Warnings final : public ProgressSink {
- public:
-  explicit Warnings(ProgressSink& sink) : sink_(sink) {}
-
-  void warn(std::string_view message) override {
-    std::string kind;
-    std::ranges::copy_if(message, std::back_inserter(kind),
-                         [](char c) { return (c < '0' || c > '9') && c != '.' && c != ','; });
-    const auto [known, is_new] = repeated_.try_emplace(std::move(kind), message, 0);
-    if (is_new)
-      sink_.warn(message);
-    else
-      ++known->second.second;
-  }
-
-  void end() {
-    for (const auto& [kind, first] : repeated_)
-      if (first.second > 0)
-        sink_.warn("of " + std::to_string(first.second) +
-                   " more pieces of the drive the like was to say: " + first.first);
-    repeated_.clear();
-  }
-
- private:
-  ProgressSink& sink_;
-  std::map<std::string, std::pair<std::string, std::size_t>> repeated_;
-};
 
 namespace {
 
@@ -53,7 +21,9 @@ std::size_t chosen_of(std::size_t scans, const LoadOptions& load) {
 }  // namespace
 
 DrivePieces::DrivePieces(const LoadOptions& load, Session& session)
-    : load_(load), session_(&session), warnings_(std::make_shared<Warnings>(session.progress)) {}
+    : load_(load),
+      session_(&session),
+      warnings_(std::make_shared<RepeatedWarnings>(session.progress, "pieces of the drive")) {}
 
 std::optional<DrivePieces> DrivePieces::open(std::span<const std::filesystem::path> inputs,
                                              const LoadOptions& load, std::size_t window_scans,

@@ -10,6 +10,7 @@
 
 #include "adasplats/calibrate/windows.h"
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/pipeline/session/repeated_warnings.h"
 #include "adasplats/pipeline/session/session.h"
 
 namespace adasplats {
@@ -32,15 +33,13 @@ class DrivePieces {
   void end();
 
  private:
-  class Warnings;
-
   DrivePieces(const LoadOptions& load, Session& session);
   PointCloud read(std::size_t drive, ScanSpan span);
   void count(const LoadReport& piece);
 
   LoadOptions load_;
   Session* session_;
-  std::shared_ptr<Warnings> warnings_;
+  std::shared_ptr<RepeatedWarnings> warnings_;
   LoadReport report_;
   std::vector<std::vector<bool>> is_counted_;  ///< of drives, scan by scan
 };

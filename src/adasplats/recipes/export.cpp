@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "adasplats/city/city_manifest.h"
 #include "adasplats/cloud/points/cloud_glb.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
@@ -68,10 +69,10 @@ std::string joined_names(const std::vector<ExportFormat>& formats) {
 }
 
 InputKind kind_of(const fs::path& input) {
+  if (is_splat_model(input)) return InputKind::model;
   if (fs::is_directory(input)) {
     return is_kitti_sequence(input) ? InputKind::sequence : InputKind::cloud;
   }
-  if (is_splat_model(input)) return InputKind::model;
   if (is_mesh_file(input)) {
     throw Error(ErrorKind::usage, input.string() +
                                       ": is a triangle mesh, which other programs open as it is; "
@@ -156,7 +157,7 @@ PointCloud centers_of(SplatModel& model) {
 }
 
 ExportResult export_model(const ExportJob& job, ExportFormat format, Session& session) {
-  SplatModel model = load_model(job.input);
+  SplatModel model = load_splats(job.input);
   const std::optional<LabelScheme> labels = labels_of(model, job.labels, session);
   PointCloud centers = centers_of(model);
   const std::vector<Rgb> colors = colors_of(centers, labels ? &*labels : nullptr, job.color);

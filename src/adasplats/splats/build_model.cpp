@@ -210,6 +210,7 @@ void run(const ConsistentOptions& options, const ModelEngine& engine, PointCloud
   const bool has_reflectances = build.reflectances && shows_reflectances(cloud);
   report.points_used = steps.load(std::move(cloud), tables, build.whole);
   report.points_dynamic = report.points_in - report.points_noise - report.points_used;
+  if (build.whole != nullptr && report.points_used == 0) return;
   require_points(report.points_used);
   report.consistent = consistent_disks(steps, has_rays, options, step);
   report.ray_checked = report.consistent->checked;

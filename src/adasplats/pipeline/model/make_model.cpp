@@ -58,10 +58,13 @@ class ModelMaker {
     PointCloud cloud = load(result);
     if (options_.calibration.on) estimate_calibration(cloud, result);
     if (classifier_) segment(cloud, result);
-    check_label_use({options_.labels, options_.build.remove, options_.removal_is_asked}, cloud,
-                    scheme_ ? &*scheme_ : nullptr, session_.progress);
+    // Of a piece of a place it says nothing that it holds no surface, or nothing to remove.
+    const bool is_whole = options_.build.whole == nullptr;
+    if (is_whole)
+      check_label_use({options_.labels, options_.build.remove, options_.removal_is_asked}, cloud,
+                      scheme_ ? &*scheme_ : nullptr, session_.progress);
     auto [model, built] = build_on_device(std::move(cloud), result);
-    require_splats(model, built);
+    if (is_whole) require_splats(model, built);
     model.calibration = result.calibration;
     if (scheme_) model.label_scheme = scheme_reference(options_.labels, *scheme_);
     if (classifier_) model.network_sha256 = classifier_->facts().sha256;

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "adasplats/city/city_manifest.h"
 #include "adasplats/core/error.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/simulate/image/class_colors.h"
@@ -36,7 +37,7 @@ ModelScene::ModelScene(const std::filesystem::path& file, const std::string& lab
   if (file.extension() == ".toml") world_file = place_with_objects(file, world_files);
   if (!labels.empty()) labels_ = load_label_scheme(labels);
   session.progress.begin_step("load " + file.filename().string(), 0);
-  place_ = load_place(world_file ? world_file->model : file);
+  place_ = load_place_or_city(world_file ? world_file->model : file);
   prepare(file.string(), session);
   if (world_file) {
     add_objects([&](World& world) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "adasplats/city/city_manifest.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/scene/gltf.h"
@@ -17,6 +18,11 @@ std::vector<std::filesystem::path> files_of_scene(const std::filesystem::path& m
     if (!file.empty() && std::ranges::find(files, file) == files.end()) files.push_back(file);
   };
   const auto add_geometry = [&](const std::filesystem::path& file) {
+    if (is_city(file)) {  // whose manifest has the SHA-256 of every tile
+      add(file / kCityFile);
+      add(file / kCityCommonFile);
+      return;
+    }
     add(file);
     if (!file.empty() && is_gltf(file))
       for (const std::filesystem::path& buffer : gltf_buffer_files(file)) add(buffer);

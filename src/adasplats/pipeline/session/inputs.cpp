@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/session/inputs.h"
 
+#include "adasplats/city/city_manifest.h"
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/file_kind.h"
@@ -62,6 +63,7 @@ fs::path resolve_cloud_input(const fs::path& input) {
 
 bool is_splat_model(const fs::path& file) {
   std::error_code failure;
+  if (is_city(file)) return true;
   return fs::is_regular_file(file, failure) && kind_of_file(file) == FileKind::splat_model;
 }
 

@@ -28,7 +28,7 @@ std::vector<std::filesystem::path> resolve_cloud_inputs(const std::filesystem::p
 /// Likewise, where one is wanted. Errors: usage (several sequences).
 std::filesystem::path resolve_cloud_input(const std::filesystem::path& input);
 
-/// Whether a file is a PLY that has what a splat model has (a radius and a normal).
+/// Whether a path is a splat model: a PLY with a radius and a normal, or the folder of a city.
 bool is_splat_model(const std::filesystem::path& file);
 
 /// The trajectory of a pose file or of a sequence folder; of a recording all of its poses

@@ -56,7 +56,7 @@ std::optional<Vec3d> in_picture(const Camera& camera, Vec3d world) {
 }  // namespace
 
 bool is_model_file(const std::filesystem::path& input) {
-  return std::filesystem::is_regular_file(input) && (is_mesh_file(input) || is_splat_model(input));
+  return is_splat_model(input) || (std::filesystem::is_regular_file(input) && is_mesh_file(input));
 }
 
 Panel::Panel(const std::filesystem::path& input, const std::string& labels, Session& session) {

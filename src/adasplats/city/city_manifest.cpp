@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/city/city_manifest.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/sha256.h"
+
+namespace adasplats {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int kVersion = 1;
+
+Json json_of(Vec3d v) { return {v.x, v.y, v.z}; }
+Vec3d vector_of(const Json& json) { return {json.at(0), json.at(1), json.at(2)}; }
+
+template <class T>
+void append_to(std::vector<T>& all, const std::vector<T>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+std::size_t CityManifest::points() const {
+  std::size_t sum = 0;
+  for (const CityTile& tile : tiles) sum += tile.points;
+  return sum;
+}
+
+std::size_t CityManifest::splats() const {
+  std::size_t sum = 0;
+  for (const CityTile& tile : tiles) sum += tile.splats;
+  return sum;
+}
+
+std::string model_file_of(TileKey tile) { return "tiles/" + name_of(tile) + ".ply"; }
+
+bool is_city(const fs::path& path) {
+  std::error_code none;
+  return fs::is_directory(path, none) && fs::exists(path / kCityFile, none);
+}
+
+std::string city_text(const CityManifest& city) {
+  Json json = {{"format", "adasplats city"},       {"version", kVersion},
+               {"tile_m", city.grid.side_m},       {"halo_m", city.halo_m},
+               {"origin_m", json_of(city.origin)}, {"points", city.points()},
+               {"splats", city.splats()},          {"tiles", Json::array()}};
+  for (const CityTile& tile : city.tiles)
+    json["tiles"].push_back({{"x", tile.key.x},
+                             {"y", tile.key.y},
+                             {"file", model_file_of(tile.key)},
+                             {"points", tile.points},
+                             {"splats", tile.splats},
+                             {"sha256", tile.sha256},
+                             {"low_m", json_of(tile.low)},
+                             {"high_m", json_of(tile.high)}});
+  return json.dump(1) + "\n";
+}
+
+CityManifest load_city_manifest(const fs::path& folder) {
+  const fs::path file = folder / kCityFile;
+  const std::string text = read_file(file);
+  try {
+    const Json json = Json::parse(text);
+    if (json.at("format") != "adasplats city")
+      throw Error(ErrorKind::data, file.string() + ": not the manifest of a city");
+    if (json.at("version") != kVersion)
+      throw Error(ErrorKind::data, file.string() + ": a city of version " +
+                                       json.at("version").dump() + "; this program reads version " +
+                                       std::to_string(kVersion));
+    CityManifest city;
+    city.grid.side_m = json.at("tile_m");
+    city.halo_m = json.at("halo_m");
+    city.origin = vector_of(json.at("origin_m"));
+    for (const Json& tile : json.at("tiles"))
+      city.tiles.push_back({{tile.at("x"), tile.at("y")},
+                            tile.at("points"),
+                            tile.at("splats"),
+                            tile.at("sha256"),
+                            vector_of(tile.at("low_m")),
+                            vector_of(tile.at("high_m"))});
+    if (!(city.grid.side_m > 0) || !std::ranges::is_sorted(city.tiles, {}, &CityTile::key))
+      throw Error(ErrorKind::data, file.string() + ": damaged: its tiles are not in order");
+    return city;
+  } catch (const Json::exception& error) {
+    throw Error(ErrorKind::data, file.string() + ": damaged: " + error.what());
+  }
+}
+
+TileKey owner_of(Vec3d world, const TileGrid& grid, const std::vector<CityTile>& tiles) {
+  const auto is_there = [&](TileKey key) {
+    return std::ranges::binary_search(tiles, key, {}, &CityTile::key);
+  };
+  const TileKey own = grid.tile_of(world);
+  if (is_there(own)) return own;
+  for (TileKey near = {own.x - 1, 0}; near.x <= own.x + 1; ++near.x)
+    for (near.y = own.y - 1; near.y <= own.y + 1; ++near.y)
+      if (is_there(near)) return near;
+  return own;
+}
+
+SplatModel load_city(const fs::path& folder) {
+  const CityManifest city = load_city_manifest(folder);
+  SplatModel all = load_model(folder / kCityCommonFile);
+  all.origin = city.origin;
+  for (const CityTile& tile : city.tiles) {
+    if (tile.splats == 0) continue;
+    const fs::path file = folder / model_file_of(tile.key);
+    SplatModel part = load_model(file);
+    if (part.size() != tile.splats)
+      throw Error(ErrorKind::data, file.string() + ": " + std::to_string(part.size()) +
+                                       " splats; the city's manifest says " +
+                                       std::to_string(tile.splats));
+    // A file says world coordinates; what it is loaded with is an origin near by.
+    const Vec3d shift = part.origin - all.origin;
+    for (Disk& disk : part.disks)
+      disk.center = vec_cast<float>(vec_cast<double>(disk.center) + shift);
+    append_to(all.disks, part.disks);
+    append_to(all.classes, part.classes);
+    append_to(all.groups, part.groups);
+    append_to(all.intensities, part.intensities);
+  }
+  return all;
+}
+
+SplatModel load_splats(const fs::path& path) {
+  return is_city(path) ? load_city(path) : load_model(path);
+}
+
+Place load_place_or_city(const fs::path& path) {
+  return is_city(path) ? Place(load_city(path)) : load_place(path);
+}
+
+void verify_city(const fs::path& folder, const CityManifest& city) {
+  for (const CityTile& tile : city.tiles) {
+    if (tile.splats == 0) continue;
+    const fs::path file = folder / model_file_of(tile.key);
+    if (sha256_of_file(file) != tile.sha256)
+      throw Error(ErrorKind::data,
+                  file.string() + ": not the file that was written (its SHA-256 differs)");
+  }
+}
+
+}  // namespace adasplats

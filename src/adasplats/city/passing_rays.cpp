@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/city/passing_rays.h"
+
+#include <fstream>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/splats/rays/measured_ray.h"
+
+namespace adasplats {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kRaysHead = "adasplats rays 1";
+
+void add(PointCloud& rays, Vec3f sensor, Vec3f end) {
+  rays.sensor_positions.push_back(sensor);
+  rays.positions.push_back(end);
+}
+
+/// Calls visit(chunk's rays, i) for the rays of a cloud, and puts the chunks together in order.
+template <class Visit>
+RaysByTile by_tile(std::size_t count, const Executor& executor, const Visit& visit) {
+  constexpr std::size_t kChunk = std::size_t{1} << 16;
+  const std::size_t chunks = (count + kChunk - 1) / kChunk;
+  std::vector<RaysByTile> parts(chunks);
+  executor.for_chunks(chunks, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk)
+      for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i)
+        visit(parts[chunk], i);
+  });
+  RaysByTile all;
+  for (RaysByTile& part : parts)
+    for (auto& [tile, rays] : part) append(all[tile], std::move(rays));
+  return all;
+}
+
+}  // namespace
+
+std::set<TileKey> TileSet::crossed(Vec3d from, Vec3d to) const {
+  std::set<TileKey> found;
+  const auto low =
+      grid.tile_of({std::min(from.x, to.x) - halo_m, std::min(from.y, to.y) - halo_m, 0});
+  const auto high =
+      grid.tile_of({std::max(from.x, to.x) + halo_m, std::max(from.y, to.y) + halo_m, 0});
+  for (TileKey tile = low; tile.x <= high.x; ++tile.x)
+    for (tile.y = low.y; tile.y <= high.y; ++tile.y)
+      if (tiles.contains(tile) && reach_of(tile).is_crossed(from, to)) found.insert(tile);
+  return found;
+}
+
+RaysByTile passing_rays(const PointCloud& cloud, const TileSet& tiles, double least_range_m,
+                        const Executor& executor) {
+  if (!cloud.has_beams()) return {};
+  return by_tile(cloud.size(), executor, [&](RaysByTile& rays, std::size_t i) {
+    const Vec3f end = cloud.positions[i], sensor = cloud.sensor_positions[i];
+    if (!is_beam(cloud.origin_kind(i)) || !has_measured_ray(sensor, end, least_range_m)) return;
+    const Vec3d from = cloud.origin + vec_cast<double>(sensor), to = cloud.world(i);
+    for (const TileKey tile : tiles.crossed(from, to))
+      if (!tiles.reach_of(tile).contains(to)) add(rays[tile], sensor, end);
+  });
+}
+
+RaysByTile crossing_rays(const PointCloud& ends, const TileSet& tiles, const Executor& executor) {
+  return by_tile(ends.size(), executor, [&](RaysByTile& rays, std::size_t i) {
+    const Vec3d from = ends.origin + vec_cast<double>(ends.sensor_positions[i]);
+    for (const TileKey tile : tiles.crossed(from, ends.world(i)))
+      add(rays[tile], ends.sensor_positions[i], ends.positions[i]);
+  });
+}
+
+std::string rays_file_of(TileKey from, RaySort sort) {
+  return "rays/" + name_of(from) + (sort == RaySort::passing ? ".passing" : ".empty");
+}
+
+/// A line "adasplats rays 1 TILES", a line "X Y COUNT" a tile, then of each tile the ends and the
+/// sensor positions.
+void write_rays(const fs::path& file, const RaysByTile& rays) {
+  std::string text = std::string(kRaysHead) + " " + std::to_string(rays.size()) + "\n";
+  for (const auto& [tile, own] : rays)
+    text += std::to_string(tile.x) + " " + std::to_string(tile.y) + " " +
+            std::to_string(own.size()) + "\n";
+  for (const auto& [tile, own] : rays)
+    for (const auto* values : {&own.positions, &own.sensor_positions})
+      text.append(reinterpret_cast<const char*>(values->data()), values->size() * sizeof(Vec3f));
+  write_file_in_place(file, text);
+}
+
+RayFiles::RayFiles(const fs::path& folder, const std::set<TileKey>& tiles, RaySort sort) {
+  for (const TileKey from : tiles) {
+    const fs::path file = folder / rays_file_of(from, sort);
+    std::ifstream in(file, std::ios::binary);
+    if (!in) continue;
+    const auto fail = [&](const char* what) {
+      throw Error(ErrorKind::data, file.string() + ": damaged: " + what);
+    };
+    std::string line;
+    if (!std::getline(in, line) || !line.starts_with(kRaysHead)) fail("no rays of a city");
+    std::size_t count = 0;
+    std::istringstream(line.substr(kRaysHead.size())) >> count;
+    std::vector<std::pair<TileKey, std::size_t>> heads;
+    for (std::size_t k = 0; k < count; ++k) {
+      TileKey tile;
+      std::size_t rays = 0;
+      if (!std::getline(in, line) || !(std::istringstream(line) >> tile.x >> tile.y >> rays))
+        fail("it ends within its head");
+      heads.emplace_back(tile, rays);
+    }
+    auto at = static_cast<std::size_t>(in.tellg());
+    const std::size_t size = fs::file_size(file);
+    for (const auto& [tile, rays] : heads) {
+      if (rays > (size - at) / (2 * sizeof(Vec3f))) fail("it ends within its rays");
+      places_[tile].push_back({file, at, rays});
+      at += 2 * rays * sizeof(Vec3f);
+    }
+    if (at != size) fail("something follows its rays");
+  }
+}
+
+PointCloud RayFiles::read(TileKey tile) const {
+  PointCloud all;
+  const auto found = places_.find(tile);
+  if (found == places_.end()) return all;
+  for (const Place& place : found->second) {
+    std::ifstream in(place.file, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(place.at));
+    for (auto* values : {&all.positions, &all.sensor_positions}) {
+      const std::size_t before = values->size();
+      values->resize(before + place.rays);
+      if (!in.read(reinterpret_cast<char*>(values->data() + before),
+                   static_cast<std::streamsize>(place.rays * sizeof(Vec3f))))
+        throw Error(ErrorKind::io, place.file.string() + ": cannot be read");
+    }
+  }
+  return all;
+}
+
+}  // namespace adasplats

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/city/tile_grid.h"
+
+#include <algorithm>
+
+namespace adasplats {
+namespace {
+
+/// Cuts [first, last], shares of a way, to where one coordinate is between low and high.
+bool cut(double from, double to, double low, double high, double& first, double& last) {
+  const double way = to - from;
+  if (way == 0) return from >= low && from <= high;
+  const double a = (low - from) / way, b = (high - from) / way;
+  first = std::max(first, std::min(a, b));
+  last = std::min(last, std::max(a, b));
+  return first <= last;
+}
+
+}  // namespace
+
+std::string name_of(TileKey tile) {
+  return "x" + std::to_string(tile.x) + "_y" + std::to_string(tile.y);
+}
+
+bool GroundBox::is_crossed(Vec3d from, Vec3d to) const {
+  double first = 0, last = 1;
+  return cut(from.x, to.x, low_x, high_x, first, last) &&
+         cut(from.y, to.y, low_y, high_y, first, last);
+}
+
+}  // namespace adasplats

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <compare>
+#include <cstdint>
+#include <string>
+
+#include "adasplats/core/maths/vec3.h"
+
+namespace adasplats {
+
+/// A tile of a city by its column and row: x and y of world coordinates in whole sides.
+struct TileKey {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+
+  auto operator<=>(const TileKey&) const = default;
+};
+
+/// "x12_y-3": what files of a tile are named by.
+std::string name_of(TileKey tile);
+
+/// A rectangle of the ground in world coordinates, m: low sides belong to it, high ones do not.
+struct GroundBox {
+  double low_x = 0, low_y = 0, high_x = 0, high_y = 0;
+
+  bool contains(double x, double y) const {
+    return x >= low_x && x < high_x && y >= low_y && y < high_y;
+  }
+  bool contains(Vec3d world) const { return contains(world.x, world.y); }
+  GroundBox grown(double by_m) const {
+    return {low_x - by_m, low_y - by_m, high_x + by_m, high_y + by_m};
+  }
+  /// Whether a straight way from one place to another has a part in it, seen from above.
+  bool is_crossed(Vec3d from, Vec3d to) const;
+};
+
+/// Square tiles that cover the ground, counted from the world's zero.
+struct TileGrid {
+  double side_m = 64;
+
+  TileKey tile_of(Vec3d world) const { return {number(world.x), number(world.y)}; }
+  GroundBox box_of(TileKey tile) const {
+    return {tile.x * side_m, tile.y * side_m, (tile.x + 1) * side_m, (tile.y + 1) * side_m};
+  }
+
+ private:
+  std::int32_t number(double at_m) const {
+    return static_cast<std::int32_t>(std::floor(at_m / side_m));
+  }
+};
+
+}  // namespace adasplats

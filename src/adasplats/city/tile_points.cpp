@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/city/tile_points.h"
+
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPointsHead = "adasplats points 1 ";
+
+/// The names of the attributes that a cloud has, each with a space before it.
+std::string attributes_of(const PointCloud& cloud) {
+  std::string names;
+  for_each_attribute([&](const auto& attribute) {
+    if (!attribute.of(cloud).empty()) names += std::string(" ") + attribute.name;
+  });
+  return names;
+}
+
+[[noreturn]] void fail_to_write(const fs::path& file) {
+  throw Error(ErrorKind::io, file.string() + ": cannot be written; is the disk full?");
+}
+
+template <class T>
+void put(std::ofstream& out, const std::vector<T>& values) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  out.write(reinterpret_cast<const char*>(values.data()),
+            static_cast<std::streamsize>(values.size() * sizeof(T)));
+}
+
+/// Reads the pieces of one file.
+class PieceReader {
+ public:
+  explicit PieceReader(fs::path file) : file_(std::move(file)), in_(file_, std::ios::binary) {
+    if (!in_) throw Error(ErrorKind::no_input, file_.string() + ": no such file");
+  }
+
+  /// The next piece; false at the end of the file.
+  bool read(PointCloud& piece) {
+    std::string head;
+    if (!std::getline(in_, head)) return false;
+    if (!head.starts_with(kPointsHead)) fail("not points of a city of this version");
+    std::istringstream words(head.substr(kPointsHead.size()));
+    std::size_t count = 0;
+    if (!(words >> count)) fail("no number of points");
+    std::vector<std::string> names;
+    for (std::string name; words >> name;) names.push_back(name);
+    if (count > left() / sizeof(Vec3f)) fail("it ends within its points");
+    piece = {};
+    get(piece.positions, count);
+    std::size_t known = 0;
+    for_each_attribute([&](const auto& attribute) {
+      if (known >= names.size() || names[known] != attribute.name) return;
+      ++known;
+      get(attribute.of(piece), count);
+    });
+    if (known != names.size()) fail("it has an attribute '" + names[known] + "'");
+    return true;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorKind::data, file_.string() + ": damaged: " + what);
+  }
+
+  std::size_t left() {
+    const auto at = in_.tellg();
+    in_.seekg(0, std::ios::end);
+    const auto end = in_.tellg();
+    in_.seekg(at);
+    return static_cast<std::size_t>(end - at);
+  }
+
+  template <class T>
+  void get(std::vector<T>& values, std::size_t count) {
+    values.resize(count);
+    const auto bytes = static_cast<std::streamsize>(count * sizeof(T));
+    if (!in_.read(reinterpret_cast<char*>(values.data()), bytes)) fail("it ends within its points");
+  }
+
+  fs::path file_;
+  std::ifstream in_;
+};
+
+}  // namespace
+
+std::string points_file_of(TileKey tile) { return "points/" + name_of(tile) + ".points"; }
+std::string beams_file_of(TileKey tile) { return "points/" + name_of(tile) + ".beams"; }
+
+TilePointsWriter::TilePointsWriter(fs::path folder, const TileGrid& grid, std::size_t buffered)
+    : folder_(std::move(folder)), grid_(grid), buffered_(buffered) {
+  fs::create_directories(folder_ / "points");
+}
+
+void TilePointsWriter::add(const PointCloud& cloud) {
+  const std::string attributes = attributes_of(cloud);
+  if (!is_begun_) {
+    is_begun_ = true;
+    origin_ = cloud.origin;
+    attributes_ = attributes;
+  } else if (attributes != attributes_ && !cloud.empty()) {
+    throw Error(ErrorKind::data, "the points come with different attributes:" + attributes_ +
+                                     " at first, then" + attributes +
+                                     "; model such inputs one by one");
+  }
+  const Vec3d shift = cloud.origin - origin_;
+  const bool is_moved = !(shift == Vec3d{});
+  const auto moved = [&](Vec3f p) { return vec_cast<float>(vec_cast<double>(p) + shift); };
+  std::map<TileKey, std::vector<std::uint32_t>> by_tile;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i)
+    by_tile[grid_.tile_of(cloud.world(i))].push_back(i);
+  for (const auto& [tile, indices] : by_tile) {
+    PointCloud part = gather(cloud, indices);
+    part.empty_beams = {};
+    part.scan_poses = {};
+    part.origin = {};
+    if (is_moved) {
+      for (Vec3f& p : part.positions) p = moved(p);
+      for (Vec3f& p : part.sensor_positions) p = moved(p);
+    }
+    append(waiting_[tile].points, std::move(part));
+  }
+  for (EmptyBeam beam : cloud.empty_beams) {
+    const TileKey tile = grid_.tile_of(cloud.origin + vec_cast<double>(beam.origin));
+    if (is_moved) beam.origin = moved(beam.origin);
+    waiting_[tile].beams.push_back(beam);
+  }
+  waiting_points_ += cloud.size() + cloud.empty_beams.size();
+  if (waiting_points_ > buffered_) write_all();
+}
+
+void TilePointsWriter::write(TileKey tile, Waiting& waiting) {
+  if (!waiting.points.empty()) {
+    const fs::path file = folder_ / points_file_of(tile);
+    std::ofstream out(file, std::ios::binary | std::ios::app);
+    out << kPointsHead << waiting.points.size() << attributes_ << '\n';
+    put(out, waiting.points.positions);
+    for_each_attribute([&](const auto& attribute) { put(out, attribute.of(waiting.points)); });
+    out.close();
+    if (!out) fail_to_write(file);
+  }
+  if (!waiting.beams.empty()) {
+    const fs::path file = folder_ / beams_file_of(tile);
+    std::ofstream out(file, std::ios::binary | std::ios::app);
+    put(out, waiting.beams);
+    out.close();
+    if (!out) fail_to_write(file);
+  }
+  counts_[tile].points += waiting.points.size();
+  counts_[tile].empty_beams += waiting.beams.size();
+}
+
+void TilePointsWriter::write_all() {
+  for (auto& [tile, waiting] : waiting_) write(tile, waiting);
+  waiting_.clear();
+  waiting_points_ = 0;
+}
+
+std::map<TileKey, TileCount> TilePointsWriter::finish() {
+  write_all();
+  return counts_;
+}
+
+void read_tile_points(const fs::path& folder, TileKey tile, PointCloud& cloud,
+                      const std::function<bool(Vec3f)>& wanted) {
+  PieceReader reader(folder / points_file_of(tile));
+  for (PointCloud piece; reader.read(piece);) {
+    if (wanted) {
+      std::vector<std::uint32_t> chosen;
+      for (std::uint32_t i = 0; i < piece.size(); ++i)
+        if (wanted(piece.positions[i])) chosen.push_back(i);
+      if (chosen.size() < piece.size()) piece = gather(piece, chosen);
+    }
+    piece.origin = cloud.origin;
+    if (!piece.empty()) append(cloud, std::move(piece));
+  }
+}
+
+std::vector<EmptyBeam> read_tile_beams(const fs::path& folder, TileKey tile) {
+  const fs::path file = folder / beams_file_of(tile);
+  std::error_code none;
+  const auto bytes = fs::file_size(file, none);
+  if (none || bytes == 0) return {};
+  if (bytes % sizeof(EmptyBeam) != 0)
+    throw Error(ErrorKind::data, file.string() + ": damaged: it ends within a beam");
+  std::vector<EmptyBeam> beams(bytes / sizeof(EmptyBeam));
+  std::ifstream in(file, std::ios::binary);
+  if (!in.read(reinterpret_cast<char*>(beams.data()), static_cast<std::streamsize>(bytes)))
+    throw Error(ErrorKind::io, file.string() + ": cannot be read");
+  return beams;
+}
+
+}  // namespace adasplats

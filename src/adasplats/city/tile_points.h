@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "adasplats/city/tile_grid.h"
+#include "adasplats/cloud/points/point_cloud.h"
+
+namespace adasplats {
+
+// The points of a city on disk, a file a tile: more of them than memory holds. Files of points hold
+// pieces one behind another: a line "adasplats points 1 COUNT NAME..." with the attributes that
+// there are (PointAttribute::name), then the positions (three floats a point, relative to the
+// city's origin) and the attributes' values, one array behind another, as this machine has them
+// (little-endian). Files of beams without return: EmptyBeam after EmptyBeam.
+
+/// Where the points and the empty beams of a tile are, below the folder of a city.
+std::string points_file_of(TileKey tile);
+std::string beams_file_of(TileKey tile);
+
+/// What is known of a tile's points when all are written.
+struct TileCount {
+  std::size_t points = 0;
+  std::size_t empty_beams = 0;
+};
+
+/// Puts points into the files of their tiles.
+class TilePointsWriter {
+ public:
+  /// `folder`: of the city, with the folders "points" and "beams" (made where they are not there).
+  /// At most `buffered` points wait in memory.
+  TilePointsWriter(std::filesystem::path folder, const TileGrid& grid, std::size_t buffered);
+
+  /// The first cloud's origin is the city's; others are moved to it. Empty beams go to the tile in
+  /// which they begin. Errors: data (a cloud with other attributes than the first), io.
+  void add(const PointCloud& cloud);
+  /// Writes what waits. Call once, last.
+  std::map<TileKey, TileCount> finish();
+  Vec3d origin() const { return origin_; }
+
+ private:
+  struct Waiting {
+    PointCloud points;
+    std::vector<EmptyBeam> beams;
+  };
+  void write(TileKey tile, Waiting& waiting);
+  void write_all();
+
+  std::filesystem::path folder_;
+  TileGrid grid_;
+  std::size_t buffered_;
+  std::size_t waiting_points_ = 0;
+  Vec3d origin_;
+  std::string attributes_;  ///< names of those that there are
+  bool is_begun_ = false;
+  std::map<TileKey, Waiting> waiting_;
+  std::map<TileKey, TileCount> counts_;
+};
+
+/// Adds those of a tile's points to `cloud` for which `wanted` (of a position) holds; all without.
+/// Errors: data (the file is damaged: with its name), those of files.
+void read_tile_points(const std::filesystem::path& folder, TileKey tile, PointCloud& cloud,
+                      const std::function<bool(Vec3f)>& wanted = {});
+std::vector<EmptyBeam> read_tile_beams(const std::filesystem::path& folder, TileKey tile);
+
+}  // namespace adasplats

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "adasplats/city/city_manifest.h"
+#include "adasplats/core/setting.h"
+#include "adasplats/pipeline/model/make_model.h"
+#include "adasplats/pipeline/session/session.h"
+
+namespace adasplats {
+
+/// How a place is cut into tiles.
+struct TileChoice {
+  double tile_m = 0;  ///< side of a tile; 0: the place is modelled in one piece
+  double halo_m = 8;  ///< around a tile what it is modelled with
+};
+
+template <class Visit>
+void visit_settings(TileChoice& choice, Visit&& visit) {
+  constexpr const char* kGroup = "Cities";
+  visit(Setting{.name = "tile",
+                .help = "Side of square tiles that the place is cut into and modelled one by one, "
+                        "m; the output is a folder. 0: in one piece",
+                .key = "tile_m",
+                .group = kGroup,
+                .least = 0,
+                .most = 10'000},
+        choice.tile_m);
+  visit(Setting{.name = "halo",
+                .help = "Around a tile the points that it is modelled with, m; splats farther than "
+                        "that from the borders are those of one large model",
+                .key = "halo_m",
+                .group = kGroup,
+                .least = 0,
+                .most = 1'000},
+        choice.halo_m);
+}
+
+/// Points of any number in, the folder of a city out.
+struct CityJob : ModelJob {
+  TileChoice tiles;
+  std::filesystem::path output;
+  bool overwrite = false;
+};
+
+struct CityResult {
+  CityManifest city;
+  std::size_t points_read = 0;
+  std::size_t tiles_resumed = 0;  ///< an interrupted run had made
+  std::vector<StepTime> steps;
+  double seconds = 0;
+};
+
+/// Reads the inputs piece by piece (drives 200 scans at a time, else file by file), sorts points
+/// into tiles on disk, and models tile after tile on the session's device, each with the points
+/// around it and the rays that cross it. Interrupted at any moment, the same job goes on. Memory: a
+/// piece of the inputs, or a tile with what is around it.
+///
+/// Splats farther than the halo from all borders are those of one large model of the points, but
+/// for choices between equally good ones that follow from others far away. Reflectances are by the
+/// response of the sensor in the tile with the most points.
+/// Errors: usage (a method that is not `consistent`; `segment`), those of make_model and of
+/// ResumableFolder.
+CityResult make_city(const CityJob& job, Session& session);
+
+/// The keys of a city's --report.
+nlohmann::ordered_json to_json(const CityResult& result);
+
+}  // namespace adasplats
