@@ -16,6 +16,8 @@
 #include "adasplats/core/maths/random.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/gpu/consistent/consistent_cuda.h"
+#include "adasplats/gpu/gpu_model.h"
+#include "adasplats/splats/build_model.h"
 #include "adasplats/splats/consistent/consistent_state.h"
 #include "adasplats/splats/consistent/scanned_room_test.h"
 #include "adasplats/splats/model_engine.h"
@@ -297,6 +299,46 @@ TEST_F(ConsistentOnGpu, ReflectancesOfGivenDisksAreTheSame) {
   expect_same(cpu, gpu::measure_reflectances(0, disks, fallback, cloud));
   EXPECT_EQ(gpu::measure_reflectances(0, disks, fallback, without_sensors(cloud)).values, fallback);
   EXPECT_TRUE(gpu::measure_reflectances(0, {}, {}, cloud).values.empty());
+}
+
+// Oracle: the CPU's engine. Half of the room, with the rays that pass it, as a tile of a city.
+TEST_F(ConsistentOnGpu, PiecesOfAPlaceAreTheSame) {
+  const Executor executor(2);
+  const PointCloud room = room_with_intensities(1);
+  std::vector<std::uint32_t> near, far;
+  for (std::uint32_t i = 0; i < room.size(); ++i)
+    (room.positions[i].x < 2.5F ? near : far).push_back(i);
+  WholePlace whole;
+  whole.box = curve_box_of(room.positions, executor);
+  whole.typical = {0.01, 0.05};
+  whole.rays = 5'000'000;
+  whole.passing = gather(room, far);
+  whole.empty = ends_of({{{1, 1, 1}, {0, 0, 1}, 0}, {{1, 1, 1}, {1, 0, 0}, 0}}, 3);
+  const PointCloud piece = gather(room, near);
+  BuildOptions options;
+  options.whole = &whole;
+  ProgressSink quiet;
+  const auto engine = make_cuda_model_engine(0, executor);
+  const auto spacings = [&](const ModelEngine& on) {
+    const auto steps = on.consistent_steps();
+    steps->load(piece, {}, &whole);
+    steps->fuse({});
+    std::vector<float> found;
+    for (const CellSpacing& cell : steps->spacings({})) found.push_back(cell.spacing);
+    return found;
+  };
+  EXPECT_EQ(spacings(*make_cpu_model_engine(executor)), spacings(*engine));
+  for (int turn = 0; turn < 2; ++turn) {
+    const SplatModel cpu = build_model(piece, nullptr, options, executor, quiet).first;
+    const SplatModel cuda =
+        build_model(piece, nullptr, options, executor, quiet, engine.get()).first;
+    ASSERT_EQ(cpu.size(), cuda.size());
+    EXPECT_GT(cpu.size(), 300U);
+    EXPECT_EQ(std::memcmp(cpu.disks.data(), cuda.disks.data(), cpu.size() * sizeof(Disk)), 0);
+    EXPECT_EQ(cpu.intensities, cuda.intensities);
+    whole.response = cpu.response;  // given the second time
+    ASSERT_FALSE(whole.response->empty());
+  }
 }
 
 TEST_F(ConsistentOnGpu, SmallAndDegenerateClouds) {
