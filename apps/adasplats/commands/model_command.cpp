@@ -105,7 +105,9 @@ class ModelCommand final : public Command {
       return;
     }
     refuse({"--halo", "--overwrite"}, "without --tile");
-    require_ending(job_.output, ".ply");
+    // What is no file cannot be written whatever its name is, which run_model says.
+    if (!std::filesystem::exists(job_.output) || std::filesystem::is_regular_file(job_.output))
+      require_ending(job_.output, ".ply");
     const ModelResult result = run_model({job_, job_.output}, session);
     session.report.update(to_json(result));
     TextTable table({"step", "seconds"});

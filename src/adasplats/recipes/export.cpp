@@ -259,7 +259,7 @@ ExportResult write_export(const ExportJob& job, Session& session) {
 
 ExportResult run_export(const ExportJob& job, Session& session) {
   ExportJob resolved = job;
-  resolved.input = resolve_cloud_input(job.input);
+  if (!is_splat_model(job.input)) resolved.input = resolve_cloud_input(job.input);
   ExportResult result = write_export(resolved, session);
   result.written_bytes = fs::file_size(resolved.output);
   return result;
