@@ -28,6 +28,19 @@ std::string attributes_of(const PointCloud& cloud) {
   return names;
 }
 
+/// The points alone, without what gather() keeps of their cloud.
+PointCloud points_at(const PointCloud& cloud, const std::vector<std::uint32_t>& indices) {
+  PointCloud part;
+  const auto pick = [&](const auto& from, auto& to) {
+    if (from.empty()) return;
+    to.reserve(indices.size());
+    for (const std::uint32_t i : indices) to.push_back(from[i]);
+  };
+  pick(cloud.positions, part.positions);
+  for_each_attribute([&](const auto& attribute) { pick(attribute.of(cloud), attribute.of(part)); });
+  return part;
+}
+
 [[noreturn]] void fail_to_write(const fs::path& file) {
   throw Error(ErrorKind::io, file.string() + ": cannot be written; is the disk full?");
 }
@@ -121,10 +134,7 @@ void TilePointsWriter::add(const PointCloud& cloud) {
   for (std::uint32_t i = 0; i < cloud.size(); ++i)
     by_tile[grid_.tile_of(cloud.world(i))].push_back(i);
   for (const auto& [tile, indices] : by_tile) {
-    PointCloud part = gather(cloud, indices);
-    part.empty_beams = {};
-    part.scan_poses = {};
-    part.origin = {};
+    PointCloud part = points_at(cloud, indices);
     if (is_moved) {
       for (Vec3f& p : part.positions) p = moved(p);
       for (Vec3f& p : part.sensor_positions) p = moved(p);
