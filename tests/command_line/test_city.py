@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from support import PROGRAM, ProgramTest, tree_digest
+from support import PROGRAM, ProgramTest, tiny_place, tree_digest, write_cloud
 
 
 def splats_of(path):
@@ -112,6 +112,7 @@ class City(ProgramTest):
     def test_another_run_does_not_go_on_with_it(self):
         self.assertTrue(self.end_early(3))
         self.run_bad(73, *self.command("--cell", "0.07"), says=["cell", "remove it"])
+        self.run_bad(73, *self.command("--own-body", "1"), says=["load", "remove it"])
         # Two runs into one folder.
         process = subprocess.Popen([PROGRAM, *map(str, self.command())], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE)
@@ -144,6 +145,13 @@ class City(ProgramTest):
         manifest = self.city / "city.json"
         manifest.write_text(manifest.read_text().replace('"version": 1', '"version": 7'))
         self.run_bad(65, "info", self.city, says=["city.json", "version 7"])
+
+    def test_removal_without_labels_is_an_error_as_in_one_piece(self):
+        bare = self.folder / "bare.ply"
+        write_cloud(bare, tiny_place(), labels=False)
+        self.run_bad(64, "model", bare, "--remove", "moving", "--tile", "6", "-o", self.city,
+                     says=["--remove moving"])
+        self.assertFalse(self.unfinished.exists())
 
     def test_options(self):
         self.run_bad(64, *self.command("--method", "basic"), says=["consistent"])

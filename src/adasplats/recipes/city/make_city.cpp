@@ -8,6 +8,8 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <system_error>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -16,6 +18,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/pipeline/model/label_use.h"
 #include "adasplats/pipeline/output/resumable_folder.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/pipeline/session/repeated_warnings.h"
@@ -87,10 +90,44 @@ const ConsistentOptions& options_of(const CityJob& job) {
   return *ours;
 }
 
+/// Puts how points are read into JSON, whatever the types of its settings.
+struct PutLoadSetting {
+  Json& json;
+
+  template <class T>
+  void operator()(const Setting& setting, const T& value) const {
+    json[setting.name] = json_of_value(value);
+  }
+
+  static Json json_of_value(const fs::path& value) { return value.string(); }
+  static Json json_of_value(const Vec3d& value) { return {value.x, value.y, value.z}; }
+  static Json json_of_value(const Extent& value) {
+    return {json_of_value(value.low), json_of_value(value.high)};
+  }
+  template <class T>
+  static Json json_of_value(const std::optional<T>& value) {
+    return value ? json_of_value(*value) : Json();
+  }
+  template <class T>
+  requires std::is_enum_v<T>
+  static Json json_of_value(T value) { return static_cast<int>(value); }
+  template <class T>
+  requires std::is_arithmetic_v<T> || std::is_same_v<T, std::string>
+  static Json json_of_value(const T& value) { return value; }
+};
+
 /// What the files of a city depend on.
 Json content_of(const CityJob& job) {
-  Json json = {{"inputs", Json::array()}};
-  for (const fs::path& input : job.inputs) json["inputs"].push_back(input.string());
+  Json json = {{"inputs", Json::array()}, {"input_bytes", Json::array()}};
+  for (const fs::path& input : job.inputs) {
+    std::error_code is_folder;
+    const auto bytes = fs::file_size(input, is_folder);
+    json["inputs"].push_back(input.string());
+    json["input_bytes"].push_back(is_folder ? Json() : Json(bytes));
+  }
+  LoadOptions load = job.load;
+  visit_settings(load, PutLoadSetting{json["load"]});
+  json["load"]["sensor_fields"] = {load.sensor_x_field, load.sensor_y_field, load.sensor_z_field};
   put_settings(job.tiles, json);
   put_settings(options_of(job), json);
   put_settings(job.calibration, json);
@@ -98,7 +135,6 @@ Json content_of(const CityJob& job) {
   json["labels"] = job.labels;
   json["reflectances"] = job.build.reflectances;
   json["scans"] = {job.load.first_scan, job.load.scan_count, job.load.scan_stride};
-  json["trajectory"] = job.load.trajectory.string();
   return json;
 }
 
@@ -166,7 +202,11 @@ class CityMaker {
     const CityPoints read = read_city_points(reading, session_, [&](const PointCloud& cloud) {
       const bool is_first = !box;
       writer.add(cloud);
-      if (is_first) common_.crs = cloud.crs;
+      if (is_first) {
+        common_.crs = cloud.crs;
+        check_label_use({job_.labels, job_.build.remove, job_.removal_is_asked}, cloud,
+                        scheme ? &*scheme : nullptr, session_.progress);
+      }
       count_rays(cloud, scheme ? &*scheme : nullptr, ranges);
       if (!cloud.empty())
         grow(box, curve_box_of(cloud.positions, session_.executor), cloud.origin - writer.origin());
