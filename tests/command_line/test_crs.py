@@ -93,6 +93,12 @@ class CoordinateSystems(ProgramTest):
         model = self.folder / "m.ply"
         says = [str(a), "EPSG:32632", str(b), "EPSG:32633", "pdal"]
         self.run_bad(65, "model", a, b, "-o", model, says=says)
+        # Files that are read one by one.
+        result = run("model", a, b, "--tile", "50", "-o", self.folder / "city")
+        self.assertEqual(result.returncode, 65, result.stderr)
+        for words in says:
+            self.assertIn(words, result.stderr)
+        self.assertFalse({"city", ".city.unfinished"} & set(self.names()))
         self.run_bad(65, "evaluate", "c2c", a, b, says=says)
         self.assertNotIn("m.ply", self.names())
         tiles = self.folder / "tiles"

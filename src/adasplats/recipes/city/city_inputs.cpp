@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adasplats/cloud/load/cloud_inputs.h"
+#include "adasplats/cloud/load/one_crs.h"
 #include "adasplats/pipeline/model/calibrate_on_device.h"
 #include "adasplats/pipeline/session/repeated_warnings.h"
 #include "adasplats/recipes/drive_pieces.h"
@@ -51,11 +52,16 @@ CityPoints read_files(const ModelJob& job, const std::vector<CloudInput>& files,
                       const std::function<void(const PointCloud&)>& take) {
   CityPoints points;
   RepeatedWarnings warnings(session.progress, "files");
+  Crs first;
   session.progress.begin_step("read points", files.size());
   for (std::size_t k = 0; k < files.size(); ++k) {
     const std::array input = {files[k].path};
     const auto [cloud, loaded] = load_cloud(input, job.load, session.executor, warnings);
     points.read += loaded.points_read;
+    if (k == 0)
+      first = cloud.crs;
+    else
+      require_one_crs({{files[0].path, first}, {files[k].path, cloud.crs}}, warnings);
     take(cloud);
     session.progress.advance(k + 1);
   }
