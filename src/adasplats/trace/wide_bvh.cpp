@@ -385,36 +385,15 @@ class Builder {
     return parts;
   }
 
-  /// By the boxes' middles along the octant's diagonal.
-  static void set_order(std::span<const Range> parts, WideNode& node) {
-    for (unsigned octant = 0; octant < 8; ++octant) {
-      std::array<float, kWide> keys{};
-      std::array<std::uint8_t, kWide> order{};
-      for (unsigned child = 0; child < kWide; ++child) {
-        order[child] = static_cast<std::uint8_t>(child);
-        if (child >= parts.size()) continue;
-        const Float4 middle = parts[child].box.low + parts[child].box.high;
-        for (int axis = 0; axis < 3; ++axis)
-          keys[child] += (octant >> axis & 1U) != 0 ? -middle[axis] : middle[axis];
-      }
-      std::stable_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(parts.size()),
-                       [&](std::uint8_t a, std::uint8_t b) { return keys[a] > keys[b]; });
-      std::ranges::copy(order, node.far_first[octant]);
-    }
-  }
-
   static std::size_t add_node(std::span<const Range> parts, WideBvh& bvh) {
-    WideNode node;
-    for (unsigned child = 0; child < kWide; ++child) {
-      const Box box = child < parts.size() ? parts[child].box : Box{};
-      for (int axis = 0; axis < 3; ++axis) {
-        node.bounds[0][axis][child] = box.low[axis];
-        node.bounds[1][axis][child] = box.high[axis];
-      }
-      node.children[child] = {};
+    std::array<WideChild, kWide> children;
+    for (std::size_t child = 0; child < parts.size(); ++child) {
+      const Box& box = parts[child].box;
+      children[child] = {{box.low[0], box.low[1], box.low[2]},
+                         {box.high[0], box.high[1], box.high[2]},
+                         {}};
     }
-    set_order(parts, node);
-    bvh.nodes.push_back(node);
+    bvh.nodes.push_back(wide_node(std::span(children).first(parts.size())));
     return bvh.nodes.size() - 1;
   }
 
@@ -552,7 +531,39 @@ class Builder {
   bool has_unit_normals_ = true;
 };
 
+/// By the boxes' middles along the octant's diagonal.
+void set_order(std::span<const WideChild> children, WideNode& node) {
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    std::array<float, kWide> keys{};
+    std::array<std::uint8_t, kWide> order{};
+    for (unsigned child = 0; child < kWide; ++child) {
+      order[child] = static_cast<std::uint8_t>(child);
+      if (child >= children.size()) continue;
+      const Vec3f middle = children[child].low + children[child].high;
+      for (int axis = 0; axis < 3; ++axis)
+        keys[child] += (octant >> axis & 1U) != 0 ? -middle[axis] : middle[axis];
+    }
+    std::stable_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(children.size()),
+                     [&](std::uint8_t a, std::uint8_t b) { return keys[a] > keys[b]; });
+    std::ranges::copy(order, node.far_first[octant]);
+  }
+}
+
 }  // namespace
+
+WideNode wide_node(std::span<const WideChild> children) {
+  WideNode node;
+  for (unsigned child = 0; child < kWide; ++child) {
+    const bool used = child < children.size();
+    for (int axis = 0; axis < 3; ++axis) {
+      node.bounds[0][axis][child] = used ? children[child].low[axis] : kInfinity;
+      node.bounds[1][axis][child] = used ? children[child].high[axis] : -kInfinity;
+    }
+    node.children[child] = used ? children[child].ref : WideRef{};
+  }
+  set_order(children, node);
+  return node;
+}
 
 WideBvh build_wide_bvh(const SceneView& scene, const Executor& executor) {
   return Builder(scene, executor).build();

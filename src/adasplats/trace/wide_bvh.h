@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "adasplats/core/executor.h"
@@ -52,6 +53,16 @@ struct alignas(64) TriangleBlock {
   std::uint32_t primitive[kWide];
 };
 
+/// What a traversal needs of a tree, whoever holds its parts.
+struct WideView {
+  const WideNode* nodes = nullptr;
+  const DiskBlock* disks = nullptr;
+  const TriangleBlock* triangles = nullptr;
+  WideRef root;
+  float margin_m = 0.0F;
+  bool has_unit_normals = true;
+};
+
 struct WideBvh {
   std::vector<WideNode> nodes;
   std::vector<DiskBlock> disks;
@@ -59,7 +70,20 @@ struct WideBvh {
   WideRef root;                  ///< `nothing` in an empty scene
   float margin_m = 0.0F;         ///< box_margin of the largest coordinate
   bool has_unit_normals = true;  ///< to 1e-5; else a disk's extent must be taken for a sphere's
+
+  WideView view() const {
+    return {nodes.data(), disks.data(), triangles.data(), root, margin_m, has_unit_normals};
+  }
 };
+
+/// A child of a node with its box.
+struct WideChild {
+  Vec3f low, high;
+  WideRef ref;
+};
+
+/// The node of up to 16 children.
+WideNode wide_node(std::span<const WideChild> children);
 
 /// Builds the tree over the disks' exact boxes and the triangles' boxes, both with box_margin.
 /// Primitives whose box is NaN can never be hit and are left out. Splits are those of the surface

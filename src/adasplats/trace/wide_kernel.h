@@ -15,7 +15,7 @@
 namespace adasplats::detail {
 
 /// Private to trace/. The nearest `slots` hits of every ray, hits[i * slots + k]; `hits` is clear.
-using WideCast = void (*)(const WideBvh& bvh, std::span<const Ray> rays, std::size_t slots,
+using WideCast = void (*)(const WideView& tree, std::span<const Ray> rays, std::size_t slots,
                           std::span<Hit> hits);
 
 WideCast portable_wide_cast();

@@ -34,11 +34,12 @@ class WideTracer final : public Tracer {
                     const Executor& executor) const override {
     const auto slots = static_cast<std::size_t>(depth);
     require_slots(rays, depth, hits);
+    const WideView tree = bvh_.view();
     executor.for_chunks(rays.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
       const auto own = hits.subspan(begin * slots, (end - begin) * slots);
       std::ranges::fill(own, Hit{});  // here: as many threads as there are, and in their caches
-      if (bvh_.root.kind() == WideRef::Kind::nothing) return;
-      cast_(bvh_, rays.subspan(begin, end - begin), slots, own);
+      if (tree.root.kind() == WideRef::Kind::nothing) return;
+      cast_(tree, rays.subspan(begin, end - begin), slots, own);
     });
   }
 

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/core/sparse_array.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <string>
+
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+
+ReservedMemory::ReservedMemory(std::size_t bytes) : bytes_(bytes) {
+  if (bytes == 0) return;
+  void* const data = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (data == MAP_FAILED)
+    throw Error(ErrorKind::unavailable,
+                "the system gives no range of " + std::to_string(bytes >> 30U) +
+                    " GiB of addresses (ulimit -v, or vm.overcommit_memory = 2, limits them)");
+  data_ = static_cast<std::byte*>(data);
+}
+
+ReservedMemory::~ReservedMemory() {
+  if (data_ != nullptr) ::munmap(data_, bytes_);
+}
+
+void ReservedMemory::release(std::size_t begin, std::size_t end) {
+  static const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t first = (begin + page - 1) / page * page;
+  const std::size_t last = end / page * page;
+  if (first < last) static_cast<void>(::madvise(data_ + first, last - first, MADV_DONTNEED));
+}
+
+}  // namespace adasplats
