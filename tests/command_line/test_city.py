@@ -59,6 +59,28 @@ class City(ProgramTest):
         self.assertEqual({path.name for path in self.city.iterdir()},
                          {"adasplats.json", "city.json", "common.ply", "tiles"})
 
+    def test_tiles_come_and_go_along_a_drive(self):
+        self.run_good(*self.command())
+        whole = self.folder / "whole.ply"
+        self.run_good("model", self.cloud, "--labels", "semantickitti", "--device", "cpu", "-o",
+                      whole)
+        scans = {}
+        for name, model, words in [("whole", whole, []), ("tiles", self.city, []),
+                                   ("few", self.city, ["--tile-memory", "1e-9"])]:
+            output = self.folder / name
+            report = self.report("simulate", model, "--trajectory", self.poses, "--sensor",
+                                 self.sensor, "--max-range", "6", "-o", output, "--device", "cpu",
+                                 *words)
+            self.assertEqual("tiles" in report, name != "whole")
+            scans[name] = [path.read_bytes() for path in sorted(output.rglob("*.bin"))]
+            if name != "whole":
+                self.assertGreater(report["tiles"]["loaded"], 0)
+                self.assertGreater(report["tiles"]["most_bytes"], 0)
+        self.assertEqual(len(scans["whole"]), 3)
+        self.assertGreater(len(scans["whole"][0]), 0)
+        self.assertEqual(scans["tiles"], scans["whole"])
+        self.assertEqual(scans["few"], scans["whole"])
+
     def test_other_commands_take_it_for_a_model(self):
         self.run_good(*self.command())
         splats = sum(tile["splats"] for tile in self.tiles())

@@ -33,7 +33,7 @@ class SimulateCommand final : public Command {
                 kSimulateExamples) {
     OptionSet& app = options();
     require(add_path(app, "MODEL", job_.model,
-                     "Splat model, triangle mesh (PLY, OBJ, glTF) or world file (TOML)"));
+                     "Splat model, city, triangle mesh (PLY, OBJ, glTF) or world file (TOML)"));
     require(writes_folder(add_path(app, "-o,--output", job_.output, "Folder to create")));
     app.add_option("--sensor", job_.scan.sensor,
                    "A sensor of 'adasplats sensors', or a file: TOML, Ouster JSON, Velodyne YAML, "
@@ -57,6 +57,12 @@ class SimulateCommand final : public Command {
         app, "--point-order", job_.point_order, choices_of<PointOrder>(kPointOrders),
         "Of trees of data sets: as the data set's own files (KITTI's: ring by ring, "
         "counter-clockwise from straight ahead), or as fired");
+    app.add_option(
+           "--tile-memory", job_.tile_memory_gb,
+           "Of a city's tiles that are kept at a time along a trajectory, GB; without it 1, "
+           "on a GPU 6")
+        ->type_name("GB")
+        ->in_range({.name = "tile-memory", .least = 0, .above_least = true});
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     add_device_options(GpuCount::several);
   }

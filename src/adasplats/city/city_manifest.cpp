@@ -105,22 +105,29 @@ TileKey owner_of(Vec3d world, const TileGrid& grid, const std::vector<CityTile>&
   return own;
 }
 
+SplatModel load_city_tile(const fs::path& folder, const CityManifest& city, std::size_t k) {
+  const CityTile& tile = city.tiles[k];
+  const fs::path file = folder / model_file_of(tile.key);
+  SplatModel part = load_model(file);
+  if (part.size() != tile.splats)
+    throw Error(ErrorKind::data, file.string() + ": " + std::to_string(part.size()) +
+                                     " splats; the city's manifest says " +
+                                     std::to_string(tile.splats));
+  // A file says world coordinates; what it is loaded with is an origin near by.
+  const Vec3d shift = part.origin - city.origin;
+  for (Disk& disk : part.disks)
+    disk.center = vec_cast<float>(vec_cast<double>(disk.center) + shift);
+  part.origin = city.origin;
+  return part;
+}
+
 SplatModel load_city(const fs::path& folder) {
   const CityManifest city = load_city_manifest(folder);
   SplatModel all = load_model(folder / kCityCommonFile);
   all.origin = city.origin;
-  for (const CityTile& tile : city.tiles) {
-    if (tile.splats == 0) continue;
-    const fs::path file = folder / model_file_of(tile.key);
-    SplatModel part = load_model(file);
-    if (part.size() != tile.splats)
-      throw Error(ErrorKind::data, file.string() + ": " + std::to_string(part.size()) +
-                                       " splats; the city's manifest says " +
-                                       std::to_string(tile.splats));
-    // A file says world coordinates; what it is loaded with is an origin near by.
-    const Vec3d shift = part.origin - all.origin;
-    for (Disk& disk : part.disks)
-      disk.center = vec_cast<float>(vec_cast<double>(disk.center) + shift);
+  for (std::size_t k = 0; k < city.tiles.size(); ++k) {
+    if (city.tiles[k].splats == 0) continue;
+    const SplatModel part = load_city_tile(folder, city, k);
     append_to(all.disks, part.disks);
     append_to(all.classes, part.classes);
     append_to(all.groups, part.groups);

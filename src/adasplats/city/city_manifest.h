@@ -55,6 +55,11 @@ CityManifest load_city_manifest(const std::filesystem::path& folder);
 /// none of the city's, a neighbour that is.
 TileKey owner_of(Vec3d world, const TileGrid& grid, const std::vector<CityTile>& tiles);
 
+/// The splats of tile `k` of CityManifest::tiles, relative to the city's origin. Errors: data (not
+/// as many as the manifest says), those of load_model.
+SplatModel load_city_tile(const std::filesystem::path& folder, const CityManifest& city,
+                          std::size_t k);
+
 /// The city as one model, tile after tile. Errors: data (a tile has not as many splats as the
 /// manifest says), those of load_model.
 SplatModel load_city(const std::filesystem::path& folder);

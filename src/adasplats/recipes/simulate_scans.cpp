@@ -16,6 +16,7 @@
 #include "adasplats/dataset/parallel_scan_writer.h"
 #include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/output/resumable_folder.h"
+#include "adasplats/pipeline/scene/city_scene.h"
 #include "adasplats/pipeline/scene/model_scene.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/recipes/no_returns.h"
@@ -28,14 +29,13 @@ namespace {
 constexpr const char* kCommand = "simulate";
 
 /// Boxes around the objects that a scan sees.
-std::vector<EncodedFile> boxes_of(const ModelScene& scene, std::size_t index,
-                                  const ScanView& scan) {
+std::vector<EncodedFile> boxes_of(const ScanPlace& scene, std::size_t index, const ScanView& scan) {
   const std::vector<ObjectBox> boxes = scene.world()->boxes(index, scan.time_s);
   return encode_kitti_boxes("boxes", index, sensed_boxes(boxes, scan, scene.labels()));
 }
 
 /// Throws data where no ray met anything.
-void require_returns(const SimulateResult& result, const ModelScene& scene,
+void require_returns(const SimulateResult& result, const ScanPlace& scene,
                      std::span<const ScanMotion> scans, const LidarModel& sensor) {
   if (result.hits != 0 || result.scans_resumed != 0) return;
   throw_no_returns(result.rays, scene, scans, sensor,
@@ -43,10 +43,8 @@ void require_returns(const SimulateResult& result, const ModelScene& scene,
 }
 
 /// The least usual scale of intensities that none of the place exceeds.
-double scale_of_intensities(const ModelScene& scene) {
-  double highest = 0;
-  for (const float value : scene.attributes().intensities)
-    if (std::isfinite(value)) highest = std::max(highest, static_cast<double>(value));
+double scale_of_intensities(const ScanPlace& scene) {
+  const auto highest = static_cast<double>(scene.highest_intensity());
   for (const double scale : {1.0, 255.0})
     if (highest <= scale) return scale;
   return 65535.0;
@@ -73,7 +71,8 @@ ScanWriterOptions writing_options(const ScanSimulator& simulator, const Simulate
   if (const World* const world = simulator.scene().world())
     writing.boxes = [world](std::size_t i, double time_s) { return world->boxes(i, time_s); };
   writing.packets = packet_options(simulator.settings(), job.drive);
-  writing.packets.full_intensity = scale_of_intensities(simulator.scene());
+  if (job.format == ScanFormat::pcap)
+    writing.packets.full_intensity = scale_of_intensities(simulator.scene());
   return writing;
 }
 
@@ -90,7 +89,7 @@ void tell_of_delay(const SimulateJob& job, const DriveSpan& drive, ProgressSink&
 ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> scans,
                         const SimulateJob& job, ResumableFolder& folder, Session& session,
                         SimulateResult& result) {
-  const ModelScene& scene = simulator.scene();
+  const ScanPlace& scene = simulator.scene();
   // An attempt that was interrupted at its very end had been given the poses already.
   std::filesystem::remove(folder.path() / "sequences" / "00" / "poses.txt");
   const ScanWriterOptions writing = writing_options(simulator, job, scans);
@@ -147,11 +146,8 @@ Plan plan_of(const SimulateJob& job, Session& session) {
   return plan;
 }
 
-SimulateResult simulate_in(const ModelScene& scene, Plan plan, const SimulateJob& job,
+SimulateResult simulate_in(const ScanPlace& scene, const Plan& plan, const SimulateJob& job,
                            Session& session) {
-  if (job.drive.trajectory.empty())
-    plan.scans =
-        scans_along(job.drive, plan.settings.sensor, scene, session.executor, session.progress);
   ResumableFolder folder(job.output, job.overwrite, kCommand,
                          simulate_content(job, plan.settings, scene));
   ScanSimulator simulator(scene, plan.settings, session.executor);
@@ -172,20 +168,51 @@ SimulateResult simulate_in(const ModelScene& scene, Plan plan, const SimulateJob
   return result;
 }
 
+SimulateResult simulate_in_model(const ModelScene& scene, Plan plan, const SimulateJob& job,
+                                 Session& session) {
+  if (job.drive.trajectory.empty())
+    plan.scans =
+        scans_along(job.drive, plan.settings.sensor, scene, session.executor, session.progress);
+  return simulate_in(scene, plan, job, session);
+}
+
+/// Whether the tiles of a city come and go while scans are simulated. Places and paths look for the
+/// ground first, and OptiX has no trees of tiles: they take the whole city.
+bool is_streamed(const SimulateJob& job, const Session& session) {
+  return !job.drive.trajectory.empty() && session.device.kind != DeviceKind::optix &&
+         is_streamable(job.model);
+}
+
+constexpr double kCpuTiles_gb = 1, kGpuTiles_gb = 6;
+
+SimulateResult simulate_in_city(const Plan& plan, const SimulateJob& job, Session& session) {
+  const double usual_gb = session.device.on_gpu() ? kGpuTiles_gb : kCpuTiles_gb;
+  const double memory_gb = job.tile_memory_gb > 0 ? job.tile_memory_gb : usual_gb;
+  const CityScene scene(job.model, job.labels, session, static_cast<std::size_t>(memory_gb * 1e9));
+  SimulateResult result = simulate_in(scene, plan, job, session);
+  result.tiles = scene.counts();
+  return result;
+}
+
 }  // namespace
 
 SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   const Stopwatch total;
   Plan plan = plan_of(job, session);
-  const ModelScene scene(job.model, job.labels, session, WorldFiles::taken);
-  SimulateResult result = simulate_in(scene, std::move(plan), job, session);
+  SimulateResult result;
+  if (is_streamed(job, session)) {
+    result = simulate_in_city(plan, job, session);
+  } else {
+    const ModelScene scene(job.model, job.labels, session, WorldFiles::taken);
+    result = simulate_in_model(scene, std::move(plan), job, session);
+  }
   result.seconds = total.seconds();
   return result;
 }
 
 SimulateResult run_simulate(const SimulateJob& job, const ModelScene& scene, Session& session) {
   const Stopwatch total;
-  SimulateResult result = simulate_in(scene, plan_of(job, session), job, session);
+  SimulateResult result = simulate_in_model(scene, plan_of(job, session), job, session);
   result.seconds = total.seconds();
   return result;
 }
@@ -207,6 +234,10 @@ nlohmann::ordered_json to_json(const SimulateResult& result) {
                      {"traced", result.seconds_traced},
                      {"assembled", result.seconds_assembled},
                      {"written", result.seconds_written}};
+  if (result.tiles)
+    json["tiles"] = {{"loaded", result.tiles->loaded},
+                     {"most_bytes", result.tiles->most_bytes},
+                     {"waited_s", result.tiles->waited_s}};
   return json;
 }
 

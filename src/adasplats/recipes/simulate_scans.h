@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "adasplats/city/tile_stream.h"
 #include "adasplats/dataset/scan_writer.h"
 #include "adasplats/pipeline/scene/drive.h"
 #include "adasplats/pipeline/scene/model_scene.h"
@@ -26,6 +27,7 @@ struct SimulateJob {
   ScanFormat format = ScanFormat::semantickitti;
   PointOrder point_order = PointOrder::kitti;  ///< in KITTI's files
   bool overwrite = false;
+  double tile_memory_gb = 0;  ///< of a city's tiles, 10^9 bytes; 0: 1 on the CPU, 6 on a GPU
 };
 
 struct SimulateResult {
@@ -39,10 +41,12 @@ struct SimulateResult {
   double seconds_assembled = 0;  ///< until they were points with noise, classes and times
   double seconds_written = 0;    ///< until the last scan was on disk and the folder had its name
   double seconds = 0;            ///< of everything, with loading the model
+  std::optional<TileStreamCounts> tiles;  ///< where those of a city came and went
 };
 
 /// Simulates and writes. Interrupted at any moment, the same job goes on after the last whole scan
-/// and gives the same bytes; formats of one file for all scans (mcap, pcap) begin anew.
+/// and gives the same bytes, and so do cities whose tiles come and go (CityScene), which they do
+/// along trajectories; formats of one file for all scans (mcap, pcap) begin anew.
 /// Errors: cannot_create (also where what was left unfinished is of another job, other inputs or
 /// another version), io (also where the disk has no room for the scans), data (no ray met
 /// anything).

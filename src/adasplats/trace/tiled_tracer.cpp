@@ -22,7 +22,7 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 
 /// A tile's tree in the arrays that all share.
 struct TileTree {
-  std::size_t first = 0;   ///< splat, block of splats and node of the tile, of all tiles
+  std::size_t first = 0;  ///< splat, block of splats and node of the tile, of all tiles
   std::size_t splats = 0;
   std::size_t nodes = 0, blocks = 0;
   WideChild root{{}, {}, {}};  ///< `nothing` where no ray can hit its splats
@@ -72,8 +72,7 @@ std::vector<std::span<WideChild>> groups_of(std::span<WideChild> children) {
     const std::size_t half = group.size() / 2;
     std::ranges::nth_element(group, group.begin() + static_cast<std::ptrdiff_t>(half), {},
                              [axis](const WideChild& child) {
-                               return std::pair(child.low[axis] + child.high[axis],
-                                                child.ref.bits);
+                               return std::pair(child.low[axis] + child.high[axis], child.ref.bits);
                              });
     *largest = group.first(half);
     groups.push_back(group.subspan(half));

@@ -22,8 +22,8 @@ namespace {
 constexpr std::size_t kColumns = 5, kRows = 4;
 constexpr double kSide_m = 20;
 
-/// Disks of a field of tiles, tile after tile. Some tiles are empty, one has a single disk, and some
-/// disks stand twice: in neighbouring tiles, where the first must win.
+/// Disks of a field of tiles, tile after tile. Some tiles are empty, one has a single disk, and
+/// some disks stand twice: in neighbouring tiles, where the first must win.
 struct Field {
   std::vector<Disk> disks;
   std::vector<std::size_t> counts;
@@ -110,7 +110,8 @@ TEST(TiledTracer, HitsAreThoseOfAllSplatsThatAreShown) {
   std::iota(all.begin(), all.end(), std::size_t{0});
   for (const std::size_t k : all) tracer->build(k, field.tile(k), executor);
   tracer->show(all);
-  for (const int depth : {1, 3}) expect_same(hits_of(*tracer, depth), expected_hits(field, all, depth));
+  for (const int depth : {1, 3})
+    expect_same(hits_of(*tracer, depth), expected_hits(field, all, depth));
 
   const std::vector<std::size_t> some = {12, 0, 7, 3, 13, 6};
   tracer->show(some);

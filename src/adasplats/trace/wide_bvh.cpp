@@ -389,9 +389,8 @@ class Builder {
     std::array<WideChild, kWide> children;
     for (std::size_t child = 0; child < parts.size(); ++child) {
       const Box& box = parts[child].box;
-      children[child] = {{box.low[0], box.low[1], box.low[2]},
-                         {box.high[0], box.high[1], box.high[2]},
-                         {}};
+      children[child] = {
+          {box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}, {}};
     }
     bvh.nodes.push_back(wide_node(std::span(children).first(parts.size())));
     return bvh.nodes.size() - 1;

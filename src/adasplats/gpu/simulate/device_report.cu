@@ -135,10 +135,10 @@ DeviceBuffer<T> upload_values(std::span<const T> values, cudaStream_t stream) {
 }  // namespace
 
 DeviceBuffer<PrimitiveValues> upload_primitives(const PrimitiveTable& table, cudaStream_t stream) {
-  return upload_values(std::span<const PrimitiveValues>(table.values), stream);
+  return upload_values(table.values, stream);
 }
 
-DeviceRules::DeviceRules(const ScanRules& rules, const DeviceBuffer<PrimitiveValues>& primitives,
+DeviceRules::DeviceRules(const ScanRules& rules, const PrimitiveValues* primitives,
                          cudaStream_t stream)
     : view_(rules.view()),
       firings_(upload_values(rules.firings(), stream)),
@@ -176,7 +176,7 @@ DeviceRules::DeviceRules(const ScanRules& rules, const DeviceBuffer<PrimitiveVal
   view_.body_cells = body_cells_.data();
   view_.body = body_.data();
   view_.air.expected = expected_.data();
-  view_.primitives = primitives.data();
+  view_.primitives = primitives;
 }
 
 /// The tables of a unit's intensities, one behind the other.

@@ -13,11 +13,10 @@ namespace adasplats::gpu {
 /// Private to gpu/: what primitives carry, on the current device.
 DeviceBuffer<PrimitiveValues> upload_primitives(const PrimitiveTable& table, cudaStream_t stream);
 
-/// The tables behind FiringRules on the current device. `primitives` must outlive it.
+/// The tables behind FiringRules on the current device. `primitives` (on it) must outlive it.
 class DeviceRules {
  public:
-  DeviceRules(const ScanRules& rules, const DeviceBuffer<PrimitiveValues>& primitives,
-              cudaStream_t stream);
+  DeviceRules(const ScanRules& rules, const PrimitiveValues* primitives, cudaStream_t stream);
   const FiringRules& view() const { return view_; }
 
  private:

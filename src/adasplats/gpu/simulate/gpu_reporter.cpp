@@ -186,8 +186,9 @@ GpuReporter::GpuReporter(const gpu::SceneParts& scene, const ScanRules& rules)
     auto device = std::make_unique<DeviceReporter>(part);
     const cudaStream_t stream = device->stream.get();
     device->firings = gpu::OrderedFirings(rays, order, stream);
-    device->primitives = gpu::upload_primitives(rules.table(), stream);
-    device->rules = std::make_unique<gpu::DeviceRules>(rules, device->primitives, stream);
+    if (part.values == nullptr) device->primitives = gpu::upload_primitives(rules.table(), stream);
+    device->rules = std::make_unique<gpu::DeviceRules>(
+        rules, part.values != nullptr ? part.values : device->primitives.data(), stream);
     gpu::RaySource& source = device->source;
     source.kind = gpu::RaySource::Kind::scans;
     source.firing_count = static_cast<std::uint32_t>(rays.size());

@@ -7,11 +7,13 @@
 #include <chrono>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/base/device.h"
+#include "adasplats/gpu/simulate/device_tiles.h"
 #include "adasplats/gpu/simulate/gpu_renderer.h"
 #include "adasplats/gpu/simulate/gpu_reporter.h"
 #include "adasplats/gpu/simulate/gpu_scanner.h"
@@ -140,6 +142,20 @@ class SceneScanCaster final : public ScanCaster {
   mutable std::shared_ptr<const int> reporter_rules_;  ///< identity of the rules of `reporter_`
 };
 
+/// A scene that belongs to someone else.
+class SharedScene final : public gpu::DeviceScene {
+ public:
+  explicit SharedScene(const gpu::DeviceScene& scene) : scene_(scene) {}
+  std::string_view name() const override { return scene_.name(); }
+  void cast(const gpu::RaySource& source, std::uint64_t count, int depth, Hit* hits,
+            cudaStream_t stream) const override {
+    scene_.cast(source, count, depth, hits, stream);
+  }
+
+ private:
+  const gpu::DeviceScene& scene_;
+};
+
 void check_devices(const std::vector<int>& devices) {
   const GpuSearch search = find_gpus();
   if (search.devices.empty())
@@ -162,10 +178,30 @@ struct GpuScene::Impl {
   std::unique_ptr<Tracer> tracer;
   std::unique_ptr<SceneScanCaster> caster;
   double build_seconds = 0;
+  std::vector<std::unique_ptr<gpu::DeviceTiles>> tiles;  ///< one a device; of cities alone
+
+  void make_casters() {
+    tracer = gpu::make_gpu_tracer(*parts.first().scene, parts.first().device);
+    caster = std::make_unique<SceneScanCaster>(parts);
+  }
+
+  /// Calls use(tiles) for every device, which is the current one then.
+  template <class Use>
+  void for_each_device(Use&& use) {
+    if (tiles.empty()) throw std::logic_error("GpuScene: no city of tiles");
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      const DeviceGuard guard(parts.parts[i].device);
+      use(*tiles[i]);
+    }
+  }
 
   ~Impl() {
     caster.reset();
     tracer.reset();
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      const DeviceGuard guard(parts.parts[i].device);
+      tiles[i].reset();
+    }
     for (DevicePart& part : parts.parts) {
       const DeviceGuard guard(part.device);
       part.scene.reset();
@@ -188,8 +224,35 @@ GpuScene::GpuScene(const SceneView& scene, Vec3d origin, GpuBackend backend,
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     if (impl_->parts.parts.size() == 1) impl_->build_seconds = took.count();
   }
-  impl_->tracer = gpu::make_gpu_tracer(*impl_->parts.first().scene, impl_->parts.first().device);
-  impl_->caster = std::make_unique<SceneScanCaster>(impl_->parts);
+  impl_->make_casters();
+}
+
+GpuScene::GpuScene(std::span<const std::size_t> splats, std::span<const PrimitiveValues> objects,
+                   Vec3d origin, const std::vector<int>& devices)
+    : impl_(std::make_unique<Impl>()) {
+  check_devices(devices);
+  impl_->parts.origin = origin;
+  for (const int device : devices) {
+    const DeviceGuard guard(device);
+    auto tiles = std::make_unique<gpu::DeviceTiles>(splats, objects);
+    impl_->parts.parts.push_back(
+        {device, std::make_unique<SharedScene>(tiles->scene()), tiles->values()});
+    impl_->tiles.push_back(std::move(tiles));
+  }
+  impl_->make_casters();
+}
+
+void GpuScene::load_tile(std::size_t tile, std::span<const Disk> disks,
+                         std::span<const PrimitiveValues> values) {
+  impl_->for_each_device([&](gpu::DeviceTiles& tiles) { tiles.load(tile, disks, values); });
+}
+
+void GpuScene::drop_tile(std::size_t tile) {
+  impl_->for_each_device([&](gpu::DeviceTiles& tiles) { tiles.drop(tile); });
+}
+
+void GpuScene::show_tiles(std::span<const std::size_t> shown) {
+  impl_->for_each_device([&](gpu::DeviceTiles& tiles) { tiles.scene().show(shown); });
 }
 
 GpuScene::~GpuScene() = default;

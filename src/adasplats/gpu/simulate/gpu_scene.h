@@ -12,6 +12,7 @@
 #include "adasplats/scene/scene.h"
 #include "adasplats/sensors/camera.h"
 #include "adasplats/simulate/image/image.h"
+#include "adasplats/simulate/scan/firing_report.h"
 #include "adasplats/simulate/scan/scan_batch.h"
 #include "adasplats/simulate/scan/scan_caster.h"
 #include "adasplats/simulate/scan/scan_rules.h"
@@ -114,9 +115,25 @@ class GpuScene {
   /// Errors: unavailable (no such GPU, OptiX not there, not enough memory), with what helps.
   GpuScene(const SceneView& scene, Vec3d origin, GpuBackend backend,
            const std::vector<int>& devices);
+  /// A city whose tiles come and go, in our own trees; none is there yet. `splats`: of each tile;
+  /// primitives are numbered through all of them. `objects`: what primitives behind them carry. The
+  /// rules of report() give flags and response alone: values of primitives come with the tiles.
+  /// Errors: likewise; data (more splats than can be told apart).
+  GpuScene(std::span<const std::size_t> splats, std::span<const PrimitiveValues> objects,
+           Vec3d origin, const std::vector<int>& devices);
   ~GpuScene();
   GpuScene(GpuScene&&) noexcept;
   GpuScene& operator=(GpuScene&&) noexcept;
+
+  /// Of such a city: puts a tile on all devices, beside casts; takes one away that is not shown;
+  /// says which of those that are there rays meet from now on, while nothing is cast. One thread
+  /// loads. Errors: unavailable (not enough memory: the tile is not there then).
+  void load_tile(std::size_t tile, std::span<const Disk> disks,
+                 std::span<const PrimitiveValues> values);
+  void drop_tile(std::size_t tile);
+  void show_tiles(std::span<const std::size_t> tiles);
+  /// About how much memory a tile takes for each splat, bytes.
+  static constexpr std::size_t kTileBytesASplat = 84;
 
   std::string_view name() const;  ///< "cuda" or "optix"
   /// Time that building the structures took on the first device, s (copying the scene included).

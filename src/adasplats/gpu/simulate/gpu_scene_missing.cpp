@@ -21,6 +21,15 @@ namespace {
 GpuScene::GpuScene(const SceneView&, Vec3d, GpuBackend, const std::vector<int>&) {
   throw_missing();
 }
+GpuScene::GpuScene(std::span<const std::size_t>, std::span<const PrimitiveValues>, Vec3d,
+                   const std::vector<int>&) {
+  throw_missing();
+}
+void GpuScene::load_tile(std::size_t, std::span<const Disk>, std::span<const PrimitiveValues>) {
+  throw_missing();
+}
+void GpuScene::drop_tile(std::size_t) { throw_missing(); }
+void GpuScene::show_tiles(std::span<const std::size_t>) { throw_missing(); }
 GpuScene::~GpuScene() = default;
 GpuScene::GpuScene(GpuScene&&) noexcept = default;
 GpuScene& GpuScene::operator=(GpuScene&&) noexcept = default;

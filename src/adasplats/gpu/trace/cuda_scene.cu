@@ -46,6 +46,39 @@ __global__ void __launch_bounds__(kCastBlock)
   best.store(hits + place_of_ray(source, i) * static_cast<std::uint64_t>(depth), depth);
 }
 
+template <Sensors kSensors>
+void launch_nearest(unsigned blocks, const TreesView& trees, const RaySource& source,
+                    std::uint64_t count, Hit* hits, cudaStream_t stream) {
+  if (count < kSmallLaunch) {
+    cast_nearest_kernel<kPostponeInSmall, kLeastBlocksOfSmall, kSensors>
+        <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
+  } else {
+    cast_nearest_kernel<kPostpone, kLeastBlocks, kSensors>
+        <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
+  }
+}
+
+void launch_few(int depth, unsigned blocks, const TreesView& trees, const RaySource& source,
+                std::uint64_t count, Hit* hits, cudaStream_t stream) {
+  switch (depth) {
+    case 2:
+      cast_hits_kernel<FewNearestHits<2>>
+          <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, depth, hits);
+      break;
+    case 3:
+      cast_hits_kernel<FewNearestHits<3>>
+          <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, depth, hits);
+      break;
+    case 4:
+      cast_hits_kernel<FewNearestHits<4>>
+          <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, depth, hits);
+      break;
+    default:
+      cast_hits_kernel<FewNearestHits<5>>
+          <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, depth, hits);
+  }
+}
+
 class CudaScene final : public DeviceScene {
  public:
   CudaScene(const SceneView& scene, const TreeOptions& options)
@@ -57,70 +90,40 @@ class CudaScene final : public DeviceScene {
 
   void cast(const RaySource& source, std::uint64_t count, int depth, Hit* hits,
             cudaStream_t stream) const override {
-    // One grid holds 2^31 - 1 blocks.
-    constexpr std::uint64_t kMostBlocks = 0x7fffffffU;
-    if (count > kMostBlocks * kCastBlock)
-      throw Error(ErrorKind::data, "too many rays for one launch");
-    if (count == 0) return;
-    const TreesView trees = trees_.view();
-    const auto blocks = static_cast<unsigned>((count + kCastBlock - 1) / kCastBlock);
-    const bool still = source.first_poses == nullptr;
-    if (depth == 1 && still) {
-      launch_nearest<Sensors::still>(blocks, trees, source, count, hits, stream);
-    } else if (depth == 1) {
-      launch_nearest<Sensors::may_move>(blocks, trees, source, count, hits, stream);
-    } else if (depth <= 5) {
-      launch_few(depth, blocks, trees, source, count, hits, stream);
-    } else if (depth <= kMostHits) {
-      cast_hits_kernel<NearestHits<kMostHits>>
-          <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, depth, hits);
-    } else {
-      throw Error(ErrorKind::usage, std::to_string(depth) + " hits a ray; a GPU keeps " +
-                                        std::to_string(kMostHits) + " at most");
-    }
-    cuda_check(cudaGetLastError(), "cast rays on the GPU");
+    cast_trees(trees_.view(), source, count, depth, hits, stream);
   }
 
  private:
-  template <Sensors kSensors>
-  static void launch_nearest(unsigned blocks, const TreesView& trees, const RaySource& source,
-                             std::uint64_t count, Hit* hits, cudaStream_t stream) {
-    if (count < kSmallLaunch) {
-      cast_nearest_kernel<kPostponeInSmall, kLeastBlocksOfSmall, kSensors>
-          <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
-    } else {
-      cast_nearest_kernel<kPostpone, kLeastBlocks, kSensors>
-          <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
-    }
-  }
-
-  static void launch_few(int depth, unsigned blocks, const TreesView& trees,
-                         const RaySource& source, std::uint64_t count, Hit* hits,
-                         cudaStream_t stream) {
-    switch (depth) {
-      case 2:
-        cast_hits_kernel<FewNearestHits<2>>
-            <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, depth, hits);
-        break;
-      case 3:
-        cast_hits_kernel<FewNearestHits<3>>
-            <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, depth, hits);
-        break;
-      case 4:
-        cast_hits_kernel<FewNearestHits<4>>
-            <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, depth, hits);
-        break;
-      default:
-        cast_hits_kernel<FewNearestHits<5>>
-            <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, depth, hits);
-    }
-  }
-
   std::optional<Stream> stream_;  ///< of the trees' memory, where it is the scene's own
   SceneTrees trees_;
 };
 
 }  // namespace
+
+void cast_trees(const TreesView& trees, const RaySource& source, std::uint64_t count, int depth,
+                Hit* hits, cudaStream_t stream) {
+  // One grid holds 2^31 - 1 blocks.
+  constexpr std::uint64_t kMostBlocks = 0x7fffffffU;
+  if (count > kMostBlocks * kCastBlock)
+    throw Error(ErrorKind::data, "too many rays for one launch");
+  if (count == 0) return;
+  const auto blocks = static_cast<unsigned>((count + kCastBlock - 1) / kCastBlock);
+  const bool still = source.first_poses == nullptr;
+  if (depth == 1 && still) {
+    launch_nearest<Sensors::still>(blocks, trees, source, count, hits, stream);
+  } else if (depth == 1) {
+    launch_nearest<Sensors::may_move>(blocks, trees, source, count, hits, stream);
+  } else if (depth <= 5) {
+    launch_few(depth, blocks, trees, source, count, hits, stream);
+  } else if (depth <= kMostHits) {
+    cast_hits_kernel<NearestHits<kMostHits>>
+        <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, depth, hits);
+  } else {
+    throw Error(ErrorKind::usage, std::to_string(depth) + " hits a ray; a GPU keeps " +
+                                      std::to_string(kMostHits) + " at most");
+  }
+  cuda_check(cudaGetLastError(), "cast rays on the GPU");
+}
 
 SceneTrees build_scene_trees(const SceneView& scene, const TreeOptions& options,
                              cudaStream_t stream) {

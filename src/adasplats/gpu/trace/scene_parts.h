@@ -8,6 +8,7 @@
 
 #include "adasplats/gpu/base/device_memory.h"
 #include "adasplats/gpu/trace/device_scene.h"
+#include "adasplats/simulate/scan/firing_report.h"
 
 namespace adasplats::gpu {
 
@@ -15,6 +16,8 @@ namespace adasplats::gpu {
 struct DevicePart {
   int device = 0;
   std::unique_ptr<DeviceScene> scene;
+  /// What primitives carry, on the device, where it is kept with the scene; null: rules have it.
+  const PrimitiveValues* values = nullptr;
 };
 
 /// What a GpuScene, its scanners and its renderers share.

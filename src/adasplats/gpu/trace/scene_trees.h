@@ -2,6 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cuda_runtime_api.h>
+
+#include <cstdint>
+
+#include "adasplats/core/maths/ray.h"
+#include "adasplats/gpu/trace/ray_source.h"
 #include "adasplats/gpu/trace/wide_tree.h"
 #include "adasplats/scene/scene.h"
 
@@ -25,5 +31,9 @@ struct SceneTrees {
 /// data (more of them than can be told apart).
 SceneTrees build_scene_trees(const SceneView& scene, const TreeOptions& options,
                              cudaStream_t stream);
+
+/// DeviceScene::cast() into trees.
+void cast_trees(const TreesView& trees, const RaySource& source, std::uint64_t count, int depth,
+                Hit* hits, cudaStream_t stream);
 
 }  // namespace adasplats::gpu

@@ -57,6 +57,7 @@ struct TreeView {
 /// How a tree is built.
 struct TreeOptions {
   int search_radius = 12;  ///< neighbours along the curve that a cluster may join with, up to 64
+  int levels_above = 0;    ///< of another tree that its root is to stand in
 };
 
 template <class Leaf>

@@ -111,8 +111,9 @@ struct Builder {
     if (count_ == 0) return {};
     WideTree<Leaf> tree = build_from(false);
     // A ray's stack takes two entries a level.
-    if (2 * tree.depth + 2 > kStackEntries) tree = build_from(true);
-    if (2 * tree.depth + 2 > kStackEntries)
+    const int most = (kStackEntries - 2) / 2 - options_.levels_above;
+    if (tree.depth > most) tree = build_from(true);
+    if (tree.depth > most)
       throw Error(ErrorKind::software, "a ray tree of " + std::to_string(tree.depth) + " levels");
     return tree;
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/scene/model_scene.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "adasplats/city/city_manifest.h"
@@ -89,6 +91,18 @@ std::shared_ptr<const PrimitiveTable> ModelScene::primitive_table() const {
     primitive_table_ =
         std::make_shared<PrimitiveTable>(adasplats::primitive_table(attributes_, executor_));
   return primitive_table_;
+}
+
+float ModelScene::highest_intensity() const {
+  float highest = 0;
+  for (const float value : attributes_.intensities)
+    if (std::isfinite(value)) highest = std::max(highest, value);
+  return highest;
+}
+
+/// All of it is there.
+std::size_t ModelScene::make_ready(std::span<const ScanMotion> scans, double) const {
+  return scans.size();
 }
 
 void ModelScene::make_tracers(Session& session) {

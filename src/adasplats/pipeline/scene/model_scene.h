@@ -13,6 +13,7 @@
 
 #include "adasplats/core/function_ref.h"
 #include "adasplats/gpu/simulate/gpu_scene.h"
+#include "adasplats/pipeline/scene/scan_place.h"
 #include "adasplats/pipeline/scene/shown_part.h"
 #include "adasplats/pipeline/session/session.h"
 #include "adasplats/simulate/image/image.h"
@@ -30,7 +31,7 @@ enum class WorldFiles : std::uint8_t { refused, taken };
 
 /// A splat model or a triangle mesh from a file with what is needed to cast rays into it, on
 /// the session's device. A world file: its place, and what was put there as `world`.
-class ModelScene {
+class ModelScene final : public ScanPlace {
  public:
   /// `labels` as load_label_scheme takes it names the classes; empty: what the model's file says.
   /// Errors: usage (a world file where they are refused, or that names no model).
@@ -47,17 +48,19 @@ class ModelScene {
   /// Splats or triangles.
   SceneView view() const { return view_of(place_); }
   /// World coordinates of the view's local origin, m.
-  Vec3d origin() const { return origin_of(place_); }
+  Vec3d origin() const override { return origin_of(place_); }
   const Crs& crs() const { return crs_of(place_); }
   const Tracer& tracer() const { return gpu_ ? gpu_->tracer() : *tracer_; }
   /// Of the place without its objects.
-  const ScanCaster& scan_caster() const { return gpu_ ? gpu_->scan_caster() : *caster_; }
+  const ScanCaster& scan_caster() const override { return gpu_ ? gpu_->scan_caster() : *caster_; }
   /// Of the place and, behind it, its objects.
   const PrimitiveAttributes& attributes() const { return attributes_; }
   /// The same, made when it is first asked for. It is shared by all sensors in the scene.
-  std::shared_ptr<const PrimitiveTable> primitive_table() const;
+  std::shared_ptr<const PrimitiveTable> primitive_table() const override;
+  float highest_intensity() const override;
+  std::size_t make_ready(std::span<const ScanMotion> scans, double reach_m) const override;
   /// What was put into the place; null where nothing was.
-  const World* world() const { return world_ ? &*world_ : nullptr; }
+  const World* world() const override { return world_ ? &*world_ : nullptr; }
   /// Gives an object of the world other poses (World::move_object()). Not while it is cast.
   void move_object(std::size_t object, Trajectory trajectory);
   const Place& place() const { return place_; }
@@ -66,9 +69,9 @@ class ModelScene {
   const Executor& executor() const { return executor_; }
   bool on_gpu() const { return gpu_.has_value(); }
   /// Null where it is on the CPU.
-  const GpuScene* gpu() const { return gpu_ ? &*gpu_ : nullptr; }
+  const GpuScene* gpu() const override { return gpu_ ? &*gpu_ : nullptr; }
   /// What the classes mean; null where that is not known.
-  const LabelScheme* labels() const { return labels_ ? &*labels_ : nullptr; }
+  const LabelScheme* labels() const override { return labels_ ? &*labels_ : nullptr; }
   /// For pictures: geometry, attributes and the colours of the classes.
   ImageScene image_scene() const;
   /// By class where most of the model has one with a colour, else by intensity, by the paper's
@@ -81,7 +84,7 @@ class ModelScene {
                std::span<const float> values) const;
   /// World box of the middle 98 % of the splats or vertices along each axis: far outliers must not
   /// decide what a picture shows.
-  std::pair<Vec3d, Vec3d> middle_box() const;
+  std::pair<Vec3d, Vec3d> middle_box() const override;
   /// What a picture of it should show.
   ShownPart shown_part() const;
 

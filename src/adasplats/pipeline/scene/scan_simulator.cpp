@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/pipeline/scene/scan_simulator.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -61,7 +62,7 @@ ScanSettings ScanChoice::settings_of(LidarModel model, std::uint64_t seed) const
   return settings;
 }
 
-ScanSimulator::ScanSimulator(const ModelScene& scene, ScanSettings settings,
+ScanSimulator::ScanSimulator(const ScanPlace& scene, ScanSettings settings,
                              const Executor& executor)
     : scene_(scene),
       settings_(checked(std::move(settings))),
@@ -69,19 +70,40 @@ ScanSimulator::ScanSimulator(const ModelScene& scene, ScanSettings settings,
       rules_(settings_.sensor, firings_of(settings_.sensor, 0), options_of(settings_),
              scene.primitive_table()) {}
 
-ReportTimes ScanSimulator::run(std::span<const ScanMotion> scans, std::uint64_t first_number,
-                               Sink sink) {
-  if (repeats(settings_.sensor)) return run_repeating(scans, first_number, sink);
+/// How far from the sensor's pose something may be that it sees.
+double ScanSimulator::reach_m() const {
+  float offset = 0;
+  for (const Firing& firing : rules_.cast_firings())
+    offset = std::max(offset, length(firing.origin));
+  constexpr double kRounding_m = 0.01;
+  return settings_.sensor.max_range_m + static_cast<double>(offset) + kRounding_m;
+}
+
+/// Casts scans as many at once as the place has ready: cast(scans, number of the first).
+ReportTimes ScanSimulator::by_spans(std::span<const ScanMotion> scans, Span cast) {
   ReportTimes sum;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    rules_.set_firings(firings_of(settings_.sensor, first_number + i));
-    const ReportTimes times =
-        run_repeating(scans.subspan(i, 1), first_number + i,
-                      [&](std::size_t, Scan&& scan) { sink(i, std::move(scan)); });
-    sum.traced_s += times.traced_s;
-    sum.reported_s += times.reported_s;
+  for (std::size_t first = 0; first < scans.size();) {
+    const std::size_t count = scene_.make_ready(scans.subspan(first), reach_m());
+    sum += cast(scans.subspan(first, count), first);
+    first += count;
   }
   return sum;
+}
+
+ReportTimes ScanSimulator::run(std::span<const ScanMotion> scans, std::uint64_t first_number,
+                               Sink sink) {
+  return by_spans(scans, [&](std::span<const ScanMotion> span, std::size_t first) {
+    if (repeats(settings_.sensor))
+      return run_repeating(span, first_number + first,
+                           [&](std::size_t i, Scan&& scan) { sink(first + i, std::move(scan)); });
+    ReportTimes sum;
+    for (std::size_t i = 0; i < span.size(); ++i) {
+      rules_.set_firings(firings_of(settings_.sensor, first_number + first + i));
+      sum += run_repeating(span.subspan(i, 1), first_number + first + i,
+                           [&](std::size_t, Scan&& scan) { sink(first + i, std::move(scan)); });
+    }
+    return sum;
+  });
 }
 
 /// Casts into the place and, object by object, what is in the world.
@@ -109,7 +131,13 @@ ReportTimes ScanSimulator::run_batches(std::span<const ScanMotion> scans,
                                        std::uint64_t first_number, GpuScene::Results results,
                                        GpuScene::BatchSink sink) {
   if (scene_.gpu() != nullptr && repeats(settings_.sensor))
-    return scene_.gpu()->report(rules_, scans, first_number, scene_.world(), results, sink);
+    return by_spans(scans, [&](std::span<const ScanMotion> span, std::size_t first) {
+      return scene_.gpu()->report(rules_, span, first_number + first, scene_.world(), results,
+                                  [&](ScanBatch&& batch) {
+                                    batch.first += first;
+                                    sink(std::move(batch));
+                                  });
+    });
   if (results == GpuScene::Results::device)
     throw Error(ErrorKind::unavailable,
                 "scans stay in GPU memory where the scene is on a GPU (`device` cuda) and the "

@@ -12,7 +12,7 @@
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/function_ref.h"
-#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/pipeline/scene/scan_place.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/sensors/sensor_overrides.h"
 #include "adasplats/simulate/scan/ray_drop.h"
@@ -102,12 +102,12 @@ class ScanSimulator {
   using Sink = ScanCaster::ScanSink;
 
   /// Scene and executor must outlive it. Errors: those of check().
-  ScanSimulator(const ModelScene& scene, ScanSettings settings, const Executor& executor);
+  ScanSimulator(const ScanPlace& scene, ScanSettings settings, const Executor& executor);
 
   const ScanSettings& settings() const { return settings_; }
   /// Of a scan; where the pattern does not repeat, of the last one that was simulated.
   std::span<const Firing> firings() const { return rules_.firings(); }
-  const ModelScene& scene() const { return scene_; }
+  const ScanPlace& scene() const { return scene_; }
   const ScanRules& rules() const { return rules_; }
 
   /// Scan i has the number `first_number` + i, which names its noise, the firings of a pattern that
@@ -127,10 +127,13 @@ class ScanSimulator {
   Scan scan(const ScanMotion& motion, std::uint64_t number);
 
  private:
+  using Span = FunctionRef<ReportTimes(std::span<const ScanMotion> scans, std::size_t first)>;
+  ReportTimes by_spans(std::span<const ScanMotion> scans, Span cast);
   ReportTimes run_repeating(std::span<const ScanMotion> scans, std::uint64_t first_number,
                             Sink sink);
+  double reach_m() const;
 
-  const ModelScene& scene_;
+  const ScanPlace& scene_;
   ScanSettings settings_;
   const Executor& executor_;
   ScanRules rules_;

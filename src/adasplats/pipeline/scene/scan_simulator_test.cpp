@@ -11,6 +11,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/recorded_progress_test.h"
 #include "adasplats/core/temporary_folder_test.h"
+#include "adasplats/pipeline/scene/model_scene.h"
 
 namespace adasplats {
 namespace {

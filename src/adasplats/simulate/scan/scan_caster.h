@@ -31,6 +31,12 @@ struct ReportTimes {
   /// In the tracer, as if it had run alone: on the CPU the threads' share, on a GPU its kernels.
   double traced_s = 0;
   double reported_s = 0;  ///< until the last scan was there, without the time that the sink took
+
+  ReportTimes& operator+=(const ReportTimes& other) {
+    traced_s += other.traced_s;
+    reported_s += other.reported_s;
+    return *this;
+  }
 };
 
 /// Casts the firings of a sensor from many poses into one scene, on the CPU or on GPUs.

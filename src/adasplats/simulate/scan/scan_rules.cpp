@@ -41,10 +41,12 @@ PrimitiveTable primitive_table(const PrimitiveAttributes& attributes, const Exec
   table.has_instances = is_there(attributes.instances, count);
   table.has_intensities = is_there(attributes.intensities, count);
   if (attributes.response != nullptr) table.response = *attributes.response;
-  table.values.resize(count);
+  const auto memory = std::make_shared<std::vector<PrimitiveValues>>(count);
+  table.values = *memory;
+  table.memory = memory;
   executor.for_chunks(count, kCoarseGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      PrimitiveValues& values = table.values[i];
+      PrimitiveValues& values = (*memory)[i];
       if (i < attributes.view.primitive_count())
         values.normal = normal_of_primitive(attributes.view, i);
       values.reflectance = table.has_intensities ? attributes.intensities[i]

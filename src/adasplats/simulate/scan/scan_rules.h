@@ -16,7 +16,8 @@ namespace adasplats {
 
 /// What the primitives of a place carry, one beside the other, so that a hit costs one look.
 struct PrimitiveTable {
-  std::vector<PrimitiveValues> values;
+  std::span<const PrimitiveValues> values;
+  std::shared_ptr<const void> memory;  ///< that they are in
   bool has_classes = false;
   bool has_instances = false;
   bool has_intensities = false;

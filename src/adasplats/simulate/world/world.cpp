@@ -46,22 +46,27 @@ struct World::Impl {
     return found;
   }
 
-  /// `place` and then, object by object, what of(object) appends; empty where both have nothing.
+  /// Values of the primitives from `first` on: `place` and then, object by object, what
+  /// of(object) appends; empty where both have nothing.
   template <class T, class Of>
-  void fill(std::vector<T>& all, std::span<const T> place, T missing, Of&& of) const;
+  void fill(std::uint32_t first, std::vector<T>& all, std::span<const T> place, T missing,
+            Of&& of) const;
+  /// Of the primitives from `first` on.
+  PrimitiveAttributes fill_all(std::uint32_t first, const PrimitiveAttributes& place);
 };
 
 template <class T, class Of>
-void World::Impl::fill(std::vector<T>& all, std::span<const T> place, T missing, Of&& of) const {
+void World::Impl::fill(std::uint32_t first, std::vector<T>& all, std::span<const T> place,
+                       T missing, Of&& of) const {
   if (!place.empty() && place.size() != first_primitive)
     throw std::logic_error("World: an attribute of the place needs one value a primitive");
   all.clear();
   bool any = !place.empty();
   all.assign(place.begin(), place.end());
-  all.resize(next_primitive, missing);
+  all.resize(next_primitive - first, missing);
   for (const PlacedObject& object : objects) {
     const std::span<T> values =
-        std::span(all).subspan(object.first_primitive, object.geometry->primitives);
+        std::span(all).subspan(object.first_primitive - first, object.geometry->primitives);
     any |= of(object, values);
   }
   if (!any) all.clear();
@@ -171,33 +176,39 @@ const Place& World::geometry(std::size_t geometry) const {
 bool World::is_in_all_scans(std::size_t geometry) const { return impl_->lasting.at(geometry); }
 std::shared_ptr<const int> World::identity() const { return impl_->identity; }
 
-PrimitiveAttributes World::attributes(const PrimitiveAttributes& place) {
-  if (empty()) return place;
+PrimitiveAttributes World::Impl::fill_all(std::uint32_t first, const PrimitiveAttributes& place) {
   const auto copy = []<class T>(std::span<const T> from, std::span<T> to) {
     std::ranges::copy(from, to.begin());
     return !from.empty();
   };
-  impl_->fill<std::uint16_t>(impl_->classes, place.classes, 0, [&](const auto& placed, auto to) {
+  fill<std::uint16_t>(first, classes, place.classes, 0, [&](const auto& placed, auto to) {
     if (!placed.object.class_id) return copy(classes_of(placed.geometry->place), to);
     std::ranges::fill(to, *placed.object.class_id);
     return true;
   });
-  impl_->fill<std::uint16_t>(
-      impl_->instances, place.instances, 0, [&](const auto& placed, auto to) {
-        if (placed.object.instance == 0)
-          return copy(std::span<const std::uint16_t>(placed.geometry->instances), to);
-        std::ranges::fill(to, placed.object.instance);
-        return true;
-      });
-  impl_->fill<float>(impl_->intensities, place.intensities, std::numeric_limits<float>::quiet_NaN(),
-                     [&](const auto& placed, auto to) {
-                       return copy(intensities_of(placed.geometry->place), to);
-                     });
+  fill<std::uint16_t>(first, instances, place.instances, 0, [&](const auto& placed, auto to) {
+    if (placed.object.instance == 0)
+      return copy(std::span<const std::uint16_t>(placed.geometry->instances), to);
+    std::ranges::fill(to, placed.object.instance);
+    return true;
+  });
+  fill<float>(first, intensities, place.intensities, std::numeric_limits<float>::quiet_NaN(),
+              [&](const auto& placed, auto to) {
+                return copy(intensities_of(placed.geometry->place), to);
+              });
   PrimitiveAttributes all = place;
-  all.classes = impl_->classes;
-  all.instances = impl_->instances;
-  all.intensities = impl_->intensities;
+  all.classes = classes;
+  all.instances = instances;
+  all.intensities = intensities;
   return all;
+}
+
+PrimitiveAttributes World::attributes(const PrimitiveAttributes& place) {
+  return empty() ? place : impl_->fill_all(0, place);
+}
+
+PrimitiveAttributes World::object_attributes() {
+  return impl_->fill_all(impl_->first_primitive, {});
 }
 
 std::vector<ObjectBox> World::boxes(std::uint64_t scan_index, double time_s) const {

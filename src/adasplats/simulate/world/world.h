@@ -123,6 +123,8 @@ class World {
   /// They end with the next call, and with an object that is added. Throws std::logic_error where
   /// the place has values, but not one a primitive.
   PrimitiveAttributes attributes(const PrimitiveAttributes& place);
+  /// Those of the objects alone, from the number of the first one on.
+  PrimitiveAttributes object_attributes();
 
   /// Boxes around the objects that are there at `time_s` in scan `scan_index`, in the order in
   /// which they were added. An object without a class of its own has the one that most of its

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "adasplats/city/tile_stream.h"
+#include "adasplats/pipeline/scene/scan_place.h"
+#include "adasplats/pipeline/session/session.h"
+
+namespace adasplats {
+
+/// Whether scans can be simulated in a file or folder without all of it in memory: the folder of a
+/// city, or a world file (simulate/world/world_file.h) that names one.
+bool is_streamable(const std::filesystem::path& model);
+
+/// A city of which only the tiles near the sensor are in memory. Scans are those of the whole city
+/// in memory (ModelScene), byte for byte.
+class CityScene final : public ScanPlace {
+ public:
+  /// `model`: is_streamable(). `labels` as load_label_scheme takes it names the classes; empty:
+  /// what the city says. `memory_bytes`: that tiles may take. Errors: those of load_city_manifest,
+  /// load_model, load_label_scheme and read_world_file; data (no splats); unavailable (a GPU that
+  /// was asked for cannot).
+  CityScene(const std::filesystem::path& model, const std::string& labels, Session& session,
+            std::size_t memory_bytes);
+  ~CityScene() override;
+
+  Vec3d origin() const override;
+  const ScanCaster& scan_caster() const override;
+  const GpuScene* gpu() const override;
+  const World* world() const override;
+  const LabelScheme* labels() const override;
+  std::shared_ptr<const PrimitiveTable> primitive_table() const override;
+  /// Reads all tiles.
+  float highest_intensity() const override;
+  /// Of all splats.
+  std::pair<Vec3d, Vec3d> middle_box() const override;
+  std::size_t make_ready(std::span<const ScanMotion> scans, double reach_m) const override;
+  /// What was done so far.
+  TileStreamCounts counts() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace adasplats
