@@ -10,7 +10,7 @@ namespace adasplats {
 namespace {
 
 constexpr double kSmallestArea = 1e-8;  // m2
-constexpr double kTwoPi = 2 * std::numbers::pi;
+constexpr double kCircle = 2 * std::numbers::pi;
 
 double area(Vec3f a, Vec3f b, Vec3f c) {
   return 0.5 * length(vec_cast<double>(cross(b - a, c - a)));
@@ -25,7 +25,7 @@ Vec3d level_side(Vec3d axis) {
 std::vector<Vec3d> ring_about(Vec3d center, Vec3d u, Vec3d v, int sides) {
   std::vector<Vec3d> ring(static_cast<std::size_t>(sides));
   for (int k = 0; k < sides; ++k) {
-    const double angle = kTwoPi * k / sides;
+    const double angle = kCircle * k / sides;
     ring[static_cast<std::size_t>(k)] = center + std::cos(angle) * u + std::sin(angle) * v;
   }
   return ring;
@@ -131,7 +131,7 @@ void MeshBuilder::ellipsoid(Vec3d center, Vec3d radii, int stacks, int slices,
                             const Material& material) {
   const auto at = [&](int stack, int slice) {
     const double polar = std::numbers::pi * stack / stacks;
-    const double azimuth = kTwoPi * slice / slices;
+    const double azimuth = kCircle * slice / slices;
     return center + Vec3d{radii.x * std::sin(polar) * std::cos(azimuth),
                           radii.y * std::sin(polar) * std::sin(azimuth), radii.z * std::cos(polar)};
   };

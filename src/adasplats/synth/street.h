@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "adasplats/cloud/points/point_cloud.h"
@@ -100,6 +101,10 @@ StreetRecording scan_street(const Street& street, const StreetScanOptions& optio
 /// Writes `street.fixed` as a PLY mesh with `class`, `instance` and `reflectance` a face. Moving
 /// objects are not in it: it is the truth that a model without movers should reproduce.
 void save_street_mesh(const std::filesystem::path& path, const Street& street);
+/// The same of a mesh with one instance and one reflectance a triangle.
+void save_street_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+                      std::span<const std::uint16_t> instances,
+                      std::span<const float> reflectances);
 
 /// What write_street wrote.
 struct StreetReport {

@@ -29,13 +29,21 @@ bool in_the_way(const MovingObject& object, const RigidTransform& world_from_obj
     low = min(low, vertex);
     high = max(high, vertex);
   }
-  const Vec3d p = world_from_object.inverse() * vehicle;
-  return p.x > low.x - kBumper_m && p.x < high.x + kBumper_m && p.y > low.y - kDoor_m &&
-         p.y < high.y + kDoor_m;
+  return meets_vehicle(low, high, world_from_object.inverse() * vehicle);
 }
 
-std::vector<Ray> rays_of(const LidarModel& sensor, std::span<const Firing> firings,
-                         const RigidTransform& world_from_sensor, const Executor& executor) {
+/// -1..1, constant in cells of 20 cm: stones, plaster, dirt.
+double texture_at(Vec3f p) {
+  const auto cell = [](float v) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v * 5.0F)));
+  };
+  return Random(cell(p.x), cell(p.y), cell(p.z)).uniform(-1, 1);
+}
+
+}  // namespace
+
+std::vector<Ray> street_rays(const LidarModel& sensor, std::span<const Firing> firings,
+                             const RigidTransform& world_from_sensor, const Executor& executor) {
   std::vector<Ray> rays(firings.size());
   executor.for_chunks(firings.size(), kFineGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -49,18 +57,8 @@ std::vector<Ray> rays_of(const LidarModel& sensor, std::span<const Firing> firin
   return rays;
 }
 
-/// -1..1, constant in cells of 20 cm: stones, plaster, dirt.
-double texture_at(Vec3f p) {
-  const auto cell = [](float v) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v * 5.0F)));
-  };
-  return Random(cell(p.x), cell(p.y), cell(p.z)).uniform(-1, 1);
-}
-
-/// Reflectance seen under an angle and from afar. Both falls are mild: real sensors correct most of
-/// them.
-float intensity_of(const Triangle& triangle, float reflectance, const Ray& ray, float t,
-                   Random& random) {
+float street_intensity(const Triangle& triangle, float reflectance, const Ray& ray, float t,
+                       Random& random) {
   const Vec3f normal = cross(triangle.b - triangle.a, triangle.c - triangle.a);
   const double cosine = std::fabs(dot(normal, ray.direction)) / length(normal);
   const double incidence = 0.4 + 0.6 * cosine;
@@ -71,7 +69,10 @@ float intensity_of(const Triangle& triangle, float reflectance, const Ray& ray, 
       std::clamp(reflectance * incidence * texture / (1 + far * far), 0.0, 1.0));
 }
 
-}  // namespace
+bool meets_vehicle(Vec3f low, Vec3f high, Vec3d vehicle) {
+  return vehicle.x > low.x - kBumper_m && vehicle.x < high.x + kBumper_m &&
+         vehicle.y > low.y - kDoor_m && vehicle.y < high.y + kDoor_m;
+}
 
 BuiltMesh movers_at(const Street& street, double time_s, Vec3d vehicle) {
   BuiltMesh placed;
@@ -107,7 +108,7 @@ std::vector<StreetEcho> StreetCaster::cast(const LidarModel& sensor,
                                            std::span<const Firing> firings, const TimedPose& pose,
                                            std::uint64_t seed, std::uint64_t scan) const {
   const BuiltMesh movers = movers_at(street_, pose.time_s, pose.world_from_sensor.translation);
-  const std::vector<Ray> rays = rays_of(sensor, firings, pose.world_from_sensor, executor_);
+  const std::vector<Ray> rays = street_rays(sensor, firings, pose.world_from_sensor, executor_);
   std::vector<Hit> fixed_hits(rays.size());
   std::vector<Hit> moving_hits(rays.size());
   fixed_->nearest(rays, fixed_hits, executor_);
@@ -128,8 +129,8 @@ std::vector<StreetEcho> StreetCaster::cast(const LidarModel& sensor,
       Random random(seed, scan, i);
       const double noise = range_noise_m_ > 0 ? range_noise_m_ * random.normal() : 0.0;
       const float intensity =
-          intensity_of(surfaces.mesh.triangle(hit.primitive), surfaces.reflectances[hit.primitive],
-                       rays[i], hit.t, random);
+          street_intensity(surfaces.mesh.triangle(hit.primitive),
+                           surfaces.reflectances[hit.primitive], rays[i], hit.t, random);
       echoes[i] = {static_cast<std::uint32_t>(i),
                    static_cast<float>(hit.t + noise),
                    intensity,
@@ -145,7 +146,7 @@ std::vector<StreetEcho> StreetCaster::cast(const LidarModel& sensor,
 
 double StreetCaster::fixed_share(const LidarModel& sensor, std::span<const Firing> firings,
                                  const TimedPose& pose) const {
-  const std::vector<Ray> rays = rays_of(sensor, firings, pose.world_from_sensor, executor_);
+  const std::vector<Ray> rays = street_rays(sensor, firings, pose.world_from_sensor, executor_);
   std::vector<Hit> hits(rays.size());
   fixed_->nearest(rays, hits, executor_);
   const auto valid = std::ranges::count_if(hits, [](const Hit& hit) { return hit.valid(); });

@@ -9,6 +9,7 @@
 
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/executor.h"
+#include "adasplats/core/maths/random.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/synth/mesh_builder.h"
 #include "adasplats/synth/street.h"
@@ -27,6 +28,18 @@ struct StreetEcho {
   std::uint16_t instance = 0;
   float reflectance = 0;  ///< of the surface, 0..1
 };
+
+/// The rays of one revolution in world coordinates.
+std::vector<Ray> street_rays(const LidarModel& sensor, std::span<const Firing> firings,
+                             const RigidTransform& world_from_sensor, const Executor& executor);
+
+/// Reflectance seen under an angle and from afar, with the surface's texture (0..1). Both falls are
+/// mild: real sensors correct most of them.
+float street_intensity(const Triangle& triangle, float reflectance, const Ray& ray, float t,
+                       Random& random);
+
+/// Whether a mover with these bounds would bump into a vehicle, all in the mover's own frame.
+bool meets_vehicle(Vec3f low, Vec3f high, Vec3d vehicle);
 
 /// The movers that are there at a time, in world coordinates. Those that `vehicle` (a position)
 /// would bump into are left out.

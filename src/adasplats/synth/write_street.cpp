@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <system_error>
 
@@ -25,7 +26,12 @@ void make_folder(const std::filesystem::path& folder) {
 }  // namespace
 
 void save_street_mesh(const std::filesystem::path& path, const Street& street) {
-  const TriangleMesh& mesh = street.fixed;
+  save_street_mesh(path, street.fixed, street.instances, street.reflectances);
+}
+
+void save_street_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+                      std::span<const std::uint16_t> instances,
+                      std::span<const float> reflectances) {
   const auto* first = mesh.vertices.data();
   static_assert(sizeof(Vec3f) == 3 * sizeof(float));
   const float* floats = first == nullptr ? nullptr : &first->x;
@@ -35,8 +41,8 @@ void save_street_mesh(const std::filesystem::path& path, const Street& street) {
       ColumnView{"z", ColumnType::f32, floats == nullptr ? nullptr : &first->z, sizeof(Vec3f)}};
   const std::array<ColumnView, 3> face_columns = {
       ColumnView{"class", ColumnType::u16, mesh.classes.data(), sizeof(std::uint16_t)},
-      ColumnView{"instance", ColumnType::u16, street.instances.data(), sizeof(std::uint16_t)},
-      ColumnView{"reflectance", ColumnType::f32, street.reflectances.data(), sizeof(float)}};
+      ColumnView{"instance", ColumnType::u16, instances.data(), sizeof(std::uint16_t)},
+      ColumnView{"reflectance", ColumnType::f32, reflectances.data(), sizeof(float)}};
   std::vector<std::uint32_t> corners;
   corners.reserve(mesh.triangles.size() * 3);
   for (const auto& t : mesh.triangles) corners.insert(corners.end(), t.begin(), t.end());

@@ -8,6 +8,7 @@
 #include "adasplats/synth/street_caster.h"
 #include "adasplats/synth/vehicle_path.h"
 #include "adasplats/synth/world/world_parts.h"
+#include "adasplats/synth/world/world_scan.h"
 
 namespace adasplats {
 namespace {
@@ -51,8 +52,9 @@ bool is_lost(const StreetEcho& echo, Random& random) {
   return strength < kFaintest * random.uniform();
 }
 
-/// The sensor at KITTI's height, as well as sensors are mounted and vehicles loaded.
-RigidTransform draw_mount(std::uint64_t seed) {
+}  // namespace
+
+RigidTransform draw_world_mount(std::uint64_t seed) {
   Random random(seed, kMountStream, 0);
   RigidTransform mount = vehicle_from_driving_sensor();
   const double pitch = kMountError_rad * random.normal();
@@ -61,8 +63,8 @@ RigidTransform draw_mount(std::uint64_t seed) {
   return mount;
 }
 
-Scan scan_of(std::span<const Firing> firings, std::span<const StreetEcho> echoes,
-             const TimedPose& pose, std::uint64_t seed, std::uint64_t number) {
+Scan world_scan_of(std::span<const Firing> firings, std::span<const StreetEcho> echoes,
+                   const TimedPose& pose, std::uint64_t seed, std::uint64_t number) {
   Scan scan;
   scan.world_from_sensor = pose.world_from_sensor;
   scan.time_s = pose.time_s;
@@ -86,8 +88,6 @@ Scan scan_of(std::span<const Firing> firings, std::span<const StreetEcho> echoes
   return scan;
 }
 
-}  // namespace
-
 void scan_world(const SynthWorld& world, const WorldScanOptions& options,
                 const std::function<void(std::size_t, const Scan&)>& on_scan,
                 const Executor& executor, ProgressSink& progress) {
@@ -99,7 +99,7 @@ void scan_world(const SynthWorld& world, const WorldScanOptions& options,
                     std::to_string(world.place.length_m) + " m; `length` makes it longer");
   const LidarModel sensor = load_lidar_model(options.sensor);
   const StreetCaster caster(world.place, sensor.range_noise_m, executor);
-  const RigidTransform vehicle_from_sensor = draw_mount(options.seed);
+  const RigidTransform vehicle_from_sensor = draw_world_mount(options.seed);
   const double end_s = world.drive.back().time_s;
   const double m_per_s = world.place.length_m / end_s;
   const double first_m = 0.5 * (world.place.length_m - way);
@@ -111,7 +111,7 @@ void scan_world(const SynthWorld& world, const WorldScanOptions& options,
     TimedPose pose = {travelled / m_per_s, {}};
     pose.world_from_sensor = interpolate(world.drive, pose.time_s) * vehicle_from_sensor;
     const std::vector<StreetEcho> echoes = caster.cast(sensor, firings, pose, options.seed, k);
-    on_scan(k, scan_of(firings, echoes, pose, options.seed, k));
+    on_scan(k, world_scan_of(firings, echoes, pose, options.seed, k));
     progress.advance(k + 1);
   }
   progress.end_step();

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kFooting = 1.6;  // walls reach down through land that slopes
 constexpr double kStorey = 2.75;
+// A row along a street that joins begins so far behind the sidewalk, and is at least so long.
+constexpr double kRowBehindFacades_m = 11.5, kRowBehindHouses_m = 22;
+constexpr double kShortestRow_m = 5;
 
 struct WorldHouse {
   double width = 9, depth = 8;
@@ -195,7 +198,7 @@ void add_back_row(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& 
   if (random.uniform() < 0.35) return;
   const double front = plan.property_line(plot.side) + plot.setback + random.uniform(24, 32);
   const WorldHouse house = draw_house(plot.width() - 2, random);
-  if (front + house.depth > kReach_m) return;
+  if (front + house.depth > plan.reach(plot.side)) return;
   builder.stand_at(plan.stand(plot.center(), plot.side, front, 0.1 * random.normal()));
   add_house(builder, house, random);
   builder.stand_in_world();
@@ -208,17 +211,19 @@ void line_side_street(const WorldPlan& plan, MeshBuilder& builder, const WorldPl
   Random random =
       random_of(plan, WorldPurpose::behind, 2 * plot.number + (towards > 0 ? 1 : 0) + 100'000);
   const double back = plan.property_line(plot.side) + from;
+  const double reach = plan.reach(plot.side);
+  if (reach - back < kShortestRow_m) return;
   if (plot.use == Frontage::facades) {
     const Vec3d one = plan.ground_at(s, plot.side * back);
     const Vec3d along =
         normalized(plan.route.at(s, plot.side * (back + 1)) - plan.route.at(s, plot.side * back));
     const double turn = static_cast<double>(plot.side * towards);
     builder.stand_at({Mat3d{}, one});
-    add_facade_row(builder, {{0, 0, 0}, along, turn * Vec3d{along.y, -along.x, 0}}, kReach_m - back,
+    add_facade_row(builder, {{0, 0, 0}, along, turn * Vec3d{along.y, -along.x, 0}}, reach - back,
                    0.1, random);
   } else if (plot.use == Frontage::houses) {
     const double inward = random.uniform(2, 5);
-    for (double d = back + 6; d < kReach_m - 6; d += random.uniform(13, 20)) {
+    for (double d = back + 6; d < reach - 6; d += random.uniform(13, 20)) {
       // The front looks up the street: y of its frame goes away from that.
       const double yaw = (plot.side > 0) == (towards > 0) ? 0.5 : -0.5;
       builder.stand_at(plan.stand(s - towards * inward, plot.side, d, yaw * std::numbers::pi));
@@ -233,13 +238,28 @@ void add_side_streets(const WorldPlan& plan, MeshBuilder& builder) {
     const WorldPlot& one = plan.plots[k];
     const WorldPlot& other = plan.plots[k + 1];
     if (one.side != other.side || other.s0 - one.s1 < 1) continue;
-    line_side_street(plan, builder, one, one.s1, 1, one.use == Frontage::facades ? 11.5 : 22);
+    line_side_street(plan, builder, one, one.s1, 1,
+                     one.use == Frontage::facades ? kRowBehindFacades_m : kRowBehindHouses_m);
     line_side_street(plan, builder, other, other.s0, -1,
-                     other.use == Frontage::facades ? 11.5 : 22);
+                     other.use == Frontage::facades ? kRowBehindFacades_m : kRowBehindHouses_m);
   }
 }
 
 }  // namespace
+
+void add_corner_rows(const WorldPlan& plan, MeshBuilder& builder) {
+  for (const int side : {1, -1}) {
+    const auto of_side = [&](const WorldPlot& plot) { return plot.side == side; };
+    const auto first = std::ranges::find_if(plan.plots, of_side);
+    if (first == plan.plots.end()) continue;
+    const auto last = std::find_if(plan.plots.rbegin(), plan.plots.rend(), of_side);
+    const auto from = [](const WorldPlot& plot) {
+      return plot.use == Frontage::facades ? kRowBehindFacades_m : kRowBehindHouses_m;
+    };
+    line_side_street(plan, builder, *first, first->s0, -1, from(*first));
+    line_side_street(plan, builder, *last, last->s1, 1, from(*last));
+  }
+}
 
 void add_world_buildings(const WorldPlan& plan, MeshBuilder& builder) {
   add_side_streets(plan, builder);

@@ -125,7 +125,9 @@ void add_edge_across(const WorldPlan& plan, MeshBuilder& builder, int side, doub
 }
 
 void add_plot_edges(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
-  if (plot.use == Frontage::facades || plot.use == Frontage::wood) return;
+  if (plot.use == Frontage::facades || plot.use == Frontage::wood || plot.use == Frontage::park ||
+      plot.use == Frontage::square)
+    return;
   Random random = random_of(plan, WorldPurpose::edge, plot.number);
   const double line = plan.property_line(plot.side) + 0.5;
   if (plot.use == Frontage::open || plot.use == Frontage::hall) {  // a field

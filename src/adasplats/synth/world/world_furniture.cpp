@@ -14,21 +14,6 @@ Material pole_material(Random& random) {
   return {label::kPole, static_cast<float>(random.uniform(0.15, 0.5))};
 }
 
-/// In the builder's frame; -y is towards the road.
-void add_street_lamp(MeshBuilder& builder, double height, double arm, double radius,
-                     const Material& material) {
-  const Vec3d top = {0, 0, height};
-  builder.tube(kInGround, {0, 0, 1}, 1.5 * radius, 1.4 * radius, 10, material);
-  builder.tube({0, 0, 1}, top, radius, 0.6 * radius, 10, material);
-  if (arm <= 0) {  // a lantern
-    builder.tube(top, top + Vec3d{0, 0, 0.5}, 0.12, 0.22, 8, material);
-    return;
-  }
-  const Vec3d end = top + Vec3d{0, -arm, 0.3};
-  builder.tube(top, end, 0.035, 0.03, 8, material);
-  builder.ellipsoid(end - Vec3d{0, 0.25, 0}, {0.13, 0.38, 0.08}, 5, 10, material);
-}
-
 void add_road_sign(MeshBuilder& builder, double height, Random& random) {
   const double radius = random.uniform(0.025, 0.045);
   builder.tube(kInGround, {0, 0, height}, radius, radius, 8, pole_material(random));
@@ -72,10 +57,7 @@ void add_street_box(MeshBuilder& builder, Random& random) {
   } else if (draw < 0.65) {
     builder.box({-0.5, -0.18, -0.2}, {0.5, 0.18, random.uniform(0.8, 1.5)}, material);
   } else if (draw < 0.8) {
-    builder.box({-0.85, -0.2, 0.42}, {0.85, 0.2, 0.48}, material);
-    builder.box({-0.85, 0.2, 0.5}, {0.85, 0.25, 0.9}, material);
-    for (const double x : {-0.7, 0.7})
-      builder.box({x - 0.04, -0.2, -0.2}, {x + 0.04, 0.2, 0.42}, material);
+    add_world_bench(builder, material);
   } else {
     builder.box({-0.6, -0.3, -0.1}, {0.6, 0.3, 0.5}, material);
   }
@@ -202,6 +184,27 @@ void furnish_motorway(const WorldPlan& plan, MeshBuilder& builder) {
 }
 
 }  // namespace
+
+void add_world_bench(MeshBuilder& builder, const Material& material) {
+  builder.box({-0.85, -0.2, 0.42}, {0.85, 0.2, 0.48}, material);
+  builder.box({-0.85, 0.2, 0.5}, {0.85, 0.25, 0.9}, material);
+  for (const double x : {-0.7, 0.7})
+    builder.box({x - 0.04, -0.2, -0.2}, {x + 0.04, 0.2, 0.42}, material);
+}
+
+void add_street_lamp(MeshBuilder& builder, double height, double arm, double radius,
+                     const Material& material) {
+  const Vec3d top = {0, 0, height};
+  builder.tube(kInGround, {0, 0, 1}, 1.5 * radius, 1.4 * radius, 10, material);
+  builder.tube({0, 0, 1}, top, radius, 0.6 * radius, 10, material);
+  if (arm <= 0) {  // a lantern
+    builder.tube(top, top + Vec3d{0, 0, 0.5}, 0.12, 0.22, 8, material);
+    return;
+  }
+  const Vec3d end = top + Vec3d{0, -arm, 0.3};
+  builder.tube(top, end, 0.035, 0.03, 8, material);
+  builder.ellipsoid(end - Vec3d{0, 0.25, 0}, {0.13, 0.38, 0.08}, 5, 10, material);
+}
 
 void add_world_furniture(const WorldPlan& plan, MeshBuilder& builder) {
   for (const int side : {1, -1}) furnish_sidewalk(plan, builder, side);

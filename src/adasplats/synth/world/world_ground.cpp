@@ -42,7 +42,7 @@ std::vector<double> world_cuts_across(const WorldPlan& plan) {
     for (const Patch& patch : plan.patches)
       if (patch.side == which) wishes.insert(wishes.end(), {which * patch.d0, which * patch.d1});
   }
-  return even_cuts(wishes, -kReach_m, kReach_m, [](double d) {
+  return even_cuts(wishes, -plan.reach(-1), plan.reach(1), [](double d) {
     const double off = std::fabs(d);
     return off < 12 ? 0.5 : off < 25 ? 0.8 : 1.6;
   });
@@ -97,6 +97,28 @@ void add_ground_step(const GroundGrid& grid, MeshBuilder& builder, const WorldPl
                grid.corner(other, i0, j0), face);
 }
 
+/// Faces down from the rim of the land, so that no ray slips between two pieces of a city whose
+/// rims are a little apart.
+void add_ground_rim(const GroundGrid& grid, MeshBuilder& builder) {
+  constexpr Vec3d kDown = {0, 0, -0.6};
+  const auto face = [&](const WorldPlan::Cell& cell, std::size_t i0, std::size_t j0, std::size_t i1,
+                        std::size_t j1) {
+    const Vec3d a = grid.corner(cell, i0, j0);
+    const Vec3d b = grid.corner(cell, i1, j1);
+    builder.quad(a, b, b + kDown, a + kDown, grid.material(cell));
+  };
+  const std::size_t rows = grid.s.size() - 1;
+  const std::size_t columns = grid.d.size() - 1;
+  for (std::size_t i = 0; i < rows; ++i) {
+    face(grid.cell(i, 0), i, 0, i + 1, 0);
+    face(grid.cell(i, columns - 1), i, columns, i + 1, columns);
+  }
+  for (std::size_t j = 0; j < columns; ++j) {
+    face(grid.cell(0, j), 0, j, 0, j + 1);
+    face(grid.cell(rows - 1, j), rows, j, rows, j + 1);
+  }
+}
+
 }  // namespace
 
 void add_world_ground(const WorldPlan& plan, MeshBuilder& builder) {
@@ -113,6 +135,7 @@ void add_world_ground(const WorldPlan& plan, MeshBuilder& builder) {
         add_ground_step(grid, builder, cell, grid.cell(i, j + 1), i, j + 1, i + 1, j + 1);
     }
   }
+  if (plan.land_step) add_ground_rim(grid, builder);
 }
 
 }  // namespace adasplats

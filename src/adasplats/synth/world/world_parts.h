@@ -65,6 +65,19 @@ void add_leafy_hedge(MeshBuilder& builder, Vec3d from, Vec3d to, double height, 
 /// About the origin of the builder's frame.
 void add_leafy_bush(MeshBuilder& builder, double radius, double height, Random& random);
 
+/// Buildings along the streets that cross at both ends of a road, behind its outermost plots.
+void add_corner_rows(const WorldPlan& plan, MeshBuilder& builder);
+
+/// A tree high enough to walk under.
+void plant_park_tree(const WorldPlan& plan, MeshBuilder& builder, double s, int side,
+                     double from_axis, Random& random);
+
+/// In the builder's frame; -y is towards the road. Without an arm (0 m) it is a lantern.
+void add_street_lamp(MeshBuilder& builder, double height, double arm, double radius,
+                     const Material& material);
+/// In the builder's frame, along x; who sits on it looks to -y.
+void add_world_bench(MeshBuilder& builder, const Material& material);
+
 /// What drives, about its own frame: x forward, z up, origin on the ground in the middle.
 enum class VehicleKind : std::uint8_t { car, truck, bus, trailer, cyclist, motorcyclist, walker };
 /// How long one is, m.

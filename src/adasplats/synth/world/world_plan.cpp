@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace adasplats {
 namespace {
@@ -30,10 +31,52 @@ EdgeKind draw_edge(Random& random, double none) {
 
 }  // namespace
 
+WorldPlot draw_world_plot(const WorldStyle& style, int side, double s, double fenceless,
+                          Random& draw) {
+  const Frontage frontage = style.sides[side > 0 ? 0 : 1].frontage;
+  WorldPlot plot{.side = side, .s0 = s, .use = frontage};
+  plot.s1 = s + draw.uniform(style.plot_low, style.plot_high);
+  if (frontage == Frontage::open && draw.uniform() < 0.12) plot.use = Frontage::houses;
+  if (frontage == Frontage::houses && draw.uniform() < 0.06) plot.use = Frontage::wood;
+  if (frontage == Frontage::facades && draw.uniform() < 0.13) plot.use = Frontage::open;
+  const double other_use = draw.uniform();
+  if (other_use < style.car_parks)
+    plot.use = Frontage::car_park;
+  else if (other_use < style.car_parks + style.halls)
+    plot.use = Frontage::hall;
+  plot.setback = draw.uniform(style.setback_low, style.setback_high);
+  plot.front = draw_edge(draw, fenceless);
+  plot.between = draw_edge(draw, fenceless + 0.1);
+  const double tall = draw.uniform();
+  plot.edge_height = 0.4 + 1.5 * tall * tall;
+  plot.driveway = plot.use == Frontage::houses && plot.width() > 11 && draw.uniform() < 0.7;
+  return plot;
+}
+
 WorldPlan::WorldPlan(const WorldOptions& world_options)
     : options(world_options),
       style(draw_world_style(options.kind, random(0, 1))),
       route(options.length_m, route_limits(options.kind), random(0, 2)) {
+  draw_ground();
+  draw_strips();
+  draw_plots();
+  draw_patches();
+}
+
+WorldPlan::WorldPlan(const WorldOptions& world_options, WorldLayout layout)
+    : options(world_options),
+      style(std::move(layout.style)),
+      route(std::move(layout.route)),
+      reach_m(layout.reach_m),
+      land_step(layout.land_step),
+      patches(std::move(layout.patches)),
+      plots(std::move(layout.plots)) {
+  draw_ground();
+  draw_strips();
+  draw_patches();
+}
+
+void WorldPlan::draw_ground() {
   Random reflectances = random(0, 3);
   constexpr std::array<double, kGroundCount> kTypical = {0.46, 0.7, 0.5, 0.58, 0.54, 0.66};
   for (std::size_t k = 0; k < kGroundCount; ++k)
@@ -45,9 +88,6 @@ WorldPlan::WorldPlan(const WorldOptions& world_options)
     phase = swell.uniform(0, 2 * std::numbers::pi);
     share = wavelength / 60;
   }
-  draw_strips();
-  draw_plots();
-  draw_patches();
 }
 
 Random WorldPlan::random(std::uint64_t purpose, std::uint64_t number) const {
@@ -91,7 +131,7 @@ void WorldPlan::draw_strips() {
     const Ground outer = sidewalk_first ? Ground::terrain : Ground::sidewalk;
     if (middle > road_end(which)) list.push_back({middle, inner, own.kerb});
     if (property_line(which) > middle) list.push_back({property_line(which), outer, own.kerb});
-    list.push_back({kReach_m, Ground::terrain, own.kerb});
+    list.push_back({reach(which), Ground::terrain, land_step.value_or(own.kerb)});
   }
 }
 
@@ -99,26 +139,11 @@ void WorldPlan::draw_plots() {
   std::uint64_t number = 0;
   for (const int which : {1, -1}) {
     Random draw = random(2, which > 0 ? 1 : 0);
-    const SideStyle& own = side(which);
     double s = -draw.uniform(0, 10);
     const double fenceless = draw.uniform(0, 0.5);
     while (s < options.length_m) {
-      WorldPlot plot{.side = which, .s0 = s, .use = own.frontage, .number = number++};
-      plot.s1 = s + draw.uniform(style.plot_low, style.plot_high);
-      if (own.frontage == Frontage::open && draw.uniform() < 0.12) plot.use = Frontage::houses;
-      if (own.frontage == Frontage::houses && draw.uniform() < 0.06) plot.use = Frontage::wood;
-      if (own.frontage == Frontage::facades && draw.uniform() < 0.13) plot.use = Frontage::open;
-      const double other_use = draw.uniform();
-      if (other_use < style.car_parks)
-        plot.use = Frontage::car_park;
-      else if (other_use < style.car_parks + style.halls)
-        plot.use = Frontage::hall;
-      plot.setback = draw.uniform(style.setback_low, style.setback_high);
-      plot.front = draw_edge(draw, fenceless);
-      plot.between = draw_edge(draw, fenceless + 0.1);
-      const double tall = draw.uniform();
-      plot.edge_height = 0.4 + 1.5 * tall * tall;
-      plot.driveway = plot.use == Frontage::houses && plot.width() > 11 && draw.uniform() < 0.7;
+      WorldPlot plot = draw_world_plot(style, which, s, fenceless, draw);
+      plot.number = number++;
       s = plot.s1;
       if (draw.uniform() < style.side_streets * plot.width() / 100) s += draw.uniform(8, 13);
       plots.push_back(plot);
@@ -141,10 +166,10 @@ void WorldPlan::draw_patches() {
       if (plot.side != which) continue;
       if (last > -1e8 && plot.s0 - last > 1) {  // a street joins between two plots
         patches.push_back(
-            {which, last + 1.8, plot.s0 - 1.8, road, kReach_m, Ground::road, 0, true});
+            {which, last + 1.8, plot.s0 - 1.8, road, reach(which), Ground::road, 0, true});
         if (own.sidewalk > 0)
           for (const double s : {last, plot.s0 - 1.8})
-            patches.push_back({which, s, s + 1.8, edge, kReach_m, Ground::sidewalk, own.kerb});
+            patches.push_back({which, s, s + 1.8, edge, reach(which), Ground::sidewalk, own.kerb});
       }
       last = plot.s1;
       if (plot.use == Frontage::facades || (plot.use == Frontage::open && own.sidewalk > 2))
@@ -205,10 +230,10 @@ double WorldPlan::height(double s, double d) const {
   const int which = d > 0 ? 1 : -1;
   const SideStyle& own = side(which);
   const double off = std::fabs(d);
-  const double crossfall = 0.02 * std::min(off, road_end(which));
+  const double crossfall = style.crossfall * std::min(off, road_end(which));
   const double beyond = std::max(0.0, off - property_line(which));
   const double roads_edge = off - road_end(which);
-  double z = route.climb_height(s) - crossfall;
+  double z = route.land_height(s, d) - crossfall;
   z += own.bank * smooth_step((beyond - 2) / 7) + own.tilt * std::max(0.0, beyond - 2);
   z -= own.ditch * std::exp(-std::pow((roads_edge - 2.2) / 0.8, 2));
   if (beyond <= 0) return z;
@@ -237,6 +262,12 @@ RigidTransform WorldPlan::stand(double s, int which, double from_axis, double ya
 bool WorldPlan::is_open(int which, double s0, double s1) const {
   return std::ranges::any_of(patches, [&](const Patch& patch) {
     return patch.side == which && patch.crosses_sidewalk && s1 > patch.s0 && s0 < patch.s1;
+  });
+}
+
+bool WorldPlan::is_crossing(int which, double s) const {
+  return std::ranges::any_of(patches, [&](const Patch& patch) {
+    return patch.side == which && patch.is_crossing && s >= patch.s0 && s <= patch.s1;
   });
 }
 

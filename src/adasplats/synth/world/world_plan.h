@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "adasplats/core/maths/random.h"
@@ -42,10 +43,11 @@ struct Patch {
   double step = 0;
   bool crosses_sidewalk = false;  ///< nothing stands at the kerb there
   bool is_island = false;         ///< with a tree, between parked cars
+  bool is_crossing = false;       ///< of a street that is driven: nothing stands there
 };
 
 enum class EdgeKind : std::uint8_t { none, hedge, picket, bars, mesh, boards, wall };
-enum class Frontage : std::uint8_t { houses, facades, open, wood, car_park, hall };
+enum class Frontage : std::uint8_t { houses, facades, open, wood, car_park, hall, park, square };
 
 /// A piece of one side along the road. Metres.
 struct WorldPlot {
@@ -89,6 +91,7 @@ struct WorldStyle {
   double lane_width = 3;
   double median = 0;  ///< half its width
   bool marked = true;
+  double crossfall = 0.02;  ///< slope of the road to its sides
   double driven = 1;        ///< where the vehicle drives, of the way from the axis to its lane
   double undulation = 0.1;  ///< of the land, m
   double roughness = 0.03;  ///< of soil and grass, m
@@ -106,13 +109,29 @@ struct WorldStyle {
   std::array<SideStyle, 2> sides;  ///< left, right
 };
 
+/// The land reaches so far to both sides of a road.
+inline constexpr double kReach_m = 58;
+
+/// What a street of a city is told instead of drawing it.
+struct WorldLayout {
+  WorldStyle style;
+  WorldRoute route;
+  std::array<double, 2> reach_m = {kReach_m, kReach_m};  ///< left, right
+  double land_step = 0.1;                                ///< of the land beyond the sidewalks
+  std::vector<WorldPlot> plots;
+  std::vector<Patch> patches;  ///< below those that plots bring
+};
+
 class WorldPlan {
  public:
   explicit WorldPlan(const WorldOptions& options);
+  WorldPlan(const WorldOptions& options, WorldLayout layout);
 
   WorldOptions options;
   WorldStyle style;
   WorldRoute route;
+  std::array<double, 2> reach_m = {kReach_m, kReach_m};  ///< left, right
+  std::optional<double> land_step;  ///< of the land beyond the sidewalks; none: their kerb's
   std::array<std::vector<Strip>, 2> strips;  ///< left, right
   std::vector<Patch> patches;
   std::vector<WorldPlot> plots;
@@ -125,6 +144,7 @@ class WorldPlan {
   double lanes_end() const { return style.median + style.lanes * style.lane_width; }
   double road_end(int side) const;
   double property_line(int side) const;
+  double reach(int side) const { return reach_m[side > 0 ? 0 : 1]; }
   /// The middle of a lane, 0 the innermost.
   double lane_center(int lane) const { return style.median + (lane + 0.5) * style.lane_width; }
 
@@ -145,10 +165,13 @@ class WorldPlan {
   bool has_island(int side, double s0, double s1) const;
   /// Whether a driveway or a street crosses the sidewalk between s0 and s1.
   bool is_open(int side, double s0, double s1) const;
+  /// Whether a street that is driven crosses there.
+  bool is_crossing(int side, double s) const;
 
   Random random(std::uint64_t purpose, std::uint64_t number) const;
 
  private:
+  void draw_ground();
   void draw_strips();
   void draw_plots();
   void draw_patches();
@@ -160,11 +183,12 @@ class WorldPlan {
 /// A car park is so deep: two rows of cars and the way between them.
 inline constexpr double kCarPark_m = 17;
 
-/// The land reaches so far to both sides.
-inline constexpr double kReach_m = 58;
-
 /// Draws the style of a kind of place.
 WorldStyle draw_world_style(WorldKind kind, Random random);
+/// Draws the plot of a side that begins at s; its number is left to the caller. `fenceless`: share
+/// of the plots without a fence.
+WorldPlot draw_world_plot(const WorldStyle& style, int side, double s, double fenceless,
+                          Random& draw);
 RouteLimits route_limits(WorldKind kind);
 
 }  // namespace adasplats

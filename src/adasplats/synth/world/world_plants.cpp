@@ -211,7 +211,7 @@ void plant_islands(const WorldPlan& plan, MeshBuilder& builder) {
 void plant_wood(const WorldPlan& plan, MeshBuilder& builder, const WorldPlot& plot) {
   Random random = random_of(plan, WorldPurpose::garden, plot.number);
   const double line = plan.property_line(plot.side) + random.uniform(0.8, 6);
-  const double deep = std::min(kReach_m - 3, line + random.uniform(6, 26));
+  const double deep = std::min(plan.reach(plot.side) - 3, line + random.uniform(6, 26));
   const double room = random.uniform(10, 30);  // m2 a tree
   const int trees = static_cast<int>(plot.width() * (deep - line) / room);
   for (int k = 0; k < trees; ++k) {
@@ -244,12 +244,26 @@ void plant_side(const WorldPlan& plan, MeshBuilder& builder, int side) {
     plant(plan, builder, s, side, line + 0.15 * random.normal(), with_fine_leaves(tree), random);
   }
   if (own.frontage != Frontage::open) return;
-  for (const double s : places_along(plan, own.bushes, 0.5, random))
+  for (const double s : places_along(plan, own.bushes, 0.5, random)) {
+    if (plan.is_crossing(side, s)) continue;
     plant_bush(plan, builder, s, side,
                plan.property_line(side) + 1 + 14 * random.uniform() * random.uniform(), random);
+  }
 }
 
 }  // namespace
+
+void plant_park_tree(const WorldPlan& plan, MeshBuilder& builder, double s, int side,
+                     double from_axis, Random& random) {
+  WorldTree tree = draw_tree(plan.style.leafiness, random.uniform(7, 15), random);
+  tree.crown = Crown::round;
+  tree.crown_base = std::max(tree.crown_base, 2.0);
+  tree.height = std::max(tree.height, 5.0);
+  tree.leaves /= 2;
+  tree.leaf *= std::numbers::sqrt2;
+  plant(plan, builder, s, side, from_axis, tree, random);
+  builder.stand_in_world();
+}
 
 std::vector<double> places_along(const WorldPlan& plan, double in_100_m, double room,
                                  Random& random) {

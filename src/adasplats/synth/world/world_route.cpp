@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace adasplats {
 namespace {
@@ -43,11 +44,25 @@ WorldRoute::WorldRoute(double length_m, const RouteLimits& limits, Random random
   for (Vec3d& p : axis_) p = p - start;
 }
 
-double WorldRoute::heading(double s) const { return heading_[0].at(s) + heading_[1].at(s); }
+WorldRoute::WorldRoute(double length_m, LandPlace place_of)
+    : length_m_(length_m), place_of_(std::move(place_of)) {}
 
-double WorldRoute::climb_height(double s) const { return height_[0].at(s) + height_[1].at(s); }
+double WorldRoute::heading(double s) const {
+  if (!place_of_) return heading_[0].at(s) + heading_[1].at(s);
+  const Vec3d along = place_of_(s + kRouteStep_m, 0) - place_of_(s - kRouteStep_m, 0);
+  return std::atan2(along.y, along.x);
+}
+
+double WorldRoute::land_height(double s, double d) const {
+  return place_of_ ? place_of_(s, d).z : height_[0].at(s) + height_[1].at(s);
+}
 
 Vec3d WorldRoute::at(double s, double d) const {
+  if (place_of_) {
+    Vec3d place = place_of_(s, d);
+    place.z = 0;
+    return place;
+  }
   const double along =
       std::clamp((s + kBeyond_m) / kRouteStep_m, 0.0, static_cast<double>(axis_.size()) - 2);
   const auto before = static_cast<std::size_t>(along);

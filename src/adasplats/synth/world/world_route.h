@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "adasplats/core/maths/random.h"
@@ -20,14 +20,20 @@ struct RouteLimits {
   double most_climb = 0.03;  ///< slope of the road
 };
 
-/// The axis of a road: its heading is a sum of two waves, its height another.
+/// Where the place (s, d) of a road is, with the height of the land there.
+using LandPlace = std::function<Vec3d(double s, double d)>;
+
+/// The axis of a road: its heading is a sum of two waves, its height another; or it lies in a land
+/// that is given.
 class WorldRoute {
  public:
   WorldRoute(double length_m, const RouteLimits& limits, Random random);
+  WorldRoute(double length_m, LandPlace place_of);
 
   double length_m() const { return length_m_; }
   double heading(double s) const;
-  double climb_height(double s) const;
+  /// Of the land at a place: that of the axis there, unless the land is given.
+  double land_height(double s, double d) const;
   /// A place without its height.
   Vec3d at(double s, double d) const;
 
@@ -38,6 +44,7 @@ class WorldRoute {
   };
 
   double length_m_;
+  LandPlace place_of_;  ///< where the land is given, else empty
   std::array<Wave, 2> heading_;
   std::array<Wave, 2> height_;
   std::vector<Vec3d> axis_;  ///< every kStep_m from -kBeyond_m on

@@ -18,11 +18,13 @@ class Parking {
 
   void put(VehicleKind kind, std::uint16_t class_id, double s, int side, double from_axis,
            double yaw, Random& random) {
+    if (plan_.is_crossing(side, s)) return;
     const RigidTransform place = plan_.stand(s, side, from_axis, yaw);
     add_vehicle(builder_, kind, place, {class_id, draw_paint(random), instance_++}, random);
   }
   /// Without a rider; it leans a little.
   void put_bike(bool motorcycle, double s, int side, double from_axis, double yaw, Random& random) {
+    if (plan_.is_crossing(side, s)) return;
     RigidTransform place = plan_.stand(s, side, from_axis, yaw);
     place.rotation = place.rotation * rotation_from_yaw_pitch_roll(0, 0, random.uniform(-0.2, 0.2));
     builder_.stand_at(place);
