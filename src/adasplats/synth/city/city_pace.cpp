@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/synth/city/city_pace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "adasplats/core/error.h"
+
+namespace adasplats {
+namespace {
+
+constexpr double kDefaultSpacing_m = 1;
+constexpr double kReturningShare = 0.85;  // of rays, before any is cast
+constexpr double kMostScans = 1e6;        // that six digits name
+constexpr double kLeastSpacing_m = 0.001;
+
+}  // namespace
+
+CityPace::CityPace(const SynthCityOptions& options, std::size_t rays)
+    : length_m_(options.length_m),
+      spacing_m_(options.spacing_m.value_or(kDefaultSpacing_m)),
+      points_(options.points.value_or(0)),
+      mean_points_(kReturningShare * static_cast<double>(rays)) {
+  if (options.points && options.spacing_m)
+    throw Error(ErrorKind::usage,
+                "`points` and `spacing` are two ways to say the same: give one of them");
+  // Where a scan has fewer points than expected there are more scans.
+  const double scans = options.points ? 2 * points_ / mean_points_ : length_m_ / spacing_m_ + 1;
+  if (scans > kMostScans)
+    throw Error(ErrorKind::usage,
+                "that is more than " + std::to_string(static_cast<long>(kMostScans)) +
+                    " scans; several cities of other seeds, or a larger" + " `spacing`");
+  if (options.points && length_m_ / scans < kLeastSpacing_m)
+    throw Error(ErrorKind::usage,
+                "scans would be less than 1 mm apart: fewer `points`, or more"
+                " `length`");
+}
+
+std::vector<double> CityPace::next(std::size_t most, double way_m, std::size_t points) {
+  if (points_ > 0) {
+    if (scans_ > 0)
+      mean_points_ = std::max(1.0, static_cast<double>(points) / static_cast<double>(scans_));
+    const double left = std::round((points_ - static_cast<double>(points)) / mean_points_);
+    if (left < 1 && scans_ > 0) return {};
+    // Half of those that are left at most, so that the last ones are right to a scan.
+    const double scans = std::max(1.0, left);
+    most = std::min(most, static_cast<std::size_t>(std::ceil(0.5 * scans)));
+    if (scans_ == 0) {
+      spacing_m_ = length_m_ / scans;
+    } else {
+      const double last = next_m_ - spacing_m_;
+      spacing_m_ = (length_m_ - last) / scans;
+      next_m_ = last + spacing_m_;
+    }
+  }
+  const std::vector<double> places = foreseen(most, way_m);
+  scans_ += places.size();
+  next_m_ += spacing_m_ * static_cast<double>(places.size());
+  return places;
+}
+
+std::vector<double> CityPace::foreseen(std::size_t most, double way_m) const {
+  std::vector<double> places;
+  for (std::size_t k = 0; k < most; ++k) {
+    const double on = spacing_m_ * static_cast<double>(k);
+    if (next_m_ + on > length_m_ + 1e-6 || (k > 0 && on > way_m)) break;
+    places.push_back(next_m_ + on);
+  }
+  return places;
+}
+
+}  // namespace adasplats
