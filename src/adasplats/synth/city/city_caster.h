@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "adasplats/core/executor.h"
+#include "adasplats/sensors/lidar_model.h"
+#include "adasplats/synth/city/city_pieces.h"
+#include "adasplats/synth/city/city_traffic.h"
+#include "adasplats/synth/street_caster.h"
+
+// Inside synth/city/: rays of one revolution against the pieces and the movers around.
+
+namespace adasplats {
+
+/// Which firings of a revolution point where: by azimuth, so that what covers a narrow angle is
+/// cast against few rays.
+class FiringSectors {
+ public:
+  explicit FiringSectors(std::span<const Firing> firings);
+  /// Indices of all firings that could meet a sphere, ascending; center in the sensor's frame.
+  std::vector<std::uint32_t> towards(Vec3d center, double radius) const;
+
+ private:
+  std::vector<std::vector<std::uint32_t>> sectors_;  ///< of equal angles from -pi on
+};
+
+/// What one revolution is cast against.
+struct CityScene {
+  std::vector<const CityPiece*> pieces;
+  const MoverModels* models = nullptr;
+  std::vector<PlacedMover> movers;
+};
+
+/// The echoes of one revolution in the order of `firings`. Noise is drawn by (seed, scan, ray).
+/// Movers that the scanning vehicle would bump into are left out.
+std::vector<StreetEcho> cast_city(const CityScene& scene, const LidarModel& sensor,
+                                  std::span<const Firing> firings, const FiringSectors& sectors,
+                                  const TimedPose& pose, std::uint64_t seed, std::uint64_t scan,
+                                  const Executor& executor);
+
+}  // namespace adasplats
