@@ -51,9 +51,11 @@ struct Program {
     app.require_subcommand(0, 1);
     CLI::App& synth = group("synth", "Make synthetic data with exact ground truth",
                             "  adasplats synth street -o street\n"
-                            "  adasplats synth world -o world --kind city\n");
+                            "  adasplats synth world -o world --kind city\n"
+                            "  adasplats synth city -o city --length 10km --points 1e9\n");
     commands.push_back(make_synth_street_command(synth));
     commands.push_back(make_synth_world_command(synth));
+    commands.push_back(make_synth_city_command(synth));
     commands.push_back(make_info_command(app));
     commands.push_back(make_sensors_command(app));
     commands.push_back(make_model_command(app));

@@ -17,6 +17,7 @@ PROGRAM = os.environ.get("ADASPLATS_PROGRAM", "adasplats")
 SUBCOMMANDS = [
     ["synth", "street"],
     ["synth", "world"],
+    ["synth", "city"],
     ["info"],
     ["sensors"],
     ["fit-drop"],

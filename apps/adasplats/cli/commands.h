@@ -11,6 +11,7 @@ namespace adasplats::app {
 // One file each.
 std::unique_ptr<Command> make_synth_street_command(CLI::App& synth);
 std::unique_ptr<Command> make_synth_world_command(CLI::App& synth);
+std::unique_ptr<Command> make_synth_city_command(CLI::App& synth);
 std::unique_ptr<Command> make_info_command(CLI::App& program);
 std::unique_ptr<Command> make_model_command(CLI::App& program);
 std::unique_ptr<Command> make_calibrate_command(CLI::App& program);

@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cmath>
 #include <span>
+#include <string_view>
+#include <utility>
 
 namespace adasplats::app {
 namespace {
@@ -152,6 +154,27 @@ Option* add_places(OptionSet& app, const std::string& name, std::vector<SensorPl
   return app.add_option_function<std::vector<std::string>>(name, take, help)
       ->type_name("X,Y[,Z[,YAW]]")
       ->repeatable();
+}
+
+Option* add_length(OptionSet& app, const Setting& setting, double& target) {
+  const auto take = [&target, setting](const std::string& text) {
+    constexpr std::pair<std::string_view, double> kUnits[] = {{"km", 1000}, {"m", 1}, {"", 1}};
+    for (const auto& [unit, metres] : kUnits) {
+      if (!text.ends_with(unit)) continue;
+      double number = 0;
+      if (!parse_whole(text.substr(0, text.size() - unit.size()), number)) break;
+      if (!is_in_range(setting, number * metres))
+        refuse_value(option_of(setting),
+                     "expected " + range_text(setting) + " (m), found '" + text + "'");
+      target = number * metres;
+      return;
+    }
+    refuse_value(option_of(setting),
+                 "expected a length as 500, 500m or 10km, found '" + text + "'");
+  };
+  return app.add_option_function<std::string>(option_of(setting), take, setting.help)
+      ->type_name(setting.value)
+      ->default_str(short_number(target));
 }
 
 Option* add_corners(OptionSet& app, const std::string& name, std::vector<PathCorner>& target,

@@ -13,6 +13,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/extent.h"
 #include "adasplats/core/maths/vec3.h"
+#include "adasplats/core/setting.h"
 #include "adasplats/core/words.h"
 #include "adasplats/pipeline/scene/placed_poses.h"
 #include "adasplats/pipeline/session/scan_range.h"
@@ -42,6 +43,8 @@ Option* add_corners(OptionSet& app, const std::string& name, std::vector<PathCor
                     const std::string& help);
 Option* add_scale(OptionSet& app, const std::string& name, GroupScale& target,
                   const std::string& help);
+/// A length in metres, or with its unit: "500", "500m", "10km".
+Option* add_length(OptionSet& app, const Setting& setting, double& target);
 /// --picture-width, pixels of a picture of 16:9.
 Option* add_picture_width(OptionSet& app, int& width);
 /// A flag with its opposite: names as "--denoise,!--no-denoise".
