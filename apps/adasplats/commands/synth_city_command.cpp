@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kCityExamples =
     "  adasplats synth city -o city --length 500\n"
     "  adasplats synth city -o city --length 10km --points 1e9 --seed 7\n"
-    "  adasplats model city/sequences/00 -o city.splats --tile 64\n";
+    "  adasplats model city/sequences/00 -o city-model --tile 64\n";
 
 class SynthCityCommand final : public Command {
  public:

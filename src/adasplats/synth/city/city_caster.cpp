@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 namespace adasplats {
@@ -20,8 +20,9 @@ int sector_of(double azimuth) {
   return std::clamp(static_cast<int>(share * kSectors), 0, kSectors - 1);
 }
 
-/// Where a ray enters a box, at t_min at least; more than t_max where it does not.
-float entry(const Ray& ray, Vec3f inverse, Vec3f low, Vec3f high) {
+/// Whether a ray is in a box somewhere between its t_min and t_max; `inverse` is inverse_of() its
+/// direction.
+bool meets_box(const Ray& ray, Vec3f inverse, Vec3f low, Vec3f high) {
   float from = ray.t_min;
   float to = ray.t_max;
   const auto axis = [&](float origin, float inverse_direction, float a, float b) {
@@ -33,12 +34,13 @@ float entry(const Ray& ray, Vec3f inverse, Vec3f low, Vec3f high) {
   axis(ray.origin.x, inverse.x, low.x, high.x);
   axis(ray.origin.y, inverse.y, low.y, high.y);
   axis(ray.origin.z, inverse.z, low.z, high.z);
-  return from <= to ? from : std::numeric_limits<float>::infinity();
+  return from <= to;
 }
 
 /// The nearest hits so far, and of what.
 struct Nearest {
-  std::vector<Ray> rays;  ///< t_max is the nearest hit
+  std::vector<Ray> rays;        ///< t_max is the nearest hit
+  std::vector<Vec3f> inverses;  ///< inverse_of() their directions
   std::vector<Hit> hits;
   std::vector<std::uint16_t> owner;  ///< of the hit: a piece, or pieces + a mover
 };
@@ -82,16 +84,20 @@ void cast_pieces(const CityScene& scene, Vec3f sensor, Nearest& nearest, Batch& 
     order.emplace_back(length(inside - sensor), p);
   }
   std::ranges::sort(order);
+  std::vector<std::uint32_t> reaching(nearest.rays.size());  // as far as the next piece
+  std::iota(reaching.begin(), reaching.end(), 0U);
   for (const auto& [distance, p] : order) {
     const CityPiece& piece = *scene.pieces[p];
     batch.clear();
-    for (std::uint32_t i = 0; i < nearest.rays.size(); ++i) {
+    const float nearer = distance - static_cast<float>(kFiringOrigin_m);
+    std::erase_if(reaching, [&](std::uint32_t i) { return nearest.rays[i].t_max < nearer; });
+    for (const std::uint32_t i : reaching) {
       const Ray& ray = nearest.rays[i];
-      if (!std::isfinite(entry(ray, inverse_of(ray.direction), piece.low, piece.high))) continue;
+      if (!meets_box(ray, nearest.inverses[i], piece.low, piece.high)) continue;
       batch.indices.push_back(i);
       batch.rays.push_back(ray);
     }
-    batch.cast(*piece.tracer, p, nearest, executor);
+    if (!batch.rays.empty()) batch.cast(*piece.tracer, p, nearest, executor);
   }
 }
 
@@ -117,7 +123,7 @@ void cast_movers(const CityScene& scene, const FiringSectors& sectors,
     batch.clear();
     for (const std::uint32_t i : sectors.towards(center, radius)) {
       const Ray ray = ray_in(mover_from_world, nearest.rays[i]);
-      if (!std::isfinite(entry(ray, inverse_of(ray.direction), model.low, model.high))) continue;
+      if (!meets_box(ray, inverse_of(ray.direction), model.low, model.high)) continue;
       batch.indices.push_back(i);
       batch.rays.push_back(ray);
     }
@@ -181,6 +187,8 @@ std::vector<StreetEcho> cast_city(const CityScene& scene, const LidarModel& sens
                                   const Executor& executor) {
   Nearest nearest;
   nearest.rays = street_rays(sensor, firings, pose.world_from_sensor, executor);
+  nearest.inverses.reserve(nearest.rays.size());
+  for (const Ray& ray : nearest.rays) nearest.inverses.push_back(inverse_of(ray.direction));
   nearest.hits.resize(nearest.rays.size());
   nearest.owner.resize(nearest.rays.size());
   Batch batch;

@@ -15,7 +15,7 @@ constexpr double kPitchEast_m = 150, kPitchNorth_m = 170;  // between streets, o
 constexpr double kPitchVariety = 0.12;                     // of a node either way, of the pitch
 constexpr int kRun = 3;           // blocks that a street keeps its style for
 constexpr double kGoOver_m = 12;  // before and after a crossing, from one style to the next
-constexpr double kParkShare = 0.13, kSquareShare = 0.08;
+constexpr double kParkShare = 0.11, kSquareShare = 0.05;
 
 int floor_div(int a, int b) { return a / b - (a % b != 0 && (a < 0) != (b < 0) ? 1 : 0); }
 

@@ -69,6 +69,13 @@ Scan world_scan_of(std::span<const Firing> firings, std::span<const StreetEcho> 
   scan.world_from_sensor = pose.world_from_sensor;
   scan.time_s = pose.time_s;
   scan.rays = firings.size();
+  scan.positions.reserve(echoes.size());
+  scan.ranges_m.reserve(echoes.size());
+  scan.intensities.reserve(echoes.size());
+  scan.classes.reserve(echoes.size());
+  scan.instances.reserve(echoes.size());
+  scan.rings.reserve(echoes.size());
+  scan.times_s.reserve(echoes.size());
   for (const StreetEcho& echo : echoes) {
     Random random(seed ^ kDropStream, number, echo.ray);
     const Firing& firing = firings[echo.ray];
