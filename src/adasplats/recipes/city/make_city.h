@@ -3,50 +3,15 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
 #include "adasplats/city/city_manifest.h"
-#include "adasplats/core/setting.h"
-#include "adasplats/pipeline/model/make_model.h"
 #include "adasplats/pipeline/session/session.h"
+#include "adasplats/recipes/city/city_job.h"
+#include "adasplats/splats/build_model.h"
 
 namespace adasplats {
-
-/// How a place is cut into tiles.
-struct TileChoice {
-  double tile_m = 0;  ///< side of a tile; 0: the place is modelled in one piece
-  double halo_m = 8;  ///< around a tile what it is modelled with
-};
-
-template <class Visit>
-void visit_settings(TileChoice& choice, Visit&& visit) {
-  constexpr const char* kGroup = "Cities";
-  visit(Setting{.name = "tile",
-                .help = "Side of square tiles that the place is cut into and modelled one by one, "
-                        "m; the output is a folder. 0: in one piece",
-                .key = "tile_m",
-                .group = kGroup,
-                .least = 0,
-                .most = 10'000},
-        choice.tile_m);
-  visit(Setting{.name = "halo",
-                .help = "Around a tile the points that it is modelled with, m; splats farther than "
-                        "that from the borders are those of one large model",
-                .key = "halo_m",
-                .group = kGroup,
-                .least = 0,
-                .most = 1'000},
-        choice.halo_m);
-}
-
-/// Points of any number in, the folder of a city out.
-struct CityJob : ModelJob {
-  TileChoice tiles;
-  std::filesystem::path output;
-  bool overwrite = false;
-};
 
 struct CityResult {
   CityManifest city;

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "adasplats/pipeline/output/resumable_folder.h"
+#include "adasplats/recipes/city/city_work.h"
+
+namespace adasplats {
+
+/// Reads the inputs piece by piece and puts their points into files of the tiles on disk; facts,
+/// what tiles have in common, and the tiles to model. What an earlier run has read is taken.
+/// Errors: data (no points; files of an earlier run that were changed), those of reading.
+void sort_points(CityWork& work, ResumableFolder& folder);
+
+/// Facts, what tiles have in common, and the tiles to model, of points that were sorted.
+void load_sorted(CityWork& work);
+
+/// The files of sorted points.
+std::vector<std::string> files_of_points(const CityFacts& facts);
+
+}  // namespace adasplats

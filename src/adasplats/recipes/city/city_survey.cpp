@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/recipes/city/city_survey.h"
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "adasplats/cloud/labels/dynamic_removal.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/splats/model_engine.h"
+
+namespace adasplats {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Points of the tiles whose cells say how dense cells are, about.
+constexpr std::size_t kSurveyedPoints = 32'000'000;
+
+/// Spacings of cells by whether they have a beam.
+struct Spacings {
+  std::vector<float> with_beam, without;
+};
+
+/// Tiles all over the city whose cells say how dense cells are: all of them, or every n-th.
+std::vector<TileKey> surveyed(const CityWork& work) {
+  std::size_t points = 0;
+  for (const auto& [tile, count] : work.facts.tiles) points += count.points;
+  const std::size_t every = std::max<std::size_t>(1, points / kSurveyedPoints);
+  std::vector<TileKey> chosen;
+  std::size_t k = 0;
+  for (const TileKey tile : work.tiles.tiles)
+    if (k++ % every == 0) chosen.push_back(tile);
+  return chosen;
+}
+
+void add_spacings(TileKey tile, const LabelScheme* scheme, const ModelEngine& engine,
+                  const CityWork& work, Spacings& found) {
+  PointCloud cloud = points_around(tile, work);
+  ClassTables tables;
+  tables.removed = points_to_remove(cloud, scheme, work.job.build.remove).ids;
+  WholePlace whole;
+  whole.box = work.facts.box;
+  const std::unique_ptr<ConsistentSteps> steps = engine.consistent_steps();
+  if (steps->load(std::move(cloud), tables, &whole) == 0) return;
+  steps->fuse(work.options);
+  const GroundBox own = work.tiles.grid.box_of(tile);
+  for (const CellSpacing& cell : steps->spacings(work.options)) {
+    if (!(cell.spacing > 0) || !own.contains(work.facts.origin + vec_cast<double>(cell.place)))
+      continue;
+    (cell.with_beam ? found.with_beam : found.without).push_back(cell.spacing);
+  }
+}
+
+}  // namespace
+
+TypicalSpacing load_spacing(const std::filesystem::path& file) {
+  const std::string text = read_file(file);
+  try {
+    const Json json = Json::parse(text);
+    return {json.at("with_beam"), json.at("without")};
+  } catch (const Json::exception& error) {
+    throw Error(ErrorKind::data, file.string() + ": damaged: " + error.what());
+  }
+}
+
+void survey_spacing(CityWork& work, ResumableFolder& folder) {
+  if (folder.has(kSpacingFile)) {
+    work.typical = load_spacing(work.path(kSpacingFile));
+    return;
+  }
+  const std::optional<LabelScheme> scheme = work.scheme();
+  const std::vector<TileKey> chosen = surveyed(work);
+  ProgressSink& progress = work.session.progress;
+  progress.begin_step("spacing of cells", chosen.size());
+  const std::unique_ptr<ModelEngine> engine = make_cpu_model_engine(work.session.executor);
+  Spacings found;
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    add_spacings(chosen[k], scheme ? &*scheme : nullptr, *engine, work, found);
+    progress.advance(k + 1);
+  }
+  progress.end_step();
+  work.typical = typical_spacing(std::move(found.with_beam), std::move(found.without));
+  const Json json = {{"with_beam", work.typical.with_beam}, {"without", work.typical.without}};
+  write_file_in_place(work.path(kSpacingFile), json.dump() + "\n");
+  folder.record(std::string(kSpacingFile));
+}
+
+}  // namespace adasplats

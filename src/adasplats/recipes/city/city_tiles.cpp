@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/recipes/city/city_tiles.h"
+
+#include <set>
+
+#include "adasplats/pipeline/model/make_model.h"
+
+namespace adasplats {
+namespace {
+
+/// All tiles that rays may begin in.
+std::set<TileKey> tiles_with_rays(const CityFacts& facts) {
+  std::set<TileKey> all;
+  for (const auto& [tile, count] : facts.tiles) all.insert(tile);
+  return all;
+}
+
+}  // namespace
+
+TileModeller::TileModeller(const CityWork& work)
+    : work_(work),
+      tiles_(tiles_to_model(work)),
+      pilot_(pilot_tile(work)),
+      passing_(work.folder, tiles_with_rays(work.facts), RaySort::passing),
+      empty_(work.folder, tiles_with_rays(work.facts), RaySort::empty) {}
+
+WholePlace TileModeller::whole_of(TileKey tile) const {
+  WholePlace whole;
+  whole.box = work_.facts.box;
+  whole.typical = work_.typical;
+  whole.rays = work_.facts.rays;
+  whole.passing = passing_.read(tile);
+  whole.empty = empty_.read(tile);
+  if (tile != pilot_) whole.response = work_.response;
+  return whole;
+}
+
+SplatModel TileModeller::model(TileKey tile, ProgressSink& warnings) const {
+  const WholePlace whole = whole_of(tile);
+  ModelOptions options = work_.job;
+  options.calibration.on = false;
+  options.labels = work_.common.label_scheme;  // also where the inputs alone said it
+  options.build.whole = &whole;
+  options.build.reflectances =
+      options.build.reflectances && (tile == pilot_ || whole.response.has_value());
+  Session quiet = {work_.session.executor, warnings, work_.session.seed, work_.session.device};
+  SplatModel model = make_model(points_around(tile, work_), options, quiet).first;
+  model.label_scheme = work_.common.label_scheme;
+  keep_own(tile, model);
+  return model;
+}
+
+/// Takes out splats that stand in other tiles.
+void TileModeller::keep_own(TileKey tile, SplatModel& model) const {
+  std::size_t kept = 0;
+  const auto move_down = [&](auto& values, std::size_t i) {
+    if (!values.empty()) values[kept] = values[i];
+  };
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    const Vec3d place = model.origin + vec_cast<double>(model.disks[i].center);
+    if (owner_of(place, work_.tiles.grid, tiles_) != tile) continue;
+    move_down(model.classes, i);
+    move_down(model.groups, i);
+    move_down(model.intensities, i);
+    model.disks[kept++] = model.disks[i];
+  }
+  const auto cut = [&](auto& values) {
+    if (!values.empty()) values.resize(kept);
+  };
+  cut(model.classes);
+  cut(model.groups);
+  cut(model.intensities);
+  model.disks.resize(kept);
+}
+
+std::optional<IntensityResponse> load_response(const std::filesystem::path& file) {
+  IntensityResponse response = load_model(file).response;
+  if (response.empty()) return std::nullopt;
+  return response;
+}
+
+}  // namespace adasplats

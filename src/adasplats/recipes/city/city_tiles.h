@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "adasplats/city/passing_rays.h"
+#include "adasplats/core/progress.h"
+#include "adasplats/recipes/city/city_work.h"
+
+namespace adasplats {
+
+/// Makes the models of tiles, of nothing but the job and the files of the folder: points, rays,
+/// spacing and (but for the pilot tile) the response of the sensor.
+class TileModeller {
+ public:
+  /// `work` must outlive it. Reads where the rays for each tile are.
+  explicit TileModeller(const CityWork& work);
+
+  /// The splats that stand in a tile. The pilot's have the response of the sensor by its own rays,
+  /// others `work.response`. Warnings go to `warnings`.
+  SplatModel model(TileKey tile, ProgressSink& warnings) const;
+
+ private:
+  WholePlace whole_of(TileKey tile) const;
+  void keep_own(TileKey tile, SplatModel& model) const;
+
+  const CityWork& work_;
+  std::vector<CityTile> tiles_;
+  TileKey pilot_;
+  RayFiles passing_, empty_;
+};
+
+/// The response of the sensor, of a file of a model; nothing where it has none.
+std::optional<IntensityResponse> load_response(const std::filesystem::path& file);
+
+}  // namespace adasplats
