@@ -68,6 +68,7 @@ maybe-test fish            fish          likewise
 maybe-test groff-base      groff         the program's manual pages
 maybe-test mandoc          mandoc        likewise
 maybe-test chromium        chromium      the report page in a browser
+maybe-test parallel        -             the tiles of a city as it runs them (GNU parallel)
 LIST
 }
 

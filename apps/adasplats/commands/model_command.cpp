@@ -1,11 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/point_format.h"
 #include "adasplats/pipeline/model/unused_settings.h"
 #include "adasplats/pipeline/output/output_check.h"
+#include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/recipes/city/city_task.h"
 #include "adasplats/recipes/city/make_city.h"
 #include "adasplats/recipes/model_file.h"
 #include "cli/commands.h"
@@ -16,6 +20,7 @@
 #include "cli/terminal.h"
 #include "cli/text_table.h"
 #include "commands/calibration_text.h"
+#include "commands/task_lines.h"
 
 namespace adasplats::app {
 namespace {
@@ -25,7 +30,8 @@ constexpr const char* kModelExamples =
     "  adasplats model sequences/00 -o place.ply --scans 0:100:2 --remove moving\n"
     "  adasplats model cloud.laz -o place.ply --method semantic --segment\n"
     "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n"
-    "  adasplats model strips/ -o city --tile 64 --trajectory drive.csv\n";
+    "  adasplats model strips/ -o city --tile 64 --trajectory drive.csv\n"
+    "  adasplats model strips/ -o city --tile 64 --plan --trajectory drive.csv > tasks\n";
 
 /// What the method itself counts and measures.
 std::string figures_of(const BuildReport& built) {
@@ -73,6 +79,16 @@ class ModelCommand final : public Command {
                    {".ply", ""}));
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier city");
     add_settings(app, job_.tiles);
+    app.add_flag("--plan", plan_,
+                 "With --tile: do what comes before the tiles, then print the command of each tile "
+                 "that is to be modelled, a line each, for many processes or machines; the same "
+                 "command without it finishes")
+        ->group("Cities");
+    app.add_option_function<std::string>(
+           "--only-tile", [this](const std::string& name) { only_tile_ = parse_tile(name); },
+           "Model one tile (such as x3_y-2) of a city that was planned, and no more")
+        ->type_name("TILE")
+        ->group("Cities");
     app.add_option(
            "--labels", job_.labels,
            "What labels mean: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or a TOML "
@@ -101,10 +117,15 @@ class ModelCommand final : public Command {
     if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
     if (job_.tiles.tile_m > 0) {
       require_folder_apart(job_.output, job_.inputs);
-      run_city(session);
+      if (only_tile_)
+        run_tile(session);
+      else if (plan_)
+        run_plan(session);
+      else
+        run_city(session);
       return;
     }
-    refuse({"--halo", "--overwrite"}, "without --tile");
+    refuse({"--halo", "--overwrite", "--plan", "--only-tile"}, "without --tile");
     // What is no file cannot be written whatever its name is, which run_model says.
     if (!std::filesystem::exists(job_.output) || std::filesystem::is_regular_file(job_.output))
       require_ending(job_.output, ".ply");
@@ -123,6 +144,34 @@ class ModelCommand final : public Command {
   }
 
  private:
+  static TileKey parse_tile(const std::string& name) {
+    const std::optional<TileKey> tile = tile_named(name);
+    if (!tile)
+      refuse_value("--only-tile",
+                   "expected the name of a tile such as x3_y-2, found '" + name + "'");
+    return *tile;
+  }
+
+  void run_plan(Session& session) {
+    const TaskLines lines(own_arguments());
+    std::string text;
+    session.report["tasks"] = nlohmann::ordered_json::array();
+    for (const TileKey tile : plan_city(job_, session)) {
+      text += lines.task("--only-tile", name_of(tile));
+      session.report["tasks"].push_back(name_of(tile));
+    }
+    print(text + lines.last());
+  }
+
+  void run_tile(Session& session) {
+    refuse({"--plan"}, "with --only-tile");
+    const CityTaskResult result = make_city_tile(job_, *only_tile_, session);
+    session.report["tile"] = name_of(*only_tile_);
+    session.report["was_done"] = result.was_done;
+    print(job_.output.string() + ": " + result.file +
+          (result.was_done ? " was done\n" : " made\n"));
+  }
+
   void run_city(Session& session) {
     const CityResult result = make_city(job_, session);
     session.report.update(to_json(result));
@@ -140,6 +189,8 @@ class ModelCommand final : public Command {
 
   CityJob job_;
   RecipeChoice recipe_;
+  bool plan_ = false;
+  std::optional<TileKey> only_tile_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -46,6 +47,17 @@ std::string error_of(const Work& work, ErrorKind kind) {
   }
   ADD_FAILURE() << "no error";
   return {};
+}
+
+TEST(TileGrid, NamesOfTilesAreRead) {
+  constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
+  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  for (const TileKey tile : {TileKey{0, 0}, TileKey{12, -3}, TileKey{kLeast, kMost}})
+    EXPECT_EQ(tile_named(name_of(tile)), tile);
+  for (const char* const other :
+       {"", "x", "x1", "x1_", "x1_y", "x_y1", "1_y2", "x1y2", "x+1_y2", "x01_y2", "x-0_y1",
+        " x1_y2", "x1_y2 ", "x1_y2.ply", "x1_y2147483648", "x1_y-", "y1_x2"})
+    EXPECT_EQ(tile_named(other), std::nullopt) << other;
 }
 
 TEST(TileGrid, TilesCoverTheGroundOnce) {

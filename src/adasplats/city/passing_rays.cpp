@@ -115,11 +115,19 @@ RayFiles::RayFiles(const fs::path& folder, const std::set<TileKey>& tiles, RaySo
     const std::size_t size = fs::file_size(file);
     for (const auto& [tile, rays] : heads) {
       if (rays > (size - at) / (2 * sizeof(Vec3f))) fail("it ends within its rays");
-      places_[tile].push_back({file, at, rays});
+      places_[tile].push_back({from, file, at, rays});
       at += 2 * rays * sizeof(Vec3f);
     }
     if (at != size) fail("something follows its rays");
   }
+}
+
+std::vector<TileKey> RayFiles::sources(TileKey tile) const {
+  std::vector<TileKey> tiles;
+  const auto found = places_.find(tile);
+  if (found != places_.end())
+    for (const Place& place : found->second) tiles.push_back(place.from);
+  return tiles;
 }
 
 PointCloud RayFiles::read(TileKey tile) const {

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "adasplats/city/tile_grid.h"
 #include "adasplats/cloud/points/point_cloud.h"
@@ -49,9 +50,12 @@ class RayFiles {
   RayFiles(const std::filesystem::path& folder, const std::set<TileKey>& tiles, RaySort sort);
   /// Those for one tile, with ends and sensor positions.
   PointCloud read(TileKey tile) const;
+  /// The tiles whose files have rays for one.
+  std::vector<TileKey> sources(TileKey tile) const;
 
  private:
   struct Place {
+    TileKey from;
     std::filesystem::path file;
     std::size_t at = 0;  ///< bytes
     std::size_t rays = 0;

@@ -3,6 +3,8 @@
 #include "adasplats/city/tile_grid.h"
 
 #include <algorithm>
+#include <charconv>
+#include <system_error>
 
 namespace adasplats {
 namespace {
@@ -21,6 +23,20 @@ bool cut(double from, double to, double low, double high, double& first, double&
 
 std::string name_of(TileKey tile) {
   return "x" + std::to_string(tile.x) + "_y" + std::to_string(tile.y);
+}
+
+std::optional<TileKey> tile_named(std::string_view name) {
+  TileKey tile;
+  const char* const end = name.data() + name.size();
+  if (!name.starts_with('x')) return std::nullopt;
+  const auto [column_end, bad_column] = std::from_chars(name.data() + 1, end, tile.x);
+  if (bad_column != std::errc() || end - column_end < 3 ||
+      !std::string_view(column_end, 2).starts_with("_y"))
+    return std::nullopt;
+  const auto [row_end, bad_row] = std::from_chars(column_end + 2, end, tile.y);
+  // One name a tile: not "x01_y2".
+  if (bad_row != std::errc() || row_end != end || name_of(tile) != name) return std::nullopt;
+  return tile;
 }
 
 bool GroundBox::is_crossed(Vec3d from, Vec3d to) const {

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <compare>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "adasplats/core/maths/vec3.h"
 
@@ -21,6 +23,8 @@ struct TileKey {
 
 /// "x12_y-3": what files of a tile are named by.
 std::string name_of(TileKey tile);
+/// The tile of such a name; nothing where it is none.
+std::optional<TileKey> tile_named(std::string_view name);
 
 /// A rectangle of the ground in world coordinates, m: low sides belong to it, high ones do not.
 struct GroundBox {

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -15,15 +16,13 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/output/output_folder.h"
+#include "adasplats/pipeline/output/unfinished_folder.h"
 
 namespace adasplats {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-// Lines "SHA-256  NAME", as sha256sum writes and checks them.
-constexpr const char* kJournalFile = "journal.sha256";
-constexpr std::size_t kDigits = 64;
 
 Error cannot_resume(const fs::path& unfinished, const std::string& reason) {
   return Error(ErrorKind::cannot_create, unfinished.string() +
@@ -44,42 +43,8 @@ void remove_temporaries(const fs::path& folder) {
   for (const fs::path& file : found) fs::remove(file);
 }
 
-std::string shown(const Json* value) {
-  if (value == nullptr) return "nothing";
-  std::string text = value->dump(-1, ' ', false, Json::error_handler_t::replace);
-  constexpr std::size_t kLongest = 60;
-  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
-}
-
-const Json* find(const Json& object, const std::string& key) {
-  const auto found = object.find(key);
-  return found != object.end() ? &*found : nullptr;
-}
-
-/// The first key in which two objects differ, with both values; empty where they are equal.
-/// `there` may have more keys at the top.
-std::string difference(const Json& there, const Json& here, bool more_allowed) {
-  std::set<std::string> keys;
-  for (const auto& [key, value] : here.items()) keys.insert(key);
-  if (!more_allowed)
-    for (const auto& [key, value] : there.items()) keys.insert(key);
-  for (const std::string& key : keys) {
-    const Json* const a = find(there, key);
-    const Json* const b = find(here, key);
-    if (a != nullptr && b != nullptr && *a == *b) continue;
-    if (a != nullptr && b != nullptr && a->is_object() && b->is_object())
-      return key + "." + difference(*a, *b, false);
-    return key + " was " + shown(a) + " and is " + shown(b);
-  }
-  return "";
-}
-
 std::string relative_name(const fs::path& file, const fs::path& folder) {
   return file.lexically_relative(folder).generic_string();
-}
-
-fs::path unfinished_of(const fs::path& folder) {
-  return folder.parent_path() / ("." + folder.filename().string() + ".unfinished");
 }
 
 }  // namespace
@@ -115,32 +80,22 @@ void ResumableFolder::take_over() {
   const Json there = Json::parse(read_file(file), nullptr, false);
   if (!there.is_object())
     throw cannot_resume(unfinished_, std::string(kContentFile) + " is damaged");
-  const std::string differs = difference(there, Json::parse(wanted), true);
+  const std::string differs = difference_of_runs(there, Json::parse(wanted));
   if (!differs.empty()) throw cannot_resume(unfinished_, "it is of another run: " + differs);
-  read_journal();
+  take_over_journal();
 }
 
-void ResumableFolder::read_journal() {
-  const fs::path file = unfinished_ / kJournalFile;
-  if (!fs::exists(file)) return;
-  std::string text = read_file(file);
-  // Power may fail within a line.
-  const std::size_t whole = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
-  const bool is_torn = whole != text.size();
-  text.resize(whole);
-  std::size_t line_number = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = text.find('\n', begin);
-    const std::string line = text.substr(begin, end - begin);
-    ++line_number;
-    if (line.size() < kDigits + 3 || line.compare(kDigits, 2, "  ") != 0 ||
-        line.find_first_not_of("0123456789abcdef") != kDigits)
-      throw cannot_resume(unfinished_, std::string(kJournalFile) + ":" +
-                                           std::to_string(line_number) + " is damaged");
-    recorded_[line.substr(kDigits + 2)] = line.substr(0, kDigits);
-    begin = end + 1;
+void ResumableFolder::take_over_journal() {
+  std::optional<Journal> journal;
+  try {
+    journal = read_journal(unfinished_);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::data) throw;
+    throw cannot_resume(unfinished_, error.what());
   }
-  if (is_torn) write_file(file, text);
+  if (!journal) return;
+  recorded_ = std::move(journal->files);
+  if (journal->is_torn) write_file(unfinished_ / kJournalFile, journal->whole_lines);
 }
 
 ResumableFolder::~ResumableFolder() {
@@ -180,8 +135,24 @@ void ResumableFolder::record(std::span<const FileDigest> files) {
     throw system_error(ErrorKind::io, journal, "cannot be written", ENOSPC);
 }
 
+bool ResumableFolder::take(const std::string& file) {
+  const auto noted = read_note(unfinished_ / file);
+  if (!noted || !fs::is_regular_file(unfinished_ / file)) return false;
+  if (sha256_of_file(unfinished_ / file) != *noted) return false;
+  const FileDigest digest{file, *noted};
+  record(std::span(&digest, 1));
+  return true;
+}
+
+/// Of all files that are recorded, and what killed tasks left.
+void ResumableFolder::remove_notes() {
+  for (const auto& [file, digest] : recorded_) fs::remove(note_of(unfinished_ / file));
+  remove_temporaries(unfinished_);
+}
+
 void ResumableFolder::commit(const Json& summary, std::span<const std::string> aids) {
   for (const std::string& aid : aids) fs::remove(unfinished_ / aid);
+  remove_notes();
   Json content = *content_;
   content.update(summary);
   std::set<std::string> names;

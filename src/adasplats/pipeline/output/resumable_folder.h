@@ -16,7 +16,8 @@ namespace adasplats {
 /// An output folder that appears whole or not at all, whose making can be interrupted at any moment
 /// and goes on where it stopped. It is filled beside its place under the name ".NAME.unfinished",
 /// where a journal says which files are whole, with their SHA-256; commit() renames it. So files in
-/// it need neither temporary names nor to be flushed one by one.
+/// it need neither temporary names nor to be flushed one by one. Tasks of other processes can make
+/// files in it meanwhile (FolderTask), while none has it as a ResumableFolder.
 class ResumableFolder {
  public:
   /// `content` says what the folder is made of and how: all that its files depend on. It goes into
@@ -41,6 +42,9 @@ class ResumableFolder {
   void record(const std::string& file) { record(std::span(&file, 1)); }
   /// The same where their SHA-256 is known.
   void record(std::span<const FileDigest> files);
+  /// Records a file that a task made (FolderTask::record); false where none did, or it is not as
+  /// the task noted.
+  bool take(const std::string& file);
   /// SHA-256 of what was recorded, by name.
   const std::map<std::string, std::string>& recorded() const { return recorded_; }
 
@@ -50,7 +54,8 @@ class ResumableFolder {
 
  private:
   void take_over();
-  void read_journal();
+  void take_over_journal();
+  void remove_notes();
 
   std::filesystem::path folder_;
   std::filesystem::path unfinished_;

@@ -65,15 +65,21 @@ std::string command_text(const std::vector<std::string>& arguments) {
   return text;
 }
 
+std::vector<std::string> own_arguments() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  std::string word;
+  std::getline(file, word, '\0');
+  while (std::getline(file, word, '\0')) words.push_back(word);
+  return words;
+}
+
 std::string own_command_line() {
   std::error_code failure;
   std::string text =
       shell_word(std::filesystem::read_symlink("/proc/self/exe", failure).filename().string());
   if (failure) return "";
-  std::ifstream file("/proc/self/cmdline", std::ios::binary);
-  std::string word;
-  std::getline(file, word, '\0');
-  while (std::getline(file, word, '\0')) text += " " + shell_word(word);
+  for (const std::string& word : own_arguments()) text += " " + shell_word(word);
   return text;
 }
 

@@ -36,6 +36,9 @@ std::string shell_word(const std::string& word);
 /// The program with these arguments as a user types it in a shell.
 std::string command_text(const std::vector<std::string>& arguments);
 
+/// What this process was started with, behind the program; empty where the system does not say.
+std::vector<std::string> own_arguments();
+
 /// How this process was started, the program without its folder; empty where the system does not
 /// say.
 std::string own_command_line();

@@ -51,6 +51,16 @@ SplatModel TileModeller::model(TileKey tile, ProgressSink& warnings) const {
   return model;
 }
 
+std::vector<std::string> TileModeller::files_for(TileKey tile) const {
+  std::vector<std::string> files;
+  for (const TileKey near : tiles_around(tile, work_)) files.push_back(points_file_of(near));
+  for (const TileKey from : passing_.sources(tile))
+    files.push_back(rays_file_of(from, RaySort::passing));
+  for (const TileKey from : empty_.sources(tile))
+    files.push_back(rays_file_of(from, RaySort::empty));
+  return files;
+}
+
 /// Takes out splats that stand in other tiles.
 void TileModeller::keep_own(TileKey tile, SplatModel& model) const {
   std::size_t kept = 0;

@@ -21,6 +21,9 @@ class TileModeller {
   /// others `work.response`. Warnings go to `warnings`.
   SplatModel model(TileKey tile, ProgressSink& warnings) const;
 
+  /// The files of the folder that hold the points and the rays that a tile is modelled with.
+  std::vector<std::string> files_for(TileKey tile) const;
+
  private:
   WholePlace whole_of(TileKey tile) const;
   void keep_own(TileKey tile, SplatModel& model) const;

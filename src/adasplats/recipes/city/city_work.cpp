@@ -82,20 +82,27 @@ TileKey pilot_tile(const CityWork& work) {
   return std::ranges::max_element(tiles, {}, &CityTile::points)->key;
 }
 
-PointCloud points_around(TileKey tile, const CityWork& work) {
+std::vector<TileKey> tiles_around(TileKey tile, const CityWork& work) {
   const TileGrid& grid = work.tiles.grid;
+  const GroundBox reach = work.tiles.reach_of(tile);
+  const TileKey low = grid.tile_of({reach.low_x, reach.low_y, 0});
+  const TileKey high = grid.tile_of({reach.high_x, reach.high_y, 0});
+  std::vector<TileKey> found;
+  for (TileKey near = low; near.x <= high.x; ++near.x)
+    for (near.y = low.y; near.y <= high.y; ++near.y)
+      if (work.tiles.tiles.contains(near)) found.push_back(near);
+  return found;
+}
+
+PointCloud points_around(TileKey tile, const CityWork& work) {
   const GroundBox reach = work.tiles.reach_of(tile);
   PointCloud cloud;
   cloud.origin = work.facts.origin;
   cloud.crs = work.common.crs;
-  const TileKey low = grid.tile_of({reach.low_x, reach.low_y, 0});
-  const TileKey high = grid.tile_of({reach.high_x, reach.high_y, 0});
-  for (TileKey near = low; near.x <= high.x; ++near.x)
-    for (near.y = low.y; near.y <= high.y; ++near.y)
-      if (work.tiles.tiles.contains(near))
-        read_tile_points(work.folder, near, cloud, [&](Vec3f p) {
-          return reach.contains(work.facts.origin + vec_cast<double>(p));
-        });
+  for (const TileKey near : tiles_around(tile, work))
+    read_tile_points(work.folder, near, cloud, [&](Vec3f p) {
+      return reach.contains(work.facts.origin + vec_cast<double>(p));
+    });
   cloud.crs = work.common.crs;
   return cloud;
 }

@@ -21,6 +21,9 @@
 
 namespace adasplats {
 
+/// The command that makes cities.
+inline constexpr const char* kCityCommand = "model";
+
 // Files of an unfinished city that say what is known of the whole; all of it is written before the
 // first tile that needs it is modelled.
 inline constexpr const char* kPointsFile = "points/points.json";     ///< CityFacts
@@ -65,6 +68,8 @@ std::vector<CityTile> tiles_to_model(const CityWork& work);
 /// The one with the most points: its rays say what the sensor's response is.
 TileKey pilot_tile(const CityWork& work);
 
+/// The tiles whose points a tile is modelled with: itself and those in its halo.
+std::vector<TileKey> tiles_around(TileKey tile, const CityWork& work);
 /// The points that a tile is modelled with: its own and those in its halo.
 PointCloud points_around(TileKey tile, const CityWork& work);
 

@@ -23,13 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kCommand = "model";
-
 /// The order of the steps, with the folder that they go on in.
 class CityMaker {
  public:
   CityMaker(const CityJob& job, Session& session)
-      : folder_(job.output, job.overwrite, kCommand, content_of(job)),
+      : folder_(job.output, job.overwrite, kCityCommand, content_of(job)),
         work_(job, session, folder_.path()) {}
 
   CityResult run() {
@@ -37,6 +35,17 @@ class CityMaker {
     step("tiles", [&] { model_tiles(); });
     write_manifest();
     return std::move(result_);
+  }
+
+  /// All but the tiles behind the pilot; gives those that are to be done.
+  std::vector<TileKey> plan() {
+    prepare();
+    fs::create_directories(work_.path("tiles"));
+    model_pilot(TileModeller(work_), work_.session.progress);
+    std::vector<TileKey> to_do;
+    for (const CityTile& tile : result_.city.tiles)
+      if (!is_made(tile.key)) to_do.push_back(tile.key);
+    return to_do;
   }
 
  private:
@@ -56,7 +65,13 @@ class CityMaker {
     result_.city.tiles = tiles_to_model(work_);
   }
 
-  /// The pilot tile comes first: the others need the response that it finds.
+  /// Its tile comes first: the others need the response that it finds.
+  void model_pilot(const TileModeller& modeller, ProgressSink& warnings) {
+    CityTile& pilot = *std::ranges::find(result_.city.tiles, pilot_tile(work_), &CityTile::key);
+    model_tile(pilot, modeller, warnings);
+    find_response(pilot);
+  }
+
   void model_tiles() {
     fs::create_directories(work_.path("tiles"));
     const TileModeller modeller(work_);
@@ -64,9 +79,7 @@ class CityMaker {
     work_.session.progress.begin_step("tiles", work_.tiles.tiles.size());
     std::size_t done = 0;
     const TileKey pilot = pilot_tile(work_);
-    CityTile& first = *std::ranges::find(result_.city.tiles, pilot, &CityTile::key);
-    model_tile(first, modeller, warnings);
-    find_response(first);
+    model_pilot(modeller, warnings);
     work_.session.progress.advance(++done);
     for (CityTile& tile : result_.city.tiles) {
       if (tile.key == pilot) continue;
@@ -77,10 +90,16 @@ class CityMaker {
     warnings.end();
   }
 
+  /// By an earlier run, or by a task.
+  bool is_made(TileKey tile) {
+    const std::string file = model_file_of(tile);
+    return folder_.has(file) || folder_.take(file);
+  }
+
   void model_tile(CityTile& tile, const TileModeller& modeller, ProgressSink& warnings) {
     const std::string file = model_file_of(tile.key);
     SplatModel model;
-    if (folder_.has(file)) {
+    if (is_made(tile.key)) {
       model = load_model(work_.path(file));
       ++result_.tiles_resumed;
     } else {
@@ -145,6 +164,11 @@ CityResult make_city(const CityJob& job, Session& session) {
   CityResult result = CityMaker(job, session).run();
   result.seconds = total.seconds();
   return result;
+}
+
+std::vector<TileKey> plan_city(const CityJob& job, Session& session) {
+  for (const fs::path& input : job.inputs) require_input(input);
+  return CityMaker(job, session).plan();
 }
 
 Json to_json(const CityResult& result) {

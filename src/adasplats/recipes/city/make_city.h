@@ -33,6 +33,12 @@ struct CityResult {
 /// ResumableFolder.
 CityResult make_city(const CityJob& job, Session& session);
 
+/// Does all that comes before the tiles, and the tile that the others need the sensor's response
+/// from; gives the tiles that are still to be modelled. Each is a task of its own then
+/// (make_city_tile), on as many machines as see the folder; make_city finishes it. Tasks that are
+/// done are not done again. Errors: as make_city's.
+std::vector<TileKey> plan_city(const CityJob& job, Session& session);
+
 /// The keys of a city's --report.
 nlohmann::ordered_json to_json(const CityResult& result);
 

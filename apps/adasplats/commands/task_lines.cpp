@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/task_lines.h"
+
+#include <cstddef>
+
+#include "adasplats/core/error.h"
+#include "adasplats/pipeline/provenance/provenance.h"
+
+namespace adasplats::app {
+namespace {
+
+/// Takes out an option; `with_value`: and the word behind it, where it stands in one of its own.
+std::vector<std::string> without(const std::vector<std::string>& words, const std::string& option,
+                                 bool with_value) {
+  std::vector<std::string> kept;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (words[k] == option)
+      k += with_value ? 1 : 0;
+    else if (!words[k].starts_with(option + "="))
+      kept.push_back(words[k]);
+  }
+  return kept;
+}
+
+}  // namespace
+
+TaskLines::TaskLines(const std::vector<std::string>& words)
+    : words_(without(words, "--plan", false)), for_task_(without(words_, "--report", true)) {
+  if (words_.size() == words.size() || words_.empty())
+    throw Error(ErrorKind::usage, "`plan` stands on the command line, not in a configuration");
+}
+
+std::string TaskLines::task(const std::string& option, const std::string& value) const {
+  // Behind the subcommand: what stands last may be behind "--".
+  std::vector<std::string> words = for_task_;
+  words.insert(words.begin() + 1, {option, value});
+  return command_text(words) + "\n";
+}
+
+std::string TaskLines::last() const {
+  return "# when all are done: " + command_text(words_) + "\n";
+}
+
+}  // namespace adasplats::app
