@@ -58,6 +58,7 @@ maybe-test clang-tidy-14   clang-tidy-14 checks, as this version does
 maybe-test clang           clang++       the fuzz targets
 maybe-test libclang-rt-dev -             likewise (libFuzzer, the sanitizers)
 maybe-test llvm            llvm-symbolizer likewise (places of what they find, coverage)
+maybe-test python3-distributed -        cities by many processes (adasplats.distributed), its tests
 maybe-test python3-torch   -             the data set of examples/torch_dataset.py, tools/segmentation
 maybe-test libopenvdb-dev  -             IMLS meshes
 maybe-test libopen3d-dev   -             Poisson meshes
