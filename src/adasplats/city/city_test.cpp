@@ -84,7 +84,8 @@ TEST(GroundBox, WaysCrossItOrNot) {
 TEST(TilePoints, ComeBackFromDiskTileByTile) {
   const TemporaryFolder folder;
   const TileGrid grid{30};
-  TilePointsWriter writer(folder.path(), grid, 700);  // writes several times
+  const Executor executor(2);
+  TilePointsWriter writer(folder.path(), grid, 700, executor);  // writes several times
   const Vec3d origin = {1000, 2000, 0};
   std::map<TileKey, std::size_t> expected;
   std::size_t all = 0;
@@ -119,7 +120,8 @@ TEST(TilePoints, ComeBackFromDiskTileByTile) {
 
 TEST(TilePoints, OnlyThoseThatAreWantedAreKept) {
   const TemporaryFolder folder;
-  TilePointsWriter writer(folder.path(), TileGrid{1000}, 100);
+  const Executor executor(2);
+  TilePointsWriter writer(folder.path(), TileGrid{1000}, 100, executor);
   const PointCloud cloud = random_cloud(400, {}, 1);
   writer.add(cloud);
   PointCloud high;
@@ -132,7 +134,8 @@ TEST(TilePoints, OnlyThoseThatAreWantedAreKept) {
 
 TEST(TilePoints, DamageAndOtherAttributesAreErrors) {
   const TemporaryFolder folder;
-  TilePointsWriter writer(folder.path(), TileGrid{1000}, 1'000'000);
+  const Executor executor(2);
+  TilePointsWriter writer(folder.path(), TileGrid{1000}, 1'000'000, executor);
   PointCloud cloud = random_cloud(400, {}, 1);
   writer.add(cloud);
   cloud.classes = {};

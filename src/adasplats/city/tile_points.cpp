@@ -52,6 +52,32 @@ void put(std::ofstream& out, const std::vector<T>& values) {
             static_cast<std::streamsize>(values.size() * sizeof(T)));
 }
 
+/// The points of a cloud that stand in one tile, ascending.
+struct TilePart {
+  TileKey tile;
+  std::vector<std::uint32_t> points;
+};
+
+std::vector<TilePart> parts_of(const PointCloud& cloud, const TileGrid& grid,
+                               const Executor& executor) {
+  std::vector<TileKey> tiles(cloud.size());
+  executor.for_chunks(cloud.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) tiles[i] = grid.tile_of(cloud.world(i));
+  });
+  std::vector<TilePart> parts;
+  std::map<TileKey, std::size_t> part_of;
+  std::size_t last = 0;  // points stand beside each other for long
+  for (std::uint32_t i = 0; i < tiles.size(); ++i) {
+    if (parts.empty() || parts[last].tile != tiles[i]) {
+      const auto [found, is_new] = part_of.try_emplace(tiles[i], parts.size());
+      if (is_new) parts.push_back({tiles[i], {}});
+      last = found->second;
+    }
+    parts[last].points.push_back(i);
+  }
+  return parts;
+}
+
 /// Reads the pieces of one file.
 class PieceReader {
  public:
@@ -111,8 +137,9 @@ class PieceReader {
 std::string points_file_of(TileKey tile) { return "points/" + name_of(tile) + ".points"; }
 std::string beams_file_of(TileKey tile) { return "points/" + name_of(tile) + ".beams"; }
 
-TilePointsWriter::TilePointsWriter(fs::path folder, const TileGrid& grid, std::size_t buffered)
-    : folder_(std::move(folder)), grid_(grid), buffered_(buffered) {
+TilePointsWriter::TilePointsWriter(fs::path folder, const TileGrid& grid, std::size_t buffered,
+                                   const Executor& executor)
+    : folder_(std::move(folder)), grid_(grid), buffered_(buffered), executor_(executor) {
   fs::create_directories(folder_ / "points");
 }
 
@@ -130,17 +157,17 @@ void TilePointsWriter::add(const PointCloud& cloud) {
   const Vec3d shift = cloud.origin - origin_;
   const bool is_moved = !(shift == Vec3d{});
   const auto moved = [&](Vec3f p) { return vec_cast<float>(vec_cast<double>(p) + shift); };
-  std::map<TileKey, std::vector<std::uint32_t>> by_tile;
-  for (std::uint32_t i = 0; i < cloud.size(); ++i)
-    by_tile[grid_.tile_of(cloud.world(i))].push_back(i);
-  for (const auto& [tile, indices] : by_tile) {
-    PointCloud part = points_at(cloud, indices);
+  const std::vector<TilePart> parts = parts_of(cloud, grid_, executor_);
+  std::vector<PointCloud*> to;  // a place for each tile before threads fill them
+  for (const TilePart& part : parts) to.push_back(&waiting_[part.tile].points);
+  executor_.for_chunks(parts.size(), 1, [&](std::size_t k, std::size_t) {
+    PointCloud part = points_at(cloud, parts[k].points);
     if (is_moved) {
       for (Vec3f& p : part.positions) p = moved(p);
       for (Vec3f& p : part.sensor_positions) p = moved(p);
     }
-    append(waiting_[tile].points, std::move(part));
-  }
+    append(*to[k], std::move(part));
+  });
   for (EmptyBeam beam : cloud.empty_beams) {
     const TileKey tile = grid_.tile_of(cloud.origin + vec_cast<double>(beam.origin));
     if (is_moved) beam.origin = moved(beam.origin);
@@ -150,7 +177,7 @@ void TilePointsWriter::add(const PointCloud& cloud) {
   if (waiting_points_ > buffered_) write_all();
 }
 
-void TilePointsWriter::write(TileKey tile, Waiting& waiting) {
+void TilePointsWriter::write(TileKey tile, const Waiting& waiting) const {
   if (!waiting.points.empty()) {
     const fs::path file = folder_ / points_file_of(tile);
     std::ofstream out(file, std::ios::binary | std::ios::app);
@@ -167,12 +194,18 @@ void TilePointsWriter::write(TileKey tile, Waiting& waiting) {
     out.close();
     if (!out) fail_to_write(file);
   }
-  counts_[tile].points += waiting.points.size();
-  counts_[tile].empty_beams += waiting.beams.size();
 }
 
 void TilePointsWriter::write_all() {
-  for (auto& [tile, waiting] : waiting_) write(tile, waiting);
+  std::vector<std::pair<TileKey, const Waiting*>> files;
+  for (const auto& [tile, waiting] : waiting_) {
+    files.emplace_back(tile, &waiting);
+    counts_[tile].points += waiting.points.size();
+    counts_[tile].empty_beams += waiting.beams.size();
+  }
+  executor_.for_chunks(files.size(), 1, [&](std::size_t k, std::size_t) {
+    write(files[k].first, *files[k].second);
+  });
   waiting_.clear();
   waiting_points_ = 0;
 }

@@ -11,6 +11,7 @@
 
 #include "adasplats/city/tile_grid.h"
 #include "adasplats/cloud/points/point_cloud.h"
+#include "adasplats/core/executor.h"
 
 namespace adasplats {
 
@@ -34,8 +35,10 @@ struct TileCount {
 class TilePointsWriter {
  public:
   /// `folder`: of the city, with the folders "points" and "beams" (made where they are not there).
-  /// At most `buffered` points wait in memory.
-  TilePointsWriter(std::filesystem::path folder, const TileGrid& grid, std::size_t buffered);
+  /// At most `buffered` points wait in memory. `executor` must outlive it; files are the same for
+  /// any number of threads.
+  TilePointsWriter(std::filesystem::path folder, const TileGrid& grid, std::size_t buffered,
+                   const Executor& executor);
 
   /// The first cloud's origin is the city's; others are moved to it. Empty beams go to the tile in
   /// which they begin. Errors: data (a cloud with other attributes than the first), io.
@@ -49,12 +52,13 @@ class TilePointsWriter {
     PointCloud points;
     std::vector<EmptyBeam> beams;
   };
-  void write(TileKey tile, Waiting& waiting);
+  void write(TileKey tile, const Waiting& waiting) const;
   void write_all();
 
   std::filesystem::path folder_;
   TileGrid grid_;
   std::size_t buffered_;
+  const Executor& executor_;
   std::size_t waiting_points_ = 0;
   Vec3d origin_;
   std::string attributes_;  ///< names of those that there are

@@ -191,14 +191,29 @@ std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& sess
 
 std::pair<SplatModel, ModelResult> make_model(const PointCloud& cloud, const ModelOptions& options,
                                               Session& session) {
+  return make_model([&cloud] { return cloud; }, options, session);
+}
+
+std::pair<SplatModel, ModelResult> make_model(const std::function<PointCloud()>& load,
+                                              const ModelOptions& options, Session& session) {
   const Stopwatch total;
   ModelResult result;
-  result.loaded.points_read = cloud.size();
-  ModelMaker maker(
-      options, {}, [&cloud] { return cloud; }, session);
+  const auto load_points = [&] {
+    PointCloud cloud = load();
+    result.loaded.points_read = cloud.size();
+    return cloud;
+  };
+  ModelMaker maker(options, {}, load_points, session);
   SplatModel model = maker.run(result);
   result.seconds = total.seconds();
   return {std::move(model), std::move(result)};
+}
+
+void with_model_engine(Session& session, const std::function<void(const ModelEngine&)>& work) {
+  const bool on_gpu = try_on_gpu(session.device, session.progress, [&] {
+    work(*make_cuda_model_engine(session.device.gpus.front().index, session.executor));
+  });
+  if (!on_gpu) work(*make_cpu_model_engine(session.executor));
 }
 
 nlohmann::ordered_json to_json(const TimedOrigins& timed) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "adasplats/pipeline/segment/point_classes.h"
 #include "adasplats/pipeline/session/session.h"
 #include "adasplats/splats/build_model.h"
+#include "adasplats/splats/model_engine.h"
 
 namespace adasplats {
 
@@ -115,6 +117,13 @@ std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& sess
 /// Builds of points in memory. Errors: likewise.
 std::pair<SplatModel, ModelResult> make_model(const PointCloud& cloud, const ModelOptions& options,
                                               Session& session);
+/// Builds of what `load` gives, without a copy; it is called again where a GPU fails.
+std::pair<SplatModel, ModelResult> make_model(const std::function<PointCloud()>& load,
+                                              const ModelOptions& options, Session& session);
+
+/// Calls work(engine) with an engine on the session's device; where that is a GPU that nobody asked
+/// for and it fails, again with one on the CPU.
+void with_model_engine(Session& session, const std::function<void(const ModelEngine&)>& work);
 
 /// Of a model's --report and of `info`.
 nlohmann::ordered_json to_json(const TimedOrigins& timed);

@@ -11,6 +11,7 @@
 
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/one_crs.h"
+#include "adasplats/core/stopwatch.h"
 #include "adasplats/pipeline/model/calibrate_on_device.h"
 #include "adasplats/pipeline/session/repeated_warnings.h"
 #include "adasplats/recipes/drive_pieces.h"
@@ -31,11 +32,13 @@ void correct(const Calibration& calibration, PointCloud& cloud, const Executor& 
 CityPoints read_drives(const ModelJob& job, DrivePieces& pieces, Session& session,
                        const std::function<void(const PointCloud&)>& take) {
   CityPoints points;
+  const Stopwatch watch;
   if (job.calibration.on)
     points.calibration =
         calibrate_windows(pieces.sources(), job.calibration.options, job.calibration.windows,
                           calibrate_on(session), session.executor, session.progress)
             .calibration;
+  points.calibrated_s = watch.seconds();
   for (const DriveSource& drive : pieces.sources()) {
     for (std::size_t begin = 0; begin < drive.scans; begin += kPieceScans) {
       PointCloud cloud = drive.read({begin, std::min(drive.scans, begin + kPieceScans)});
@@ -75,10 +78,12 @@ CityPoints read_at_once(const ModelJob& job, Session& session,
   CityPoints points;
   auto [cloud, loaded] = load_cloud(job.inputs, job.load, session.executor, session.progress);
   points.read = loaded.points_read;
+  const Stopwatch watch;
   if (job.calibration.on)
     points.calibration = calibrate_drives(cloud, job.calibration.options, job.calibration.windows,
                                           calibrate_on(session), session.executor, session.progress)
                              .first;
+  points.calibrated_s = watch.seconds();
   correct(points.calibration, cloud, session.executor);
   take(cloud);
   return points;

@@ -15,6 +15,7 @@ namespace adasplats {
 struct CityPoints {
   std::size_t read = 0;
   Calibration calibration;  ///< that the points were corrected with
+  double calibrated_s = 0;  ///< that finding it took
 };
 
 /// Calls `take` for the points of a job piece by piece, corrected where the job calibrates: drives

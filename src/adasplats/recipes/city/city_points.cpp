@@ -3,11 +3,14 @@
 #include "adasplats/recipes/city/city_points.h"
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "adasplats/city/tile_points.h"
 #include "adasplats/cloud/labels/dynamic_removal.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/sha256.h"
 #include "adasplats/pipeline/model/label_use.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/recipes/city/city_inputs.h"
@@ -48,7 +51,7 @@ void count_rays(const PointCloud& cloud, const LabelScheme* scheme, CityWork& wo
 /// The points to their tiles; fills in facts and what tiles have in common.
 void read_points(CityWork& work) {
   const CityJob& job = work.job;
-  TilePointsWriter writer(work.folder, work.tiles.grid, kBufferedPoints);
+  TilePointsWriter writer(work.folder, work.tiles.grid, kBufferedPoints, work.session.executor);
   RangeCounts ranges;
   std::optional<CurveBox> box;
   ModelJob reading = job;
@@ -76,8 +79,18 @@ void read_points(CityWork& work) {
   work.facts.empty_reach_m = ranges.empty_reach_m();
   work.common.origin = work.facts.origin;
   work.common.calibration = read.calibration;
+  work.calibrated_s = read.calibrated_s;
   work.common.method = "consistent";
   if (scheme) work.common.label_scheme = scheme_reference(job.labels, *scheme);
+}
+
+/// Files of the work's folder with what they hold.
+std::vector<FileDigest> digests_of(const std::vector<std::string>& files, const CityWork& work) {
+  std::vector<FileDigest> digests(files.size());
+  work.session.executor.for_chunks(files.size(), 1, [&](std::size_t k, std::size_t) {
+    digests[k] = {files[k], sha256_of_file(work.path(files[k]))};
+  });
+  return digests;
 }
 
 void find_tiles(CityWork& work) {
@@ -119,7 +132,7 @@ void sort_points(CityWork& work, ResumableFolder& folder) {
   save_model(work.path(kCityCommonFile), work.common);
   write_file_in_place(work.path(kPointsFile), text_of(work.facts));
   folder.record(std::string(kCityCommonFile));
-  folder.record(files_of_points(work.facts));
+  folder.record(digests_of(files_of_points(work.facts), work));
   folder.record(std::string(kPointsFile));
   find_tiles(work);
 }

@@ -10,6 +10,7 @@
 #include "adasplats/cloud/labels/dynamic_removal.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/pipeline/model/make_model.h"
 #include "adasplats/splats/model_engine.h"
 
 namespace adasplats {
@@ -18,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Points of the tiles whose cells say how dense cells are, about.
-constexpr std::size_t kSurveyedPoints = 32'000'000;
+constexpr std::size_t kSurveyedPoints = 16'000'000;
 
 /// Spacings of cells by whether they have a beam.
 struct Spacings {
@@ -76,12 +77,14 @@ void survey_spacing(CityWork& work, ResumableFolder& folder) {
   const std::vector<TileKey> chosen = surveyed(work);
   ProgressSink& progress = work.session.progress;
   progress.begin_step("spacing of cells", chosen.size());
-  const std::unique_ptr<ModelEngine> engine = make_cpu_model_engine(work.session.executor);
   Spacings found;
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    add_spacings(chosen[k], scheme ? &*scheme : nullptr, *engine, work, found);
-    progress.advance(k + 1);
-  }
+  with_model_engine(work.session, [&](const ModelEngine& engine) {
+    found = {};
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      add_spacings(chosen[k], scheme ? &*scheme : nullptr, engine, work, found);
+      progress.advance(k + 1);
+    }
+  });
   progress.end_step();
   work.typical = typical_spacing(std::move(found.with_beam), std::move(found.without));
   const Json json = {{"with_beam", work.typical.with_beam}, {"without", work.typical.without}};

@@ -77,7 +77,7 @@ CityTaskResult make_city_tile(const CityJob& job, TileKey tile, Session& session
   if (task.has(file)) return {file, true};
   const TileModeller modeller(work);
   check_files(tile, modeller, work, task);
-  save_model(work.path(file), modeller.model(tile, session.progress));
+  save_model(work.path(file), modeller.model(tile, session));
   task.record(file);
   return {file, false};
 }

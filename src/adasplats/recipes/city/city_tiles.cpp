@@ -36,7 +36,7 @@ WholePlace TileModeller::whole_of(TileKey tile) const {
   return whole;
 }
 
-SplatModel TileModeller::model(TileKey tile, ProgressSink& warnings) const {
+SplatModel TileModeller::model(TileKey tile, Session& session) const {
   const WholePlace whole = whole_of(tile);
   ModelOptions options = work_.job;
   options.calibration.on = false;
@@ -44,8 +44,7 @@ SplatModel TileModeller::model(TileKey tile, ProgressSink& warnings) const {
   options.build.whole = &whole;
   options.build.reflectances =
       options.build.reflectances && (tile == pilot_ || whole.response.has_value());
-  Session quiet = {work_.session.executor, warnings, work_.session.seed, work_.session.device};
-  SplatModel model = make_model(points_around(tile, work_), options, quiet).first;
+  SplatModel model = make_model([&] { return points_around(tile, work_); }, options, session).first;
   model.label_scheme = work_.common.label_scheme;
   keep_own(tile, model);
   return model;

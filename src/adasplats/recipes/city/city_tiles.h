@@ -18,8 +18,8 @@ class TileModeller {
   explicit TileModeller(const CityWork& work);
 
   /// The splats that stand in a tile. The pilot's have the response of the sensor by its own rays,
-  /// others `work.response`. Warnings go to `warnings`.
-  SplatModel model(TileKey tile, ProgressSink& warnings) const;
+  /// others `work.response`. Several threads may call it, each with a session of its own.
+  SplatModel model(TileKey tile, Session& session) const;
 
   /// The files of the folder that hold the points and the rays that a tile is modelled with.
   std::vector<std::string> files_for(TileKey tile) const;

@@ -55,6 +55,7 @@ struct CityWork {
   SplatModel common;  ///< without splats: coordinate system, label scheme, calibration
   TileSet tiles;      ///< those with points, which are modelled
   TypicalSpacing typical;
+  double calibrated_s = 0;                    ///< of reading the points
   std::optional<IntensityResponse> response;  ///< of the sensor, by the pilot tile; nothing: none
 
   CityWork(const CityJob& its_job, Session& its_session, std::filesystem::path its_folder);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
@@ -16,6 +18,7 @@
 #include "adasplats/recipes/city/city_rays.h"
 #include "adasplats/recipes/city/city_survey.h"
 #include "adasplats/recipes/city/city_tiles.h"
+#include "adasplats/recipes/city/tile_workers.h"
 
 namespace adasplats {
 namespace {
@@ -59,6 +62,7 @@ class CityMaker {
   /// All that comes before the tiles.
   void prepare() {
     step("points", [&] { sort_points(work_, folder_); });
+    result_.steps.push_back({"calibration_of_points", work_.calibrated_s});
     step("rays", [&] { hand_out_rays(work_, folder_); });
     step("spacing", [&] { survey_spacing(work_, folder_); });
     result_.points_read = work_.facts.points_read;
@@ -68,7 +72,11 @@ class CityMaker {
   /// Its tile comes first: the others need the response that it finds.
   void model_pilot(const TileModeller& modeller, ProgressSink& warnings) {
     CityTile& pilot = *std::ranges::find(result_.city.tiles, pilot_tile(work_), &CityTile::key);
-    model_tile(pilot, modeller, warnings);
+    if (!take_made(pilot)) {
+      Session session = {work_.session.executor, warnings, work_.session.seed,
+                         work_.session.device};
+      note(model_and_save(pilot, work_, modeller, session));
+    }
     find_response(pilot);
   }
 
@@ -77,15 +85,16 @@ class CityMaker {
     const TileModeller modeller(work_);
     RepeatedWarnings warnings(work_.session.progress, "tiles");
     work_.session.progress.begin_step("tiles", work_.tiles.tiles.size());
-    std::size_t done = 0;
-    const TileKey pilot = pilot_tile(work_);
     model_pilot(modeller, warnings);
-    work_.session.progress.advance(++done);
-    for (CityTile& tile : result_.city.tiles) {
-      if (tile.key == pilot) continue;
-      model_tile(tile, modeller, warnings);
+    std::vector<CityTile> to_do;
+    for (CityTile& tile : result_.city.tiles)
+      if (tile.key != pilot_tile(work_) && !take_made(tile)) to_do.push_back(tile);
+    std::size_t done = result_.city.tiles.size() - to_do.size();
+    work_.session.progress.advance(done);
+    adasplats::model_tiles(work_, modeller, to_do, warnings, [&](const CityTile& made) {
+      note(made);
       work_.session.progress.advance(++done);
-    }
+    });
     work_.session.progress.end_step();
     warnings.end();
   }
@@ -96,22 +105,19 @@ class CityMaker {
     return folder_.has(file) || folder_.take(file);
   }
 
-  void model_tile(CityTile& tile, const TileModeller& modeller, ProgressSink& warnings) {
-    const std::string file = model_file_of(tile.key);
-    SplatModel model;
-    if (is_made(tile.key)) {
-      model = load_model(work_.path(file));
-      ++result_.tiles_resumed;
-    } else {
-      model = modeller.model(tile.key, warnings);
-      save_model(work_.path(file), model);
-      folder_.record(file);
-    }
-    tile.splats = model.size();
-    tile.sha256 = folder_.recorded().at(file);
-    const auto [low, high] = bounds(model);
-    tile.low = model.origin + vec_cast<double>(low);
-    tile.high = model.origin + vec_cast<double>(high);
+  bool take_made(CityTile& tile) {
+    if (!is_made(tile.key)) return false;
+    set_splats(load_model(work_.path(model_file_of(tile.key))), tile);
+    tile.sha256 = folder_.recorded().at(model_file_of(tile.key));
+    ++result_.tiles_resumed;
+    return true;
+  }
+
+  /// That the file of a tile is whole.
+  void note(const CityTile& made) {
+    const FileDigest digest = {model_file_of(made.key), made.sha256};
+    folder_.record(std::span(&digest, 1));
+    *std::ranges::find(result_.city.tiles, made.key, &CityTile::key) = made;
   }
 
   /// Of the pilot tile that was modelled, for the others, into a file of its own.
