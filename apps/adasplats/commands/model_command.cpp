@@ -153,7 +153,7 @@ class ModelCommand final : public Command {
   }
 
   void run_plan(Session& session) {
-    const TaskLines lines(own_arguments());
+    const TaskLines lines(own_arguments(), false);
     std::string text;
     session.report["tasks"] = nlohmann::ordered_json::array();
     for (const TileKey tile : plan_city(job_, session)) {

@@ -1,13 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cstddef>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
+#include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/pipeline/session/scan_range.h"
 #include "adasplats/recipes/simulate_scans.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"
 #include "cli/terminal.h"
 #include "cli/text_table.h"
+#include "commands/task_lines.h"
 
 namespace adasplats::app {
 namespace {
@@ -64,12 +70,59 @@ class SimulateCommand final : public Command {
         ->type_name("GB")
         ->in_range({.name = "tile-memory", .least = 0, .above_least = true});
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
+    constexpr int kMostScans = 1'000'000'000;
+    app.add_option(
+           "--plan", scans_a_task_,
+           "Simulate nothing, but print commands that simulate so many scans each, a line a "
+           "command, for many processes or machines; the same command without it finishes")
+        ->range(1, kMostScans)
+        ->type_name("N");
+    app.add_option_function<std::string>(
+           "--only-scans",
+           [this](const std::string& text) { span_ = parse_scan_range("--only-scans", text); },
+           "Simulate these scans of a drive that was planned, and no more")
+        ->type_name("FIRST:COUNT");
     add_device_options(GpuCount::several);
   }
 
   void run(Session& session) override {
     check_options();
     job_.drive.mount = mount_.transform();
+    if (span_)
+      run_span(session);
+    else if (scans_a_task_ > 0)
+      run_plan(session);
+    else
+      run_drive(session);
+  }
+
+ private:
+  void run_plan(Session& session) {
+    const TaskLines lines(own_arguments(), true);
+    std::string text;
+    session.report["tasks"] = nlohmann::ordered_json::array();
+    for (const ScanTask& span :
+         plan_simulation(job_, static_cast<std::size_t>(scans_a_task_), session)) {
+      const std::string name = std::to_string(span.first) + ":" + std::to_string(span.count);
+      text += lines.task("--only-scans", name);
+      session.report["tasks"].push_back(name);
+    }
+    print(text + lines.last());
+  }
+
+  void run_span(Session& session) {
+    refuse({"--plan"}, "with --only-scans");
+    if (span_->stride != 1) refuse_value("--only-scans", "expected FIRST:COUNT");
+    const SpanResult result = simulate_span(job_, {span_->first, span_->count}, session);
+    session.report["rays"] = result.rays;
+    session.report["hits"] = result.hits;
+    session.report["was_done"] = result.was_done;
+    print(job_.output.string() + ": " + grouped(span_->count) + " scans from " +
+          std::to_string(span_->first) +
+          (result.was_done ? " on: were done\n" : " on: " + grouped(result.hits) + " returns\n"));
+  }
+
+  void run_drive(Session& session) {
     const SimulateResult result = run_simulate(job_, session);
     const nlohmann::ordered_json json = to_json(result);
     session.report.update(json);
@@ -81,7 +134,6 @@ class SimulateCommand final : public Command {
           " rays, " + grouped(result.hits) + " returns in " + fixed(result.seconds, 2) + " s\n");
   }
 
- private:
   void check_options() const {
     if (!job_.scan.noise) refuse({"--range-noise"}, "with --no-noise");
     if (!job_.drive.rolling_shutter) refuse({"--points"}, "without --rolling-shutter");
@@ -109,6 +161,8 @@ class SimulateCommand final : public Command {
 
   SimulateJob job_;
   MountSettings mount_;
+  int scans_a_task_ = 0;
+  std::optional<ScanRange> span_;
 };
 
 }  // namespace

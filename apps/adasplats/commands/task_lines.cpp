@@ -25,8 +25,8 @@ std::vector<std::string> without(const std::vector<std::string>& words, const st
 
 }  // namespace
 
-TaskLines::TaskLines(const std::vector<std::string>& words)
-    : words_(without(words, "--plan", false)), for_task_(without(words_, "--report", true)) {
+TaskLines::TaskLines(const std::vector<std::string>& words, bool has_value)
+    : words_(without(words, "--plan", has_value)), for_task_(without(words_, "--report", true)) {
   if (words_.size() == words.size() || words_.empty())
     throw Error(ErrorKind::usage, "`plan` stands on the command line, not in a configuration");
 }

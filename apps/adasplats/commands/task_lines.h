@@ -13,7 +13,8 @@ class TaskLines {
  public:
   /// `words`: the command as it was given (own_arguments()), --plan among them. Errors: usage
   /// (--plan is not: it came from a configuration, which the tasks would read, too).
-  explicit TaskLines(const std::vector<std::string>& words);
+  /// `has_value`: --plan takes one.
+  TaskLines(const std::vector<std::string>& words, bool has_value);
 
   /// "adasplats model --only-tile x3_y-2 ...", a line for a shell.
   std::string task(const std::string& option, const std::string& value) const;

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -14,6 +17,8 @@
 #include "adasplats/dataset/kitti_boxes.h"
 #include "adasplats/dataset/packet_writer.h"
 #include "adasplats/dataset/parallel_scan_writer.h"
+#include "adasplats/io/base/sha256.h"
+#include "adasplats/pipeline/output/folder_task.h"
 #include "adasplats/pipeline/output/output_folder.h"
 #include "adasplats/pipeline/output/resumable_folder.h"
 #include "adasplats/pipeline/scene/city_scene.h"
@@ -22,6 +27,7 @@
 #include "adasplats/recipes/no_returns.h"
 #include "adasplats/recipes/scan_folder.h"
 #include "adasplats/recipes/scan_manifest.h"
+#include "adasplats/recipes/scan_spans.h"
 
 namespace adasplats {
 namespace {
@@ -85,13 +91,18 @@ void tell_of_delay(const SimulateJob& job, const DriveSpan& drive, ProgressSink&
                 std::to_string(static_cast<long>(later_s)) + " s later than those of the drive");
 }
 
+/// An attempt that was interrupted at its very end had been given the poses already, by which a
+/// writer knows a sequence that is whole.
+void remove_poses(const std::filesystem::path& folder) {
+  std::filesystem::remove(folder / "sequences" / "00" / "poses.txt");
+}
+
 /// Casts the scans that are not there yet and writes them beside that.
 ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> scans,
                         const SimulateJob& job, ResumableFolder& folder, Session& session,
                         SimulateResult& result) {
   const ScanPlace& scene = simulator.scene();
-  // An attempt that was interrupted at its very end had been given the poses already.
-  std::filesystem::remove(folder.path() / "sequences" / "00" / "poses.txt");
+  remove_poses(folder.path());
   const ScanWriterOptions writing = writing_options(simulator, job, scans);
   tell_of_delay(job, writing.drive, session.progress);
   const auto writer = make_scan_writer(folder.path(), job.format, writing);
@@ -142,38 +153,7 @@ Plan plan_of(const SimulateJob& job, Session& session) {
     require_packets(plan.settings.sensor, packet_options(plan.settings, job.drive));
   if (!job.drive.trajectory.empty())
     plan.scans = scans_along(job.drive, plan.settings.sensor, session.progress);
-  checked_output_folder(job.output, job.overwrite, kCommand);
   return plan;
-}
-
-SimulateResult simulate_in(const ScanPlace& scene, const Plan& plan, const SimulateJob& job,
-                           Session& session) {
-  ResumableFolder folder(job.output, job.overwrite, kCommand,
-                         simulate_content(job, plan.settings, scene));
-  ScanSimulator simulator(scene, plan.settings, session.executor);
-  SimulateResult result;
-  session.progress.begin_step("simulate", plan.scans.size());
-  const Stopwatch all;
-  ReportTimes times;
-  try {
-    times = write_scans(simulator, plan.scans, job, folder, session, result);
-    session.progress.end_step();
-    folder.commit(nlohmann::ordered_json::object(), {});
-  } catch (const Error&) {
-    rethrow_with_what_is_kept(folder);
-  }
-  result.seconds_traced = times.traced_s;
-  result.seconds_assembled = times.reported_s;
-  result.seconds_written = all.seconds();
-  return result;
-}
-
-SimulateResult simulate_in_model(const ModelScene& scene, Plan plan, const SimulateJob& job,
-                                 Session& session) {
-  if (job.drive.trajectory.empty())
-    plan.scans =
-        scans_along(job.drive, plan.settings.sensor, scene, session.executor, session.progress);
-  return simulate_in(scene, plan, job, session);
 }
 
 /// Whether the tiles of a city come and go while scans are simulated. Places and paths look for the
@@ -185,34 +165,165 @@ bool is_streamed(const SimulateJob& job, const Session& session) {
 
 constexpr double kCpuTiles_gb = 1, kGpuTiles_gb = 6;
 
-SimulateResult simulate_in_city(const Plan& plan, const SimulateJob& job, Session& session) {
-  const double usual_gb = session.device.on_gpu() ? kGpuTiles_gb : kCpuTiles_gb;
-  const double memory_gb = job.tile_memory_gb > 0 ? job.tile_memory_gb : usual_gb;
-  const CityScene scene(job.model, job.labels, session, static_cast<std::size_t>(memory_gb * 1e9));
-  SimulateResult result = simulate_in(scene, plan, job, session);
-  result.tiles = scene.counts();
+/// The place of a job, in memory or tile by tile.
+class OpenPlace {
+ public:
+  OpenPlace(const SimulateJob& job, Session& session) {
+    if (!is_streamed(job, session)) {
+      model_ = std::make_unique<ModelScene>(job.model, job.labels, session, WorldFiles::taken);
+      return;
+    }
+    const double usual_gb = session.device.on_gpu() ? kGpuTiles_gb : kCpuTiles_gb;
+    const double memory_gb = job.tile_memory_gb > 0 ? job.tile_memory_gb : usual_gb;
+    city_ = std::make_unique<CityScene>(job.model, job.labels, session,
+                                        static_cast<std::size_t>(memory_gb * 1e9));
+  }
+
+  const ScanPlace& operator*() const {
+    if (city_) return *city_;
+    return *model_;
+  }
+  const ModelScene* model() const { return model_.get(); }
+  std::optional<TileStreamCounts> tiles() const {
+    return city_ ? std::optional(city_->counts()) : std::nullopt;
+  }
+
+ private:
+  std::unique_ptr<ModelScene> model_;
+  std::unique_ptr<CityScene> city_;
+};
+
+/// Where the model says where scans are; then it is in memory.
+void find_scans(Plan& plan, const SimulateJob& job, const ModelScene* scene, Session& session) {
+  if (job.drive.trajectory.empty())
+    plan.scans =
+        scans_along(job.drive, plan.settings.sensor, *scene, session.executor, session.progress);
+}
+
+SimulateResult simulate_in(const ScanPlace& scene, const Plan& plan, const SimulateJob& job,
+                           Session& session) {
+  ResumableFolder folder(job.output, job.overwrite, kCommand,
+                         simulate_content(job, plan.settings, scene));
+  take_spans(folder);
+  ScanSimulator simulator(scene, plan.settings, session.executor);
+  SimulateResult result;
+  session.progress.begin_step("simulate", plan.scans.size());
+  const Stopwatch all;
+  ReportTimes times;
+  try {
+    times = write_scans(simulator, plan.scans, job, folder, session, result);
+    session.progress.end_step();
+    folder.commit(nlohmann::ordered_json::object(), aids_of_spans(folder.path()));
+  } catch (const Error&) {
+    rethrow_with_what_is_kept(folder);
+  }
+  result.seconds_traced = times.traced_s;
+  result.seconds_assembled = times.reported_s;
+  result.seconds_written = all.seconds();
+  return result;
+}
+
+/// The spans of a drive that lack a scan that was written as `has_scan` says.
+template <class HasScan>
+std::vector<ScanTask> spans_to_do(std::size_t scans, std::size_t count, const HasScan& has_scan) {
+  std::vector<ScanTask> spans;
+  for (std::size_t first = 0; first < scans; first += count) {
+    const ScanTask span{first, std::min(count, scans - first)};
+    bool is_done = true;
+    for (std::size_t i = first; i < first + span.count && is_done; ++i) is_done = has_scan(i);
+    if (!is_done) spans.push_back(span);
+  }
+  return spans;
+}
+
+void require_files_of_scans(ScanFormat format) {
+  if (format == ScanFormat::mcap || format == ScanFormat::pcap)
+    throw Error(ErrorKind::usage, "`plan`: all scans are in one file of this `format`");
+}
+
+/// Casts and writes a span; each file appears whole or not at all.
+SpanResult write_span(ScanSimulator& simulator, std::span<const ScanMotion> scans, ScanTask span,
+                      const ScanWriter& writer, const FolderTask& task, Session& session) {
+  const ScanPlace& scene = simulator.scene();
+  SpanResult result;
+  std::vector<FileDigest> digests;
+  const auto take_scan = [&](std::size_t i, HeldScan&& held) {
+    const std::size_t number = span.first + i;
+    std::vector<EncodedFile> files;
+    if (scene.world() != nullptr) files = boxes_of(scene, number, held.scan);
+    EncodedScan encoded = writer.encode(number, held.scan);
+    std::move(encoded.files.begin(), encoded.files.end(), std::back_inserter(files));
+    write_encoded(task.path(), files, FileWrites::atomic);
+    for (const EncodedFile& file : files) digests.push_back({file.name, sha256_of(file.bytes)});
+    result.rays += held.scan.rays;
+    result.hits += held.scan.size();
+    session.progress.advance(i + 1);
+  };
+  session.progress.begin_step("simulate", span.count);
+  simulator.run_held(scans.subspan(span.first, span.count), span.first, take_scan);
+  session.progress.end_step();
+  note_span(task.path(), span.first, span.count, digests, result.hits == 0);
   return result;
 }
 
 }  // namespace
 
+std::vector<ScanTask> plan_simulation(const SimulateJob& job, std::size_t count, Session& session) {
+  require_files_of_scans(job.format);
+  Plan plan = plan_of(job, session);
+  const OpenPlace place(job, session);
+  const ScanPlace& scene = *place;
+  find_scans(plan, job, place.model(), session);
+  ResumableFolder folder(job.output, job.overwrite, kCommand,
+                         simulate_content(job, plan.settings, scene));
+  take_spans(folder);
+  begin_spans(folder);
+  remove_poses(folder.path());
+  ScanSimulator simulator(scene, plan.settings, session.executor);
+  const auto writer =
+      make_scan_writer(folder.path(), job.format, writing_options(simulator, job, plan.scans));
+  return spans_to_do(plan.scans.size(), count,
+                     [&](std::size_t i) { return folder.has(writer->main_file(i)); });
+}
+
+SpanResult simulate_span(const SimulateJob& job, ScanTask span, Session& session) {
+  require_files_of_scans(job.format);
+  Plan plan = plan_of(job, session);
+  const OpenPlace place(job, session);
+  const ScanPlace& scene = *place;
+  find_scans(plan, job, place.model(), session);
+  const std::size_t scans = plan.scans.size();
+  if (span.count == 0 || span.first >= scans || span.count > scans - span.first)
+    throw Error(ErrorKind::usage, "`only_scans` " + std::to_string(span.first) + ":" +
+                                      std::to_string(span.count) + ": the drive has " +
+                                      std::to_string(scans) + " scans");
+  const FolderTask task(job.output, kCommand, simulate_content(job, plan.settings, scene));
+  if (task.is_finished() || has_span(task.path(), span.first, span.count)) return {0, 0, true};
+  ScanSimulator simulator(scene, plan.settings, session.executor);
+  remove_poses(task.path());
+  const auto writer =
+      make_scan_writer(task.path(), job.format, writing_options(simulator, job, plan.scans));
+  return write_span(simulator, plan.scans, span, *writer, task, session);
+}
+
 SimulateResult run_simulate(const SimulateJob& job, Session& session) {
   const Stopwatch total;
   Plan plan = plan_of(job, session);
-  SimulateResult result;
-  if (is_streamed(job, session)) {
-    result = simulate_in_city(plan, job, session);
-  } else {
-    const ModelScene scene(job.model, job.labels, session, WorldFiles::taken);
-    result = simulate_in_model(scene, std::move(plan), job, session);
-  }
+  checked_output_folder(job.output, job.overwrite, kCommand);
+  const OpenPlace place(job, session);
+  find_scans(plan, job, place.model(), session);
+  SimulateResult result = simulate_in(*place, plan, job, session);
+  result.tiles = place.tiles();
   result.seconds = total.seconds();
   return result;
 }
 
 SimulateResult run_simulate(const SimulateJob& job, const ModelScene& scene, Session& session) {
   const Stopwatch total;
-  SimulateResult result = simulate_in_model(scene, plan_of(job, session), job, session);
+  Plan plan = plan_of(job, session);
+  checked_output_folder(job.output, job.overwrite, kCommand);
+  find_scans(plan, job, &scene, session);
+  SimulateResult result = simulate_in(scene, plan, job, session);
   result.seconds = total.seconds();
   return result;
 }

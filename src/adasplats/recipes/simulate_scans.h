@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "adasplats/city/tile_stream.h"
 #include "adasplats/dataset/scan_writer.h"
@@ -54,6 +55,29 @@ SimulateResult run_simulate(const SimulateJob& job, Session& session);
 /// The same in a model that is loaded already, from the file that `job` names; loading is not in
 /// the seconds.
 SimulateResult run_simulate(const SimulateJob& job, const ModelScene& scene, Session& session);
+
+/// Some of the scans of a drive, one behind another.
+struct ScanTask {
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
+/// Begins the folder of a simulation that is made in spans of `count` scans, and gives those that
+/// are not there yet. Each is a task of its own then (simulate_span), on as many machines as see
+/// the folder; run_simulate finishes it. Errors: usage (a format of one file for all scans), those
+/// of run_simulate.
+std::vector<ScanTask> plan_simulation(const SimulateJob& job, std::size_t count, Session& session);
+
+struct SpanResult {
+  std::size_t rays = 0;
+  std::size_t hits = 0;
+  bool was_done = false;  ///< an earlier task or run had written all of it
+};
+
+/// Simulates one span of a drive that was planned: the bytes that its scans have in one run. Any
+/// number of tasks may run at a time, also of the same span. Errors: usage (no such scans), those
+/// of FolderTask and of run_simulate.
+SpanResult simulate_span(const SimulateJob& job, ScanTask span, Session& session);
 
 /// The keys of a simulation's --report.
 nlohmann::ordered_json to_json(const SimulateResult& result);

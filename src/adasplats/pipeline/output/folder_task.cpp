@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 /// The content of a folder that was made of the same. Errors: cannot_create.
 Json same_content(const fs::path& folder, const std::string& wanted) {
-  const Json there = Json::parse(read_file(folder / kContentFile), nullptr, false);
+  Json there = Json::parse(read_file(folder / kContentFile), nullptr, false);
   if (!there.is_object())
     throw Error(ErrorKind::cannot_create,
                 folder.string() + ": " + std::string(kContentFile) + " is damaged");

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
@@ -90,6 +91,29 @@ TEST(FolderTask, DamagedFilesAreNotDone) {
   EXPECT_FALSE(output.take("a"));
   fs::remove(output.path() / "a");
   EXPECT_FALSE(output.take("a"));
+}
+
+TEST(Digests, AreReadAsWritten) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "n.sha256";
+  EXPECT_FALSE(read_digests(file));
+  write_digests(file, {});
+  ASSERT_TRUE(read_digests(file));
+  EXPECT_TRUE(read_digests(file)->empty());
+  const std::vector<FileDigest> digests = {{"b/two words", sha256_of("b")}, {"a", sha256_of("a")}};
+  write_digests(file, digests);
+  const auto read = read_digests(file);
+  ASSERT_TRUE(read);
+  ASSERT_EQ(read->size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ((*read)[k].name, digests[k].name);
+    EXPECT_EQ((*read)[k].sha256, digests[k].sha256);
+  }
+  const std::string text = read_file(file);
+  for (const std::string& damaged : {text.substr(0, text.size() - 1), text + "x", text.substr(1)}) {
+    folder.write("n.sha256", damaged);
+    EXPECT_FALSE(read_digests(file));
+  }
 }
 
 TEST(FolderTask, WhatTheRunRecordedIsChecked) {

@@ -103,4 +103,27 @@ std::optional<std::string> read_note(const fs::path& file) {
   return text.substr(0, kDigits);
 }
 
+void write_digests(const fs::path& file, std::span<const FileDigest> digests) {
+  std::string text;
+  for (const auto& [name, sha256] : digests)
+    text.append(sha256).append("  ").append(name).append("\n");
+  write_file(file, text);
+}
+
+std::optional<std::vector<FileDigest>> read_digests(const fs::path& file) {
+  std::error_code none;
+  if (!fs::is_regular_file(file, none)) return std::nullopt;
+  const std::string text = read_file(file);
+  std::vector<FileDigest> digests;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = text.find('\n', begin);
+    if (end == std::string::npos) return std::nullopt;
+    const std::string line = text.substr(begin, end - begin);
+    if (!is_digest_line(line)) return std::nullopt;
+    digests.push_back({line.substr(kDigits + 2), line.substr(0, kDigits)});
+    begin = end + 1;
+  }
+  return digests;
+}
+
 }  // namespace adasplats

@@ -6,7 +6,11 @@
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
+
+#include "adasplats/io/base/sha256.h"
 
 namespace adasplats {
 
@@ -41,5 +45,10 @@ std::filesystem::path note_of(const std::filesystem::path& file);
 void write_note(const std::filesystem::path& file, const std::string& sha256);
 /// The SHA-256 that a note says; nothing where there is none, or it is damaged.
 std::optional<std::string> read_note(const std::filesystem::path& file);
+
+/// The same for many files at once, in a file of its own: a line "SHA-256  NAME" each, in order.
+void write_digests(const std::filesystem::path& file, std::span<const FileDigest> digests);
+/// Nothing where there is none, or it is damaged.
+std::optional<std::vector<FileDigest>> read_digests(const std::filesystem::path& file);
 
 }  // namespace adasplats
