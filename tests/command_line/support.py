@@ -7,9 +7,11 @@ import math
 import os
 import random
 import shutil
+import signal
 import struct
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -184,6 +186,16 @@ class ProgramTest(unittest.TestCase):
         path = self.folder / "report.json"
         self.run_good(*arguments, "--report", path)
         return json.loads(path.read_text(encoding="utf-8"))
+
+    def stop_with_lock(self, process):
+        """Stops a process when it has a lock: that of the folder that it fills."""
+        while process.poll() is None:
+            locks = Path("/proc/locks").read_text(encoding="ascii").splitlines()
+            if any("FLOCK" in line and str(process.pid) in line.split() for line in locks):
+                process.send_signal(signal.SIGSTOP)
+                return
+            time.sleep(0.0002)
+        self.fail("it ended before it could be stopped")
 
     def names(self):
         """Names of all files and folders of the test's folder."""

@@ -139,8 +139,7 @@ class City(ProgramTest):
         process = subprocess.Popen([PROGRAM, *map(str, self.command())], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE)
         try:
-            time.sleep(0.1)
-            process.send_signal(signal.SIGSTOP)
+            self.stop_with_lock(process)
             self.run_bad(73, *self.command(), says=["city"])
             process.send_signal(signal.SIGCONT)
             process.communicate(timeout=100)

@@ -80,16 +80,6 @@ class CityTasks(ProgramTest):
         self.addCleanup(process.kill)
         return process
 
-    def stop_with_folder(self, process):
-        """Stops a process when it has the lock of the unfinished folder."""
-        while process.poll() is None:
-            locks = Path("/proc/locks").read_text(encoding="ascii").splitlines()
-            if any("FLOCK" in line and str(process.pid) in line.split() for line in locks):
-                process.send_signal(signal.SIGSTOP)
-                return
-            time.sleep(0.0002)
-        self.fail("it ended before it could be stopped")
-
     def test_lines_run_by_a_shell_one_by_one(self):
         """In any order, by their number as in an array of jobs."""
         lines = self.plan()
@@ -247,13 +237,13 @@ class CityTasks(ProgramTest):
     def test_tasks_and_runs_keep_out_of_each_others_way(self):
         first, second, *_ = self.tiles()
         task = self.start(self.task(first))
-        self.stop_with_folder(task)
+        self.stop_with_lock(task)
         self.run_bad(73, *self.command(), says=["another process"])
         self.run_good(*self.task(second))  # tasks do not
         task.send_signal(signal.SIGCONT)
         self.assertEqual(task.wait(100), 0)
         run = self.start(self.command())
-        self.stop_with_folder(run)
+        self.stop_with_lock(run)
         self.run_bad(73, *self.task(first), says=["another process"])
         run.send_signal(signal.SIGCONT)
         self.assertEqual(run.wait(100), 0)

@@ -11,6 +11,8 @@ from support import SENSOR, ProgramTest, tree_digest, write_poses
 # Options that change where results go, who computes, or what is said, but no scan.
 DECIDE_NOTHING = {"--output", "--help", "--version", "--threads", "--report", "--config",
                   "--overwrite", "--device", "--gpus",
+                  # Who makes which of the scans.
+                  "--plan", "--only-scans",
                   # They choose among poses of a recording: those that are chosen are in it.
                   "--topic", "--poses-topic"}
 SCHEME = """\

@@ -83,6 +83,7 @@ void take_spans(ResumableFolder& folder) {
 std::vector<std::string> aids_of_spans(const fs::path& folder) {
   std::vector<std::string> aids;
   const std::set<fs::path> files = files_of_spans(folder);
+  aids.reserve(files.size() + 1);
   for (const fs::path& file : files)
     aids.push_back(std::string(kSpansFolder) + "/" + file.filename().string());
   if (!files.empty()) aids.emplace_back(kSpansFolder);  // behind what was in it
