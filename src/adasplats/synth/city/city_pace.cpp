@@ -55,7 +55,7 @@ std::vector<double> CityPace::next(std::size_t most, double way_m, std::size_t p
       next_m_ = last + spacing_m_;
     }
   }
-  const std::vector<double> places = foreseen(most, way_m);
+  std::vector<double> places = foreseen(most, way_m);
   scans_ += places.size();
   next_m_ += spacing_m_ * static_cast<double>(places.size());
   return places;

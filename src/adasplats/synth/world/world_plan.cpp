@@ -65,7 +65,7 @@ WorldPlan::WorldPlan(const WorldOptions& world_options)
 
 WorldPlan::WorldPlan(const WorldOptions& world_options, WorldLayout layout)
     : options(world_options),
-      style(std::move(layout.style)),
+      style(layout.style),
       route(std::move(layout.route)),
       reach_m(layout.reach_m),
       land_step(layout.land_step),
