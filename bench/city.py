@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The adasplats authors
+# SPDX-License-Identifier: Apache-2.0
+"""A procedural city from scans to a model in tiles, and a drive through it whose tiles come and go.
+
+  bench/city.py BIN_DIR WORK OUT.json --points 50e6 --points 250e6 [--device cuda|cpu] [--threads N]
+      [--tile M] [--calibrate] [--drive-m M] [--spacing M] [--tile-memory GB] [--check STEP] [--drop]
+
+For each number of points: `synth city` of 125,000 points a metre (the length follows), `model
+--tile`, then bench_city along the drive, there and back, until `drive-m` metres are driven. Peak
+memory of the process is the system's (VmHWM of children), of the GPU what nvidia-smi says most while
+it runs, less what was used before. Writes OUT.json (for bench/results).
+"""
+import argparse
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import threading
+import time
+
+POINTS_A_METRE = 125_000
+
+
+def gpu_bytes():
+    """Memory in use on the first GPU; None where there is no nvidia-smi."""
+    try:
+        text = subprocess.run(["nvidia-smi", "--query-gpu=memory.used", "--format=csv,noheader,nounits"],
+                              capture_output=True, text=True, check=True).stdout
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return int(text.splitlines()[0]) << 20
+
+
+class GpuWatch:
+    """The most that is in use beside what was before."""
+
+    def __init__(self):
+        self.before = gpu_bytes()
+        self.most = self.before
+        self.ends = threading.Event()
+        self.thread = threading.Thread(target=self.look)
+
+    def look(self):
+        while not self.ends.wait(0.1):
+            self.most = max(self.most, gpu_bytes() or 0)
+
+    def __enter__(self):
+        if self.before is not None:
+            self.thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self.ends.set()
+        if self.before is not None:
+            self.thread.join()
+
+    def bytes(self):
+        return None if self.before is None else self.most - self.before
+
+
+def run(command):
+    """Runs it; seconds, peak memory of it and of the GPU."""
+    start = time.monotonic()
+    with GpuWatch() as gpu:
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        errors = process.stderr.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}:\n{errors.decode()}")
+    return {"seconds": time.monotonic() - start, "peak_memory_bytes": usage.ru_maxrss * 1024,
+            "cpu_seconds": usage.ru_utime + usage.ru_stime, "gpu_memory_bytes": gpu.bytes()}
+
+
+def one_city(points, options):
+    """Synth, model and drive for one number of points."""
+    work = options.work / f"{points:.0f}"
+    shutil.rmtree(work, ignore_errors=True)
+    work.mkdir(parents=True)
+    program = options.bin / "adasplats"
+    device = ["--device", options.device, "--threads", str(options.threads)]
+    metres = points / POINTS_A_METRE
+    found = {"points_asked": points, "length_m": metres}
+    found["synth"] = run([program, "synth", "city", "-o", work / "drive", "--length", f"{metres:.0f}m",
+                          "--points", f"{points:.0f}", "--no-truth"])
+    report = work / "model.json"
+    calibrate = [] if options.calibrate else ["--no-calibrate"]
+    found["model"] = run([program, "model", work / "drive" / "sequences" / "00", "-o", work / "city",
+                          "--tile", str(options.tile), *calibrate, *device, "--report", report])
+    facts = json.loads(report.read_text())
+    found["provenance"] = facts["provenance"]
+    for key in ("points", "primitives", "tiles", "tile_m", "halo_m"):
+        found["model"][key] = facts[key]
+    found["model"]["steps_s"] = facts["seconds"]
+    found["model"]["us_a_point"] = 1e6 * found["model"]["seconds"] / facts["points"]
+    if options.drive_m > 0:
+        passes = max(1, round(options.drive_m / metres))
+        bench = run([options.bin / "bench_city", work / "city", work / "drive" / "sequences" / "00",
+                     "--passes", str(passes), "--spacing", str(options.spacing), "--tile-memory",
+                     str(options.tile_memory), "--check", str(options.check), *device, "--sensor",
+                     "velodyne-hdl-64e-kitti", "--json", report])
+        drive = json.loads(report.read_text())
+        del drive["provenance"]
+        found["drive"] = drive | {"gpu_memory_bytes": bench["gpu_memory_bytes"]}
+    if options.drop:
+        shutil.rmtree(work)
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("bin", type=pathlib.Path)
+    parser.add_argument("work", type=pathlib.Path)
+    parser.add_argument("out", type=pathlib.Path)
+    parser.add_argument("--points", type=float, action="append", required=True)
+    parser.add_argument("--device", default="cuda")
+    parser.add_argument("--threads", type=int, default=0)
+    parser.add_argument("--tile", type=float, default=64)
+    parser.add_argument("--calibrate", action="store_true")
+    parser.add_argument("--drive-m", type=float, default=0)
+    parser.add_argument("--spacing", type=float, default=0.5)
+    parser.add_argument("--tile-memory", type=float, default=1)
+    parser.add_argument("--check", type=int, default=0)
+    parser.add_argument("--drop", action="store_true", help="remove each city behind its figures")
+    options = parser.parse_args()
+    cities = []
+    for points in options.points:
+        cities.append(one_city(points, options))
+        print(json.dumps(cities[-1], indent=1), flush=True)
+    words = [word for word in sys.argv[4:] if word != "--drop"]
+    provenance = cities[0].pop("provenance")
+    provenance["command"] = " ".join(["bench/city.py BIN_DIR WORK OUT.json", *words])
+    for city in cities[1:]:
+        city.pop("provenance")
+    options.out.write_text(json.dumps({"provenance": provenance, "calibrated": options.calibrate,
+                                       "cities": cities}, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
