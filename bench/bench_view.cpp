@@ -21,9 +21,9 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/levels/level_tree.h"
 #include "adasplats/pipeline/provenance/provenance.h"
 #include "adasplats/splats/model/splat_model.h"
-#include "adasplats/view/levels/level_tree.h"
 #include "adasplats/view/scan_packet.h"
 
 namespace adasplats {

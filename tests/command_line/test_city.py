@@ -57,7 +57,7 @@ class City(ProgramTest):
         self.assertEqual(report["points"], sum(tile["points"] for tile in self.tiles()))
         # No more is left than the model.
         self.assertEqual({path.name for path in self.city.iterdir()},
-                         {"adasplats.json", "city.json", "common.ply", "tiles"})
+                         {"adasplats.json", "city.json", "common.ply", "levels", "tiles"})
 
     def test_tiles_come_and_go_along_a_drive(self):
         self.run_good(*self.command())

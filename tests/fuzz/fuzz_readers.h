@@ -36,6 +36,8 @@ void read_mesh(const Input& input);
 void read_gltf(const Input& input);
 void read_splat_model(const Input& input);
 void read_world(const Input& input);
+void read_city(const Input& input);
+void read_level_file(const Input& input);
 void read_network_bytes(const Input& input);
 
 // drives.cpp

@@ -20,6 +20,7 @@
 #include "adasplats/io/pickle/gzip.h"
 #include "adasplats/io/pickle/pickle_samples_test.h"
 #include "adasplats/io/small_files_test.h"
+#include "adasplats/levels/level_file.h"
 #include "adasplats/segment/network/network_text_test.h"
 #include "adasplats/sensors/lidar_library.h"
 #include "adasplats/sensors/lidar_model.h"
@@ -231,6 +232,27 @@ void add_meshes(Seeds& seeds) {
                     bytes_of(static_cast<std::uint32_t>(12 + chunks.size())) + chunks});
 }
 
+void add_cities(Seeds& seeds) {
+  seeds.add("city",
+            {R"({"format":"adasplats city","version":1,"tile_m":24,"halo_m":8,"origin_m":[1,2,0],)"
+             R"("tiles":[{"x":-1,"y":2,"points":9,"splats":2,"sha256":"ab","low_m":[0,0,0],)"
+             R"("high_m":[1,2,3]},{"x":0,"y":2,"points":0,"splats":0,"sha256":"cd",)"
+             R"("low_m":[0,0,0],"high_m":[0,0,0]}]})"});
+  LevelTable tree;
+  tree.facts = {3, true, true, {0.25F, 0.5F}};
+  tree.nodes = {
+      {.high = {1, 2, 3}, .spacing_m = 0.5F, .first_child = 1, .child_count = 2, .count = 1},
+      {.largest_radius_m = 0.1F, .count = 2, .level = 1},
+      {.count = 1, .level = 1}};
+  const std::string element(sizeof(LevelElement), '\1');
+  std::string elements;
+  for (int k = 0; k < 4; ++k) elements += element;
+  LevelTable top = tree;
+  top.parts = {{"levels/x0_y0.levels", 1, 0, 1, 99, "ab", "cd"},
+               {"levels/x0_y1.levels", 2, 0, 1, 98, "ef", "gh"}};
+  seeds.add("levels", {level_head(tree) + elements, level_head(top) + element});
+}
+
 void add_places(Seeds& seeds) {
   add_meshes(seeds);
   const std::string splats =
@@ -253,6 +275,7 @@ void add_places(Seeds& seeds) {
                      "position = [1, -3.5, 0]\nyaw_deg = 90\nscale = 2\ntrajectory = \"car.ply\"\n"
                      "present = \"during\"\nscan = 3\nname = \"t\"\n",
                      "ply"})});
+  add_cities(seeds);
   seeds.add("network",
             {network_test::pole_network().text(), network_test::pole_network_of_8_bits().text(),
              network_test::network_of_all_layers().text()});

@@ -1,7 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 
+#include "adasplats/city/city_manifest.h"
+#include "adasplats/levels/level_file.h"
 #include "adasplats/scene/gltf.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/segment/network/network.h"
@@ -40,6 +44,26 @@ void read_splat_model(const Input& input) {
 void read_world(const Input& input) {
   for (const WorldFileObject& object : read_world_file(input.file).objects)
     require(object.scale > 0 && is_finite(object.placement.translation), "objects that can be");
+}
+
+void read_city(const Input& input) {
+  const CityManifest city = load_city_manifest(input.file.parent_path());
+  require(city.grid.side_m > 0, "tiles that have a size");
+  require(std::ranges::is_sorted(city.tiles, {}, &CityTile::key), "tiles in their order");
+}
+
+void read_level_file(const Input& input) {
+  const LevelTable table = read_levels(input.file);
+  require(!table.nodes.empty(), "a root");
+  const std::vector<bool> own = table.own_nodes();
+  const std::uint64_t bytes = std::filesystem::file_size(input.file);
+  std::uint64_t offset = table.elements_at;
+  for (std::size_t n = 0; n < own.size(); ++n) {
+    if (!own[n]) continue;
+    const std::size_t count = table.nodes[n].count;
+    offset += read_level_elements(input.file, bytes, offset, count).size();
+  }
+  require(offset == bytes, "elements to the end of the file");
 }
 
 void read_network_bytes(const Input& input) {

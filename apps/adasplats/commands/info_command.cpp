@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "adasplats/city/city_levels.h"
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/gpu/base/device.h"
@@ -108,7 +109,11 @@ class InfoCommand final : public Command {
     }
     std::set<std::string> kinds;
     for (const std::filesystem::path& input : all_inputs()) {
-      if (verify_ && is_city(input)) verify_city(input, load_city_manifest(input));
+      if (verify_ && is_city(input)) {
+        const CityManifest city = load_city_manifest(input);
+        verify_city(input, city);
+        if (has_levels(input)) CityLevels(input, city).verify();
+      }
       const FileFacts facts = run_info(input, labels_, load_, session);
       kinds.insert(facts.kind);
       nlohmann::ordered_json json = {{"path", input.string()}, {"kind", facts.kind}};

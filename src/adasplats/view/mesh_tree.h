@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "adasplats/core/maths/vec3.h"
+#include "adasplats/levels/level_tree.h"
 #include "adasplats/scene/scene.h"
-#include "adasplats/view/levels/level_tree.h"
 
 namespace adasplats {
 

@@ -19,7 +19,7 @@
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/splats/model/place.h"
 #include "adasplats/splats/model/splat_model.h"
-#include "adasplats/view/levels/level_tree.h"
+#include "adasplats/levels/level_tree.h"
 #include "adasplats/view/mesh_tree.h"
 
 namespace adasplats {

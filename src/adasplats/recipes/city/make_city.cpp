@@ -14,6 +14,7 @@
 #include "adasplats/pipeline/output/resumable_folder.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/pipeline/session/repeated_warnings.h"
+#include "adasplats/recipes/city/city_level_files.h"
 #include "adasplats/recipes/city/city_points.h"
 #include "adasplats/recipes/city/city_rays.h"
 #include "adasplats/recipes/city/city_survey.h"
@@ -137,6 +138,7 @@ class CityMaker {
     result_.city.halo_m = work_.tiles.halo_m;
     if (result_.city.splats() == 0)
       throw Error(ErrorKind::data, "no splats: no surface was found in any tile");
+    write_level_files(result_.city, folder_, work_.session);
     if (work_.response) {
       work_.common.response = *work_.response;
       save_model(work_.path(kCityCommonFile), work_.common);

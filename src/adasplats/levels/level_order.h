@@ -15,7 +15,7 @@
 
 namespace adasplats {
 
-/// Private to view/: how many halvings of the cube two cells of the Hilbert curve share, from the
+/// Private to levels/: how many halvings of the cube two cells of the Hilbert curve share, from the
 /// top: kHilbertBits where they are the same.
 inline int shared_levels(std::uint64_t a, std::uint64_t b) {
   return a == b ? kHilbertBits : (std::countl_zero(a ^ b) - 1) / 3;

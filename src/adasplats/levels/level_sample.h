@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "adasplats/core/maths/vec3.h"
-#include "adasplats/view/levels/level_tree.h"
+#include "adasplats/levels/level_tree.h"
 
 namespace adasplats {
 
-/// Private to view/: one element of a node before it becomes bytes.
+/// Private to levels/: one element of a node before it becomes bytes.
 struct LevelSample {
   Vec3f position;
   float radius_m = 0;  ///< of a splat

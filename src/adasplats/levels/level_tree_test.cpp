@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/view/levels/level_tree.h"
+#include "adasplats/levels/level_tree.h"
 
 #include <gtest/gtest.h>
 

@@ -24,20 +24,26 @@ struct LevelInput {
   std::span<const float> errors_m;  ///< signed; NaN: not known
 };
 
+/// The ends of what an attribute's bytes stand for: intensities 0 and 255, errors 1 and 255 (0: not
+/// known).
+struct ByteRange {
+  float low = 0;
+  float high = 1;
+  friend bool operator==(const ByteRange&, const ByteRange&) = default;
+};
+
 struct LevelOptions {
   std::size_t leaf_size = 16'384;  ///< most elements of a leaf
   /// Grid over an inner node's cube, of which each occupied cell has an element; rounded down to a
   /// power of two. Coarser where more than leaf_size cells, or more than half as many as elements,
   /// would be occupied, so that a node is never much larger than a leaf.
   int cells_per_side = 64;
+  /// Instead of range_of_intensities(), for trees that are parts of a whole.
+  std::optional<ByteRange> intensity_range = std::nullopt;
 };
 
-/// The ends of what an attribute's bytes stand for: intensities 0 and 255, errors 1 and 255 (0: not
-/// known).
-struct ByteRange {
-  float low = 0;
-  float high = 1;
-};
+/// 2nd and 98th percentile of those that are finite; {0, 1} without any or where they are equal.
+ByteRange range_of_intensities(std::span<const float> intensities);
 
 /// One node as the page reads it (docs/viewer_protocol.md, "A layer's tree").
 struct LevelNode {
@@ -83,6 +89,8 @@ class LevelTree {
   std::span<const LevelNode> nodes() const { return nodes_; }
   /// Of node `n` (< nodes().size()).
   std::span<const LevelElement> elements(std::size_t n) const;
+  /// Of all nodes, one after another.
+  std::span<const LevelElement> elements() const { return elements_; }
   std::size_t input_size() const { return input_size_; }
   ByteRange intensity_range() const { return intensity_range_; }
   ByteRange error_range_m() const { return error_range_m_; }
@@ -92,13 +100,33 @@ class LevelTree {
   std::vector<LevelNode> nodes_;
   std::vector<std::size_t> firsts_;  ///< of each node in `elements_`, and the end
   std::vector<LevelElement> elements_;
-  /// 2nd and 98th percentile of the intensities; {0, 1} without any or where they are equal.
   ByteRange intensity_range_;
   /// To the 98th percentile of the errors' magnitudes, at least a millimetre; where any error is
   /// negative from the negative of that, which is half a metre then at most: few ghosts must not
   /// take the colours from all others.
   ByteRange error_range_m_;
 };
+
+/// A node by itself.
+struct LevelPiece {
+  LevelNode node;
+  std::vector<LevelElement> elements;
+};
+
+/// An inner node that stands for all of the splats `input` (one or more), merged as a LevelTree's
+/// are; without children. `options.intensity_range` must be given.
+LevelPiece merged_node(const LevelInput& input, const LevelOptions& options,
+                       const Executor& executor);
+
+/// The splats that a node's elements say, to the precision of their bytes.
+struct LevelSplats {
+  std::vector<Disk> disks;
+  std::vector<std::uint16_t> classes;
+  std::vector<float> intensities;
+};
+/// Adds a node's splats to `splats`.
+void add_splats(const LevelNode& node, std::span<const LevelElement> elements,
+                ByteRange intensities, LevelSplats& splats);
 
 /// A layer's nodes.bin.
 std::string nodes_bytes(std::span<const LevelNode> nodes);

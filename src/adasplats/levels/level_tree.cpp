@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/view/levels/level_tree.h"
+#include "adasplats/levels/level_tree.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "adasplats/view/levels/level_merge.h"
-#include "adasplats/view/levels/level_order.h"
-#include "adasplats/view/levels/level_sample.h"
+#include "adasplats/levels/level_merge.h"
+#include "adasplats/levels/level_order.h"
+#include "adasplats/levels/level_sample.h"
 
 namespace adasplats {
 namespace {
@@ -49,13 +49,6 @@ float percentile(std::vector<float>& values, std::size_t percent) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * percent / 100);
   std::nth_element(values.begin(), at, values.end());
   return *at;
-}
-
-ByteRange range_of_intensities(std::span<const float> intensities) {
-  std::vector<float> values = finite_values(intensities, false);
-  if (values.empty()) return {0, 1};
-  const float low = percentile(values, 2), high = percentile(values, 98);
-  return low < high ? ByteRange{low, high} : ByteRange{0, 1};
 }
 
 ByteRange range_of_errors(std::span<const float> errors_m) {
@@ -163,10 +156,18 @@ class NodeMaker {
 
 }  // namespace
 
+ByteRange range_of_intensities(std::span<const float> intensities) {
+  std::vector<float> values = finite_values(intensities, false);
+  if (values.empty()) return {0, 1};
+  const float low = percentile(values, 2), high = percentile(values, 98);
+  return low < high ? ByteRange{low, high} : ByteRange{0, 1};
+}
+
 LevelTree::LevelTree(const LevelInput& input, const LevelOptions& options, const Executor& executor)
     : input_size_(input.disks.size() + input.positions.size()) {
   check(input, options);
-  intensity_range_ = range_of_intensities(input.intensities);
+  intensity_range_ =
+      options.intensity_range ? *options.intensity_range : range_of_intensities(input.intensities);
   error_range_m_ = range_of_errors(input.errors_m);
   LevelOrder order(input.disks, input.positions, executor);
   const NodeMaker maker(input, options, order, executor);
@@ -206,6 +207,38 @@ LevelTree::LevelTree(const LevelInput& input, const LevelOptions& options, const
 
 std::span<const LevelElement> LevelTree::elements(std::size_t n) const {
   return std::span(elements_).subspan(firsts_[n], firsts_[n + 1] - firsts_[n]);
+}
+
+LevelPiece merged_node(const LevelInput& input, const LevelOptions& options,
+                       const Executor& executor) {
+  check(input, options);
+  if (input.disks.empty() || !options.intensity_range)
+    throw std::logic_error("merged node: no splats, or no range of intensities");
+  LevelOrder order(input.disks, input.positions, executor);
+  LevelBlock block = order.whole();
+  order.tighten(block, executor);
+  LevelPiece piece;
+  const NodeMaker maker(input, options, order, executor);
+  const std::vector<LevelSample> samples = maker.inner(block, piece.node.spacing_m);
+  piece.elements =
+      encode(samples, *options.intensity_range, range_of_errors(input.errors_m), piece.node);
+  return piece;
+}
+
+void add_splats(const LevelNode& node, std::span<const LevelElement> elements,
+                ByteRange intensities, LevelSplats& splats) {
+  for (const LevelElement& element : elements) {
+    Disk disk;
+    for (int axis = 0; axis < 3; ++axis)
+      disk.center[axis] = node.low[axis] + (node.high[axis] - node.low[axis]) *
+                                               static_cast<float>(element.position[axis]) / 65535;
+    disk.radius = node.largest_radius_m * static_cast<float>(element.radius) / 65535;
+    disk.normal = normal_of({element.normal[0], element.normal[1]});
+    splats.disks.push_back(disk);
+    splats.classes.push_back(element.class_id);
+    splats.intensities.push_back(intensities.low + (intensities.high - intensities.low) *
+                                                       static_cast<float>(element.intensity) / 255);
+  }
 }
 
 std::string nodes_bytes(std::span<const LevelNode> nodes) {

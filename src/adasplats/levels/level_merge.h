@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
+#include "adasplats/levels/level_sample.h"
 #include "adasplats/scene/intersect.h"
-#include "adasplats/view/levels/level_sample.h"
 
 namespace adasplats {
 
-/// Private to view/: attributes of a run of elements; element k has those of sources[k].
+/// Private to levels/: attributes of a run of elements; element k has those of sources[k].
 struct ElementValues {
   std::span<const std::uint16_t> classes;
   std::span<const float> intensities;

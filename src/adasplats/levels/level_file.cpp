@@ -1,0 +1,252 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/levels/level_file.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/input_file.h"
+
+namespace adasplats {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+static_assert(std::endian::native == std::endian::little, "tables are written as they are");
+
+constexpr const char* kFormat = "adasplats levels";
+constexpr int kVersion = 1;
+/// A line is looked for in pieces that double, up to this: about 400 bytes a part.
+constexpr std::size_t kFirstPiece = 4096;
+constexpr std::size_t kLongestLine = std::size_t{1} << 30;
+
+Error damaged(const fs::path& path, const std::string& what) {
+  return {ErrorKind::data, path.string() + ": damaged levels of detail: " + what};
+}
+
+std::size_t elements_of(const LevelTable& table) {
+  const std::vector<bool> own = table.own_nodes();
+  std::size_t sum = 0;
+  for (std::size_t n = 0; n < table.nodes.size(); ++n)
+    if (own[n]) sum += table.nodes[n].count;
+  return sum;
+}
+
+Json json_of(const LevelPart& part) {
+  return {{"file", part.file},      {"root", part.root},   {"first", part.first},
+          {"nodes", part.nodes},    {"bytes", part.bytes}, {"sha256", part.sha256},
+          {"made_of", part.made_of}};
+}
+
+LevelPart part_of(const Json& json) {
+  return {json.at("file"),  json.at("root"),   json.at("first"),  json.at("nodes"),
+          json.at("bytes"), json.at("sha256"), json.at("made_of")};
+}
+
+/// The first line of the file without its end.
+std::string first_line(InputFile& file) {
+  std::size_t bytes = kFirstPiece;
+  for (;;) {
+    bytes = static_cast<std::size_t>(std::min<std::uint64_t>(bytes, file.remaining()));
+    const auto piece = file.peek(bytes);
+    const std::string_view text(reinterpret_cast<const char*>(piece.data()), piece.size());
+    if (const std::size_t end = text.find('\n'); end != std::string_view::npos) {
+      std::string line(text.substr(0, end));
+      file.skip(end + 1);
+      return line;
+    }
+    // What is no line of ours ends it soon.
+    if (!text.starts_with("{\"format\":\"adasplats") || bytes == file.remaining() ||
+        bytes > kLongestLine)
+      throw Error(ErrorKind::data, file.path().string() + ": no levels of detail of a city");
+    bytes *= 2;
+  }
+}
+
+Json parsed_head(InputFile& file) {
+  const std::string line = first_line(file);
+  Json json = Json::parse(line);
+  if (json.at("format") != kFormat)
+    throw Error(ErrorKind::data, file.path().string() + ": no levels of detail of a city");
+  if (json.at("version") != kVersion)
+    throw Error(ErrorKind::data, file.path().string() + ": levels of detail of version " +
+                                     json.at("version").dump() + "; this program reads version " +
+                                     std::to_string(kVersion));
+  return json;
+}
+
+LevelFacts facts_of(const Json& json, const fs::path& path) {
+  LevelFacts facts;
+  facts.splats = json.at("splats");
+  facts.has_classes = json.at("has_classes");
+  facts.has_intensities = json.at("has_intensities");
+  facts.intensity_range = {json.at("intensity_range").at(0), json.at("intensity_range").at(1)};
+  const auto [low, high] = facts.intensity_range;
+  if (!std::isfinite(low) || !std::isfinite(high) || !(low < high))
+    throw damaged(path, "a range of intensities that cannot be");
+  return facts;
+}
+
+bool is_sound(const LevelNode& node) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (!std::isfinite(node.low[axis]) || !std::isfinite(node.high[axis]) ||
+        node.low[axis] > node.high[axis])
+      return false;
+  return std::isfinite(node.spacing_m) && node.spacing_m >= 0 &&
+         std::isfinite(node.largest_radius_m) && node.largest_radius_m >= 0;
+}
+
+/// A tree: every node but the first is the child of one that stands before it.
+void check_tree(const LevelTable& table, const fs::path& path) {
+  const std::vector<LevelNode>& nodes = table.nodes;
+  std::vector<bool> has_parent(nodes.size(), false);
+  std::size_t splats = 0;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const LevelNode& node = nodes[n];
+    const std::string name = "node " + std::to_string(n);
+    if (!is_sound(node)) throw damaged(path, name + " has a box that cannot be");
+    if (node.child_count == 0) splats += node.count;
+    const std::size_t end = std::size_t{node.first_child} + node.child_count;
+    if (node.child_count > 8 || end > nodes.size() ||
+        (node.child_count > 0 && node.first_child <= n))
+      throw damaged(path, name + " has children that cannot be");
+    for (std::size_t child = node.first_child; node.child_count > 0 && child < end; ++child) {
+      if (has_parent[child] || nodes[child].level != node.level + 1)
+        throw damaged(path, name + " has children of another node");
+      has_parent[child] = true;
+    }
+  }
+  if (std::count(has_parent.begin(), has_parent.end(), false) != 1)
+    throw damaged(path, "nodes that are no children");
+  if (splats != table.facts.splats)
+    throw damaged(path, std::to_string(splats) + " splats in the leaves; its first line says " +
+                            std::to_string(table.facts.splats));
+}
+
+/// Where parts say their nodes are there are nodes, and no two say the same.
+void check_parts(const LevelTable& table, const fs::path& path) {
+  std::vector<bool> taken(table.nodes.size(), false);
+  const auto take = [&](std::size_t node) {
+    if (node >= taken.size() || taken[node]) throw damaged(path, "parts that cannot be");
+    taken[node] = true;
+  };
+  for (const LevelPart& part : table.parts) {
+    if (part.nodes == 0 || part.nodes > taken.size() || part.first > taken.size())
+      throw damaged(path, "parts that cannot be");
+    take(part.root);
+    for (std::size_t k = 1; k < part.nodes; ++k) take(part.first + k - 1);
+  }
+}
+
+LevelTable table_of(InputFile& file) {
+  const Json json = parsed_head(file);
+  LevelTable table;
+  table.facts = facts_of(json, file.path());
+  for (const Json& part : json.at("parts")) table.parts.push_back(part_of(part));
+  const std::uint64_t nodes = json.at("nodes");
+  if (nodes == 0 || nodes > file.remaining() / sizeof(LevelNode) ||
+      nodes > std::numeric_limits<std::uint32_t>::max())
+    throw damaged(file.path(), std::to_string(nodes) + " nodes in " +
+                                   std::to_string(file.remaining()) + " bytes");
+  table.nodes.resize(nodes);
+  for (LevelNode& node : table.nodes) {
+    std::memcpy(&node, file.peek(sizeof(LevelNode)).data(), sizeof(LevelNode));
+    file.skip(sizeof(LevelNode));
+  }
+  table.elements_at = file.offset();
+  check_tree(table, file.path());
+  check_parts(table, file.path());
+  const std::size_t expected = elements_of(table) * sizeof(LevelElement);
+  if (file.remaining() != expected)
+    throw damaged(file.path(), std::to_string(file.remaining()) + " bytes of elements, expected " +
+                                   std::to_string(expected));
+  return table;
+}
+
+}  // namespace
+
+std::vector<bool> LevelTable::own_nodes() const {
+  std::vector<bool> own(nodes.size(), true);
+  for (const LevelPart& part : parts) {
+    own.at(part.root) = false;
+    for (std::size_t k = 1; k < part.nodes; ++k) own.at(part.first + k - 1) = false;
+  }
+  return own;
+}
+
+std::string level_head(const LevelTable& table) {
+  Json json = {
+      {"format", kFormat},
+      {"version", kVersion},
+      {"splats", table.facts.splats},
+      {"has_classes", table.facts.has_classes},
+      {"has_intensities", table.facts.has_intensities},
+      {"intensity_range", {table.facts.intensity_range.low, table.facts.intensity_range.high}},
+      {"nodes", table.nodes.size()},
+      {"parts", Json::array()}};
+  for (const LevelPart& part : table.parts) json["parts"].push_back(json_of(part));
+  std::string bytes = json.dump() + "\n";
+  const std::size_t line = bytes.size();
+  bytes.resize(line + table.nodes.size() * sizeof(LevelNode));
+  std::memcpy(bytes.data() + line, table.nodes.data(), table.nodes.size() * sizeof(LevelNode));
+  return bytes;
+}
+
+void write_levels(const fs::path& path, const LevelTable& table,
+                  std::span<const LevelElement> elements) {
+  if (elements.size() != elements_of(table))
+    throw std::logic_error("levels of detail: elements of other nodes");
+  std::string bytes = level_head(table);
+  const std::size_t head = bytes.size();
+  bytes.resize(head + elements.size_bytes());
+  if (!elements.empty()) std::memcpy(bytes.data() + head, elements.data(), elements.size_bytes());
+  write_file_in_place(path, bytes);
+}
+
+void write_levels(const fs::path& path, const LevelTree& tree, const LevelFacts& facts) {
+  LevelTable table;
+  table.facts = facts;
+  table.nodes.assign(tree.nodes().begin(), tree.nodes().end());
+  write_levels(path, table, tree.elements());
+}
+
+LevelTable read_levels(const fs::path& path) {
+  InputFile file(path);
+  try {
+    return table_of(file);
+  } catch (const Json::exception& error) {
+    throw damaged(path, error.what());
+  }
+}
+
+std::string read_level_elements(const fs::path& path, std::uint64_t bytes, std::uint64_t offset,
+                                std::size_t count) {
+  const InputDescriptor file(path);
+  if (file.size_bytes() != bytes)
+    throw damaged(path,
+                  std::to_string(file.size_bytes()) + " bytes, expected " + std::to_string(bytes));
+  std::string elements(count * sizeof(LevelElement), '\0');
+  std::size_t done = 0;
+  while (done < elements.size()) {
+    const ssize_t got = ::pread(file.get(), elements.data() + done, elements.size() - done,
+                                static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) throw Error(ErrorKind::io, path.string() + ": cannot be read any more");
+    done += static_cast<std::size_t>(got);
+  }
+  return elements;
+}
+
+}  // namespace adasplats
