@@ -3,11 +3,14 @@
 #include "commands/view_inputs.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "adasplats/city/city_levels.h"
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
@@ -22,6 +25,9 @@ namespace adasplats::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What the tiles of a city around the sensor may take.
+constexpr std::size_t kTileBytes = 1'000'000'000;
 
 /// The inputs by what they are.
 struct Sorted {
@@ -124,7 +130,10 @@ class Loading {
     inputs.insert(inputs.end(), sorted_.sequences.begin(), sorted_.sequences.end());
     view_.scene.labels = label_scheme_for(job_.labels, inputs);
     for (const fs::path& errors : sorted_.errors) read_errors(errors);
-    if (!sorted_.model.empty()) add_model();
+    if (stays_on_disk())
+      add_city();
+    else if (!sorted_.model.empty())
+      add_model();
     for (const fs::path& place : sorted_.places) add_place(place);
     for (const fs::path& cloud : sorted_.clouds) add_cloud(cloud);
     for (std::size_t i = 0; i < errors_.size(); ++i)
@@ -138,11 +147,39 @@ class Loading {
   }
 
  private:
+  /// A city with levels of detail; what beams of errors hit is not known of it.
+  bool stays_on_disk() const {
+    if (!is_city(sorted_.model)) return false;
+    const bool errors = !sorted_.errors.empty();
+    if (!errors && has_levels(sorted_.model)) return true;
+    session_.progress.warn(sorted_.model.string() +
+                           (errors ? ": all of the city is loaded, since errors are shown"
+                                   : ": a city without levels of detail, so all of it is loaded; "
+                                     "cities have them that this program models"));
+    return false;
+  }
+
+  void add_city() {
+    const fs::path& folder = sorted_.model;
+    const CityManifest city = load_city_manifest(folder);
+    auto levels = std::make_shared<const CityLevels>(folder, city);
+    view_.city = std::make_unique<CityScene>(folder, job_.labels, session_, kTileBytes);
+    view_.picker = std::make_unique<CityPicker>(folder, city);
+    ViewScene& scene = view_.scene;
+    scene.place = view_.city.get();
+    scene.picker = view_.picker.get();
+    set_place(city.origin, view_.city->middle_box());
+    crs_.add(folder, load_model(folder / kCityCommonFile).crs);
+    if (view_.city->labels() != nullptr) scene.labels = *view_.city->labels();
+    scene.command = {"adasplats", "simulate", folder.string()};
+    scene.layers.push_back(city_layer(name_of(folder), std::move(levels)));
+  }
+
   void add_model() {
     view_.model =
         std::make_unique<ModelScene>(sorted_.model, job_.labels, session_, WorldFiles::taken);
     ViewScene& scene = view_.scene;
-    scene.model = view_.model.get();
+    scene.place = scene.model = view_.model.get();
     set_place(view_.model->origin(), view_.model->middle_box());
     crs_.add(sorted_.model, view_.model->crs());
     if (view_.model->labels() != nullptr) scene.labels = *view_.model->labels();

@@ -4,7 +4,9 @@
 
 #include <memory>
 
+#include "adasplats/pipeline/scene/city_scene.h"
 #include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/view/city_picker.h"
 #include "adasplats/view/view_scene.h"
 #include "commands/view_job.h"
 
@@ -12,8 +14,10 @@ namespace adasplats::app {
 
 /// What the page is shown, and the model that it is simulated in.
 struct LoadedView {
-  std::unique_ptr<ModelScene> model;  ///< null: points alone
-  ViewScene scene;                    ///< looks into `model`
+  std::unique_ptr<ModelScene> model;   ///< null: a city, or points alone
+  std::unique_ptr<CityScene> city;     ///< null: not one that stays on disk
+  std::unique_ptr<CityPicker> picker;  ///< likewise
+  ViewScene scene;                     ///< looks into these
 };
 
 /// Finds out what the inputs are and loads them. Errors: usage (a folder with several models or

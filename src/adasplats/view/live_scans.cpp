@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <thread>
 #include <utility>
 #include <variant>
@@ -77,7 +78,7 @@ struct Simulator {
 /// Rays of the sensors that were used last.
 class Simulators {
  public:
-  Simulators(const ModelScene& scene, const Executor& executor)
+  Simulators(const ScanPlace& scene, const Executor& executor)
       : scene_(scene), executor_(executor) {}
 
   Simulator& of(const LiveSensor& sensor) {
@@ -95,7 +96,7 @@ class Simulators {
   }
 
  private:
-  const ModelScene& scene_;
+  const ScanPlace& scene_;
   const Executor& executor_;
   std::vector<Simulator> kept_;  ///< last used first
 };
@@ -133,7 +134,7 @@ class PlacedObjects {
 class LiveScans::Implementation {
  public:
   Implementation(const ViewScene& scene, const Executor& executor)
-      : scene_(scene), executor_(executor), simulators_(*scene.model, executor), objects_(scene) {
+      : scene_(scene), executor_(executor), simulators_(*scene.place, executor), objects_(scene) {
     first_sensor_ = std::make_shared<const LiveSensor>(live_sensor(scene.sensor));
     thread_ = std::thread([this] { simulate(); });
   }
@@ -289,8 +290,14 @@ class LiveScans::Implementation {
 
   /// Of the model, once: the same for every scan.
   float full_intensity() {
-    if (!full_intensity_)
+    if (full_intensity_) return *full_intensity_;
+    if (scene_.model != nullptr) {
       full_intensity_ = full_intensity_of(scene_.model->attributes().intensities);
+    } else {
+      // Of a city that is not in memory: most of them are no larger.
+      const float high = intensity_range_of(scene_.layers.front()).high;
+      full_intensity_ = full_intensity_of(std::span(&high, 1));
+    }
     return *full_intensity_;
   }
 
@@ -308,7 +315,7 @@ class LiveScans::Implementation {
 };
 
 LiveScans::LiveScans(const ViewScene& scene, const Executor& executor) {
-  if (scene.model != nullptr) implementation_ = std::make_unique<Implementation>(scene, executor);
+  if (scene.place != nullptr) implementation_ = std::make_unique<Implementation>(scene, executor);
 }
 
 LiveScans::~LiveScans() = default;

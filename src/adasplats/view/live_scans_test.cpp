@@ -123,6 +123,7 @@ struct RoomWithWall : Room {
       object.class_id = 99;
       world.add_object(std::move(object));
     });
+    view.place = &model;
     view.model = &model;
     add_world(view, executor);
   }
@@ -284,6 +285,7 @@ TEST(LiveScans, EveryQuestionIsAnsweredOrRefused) {
 
 TEST(LiveScans, WithoutAModelNothingIsSimulated) {
   Room room;
+  room.view.place = nullptr;
   room.view.model = nullptr;
   LiveScans live(room.view, room.executor);
   Page page(live);

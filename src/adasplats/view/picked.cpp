@@ -3,6 +3,7 @@
 #include "adasplats/view/picked.h"
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 
 namespace adasplats {
@@ -12,14 +13,15 @@ using Json = nlohmann::ordered_json;
 
 constexpr float kLongestPick_m = 1e5F;
 
+void add_class(Json& json, const ViewScene& scene, std::uint16_t id) {
+  const SemanticClass* const known = scene.labels ? scene.labels->find(id) : nullptr;
+  json["class"] = id;
+  if (known != nullptr) json["class_name"] = known->name;
+}
+
 void add_attributes(Json& json, const ViewScene& scene, std::uint32_t primitive) {
   const PrimitiveAttributes& attributes = scene.model->attributes();
-  if (primitive < attributes.classes.size()) {
-    const std::uint16_t id = attributes.classes[primitive];
-    const SemanticClass* const known = scene.labels ? scene.labels->find(id) : nullptr;
-    json["class"] = id;
-    if (known != nullptr) json["class_name"] = known->name;
-  }
+  if (primitive < attributes.classes.size()) add_class(json, scene, attributes.classes[primitive]);
   if (primitive < attributes.intensities.size())
     json["intensity"] = attributes.intensities[primitive];
 }
@@ -31,15 +33,43 @@ void add_triangle(Json& json, const TriangleMesh& mesh, std::size_t number) {
   json["normal"] = {normal.x, normal.y, normal.z};
 }
 
+void add_disk(Json& json, const Disk& disk) {
+  json["normal"] = {disk.normal.x, disk.normal.y, disk.normal.z};
+  json["radius_m"] = disk.radius;
+}
+
 void add_geometry(Json& json, const SceneView& view, std::uint32_t primitive) {
   if (primitive >= view.disks.size()) {
     if (primitive < view.primitive_count())
       add_triangle(json, *view.mesh, primitive - view.disk_count());
     return;
   }
-  const Disk& disk = view.disks[primitive];
-  json["normal"] = {disk.normal.x, disk.normal.y, disk.normal.z};
-  json["radius_m"] = disk.radius;
+  add_disk(json, view.disks[primitive]);
+}
+
+/// What the ray meets in a model in memory; nothing: `false`.
+bool add_hit_of_model(Json& json, const ViewScene& scene, const Ray& ray,
+                      const Executor& executor) {
+  Hit hit;
+  scene.model->tracer().nearest(std::span(&ray, 1), std::span(&hit, 1), executor);
+  if (!hit.valid()) return false;
+  json["range_m"] = hit.t;
+  json["primitive"] = hit.primitive;
+  add_geometry(json, scene.model->view(), hit.primitive);
+  add_attributes(json, scene, hit.primitive);
+  return true;
+}
+
+/// The same in a city on disk.
+bool add_hit_of_city(Json& json, const ViewScene& scene, const Ray& ray) {
+  const std::optional<CityHit> hit = scene.picker->nearest(ray);
+  if (!hit) return false;
+  json["range_m"] = hit->range_m;
+  json["primitive"] = hit->splat;
+  add_disk(json, hit->disk);
+  if (hit->class_id) add_class(json, scene, *hit->class_id);
+  if (hit->intensity) json["intensity"] = *hit->intensity;
+  return true;
 }
 
 }  // namespace
@@ -47,18 +77,15 @@ void add_geometry(Json& json, const SceneView& view, std::uint32_t primitive) {
 std::string picked_message(const ViewScene& scene, const PickMessage& pick,
                            const Executor& executor) {
   const Vec3d direction = (1 / length(pick.direction)) * pick.direction;
-  const Ray ray = {vec_cast<float>(pick.origin - scene.model->origin()), 0,
+  const Ray ray = {vec_cast<float>(pick.origin - scene.place->origin()), 0,
                    vec_cast<float>(direction), kLongestPick_m};
-  Hit hit;
-  scene.model->tracer().nearest(std::span(&ray, 1), std::span(&hit, 1), executor);
-  Json json = {{"type", "picked"}, {"id", pick.id}, {"hit", hit.valid()}};
-  if (hit.valid()) {
-    const Vec3d at = pick.origin + static_cast<double>(hit.t) * direction - scene.origin;
-    json["range_m"] = hit.t;
-    json["primitive"] = hit.primitive;
+  Json json = {{"type", "picked"}, {"id", pick.id}, {"hit", false}};
+  const bool hit = scene.model != nullptr ? add_hit_of_model(json, scene, ray, executor)
+                                          : add_hit_of_city(json, scene, ray);
+  if (hit) {
+    json["hit"] = true;
+    const Vec3d at = pick.origin + json["range_m"].get<double>() * direction - scene.origin;
     json["position"] = {at.x, at.y, at.z};
-    add_geometry(json, scene.model->view(), hit.primitive);
-    add_attributes(json, scene, hit.primitive);
   }
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -10,7 +10,7 @@
 
 namespace adasplats {
 
-/// {"type": "picked", ...}: what a ray meets first in the scene's model (not null).
+/// {"type": "picked", ...}: what a ray meets first in the scene's place (not null).
 std::string picked_message(const ViewScene& scene, const PickMessage& pick,
                            const Executor& executor);
 

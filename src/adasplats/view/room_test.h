@@ -42,6 +42,7 @@ struct Room {
     ViewScene scene;
     scene.name = "room";
     scene.origin = model.origin();
+    scene.place = &model;
     scene.model = &model;
     scene.labels = *model.labels();
     scene.middle_box = model.middle_box();

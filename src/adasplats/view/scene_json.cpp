@@ -31,7 +31,7 @@ Json layer_json(const ViewLayer& layer, std::size_t id) {
           {"has_intensities", layer.has_intensities},
           {"has_errors", layer.has_errors},
           {"part", layer.part},
-          {"intensity_range", json_of(layer.tree.intensity_range())},
+          {"intensity_range", json_of(intensity_range_of(layer))},
           {"error_range_m", json_of(layer.tree.error_range_m())},
           {"box", box_of(layer)}};
 }
@@ -127,8 +127,8 @@ std::string scene_json(const ViewScene& scene) {
   json["objects"] = Json::array();
   for (const ViewObject& object : scene.objects)
     json["objects"].push_back(object_json(scene, object));
-  json["can_simulate"] = scene.model != nullptr;
-  json["sensors"] = scene.model != nullptr ? sensors_json() : Json::array();
+  json["can_simulate"] = scene.place != nullptr;
+  json["sensors"] = scene.place != nullptr ? sensors_json() : Json::array();
   json["sensor"] = scene.sensor;
   json["start_pose"] = pose_json(scene.start_pose, scene.origin);
   json["device"] = scene.device;

@@ -3,10 +3,8 @@
 #include "adasplats/view/view_pages.h"
 
 #include <charconv>
-#include <cstddef>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -88,9 +86,7 @@ HttpReply ViewPages::layer(std::string_view path) const {
                                : scene_.geometries[*number - scene_.layers.size()];
   const auto node = binary_number(rest.substr(6));
   if (!node || *node >= nodes_of(found).size()) return not_found();
-  const std::span<const std::byte> bytes = node_bytes(found, *node);
-  // Bytes as characters: what a reply's body is made of.
-  return binary(shared(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())));
+  return binary(shared(node_bytes(found, *node)));
 }
 
 HttpReply ViewPages::recorded_scan(std::string_view name) const {

@@ -15,7 +15,8 @@ namespace adasplats {
 class ViewPages {
  public:
   explicit ViewPages(const ViewScene& scene);
-  /// Status 404 for what there is not, 500 where a recorded scan can no longer be read.
+  /// Status 404 for what there is not, 500 where a recorded scan or the levels of a city can no
+  /// longer be read.
   HttpReply get(std::string_view path) const;
 
  private:

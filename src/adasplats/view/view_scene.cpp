@@ -28,10 +28,10 @@ bool tells(std::span<const T> values, T nothing) {
   return std::ranges::any_of(values, [=](T value) { return value != nothing; });
 }
 
-bool has_classes(std::span<const std::uint16_t> classes) {
+bool tells_classes(std::span<const std::uint16_t> classes) {
   return tells(classes, std::uint16_t{0});
 }
-bool has_intensities(std::span<const float> intensities) {
+bool tells_intensities(std::span<const float> intensities) {
   return !intensities.empty() && tells(intensities, intensities.front());
 }
 
@@ -47,6 +47,7 @@ std::vector<Vec3f> samples_of(const MeshTree& tree) {
 
 /// Of the leaves, every so many, as the page gets them.
 std::vector<Vec3f> samples_of(const ViewLayer& layer) {
+  if (layer.city) return layer.city->samples(kMostSamples);
   if (layer.mesh) return samples_of(*layer.mesh);
   const LevelTree& tree = layer.tree;
   const std::size_t step = 1 + tree.input_size() / kMostSamples;
@@ -70,15 +71,37 @@ std::vector<Vec3f> samples_of(const ViewLayer& layer) {
 }  // namespace
 
 std::span<const LevelNode> nodes_of(const ViewLayer& layer) {
+  if (layer.city) return layer.city->nodes();
   return layer.mesh ? layer.mesh->nodes() : layer.tree.nodes();
 }
 
-std::span<const std::byte> node_bytes(const ViewLayer& layer, std::size_t node) {
-  return layer.mesh ? std::as_bytes(layer.mesh->elements(node))
-                    : std::as_bytes(layer.tree.elements(node));
+std::string node_bytes(const ViewLayer& layer, std::size_t node) {
+  if (layer.city) return layer.city->node_bytes(node);
+  const std::span<const std::byte> bytes = layer.mesh ? std::as_bytes(layer.mesh->elements(node))
+                                                      : std::as_bytes(layer.tree.elements(node));
+  // Bytes as characters: what a reply's body is made of.
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+ByteRange intensity_range_of(const ViewLayer& layer) {
+  return layer.city ? layer.city->facts().intensity_range : layer.tree.intensity_range();
+}
+
+ViewLayer city_layer(std::string name, std::shared_ptr<const CityLevels> levels) {
+  const LevelFacts& facts = levels->facts();
+  return {std::move(name),
+          true,
+          facts.has_classes,
+          facts.has_intensities,
+          false,
+          LevelTree({}, {}, Executor(1)),
+          {},
+          {},
+          std::move(levels)};
 }
 
 std::size_t size_of(const ViewLayer& layer) {
+  if (layer.city) return layer.city->facts().splats;
   return layer.mesh ? layer.mesh->input_size() : layer.tree.input_size();
 }
 
@@ -98,8 +121,8 @@ ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const
   }
   return {std::move(name),
           true,
-          has_classes(model.classes),
-          has_intensities(model.intensities),
+          tells_classes(model.classes),
+          tells_intensities(model.intensities),
           !errors_m.empty(),
           LevelTree(input, {}, executor),
           {},
@@ -110,8 +133,8 @@ ViewLayer mesh_layer(std::string name, const MeshModel& model, std::span<const f
                      Vec3d origin) {
   return {std::move(name),
           false,
-          has_classes(model.mesh.classes),
-          has_intensities(intensities),
+          tells_classes(model.mesh.classes),
+          tells_intensities(intensities),
           false,
           LevelTree({}, {}, Executor(1)),
           MeshTree(model.mesh, intensities, model.origin - origin),
@@ -136,8 +159,8 @@ ViewLayer point_layer(std::string name, const PointCloud& cloud, std::span<const
       .errors_m = errors_m};
   return {std::move(name),
           false,
-          has_classes(cloud.classes),
-          has_intensities(cloud.intensities),
+          tells_classes(cloud.classes),
+          tells_intensities(cloud.intensities),
           !errors_m.empty(),
           LevelTree(input, {}, executor),
           {},

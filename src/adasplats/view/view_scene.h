@@ -3,23 +3,27 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "adasplats/city/city_levels.h"
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
+#include "adasplats/levels/level_tree.h"
 #include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/pipeline/scene/scan_place.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/splats/model/place.h"
 #include "adasplats/splats/model/splat_model.h"
-#include "adasplats/levels/level_tree.h"
+#include "adasplats/view/city_picker.h"
 #include "adasplats/view/mesh_tree.h"
 
 namespace adasplats {
@@ -34,12 +38,18 @@ struct ViewLayer {
   LevelTree tree;                ///< of splats or points
   std::optional<MeshTree> mesh;  ///< instead, for triangles
   std::string part;  ///< of the beams with errors (error_layers.h); empty: all, or no such layer
+  std::shared_ptr<const CityLevels> city = nullptr;  ///< instead of all of these, for a city
 };
 
 /// The tree of a layer, whatever it is of.
 std::span<const LevelNode> nodes_of(const ViewLayer& layer);
-std::span<const std::byte> node_bytes(const ViewLayer& layer, std::size_t node);
+/// Errors: those of CityLevels::node_bytes().
+std::string node_bytes(const ViewLayer& layer, std::size_t node);
 std::size_t size_of(const ViewLayer& layer);
+ByteRange intensity_range_of(const ViewLayer& layer);
+
+/// A city that stays on disk; the view's origin must be the city's.
+ViewLayer city_layer(std::string name, std::shared_ptr<const CityLevels> levels);
 
 /// Triangles.
 ViewLayer mesh_layer(std::string name, const MeshModel& model, std::span<const float> intensities,
@@ -76,8 +86,13 @@ struct ViewScene {
   std::vector<ViewSequence> sequences;
   std::optional<LabelScheme> labels;
   std::pair<Vec3d, Vec3d> middle_box;  ///< world coordinates: where to look first
-  /// That scans are simulated in, and whose objects a page may move; null: none.
+  /// That scans are simulated in; null: none.
+  const ScanPlace* place = nullptr;
+  /// The same where it is in memory, whose objects a page may move; null: it is not.
   ModelScene* model = nullptr;
+  /// What rays of a page meet where the place is a city on disk; used by the simulating thread
+  /// alone.
+  CityPicker* picker = nullptr;
   std::vector<ViewLayer> geometries;  ///< of objects, each in a frame of its own
   std::vector<ViewObject> objects;
   std::string sensor = kDefaultSensor;  ///< chosen at the start

@@ -78,10 +78,13 @@ class Heap {
   }
 }
 
-/** The box that a node's splats fill: their centers, and the largest radius around. */
+/**
+ * The box that a node and all below it fill: the centers of its splats, and around them the largest
+ * radius, and the cells whose means the centers are; those are of cells of half the size, and so on.
+ */
 export function nodeBox(node: TreeNode): Box3 {
   return new Box3(new Vector3(...node.low), new Vector3(...node.high)).expandByScalar(
-    node.largest_radius_m,
+    node.largest_radius_m + 2 * node.spacing_m,
   );
 }
 

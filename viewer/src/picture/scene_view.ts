@@ -24,6 +24,8 @@ export interface ViewStatistics {
   elements: number;
   nodes: number;
   loadedNodes: number;
+  /** Of the nodes that are loaded: as large on the GPU. */
+  loadedBytes: number;
   loading: boolean;
   limited: boolean;
   framesPerSecond: number;
@@ -157,6 +159,7 @@ export class SceneView {
       elements: sum((c) => c.elements),
       nodes: sum((c) => c.drawn.length),
       loadedNodes: this.layers.reduce((s, l) => s + l.loadedNodes, 0),
+      loadedBytes: this.layers.reduce((s, l) => s + l.bytes, 0),
       loading: this.set.busy || this.cuts.some((c) => c.wanted.length > 0),
       limited: this.cuts.some((c) => c.limited),
       framesPerSecond: this.framesPerSecond(),
