@@ -57,8 +57,15 @@ async function opens(t, began) {
   await t.shot('1-open');
 }
 
+async function showScan(t, on) {
+  const box = t.page.locator('label:has-text("Live scan") input');
+  await (on ? box.check() : box.uncheck());
+}
+
 /** Looks down on the way that it drives, from above and behind. */
 async function standAt(t, x, y, z, ahead) {
+  // The eye stays where it is put, wherever the sensor goes.
+  await t.call('setCameraMode', 'orbit');
   const eye = [x - 14 * ahead[0], y - 14 * ahead[1], z + 16];
   await t.call('setCamera', { eye, target: [x + 6 * ahead[0], y + 6 * ahead[1], z - 2] });
 }
@@ -74,6 +81,7 @@ async function drives(t, metres) {
   const [x, y, z] = t.scene.start_pose;
   const [low, high] = t.scene.middle_box;
   const ahead = (low[0] + high[0]) / 2 > x ? [1, 0] : [-1, 0];
+  await showScan(t, false);
   let worst = 0;
   for (let way = 0; way <= metres; way += kStep_m) {
     await standAt(t, x + way * ahead[0], y, z, ahead);
@@ -98,6 +106,7 @@ async function staysSmall(t) {
 }
 
 async function simulates(t) {
+  await showScan(t, true);
   await t.call('setPose', t.scene.start_pose);
   await t.call('setRunning', true);
   const scan = await t.freshScan();
@@ -111,7 +120,7 @@ async function picks(t) {
   await standAt(t, x, y, z, [1, 0]);
   await t.settled();
   // A click is what the picture shows: without the scan's points it is the surface.
-  await t.page.click('label:has-text("Live scan")');
+  await showScan(t, false);
   const box = await t.page.locator('#view').boundingBox();
   for (const [u, v] of [
     [0.5, 0.6],
@@ -131,6 +140,8 @@ async function looksLike(t, whole) {
   const [x, y, z] = t.scene.start_pose;
   for (const side of [t, whole]) {
     await side.call('setRunning', false);
+    await showScan(side, false);
+    await side.call('setPose', t.scene.start_pose);
     await standAt(side, x, y, z, [1, 0]);
     await side.settled();
   }
