@@ -4,11 +4,13 @@
 """A procedural city from scans to a model in tiles, and a drive through it whose tiles come and go.
 
   bench/city.py BIN_DIR WORK OUT.json --points 50e6 --points 250e6 [--device cuda|cpu] [--threads N]
-      [--tile M] [--calibrate] [--drive-m M] [--spacing M] [--tile-memory GB] [--check STEP] [--drop]
+      [--tile M] [--calibrate] [--drive-m M] [--spacing M] [--tile-memory GB] [--check STEP]
+      [--cpu-drive N] [--drop]
 
 For each number of points: `synth city` of 125,000 points a metre (the length follows), `model
---tile`, then bench_city along the drive, there and back, until `drive-m` metres are driven. Peak
-memory of the process is the system's (VmHWM of children), of the GPU what nvidia-smi says most while
+--tile`, then bench_city along the drive, there and back, until `drive-m` metres are driven; with
+`cpu-drive` also one way on N threads of the CPU with 1 GB for tiles. On a GPU a small city comes
+before, unmeasured: the first use of CUDA on a machine takes many seconds. Peak memory of the process is the system's (VmHWM of children), of the GPU what nvidia-smi says most while
 it runs, less what was used before. Writes OUT.json (for bench/results).
 """
 import argparse
@@ -75,6 +77,28 @@ def run(command):
             "cpu_seconds": usage.ru_utime + usage.ru_stime, "gpu_memory_bytes": gpu.bytes()}
 
 
+def driven(work, options, *words):
+    """What bench_city says of a drive through a city."""
+    report = work / "drive.json"
+    used = run([options.bin / "bench_city", work / "city", work / "drive" / "sequences" / "00",
+                "--spacing", str(options.spacing), "--check", str(options.check), "--sensor",
+                "velodyne-hdl-64e-kitti", "--json", report, *words])
+    found = json.loads(report.read_text())
+    del found["provenance"]
+    return found | {"gpu_memory_bytes": used["gpu_memory_bytes"]}
+
+
+def warm_up(options):
+    """The first use of the GPU."""
+    work = options.work / "warm"
+    program = options.bin / "adasplats"
+    run([program, "synth", "city", "-o", work / "drive", "--length", "50m", "--spacing", "10",
+         "--no-truth"])
+    run([program, "model", work / "drive" / "sequences" / "00", "-o", work / "city", "--tile", "64",
+         "--device", options.device])
+    shutil.rmtree(work)
+
+
 def one_city(points, options):
     """Synth, model and drive for one number of points."""
     work = options.work / f"{points:.0f}"
@@ -98,13 +122,11 @@ def one_city(points, options):
     found["model"]["us_a_point"] = 1e6 * found["model"]["seconds"] / facts["points"]
     if options.drive_m > 0:
         passes = max(1, round(options.drive_m / metres))
-        bench = run([options.bin / "bench_city", work / "city", work / "drive" / "sequences" / "00",
-                     "--passes", str(passes), "--spacing", str(options.spacing), "--tile-memory",
-                     str(options.tile_memory), "--check", str(options.check), *device, "--sensor",
-                     "velodyne-hdl-64e-kitti", "--json", report])
-        drive = json.loads(report.read_text())
-        del drive["provenance"]
-        found["drive"] = drive | {"gpu_memory_bytes": bench["gpu_memory_bytes"]}
+        found["drive"] = driven(work, options, "--passes", str(passes), "--tile-memory",
+                                str(options.tile_memory), *device)
+    if options.cpu_drive > 0:
+        found["cpu_drive"] = driven(work, options, "--device", "cpu", "--threads",
+                                    str(options.cpu_drive))
     if options.drop:
         shutil.rmtree(work)
     return found
@@ -124,9 +146,12 @@ def main():
     parser.add_argument("--spacing", type=float, default=0.5)
     parser.add_argument("--tile-memory", type=float, default=1)
     parser.add_argument("--check", type=int, default=0)
+    parser.add_argument("--cpu-drive", type=int, default=0)
     parser.add_argument("--drop", action="store_true", help="remove each city behind its figures")
     options = parser.parse_args()
     cities = []
+    if options.device != "cpu":
+        warm_up(options)
     for points in options.points:
         cities.append(one_city(points, options))
         print(json.dumps(cities[-1], indent=1), flush=True)
