@@ -91,6 +91,7 @@ def driven(work, options, *words):
 def warm_up(options):
     """The first use of the GPU."""
     work = options.work / "warm"
+    work.mkdir(parents=True, exist_ok=True)
     program = options.bin / "adasplats"
     run([program, "synth", "city", "-o", work / "drive", "--length", "50m", "--spacing", "10",
          "--no-truth"])
