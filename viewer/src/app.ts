@@ -42,6 +42,8 @@ import { showViewFigures } from './panels/view_figures';
 import { WorldObjects } from './picture/world_objects';
 
 const kFiguresMs = 250;
+/** That the LiDAR waits for the first picture. */
+const kPatienceMs = 3000;
 
 export class App {
   private readonly view: SceneView;
@@ -142,8 +144,8 @@ export class App {
     void this.objects.load(scene);
     if (scene.can_simulate) {
       live.setMotion(sensor.motion);
-      lidar.setRunning(true);
       live.connect();
+      void this.firstPicture().then(() => lidar.setRunning(true));
     }
     publishHandle({
       ...this.scans,
@@ -157,6 +159,21 @@ export class App {
       panel: this.panel,
       dialog: this.dialog,
     });
+  }
+
+  /** Scans of a city load its tiles, and shall not keep anybody from seeing it. */
+  private async firstPicture() {
+    const { view } = this;
+    const shown = new Promise<void>((done) => {
+      const before = view.firstShown;
+      view.firstShown = () => {
+        before();
+        done();
+      };
+    });
+    // Where nothing is in sight there is none.
+    const patience = new Promise((done) => window.setTimeout(done, kPatienceMs));
+    await Promise.race([shown, patience]);
   }
 
   private makePanel(): SidePanel {
