@@ -159,6 +159,7 @@ void TilePointsWriter::add(const PointCloud& cloud) {
   const auto moved = [&](Vec3f p) { return vec_cast<float>(vec_cast<double>(p) + shift); };
   const std::vector<TilePart> parts = parts_of(cloud, grid_, executor_);
   std::vector<PointCloud*> to;  // a place for each tile before threads fill them
+  to.reserve(parts.size());
   for (const TilePart& part : parts) to.push_back(&waiting_[part.tile].points);
   executor_.for_chunks(parts.size(), 1, [&](std::size_t k, std::size_t) {
     PointCloud part = points_at(cloud, parts[k].points);

@@ -7,6 +7,7 @@
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
+#include <bit>
 #include <string>
 
 #include "adasplats/core/error.h"
@@ -80,7 +81,7 @@ ReservedDeviceMemory::ReservedDeviceMemory(std::size_t bytes) {
   bytes_ = pages_.size() * page_bytes_;
   CUdeviceptr reserved = 0;
   check(driver().reserve(&reserved, bytes_, 0, 0, 0), kDoing);
-  data_ = reinterpret_cast<std::byte*>(reserved);
+  data_ = std::bit_cast<std::byte*>(reserved);
 }
 
 ReservedDeviceMemory::~ReservedDeviceMemory() {
