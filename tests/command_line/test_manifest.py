@@ -12,7 +12,7 @@ from support import SENSOR, ProgramTest, tree_digest, write_poses
 DECIDE_NOTHING = {"--output", "--help", "--version", "--threads", "--report", "--config",
                   "--overwrite", "--device", "--gpus",
                   # Who makes which of the scans.
-                  "--plan", "--only-scans",
+                  "--plan", "--only-scans", "--tile-memory",
                   # They choose among poses of a recording: those that are chosen are in it.
                   "--topic", "--poses-topic"}
 SCHEME = """\
