@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`model --tile`: a place in tiles, as a folder that other commands take for a model."""
 import json
+import resource
 import signal
 import subprocess
 import time
@@ -130,6 +131,19 @@ class City(ProgramTest):
             self.assertGreater(report["tiles_resumed"], 0)
         self.assertEqual(tree_digest(self.city), tree_digest(whole))
         self.assertFalse(self.unfinished.exists())
+
+    def test_full_disks_lose_nothing(self):
+        whole = self.folder / "whole"
+        self.run_good(*self.command(output=whole))
+        sizes = sorted({path.stat().st_size for path in whole.rglob("*") if path.is_file()})
+        # No file can be larger, of the points, of a tile, of the largest: each time something else
+        # has no room.
+        for size in [300, sizes[0] + 1, sizes[len(sizes) // 2], sizes[-1] - 1]:
+            limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+            self.run_bad(74, *self.command(), preexec_fn=limit)
+            self.assertFalse(self.city.exists())
+        self.run_good(*self.command())
+        self.assertEqual(tree_digest(self.city), tree_digest(whole))
 
     def test_another_run_does_not_go_on_with_it(self):
         self.assertTrue(self.end_early(3))
