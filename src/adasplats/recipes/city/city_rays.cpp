@@ -2,11 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/recipes/city/city_rays.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "adasplats/city/passing_rays.h"
 #include "adasplats/city/tile_points.h"
 #include "adasplats/cloud/labels/dynamic_removal.h"
+#include "adasplats/io/base/sha256.h"
 #include "adasplats/splats/rays/measured_rays.h"
 
 namespace adasplats {
@@ -41,22 +47,43 @@ void write_rays_of(TileKey tile, const TileCount& count, const LabelScheme* sche
   write_rays(work.path(rays_file_of(tile, RaySort::empty)), empty);
 }
 
+/// Threads for each tile that is in memory at a time.
+constexpr std::size_t kThreadsForRays = 4;
+
+std::vector<std::string> files_of_rays(TileKey tile) {
+  return {rays_file_of(tile, RaySort::passing), rays_file_of(tile, RaySort::empty)};
+}
+
+/// Writes the rays of some tiles at the same time.
+void write_rays_of_all(std::span<const TileKey> tiles, const LabelScheme* scheme,
+                       const CityWork& work, ResumableFolder& folder) {
+  std::vector<FileDigest> digests(2 * tiles.size());
+  work.session.executor.for_chunks(tiles.size(), 1, [&](std::size_t k, std::size_t) {
+    write_rays_of(tiles[k], work.facts.tiles.at(tiles[k]), scheme, work);
+    std::size_t next = 2 * k;
+    for (const std::string& file : files_of_rays(tiles[k]))
+      digests[next++] = {file, sha256_of_file(work.path(file))};
+  });
+  folder.record(digests);
+}
+
 }  // namespace
 
 void hand_out_rays(const CityWork& work, ResumableFolder& folder) {
   std::filesystem::create_directories(work.path("rays"));
   const std::optional<LabelScheme> scheme = work.scheme();
   ProgressSink& progress = work.session.progress;
-  progress.begin_step("rays", work.facts.tiles.size());
-  std::size_t done = 0;
-  for (const auto& [tile, count] : work.facts.tiles) {
-    const std::vector<std::string> files = {rays_file_of(tile, RaySort::passing),
-                                            rays_file_of(tile, RaySort::empty)};
-    if (!folder.has(files)) {
-      write_rays_of(tile, count, scheme ? &*scheme : nullptr, work);
-      folder.record(files);
-    }
-    progress.advance(++done);
+  std::vector<TileKey> to_do;
+  for (const auto& [tile, count] : work.facts.tiles)
+    if (!folder.has(files_of_rays(tile))) to_do.push_back(tile);
+  progress.begin_step("rays", to_do.size());
+  const auto threads = static_cast<std::size_t>(work.session.executor.threads());
+  const std::size_t at_once = std::max<std::size_t>(1, threads / kThreadsForRays);
+  for (std::size_t first = 0; first < to_do.size(); first += at_once) {
+    const std::size_t count = std::min(at_once, to_do.size() - first);
+    write_rays_of_all(std::span(to_do).subspan(first, count), scheme ? &*scheme : nullptr, work,
+                      folder);
+    progress.advance(first + count);
   }
   progress.end_step();
 }
