@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kVersion = 1;
+constexpr int kCityVersion = 1;
 
 Json json_of(Vec3d v) { return {v.x, v.y, v.z}; }
 Vec3d vector_of(const Json& json) { return {json.at(0), json.at(1), json.at(2)}; }
@@ -47,7 +47,7 @@ bool is_city(const fs::path& path) {
 }
 
 std::string city_text(const CityManifest& city) {
-  Json json = {{"format", "adasplats city"},       {"version", kVersion},
+  Json json = {{"format", "adasplats city"},       {"version", kCityVersion},
                {"tile_m", city.grid.side_m},       {"halo_m", city.halo_m},
                {"origin_m", json_of(city.origin)}, {"points", city.points()},
                {"splats", city.splats()},          {"tiles", Json::array()}};
@@ -70,10 +70,10 @@ CityManifest load_city_manifest(const fs::path& folder) {
     const Json json = Json::parse(text);
     if (json.at("format") != "adasplats city")
       throw Error(ErrorKind::data, file.string() + ": not the manifest of a city");
-    if (json.at("version") != kVersion)
+    if (json.at("version") != kCityVersion)
       throw Error(ErrorKind::data, file.string() + ": a city of version " +
                                        json.at("version").dump() + "; this program reads version " +
-                                       std::to_string(kVersion));
+                                       std::to_string(kCityVersion));
     CityManifest city;
     city.grid.side_m = json.at("tile_m");
     city.halo_m = json.at("halo_m");

@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 static_assert(std::endian::native == std::endian::little, "tables are written as they are");
 
 constexpr const char* kFormat = "adasplats levels";
-constexpr int kVersion = 1;
+constexpr int kLevelsVersion = 1;
 /// A line is looked for in pieces that double, up to this: about 400 bytes a part.
 constexpr std::size_t kFirstPiece = 4096;
 constexpr std::size_t kLongestLine = std::size_t{1} << 30;
@@ -80,10 +80,10 @@ Json parsed_head(InputFile& file) {
   Json json = Json::parse(line);
   if (json.at("format") != kFormat)
     throw Error(ErrorKind::data, file.path().string() + ": no levels of detail of a city");
-  if (json.at("version") != kVersion)
+  if (json.at("version") != kLevelsVersion)
     throw Error(ErrorKind::data, file.path().string() + ": levels of detail of version " +
                                      json.at("version").dump() + "; this program reads version " +
-                                     std::to_string(kVersion));
+                                     std::to_string(kLevelsVersion));
   return json;
 }
 
@@ -189,7 +189,7 @@ std::vector<bool> LevelTable::own_nodes() const {
 std::string level_head(const LevelTable& table) {
   Json json = {
       {"format", kFormat},
-      {"version", kVersion},
+      {"version", kLevelsVersion},
       {"splats", table.facts.splats},
       {"has_classes", table.facts.has_classes},
       {"has_intensities", table.facts.has_intensities},
