@@ -3,10 +3,12 @@
 #include "adasplats/city/city_manifest.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/sha256.h"
 
 namespace adasplats {
@@ -37,6 +39,13 @@ std::size_t CityManifest::splats() const {
   std::size_t sum = 0;
   for (const CityTile& tile : tiles) sum += tile.splats;
   return sum;
+}
+
+void set_splats(const SplatModel& model, CityTile& tile) {
+  tile.splats = model.size();
+  const auto [low, high] = bounds(model);
+  tile.low = model.origin + vec_cast<double>(low);
+  tile.high = model.origin + vec_cast<double>(high);
 }
 
 std::string model_file_of(TileKey tile) { return "tiles/" + name_of(tile) + ".ply"; }
@@ -105,6 +114,26 @@ TileKey owner_of(Vec3d world, const TileGrid& grid, const std::vector<CityTile>&
   return own;
 }
 
+/// Throws data for splats beyond the box that the manifest says: who goes by the box would not see
+/// them.
+void require_within(const CityTile& tile, const SplatModel& part, const fs::path& file) {
+  if (part.size() == 0) return;
+  const auto [low, high] = bounds(part);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto first = static_cast<double>(low[axis]), last = static_cast<double>(high[axis]);
+    // Places are floats, relative to one origin or another.
+    const double rounded_m = 1e-3 + 0x1p-22 * std::max(std::fabs(first), std::fabs(last));
+    const double from = part.origin[axis] + first, to = part.origin[axis] + last;
+    if (from >= tile.low[axis] - rounded_m && to <= tile.high[axis] + rounded_m) continue;
+    const std::string name(1, "xyz"[axis]);
+    throw Error(ErrorKind::data, file.string() + ": its splats have " + name + " from " +
+                                     decimal_text(from) + " to " + decimal_text(to) +
+                                     "; the city's manifest says " +
+                                     decimal_text(tile.low[axis]) + " to " +
+                                     decimal_text(tile.high[axis]));
+  }
+}
+
 SplatModel load_city_tile(const fs::path& folder, const CityManifest& city, std::size_t k) {
   const CityTile& tile = city.tiles[k];
   const fs::path file = folder / model_file_of(tile.key);
@@ -118,6 +147,7 @@ SplatModel load_city_tile(const fs::path& folder, const CityManifest& city, std:
   for (Disk& disk : part.disks)
     disk.center = vec_cast<float>(vec_cast<double>(disk.center) + shift);
   part.origin = city.origin;
+  require_within(tile, part, file);
   return part;
 }
 

@@ -29,6 +29,9 @@ struct CityTile {
   Vec3d low, high;     ///< box of its splats, world coordinates; zeros without
 };
 
+/// How many splats a tile has, and their box.
+void set_splats(const SplatModel& model, CityTile& tile);
+
 /// The model of a city: a folder of tiles, each a model of its own with the splats that stand in
 /// it, all with the same local origin.
 struct CityManifest {
@@ -56,7 +59,7 @@ CityManifest load_city_manifest(const std::filesystem::path& folder);
 TileKey owner_of(Vec3d world, const TileGrid& grid, const std::vector<CityTile>& tiles);
 
 /// The splats of tile `k` of CityManifest::tiles, relative to the city's origin. Errors: data (not
-/// as many as the manifest says), those of load_model.
+/// as many as the manifest says, or beyond the tile's box there), those of load_model.
 SplatModel load_city_tile(const std::filesystem::path& folder, const CityManifest& city,
                           std::size_t k);
 

@@ -226,12 +226,8 @@ CityManifest write_city(const std::filesystem::path& folder) {
     tile.disks = {{{key.x == 20 ? 1.0F : 51.0F, 1, 0}, 0.1F, {0, 0, 1}}};
     if (key.x == 21) tile.disks.push_back({{52, 1, 0}, 0.2F, {0, 0, 1}});
     save_model(folder / model_file_of(key), tile);
-    city.tiles.push_back({key,
-                          10,
-                          tile.size(),
-                          sha256_of_file(folder / model_file_of(key)),
-                          {1001, 1, 0},
-                          {1052, 1, 0}});
+    city.tiles.push_back({key, 10, 0, sha256_of_file(folder / model_file_of(key)), {}, {}});
+    set_splats(tile, city.tiles.back());
   }
   write_file(folder / kCityFile, city_text(city));
   return city;
@@ -269,6 +265,19 @@ TEST(City, DamageIsSaid) {
   EXPECT_NE(version.find("version 9"), std::string::npos) << version;
   write_file(folder.path() / kCityFile, "{");
   error_of([&] { load_city_manifest(folder.path()); }, ErrorKind::data);
+}
+
+TEST(City, SplatsBeyondTheBoxOfTheirTileAreAnError) {
+  const TemporaryFolder folder;
+  CityManifest city = write_city(folder.path());
+  const auto k = static_cast<std::size_t>(
+      std::ranges::find(city.tiles, TileKey{21, 0}, &CityTile::key) - city.tiles.begin());
+  EXPECT_GT(load_city_tile(folder.path(), city, k).size(), 0U);
+  city.tiles[k].high.y -= 0.01;
+  const std::string why =
+      error_of([&] { load_city_tile(folder.path(), city, k); }, ErrorKind::data);
+  EXPECT_NE(why.find("x21_y0.ply: its splats have y from"), std::string::npos) << why;
+  EXPECT_NE(why.find("the city's manifest says"), std::string::npos) << why;
 }
 
 TEST(City, SplatsBesideAllTilesBelongToANeighbor) {

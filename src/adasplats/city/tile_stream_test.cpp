@@ -36,7 +36,8 @@ CityManifest write_row(const std::filesystem::path& folder) {
           {vec_cast<float>(Vec3d{x + 0.5 * static_cast<double>(i), 25, 0}), 0.1F, {0, 0, 1}});
     const TileKey key = {static_cast<std::int32_t>(100 + k), 0};
     save_model(folder / model_file_of(key), tile);
-    city.tiles.push_back({key, 1, kSplats, "", {5000 + x, 25, 0}, {5000 + x + kSide_m, 25, 0}});
+    city.tiles.push_back({key, 1, 0, "", {}, {}});
+    set_splats(tile, city.tiles.back());
   }
   return city;
 }

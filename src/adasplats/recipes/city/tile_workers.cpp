@@ -146,13 +146,6 @@ class Workers {
 
 }  // namespace
 
-void set_splats(const SplatModel& model, CityTile& tile) {
-  tile.splats = model.size();
-  const auto [low, high] = bounds(model);
-  tile.low = model.origin + vec_cast<double>(low);
-  tile.high = model.origin + vec_cast<double>(high);
-}
-
 CityTile model_and_save(const CityTile& tile, const CityWork& work, const TileModeller& modeller,
                         Session& session) {
   CityTile made = tile;

@@ -25,7 +25,4 @@ void model_tiles(const CityWork& work, const TileModeller& modeller,
 CityTile model_and_save(const CityTile& tile, const CityWork& work, const TileModeller& modeller,
                         Session& session);
 
-/// What a tile's model says of it.
-void set_splats(const SplatModel& model, CityTile& tile);
-
 }  // namespace adasplats
