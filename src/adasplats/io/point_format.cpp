@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <vector>
 
 #include "adasplats/io/base/input_file.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/io/las/las_records_at_random.h"
 #include "adasplats/io/ply/ply.h"
 
 namespace adasplats {
@@ -35,8 +37,10 @@ constexpr PointFormat kFormats[] = {
      .extensions = kPly,
      .beginnings = kPlyStarts,
      .means = ExtensionMeans::geometry,
-     .read = [](const Path& path, const Options&) { return read_ply(path); },
-     .read_crs = &read_ply_crs},
+     .read = [](const Path& path,
+                const Options& options) { return read_ply(path, options.selection.records); },
+     .read_crs = &read_ply_crs,
+     .records = [](const Path& path, bool) { return ply_records_at_random(path); }},
     {.name = "PCD",
      .extensions = kPcd,
      .beginnings = kPcdStarts,
@@ -45,7 +49,8 @@ constexpr PointFormat kFormats[] = {
      .extensions = kLas,
      .beginnings = kLasStarts,
      .read = &read_las,
-     .read_crs = [](const Path& path) { return read_las_facts(path).crs; }},
+     .read_crs = [](const Path& path) { return read_las_facts(path).crs; },
+     .records = &las_records_at_random},
     {.name = "E57",
      .extensions = kE57,
      .beginnings = kE57Starts,
@@ -142,6 +147,11 @@ Crs read_crs(const Path& path) {
   return format.read_crs == nullptr ? Crs() : format.read_crs(path);
 }
 
+std::optional<std::uint64_t> records_at_random(const Path& path, bool salvage) {
+  const PointFormat& format = format_of_file(path);
+  return format.records == nullptr ? std::nullopt : format.records(path, salvage);
+}
+
 void require_no_levels(const Path& path, const PointSelection& selection) {
   if (!selection.asks_levels()) return;
   throw Error(ErrorKind::usage, path.string() + ": `" + (selection.level ? "level" : "resolution") +
@@ -151,6 +161,8 @@ void require_no_levels(const Path& path, const PointSelection& selection) {
 
 Table read_points(const Path& path, const LasReadOptions& options) {
   const PointFormat& format = format_of_file(path);
+  if (options.selection.records && format.records == nullptr)
+    throw std::logic_error("read_points: records of a format that has them not at random");
   if (format.read == &read_las) return read_las(path, options);
   require_no_levels(path, options.selection);
   Table table = format.read(path, options);

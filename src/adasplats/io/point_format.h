@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +30,9 @@ struct PointFormat {
   std::string_view remark;  ///< behind the last extension in messages
   Table (*read)(const std::filesystem::path& path, const LasReadOptions& options);
   Crs (*read_crs)(const std::filesystem::path& path) = nullptr;  ///< null: the format says none
+  /// As records_at_random(); null: none can be read so. Then `read` takes PointSelection::records.
+  std::optional<std::uint64_t> (*records)(const std::filesystem::path& path,
+                                          bool salvage) = nullptr;
 };
 
 std::span<const PointFormat> point_formats();

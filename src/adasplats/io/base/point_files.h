@@ -11,6 +11,7 @@
 #include "adasplats/core/maths/extent.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/io/base/crs.h"
+#include "adasplats/io/base/record_span.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
@@ -32,10 +33,19 @@ struct PointSelection {
   /// need, m; where both are given the fewer.
   std::optional<std::uint32_t> level;
   std::optional<double> resolution_m;
+  /// Of a file whose records can be read at random (records_at_random()) those of a span; of LAZ
+  /// those of the chunks that begin in it, so that spans which cover the file have each point once.
+  std::optional<RecordSpan> records;
 
   bool asks_levels() const { return level || resolution_m; }
-  bool is_all() const { return !extent && !asks_levels(); }
+  bool is_all() const { return !extent && !asks_levels() && !records; }
 };
+
+/// How many records a file has that need not be read from the first on: LAS, LAZ with a table of
+/// chunks, binary PLY. Nothing: they are read all at once. With `salvage` as far as the file goes.
+/// Errors: as read_points().
+std::optional<std::uint64_t> records_at_random(const std::filesystem::path& path,
+                                               bool salvage = false);
 
 /// Throws usage where levels are asked for of a file that has none.
 void require_no_levels(const std::filesystem::path& path, const PointSelection& selection);
@@ -102,7 +112,7 @@ Table read_bin(const std::filesystem::path& path);
 /// Any of the formats above and PLY, by the file's extension (any case) and first bytes, which must
 /// not contradict each other. What is not selected is left out: of LAS and LAZ as it is read, of
 /// others when all is there.
-/// Errors: as theirs; an unknown format is ErrorKind::data naming what is understood; usage (levels
+/// Errors: as theirs; std::logic_error for records of a file that are not at random; an unknown format is ErrorKind::data naming what is understood; usage (levels
 /// are asked for, and the file has none).
 Table read_points(const std::filesystem::path& path, const LasReadOptions& options = {});
 

@@ -244,7 +244,7 @@ bool is_beyond(const LasHeader& header, const Extent& extent) {
 
 void choose_chunks(const std::filesystem::path& path, const PointSelection& selection,
                    LazLayout& layout) {
-  if (selection.is_all() || layout.header.points == 0) return;
+  if ((!selection.extent && !selection.asks_levels()) || layout.header.points == 0) return;
   const std::optional<CopcInfo> info = read_info(path, layout.header);
   if (!info) {
     require_no_levels(path, selection);

@@ -5,9 +5,11 @@
 
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/io/las/las_header.h"
+#include "adasplats/io/las/las_records_at_random.h"
 #include "adasplats/io/las/las_table.h"
 #include "adasplats/io/las/las_vlrs.h"
 #include "adasplats/io/las/laz.h"
+#include "adasplats/io/las/laz_layout.h"
 
 namespace adasplats {
 namespace {
@@ -28,11 +30,18 @@ std::uint64_t records_to_read(const InputFile& file, const LasHeader& header, bo
 
 Table read_las(const std::filesystem::path& path, const LasReadOptions& options) {
   InputFile file(path);
-  const LasHeader header = read_las_header(file);
+  LasHeader header = read_las_header(file);
   if (header.is_compressed) return read_laz(path, options);
   require_no_levels(path, options.selection);
   file.skip(header.points_offset_bytes);
-  const auto rows = static_cast<std::size_t>(records_to_read(file, header, options.salvage));
+  RecordSpan span = {0, records_to_read(file, header, options.salvage)};
+  if (options.selection.records) {
+    const std::uint64_t all = span.count;
+    span = options.selection.records->within(all);
+    header.points = options.selection.records->within(header.points).count;
+    file.skip(span.first * header.record_bytes);
+  }
+  const auto rows = static_cast<std::size_t>(span.count);
   LasTable table(path, header, options.selection.extent, rows);
   const std::size_t chunk_rows = std::max<std::size_t>(1, kLasChunkBytes / header.record_bytes);
   while (table.records() < rows) {
@@ -41,6 +50,18 @@ Table read_las(const std::filesystem::path& path, const LasReadOptions& options)
     file.skip(count * header.record_bytes);
   }
   return table.finish();
+}
+
+std::optional<std::uint64_t> las_records_at_random(const std::filesystem::path& path,
+                                                   bool salvage) {
+  InputFile file(path);
+  const LasHeader header = read_las_header(file);
+  if (header.is_compressed) {
+    const LazLayout layout = read_laz_layout(path, salvage);
+    return layout.has_table ? std::optional(layout.header.points) : std::nullopt;
+  }
+  file.skip(header.points_offset_bytes);
+  return records_to_read(file, header, salvage);
 }
 
 LasFacts read_las_facts(const std::filesystem::path& path) {

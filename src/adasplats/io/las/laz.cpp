@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <deque>
 #include <memory>
+#include <optional>
+#include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -178,11 +181,42 @@ class LazReader {
   std::string fault_;
 };
 
+/// Leaves the chunks that begin in a span of the records.
+class ChunksOfSpan {
+ public:
+  ChunksOfSpan(const LazLayout& whole, RecordSpan span) {
+    std::uint64_t first = 0;
+    for (const LazChunk& chunk : whole.chunks) {
+      if (span.contains(first)) offsets_.insert(chunk.offset_bytes);
+      first += chunk.points;
+    }
+  }
+
+  /// Of some of the chunks.
+  void choose_in(LazLayout& layout) const {
+    std::erase_if(layout.chunks,
+                  [&](const LazChunk& chunk) { return !offsets_.contains(chunk.offset_bytes); });
+    layout.header.points = 0;
+    for (const LazChunk& chunk : layout.chunks) layout.header.points += chunk.points;
+  }
+
+ private:
+  std::set<std::uint64_t> offsets_;
+};
+
 }  // namespace
 
 Table read_laz(const std::filesystem::path& path, const LasReadOptions& options) {
   LazLayout layout = read_laz_layout(path, options.salvage);
+  const std::optional<RecordSpan>& records = options.selection.records;
+  std::optional<ChunksOfSpan> chunks;
+  if (records && layout.header.points > 0) {
+    if (!layout.has_table)
+      throw std::logic_error("read_laz: records of a file that has them not at random");
+    chunks.emplace(layout, *records);
+  }
   choose_chunks(path, options.selection, layout);
+  if (chunks) chunks->choose_in(layout);
   const std::uint64_t points = layout.header.points;
   // The count is not to be believed before the points are there; a point of a sensor takes two
   // bytes or more.

@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "adasplats/io/base/byte_sink.h"
 #include "adasplats/io/base/crs.h"
+#include "adasplats/io/base/record_span.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
@@ -20,7 +22,12 @@ namespace adasplats {
 /// The counts are checked against the file's size before anything is allocated. Memory: binary 1x
 /// the file's size; ASCII at most 4x (doubles of one digit), usually below 1x.
 /// Errors: no_input, io, data (with line or byte offset).
-Table read_ply(const std::filesystem::path& path);
+/// With `records` only these of a file that has them at random (else std::logic_error).
+Table read_ply(const std::filesystem::path& path, const std::optional<RecordSpan>& records = {});
+
+/// How many vertices a binary file has, if they take the same bytes each and no element before them
+/// has lists; else nothing. Errors: as read_ply().
+std::optional<std::uint64_t> ply_records_at_random(const std::filesystem::path& path);
 
 /// Reads `vertex` and `face` (`vertex_indices` or `vertex_index` lists) of a PLY file. The file's
 /// comments are those of the vertices. Errors: as read_ply(); data where a face has fewer than 3

@@ -120,17 +120,28 @@ PlyElementData PlyBody::read(const PlyElement& element, const PlyProperty* kept_
   if (encoding_ == PlyEncoding::ascii) return read_text(element, kept_list);
   if (element.has_lists()) return read_lists(element, kept_list);
 
+  return {read_plain(element, element.count), {}, {}};
+}
+
+Table PlyBody::read(const PlyElement& element, RecordSpan records) {
+  check_room(file_, element.count, element.least_record_bytes(), element.name + " records");
+  const RecordSpan span = records.within(element.count);
+  file_.skip(span.first * element.least_record_bytes());
+  return read_plain(element, span.count);
+}
+
+/// The next records of a binary element without lists.
+Table PlyBody::read_plain(const PlyElement& element, std::uint64_t count) {
   std::vector<RecordField> fields;
   std::size_t offset = 0;
   for (const PlyProperty& property : element.properties) {
     fields.push_back({property.name, property.type, offset});
     offset += type_bytes(property.type);
   }
-  PlyElementData data;
-  data.scalars.columns =
-      read_records(file_, element.count, offset, fields, encoding_ == PlyEncoding::big_endian);
-  data.scalars.rows = static_cast<std::size_t>(element.count);
-  return data;
+  Table table;
+  table.columns = read_records(file_, count, offset, fields, encoding_ == PlyEncoding::big_endian);
+  table.rows = static_cast<std::size_t>(count);
+  return table;
 }
 
 PlyElementData PlyBody::read_text(const PlyElement& element, const PlyProperty* kept_list) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adasplats/io/base/line_reader.h"
+#include "adasplats/io/base/record_span.h"
 #include "adasplats/io/base/table.h"
 #include "adasplats/io/ply/ply_header.h"
 
@@ -30,10 +31,14 @@ class PlyBody {
   /// The count is checked against the file's size first. Errors: data with line or byte offset.
   PlyElementData read(const PlyElement& element, const PlyProperty* kept_list = nullptr);
 
+  /// Some of them, of a binary element without lists. Errors: likewise.
+  Table read(const PlyElement& element, RecordSpan records);
+
   /// Steps over the records of `element` by their layout.
   void skip(const PlyElement& element);
 
  private:
+  Table read_plain(const PlyElement& element, std::uint64_t count);
   PlyElementData read_text(const PlyElement& element, const PlyProperty* kept_list);
   PlyElementData read_lists(const PlyElement& element, const PlyProperty* kept_list);
   void skip_list(const PlyElement& element, const PlyProperty& property);

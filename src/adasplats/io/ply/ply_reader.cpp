@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -82,24 +83,43 @@ void check_repeated_size(const InputFile& file, const PlyElement& element, std::
                        " triangles, would take more than 16 times the file's size");
 }
 
+bool are_at_random(const PlyHeader& header) {
+  if (header.encoding == PlyEncoding::ascii) return false;
+  for (const PlyElement& element : header.elements) {
+    if (element.has_lists()) return false;
+    if (element.name == "vertex") return !element.properties.empty();
+  }
+  return false;
+}
+
 }  // namespace
 
-Table read_ply(const std::filesystem::path& path) {
+Table read_ply(const std::filesystem::path& path, const std::optional<RecordSpan>& records) {
   InputFile file(path);
   LineReader lines(file);
   PlyHeader header = read_ply_header(lines);
+  if (records && !are_at_random(header))
+    throw std::logic_error("read_ply: records of a file that has them not at random");
   PlyBody body(file, lines, header.encoding);
   for (const PlyElement& element : header.elements) {
     if (element.name != "vertex") {
       body.skip(element);
       continue;
     }
-    Table table = body.read(element).scalars;
+    Table table = records ? body.read(element, *records) : body.read(element).scalars;
     table.crs = crs_of_comments(path, header.comments);
     table.comments = std::move(header.comments);
     return table;
   }
   throw lines.error_here("the header has no element 'vertex'");
+}
+
+std::optional<std::uint64_t> ply_records_at_random(const std::filesystem::path& path) {
+  InputFile file(path);
+  LineReader lines(file);
+  const PlyHeader header = read_ply_header(lines);
+  if (!are_at_random(header)) return std::nullopt;
+  return header.find("vertex")->count;
 }
 
 MeshTable read_ply_mesh(const std::filesystem::path& path) {
