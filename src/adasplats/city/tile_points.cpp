@@ -28,6 +28,29 @@ std::string attributes_of(const PointCloud& cloud) {
   return names;
 }
 
+/// The attributes that all clouds of a city have or none: without those whose lack says as much as
+/// a value does (even_out()).
+std::string needed_attributes_of(const PointCloud& cloud) {
+  PointCloud some;
+  const auto take = [&](auto& to, const auto& from) { to.resize(from.empty() ? 0 : 1); };
+  for_each_attribute([&](const auto& attribute) { take(attribute.of(some), attribute.of(cloud)); });
+  some.instances = {};
+  some.origin_kinds = {};
+  return attributes_of(some);
+}
+
+/// Gives two clouds that are to be one what one of them has and the other need not say: that its
+/// points are of no instance, and that all of their beams were measured.
+void even_out(PointCloud& a, PointCloud& b) {
+  if (a.empty() || b.empty()) return;
+  for (PointCloud* const cloud : {&a, &b}) {
+    if (cloud->instances.empty() && !(a.instances.empty() && b.instances.empty()))
+      cloud->instances.assign(cloud->size(), 0);
+    if (cloud->origin_kinds.empty() && !(a.origin_kinds.empty() && b.origin_kinds.empty()))
+      cloud->origin_kinds.assign(cloud->size(), OriginKind::measured);
+  }
+}
+
 /// The points alone, without what gather() keeps of their cloud.
 PointCloud points_at(const PointCloud& cloud, const std::vector<std::uint32_t>& indices) {
   PointCloud part;
@@ -144,15 +167,16 @@ TilePointsWriter::TilePointsWriter(fs::path folder, const TileGrid& grid, std::s
 }
 
 void TilePointsWriter::add(const PointCloud& cloud) {
-  const std::string attributes = attributes_of(cloud);
-  if (!is_begun_) {
-    is_begun_ = true;
-    origin_ = cloud.origin;
-    attributes_ = attributes;
-  } else if (attributes != attributes_ && !cloud.empty()) {
-    throw Error(ErrorKind::data, "the points come with different attributes:" + attributes_ +
-                                     " at first, then" + attributes +
-                                     "; model such inputs one by one");
+  if (cloud.empty() && cloud.empty_beams.empty()) return;
+  if (!is_begun_) origin_ = cloud.origin;
+  is_begun_ = true;
+  if (!cloud.empty()) {
+    const std::string attributes = needed_attributes_of(cloud);
+    if (!attributes_) attributes_ = attributes;
+    if (attributes != *attributes_)
+      throw Error(ErrorKind::data, "the points come with different attributes:" + *attributes_ +
+                                       " at first, then" + attributes +
+                                       "; model such inputs one by one");
   }
   const Vec3d shift = cloud.origin - origin_;
   const bool is_moved = !(shift == Vec3d{});
@@ -167,6 +191,7 @@ void TilePointsWriter::add(const PointCloud& cloud) {
       for (Vec3f& p : part.positions) p = moved(p);
       for (Vec3f& p : part.sensor_positions) p = moved(p);
     }
+    even_out(*to[k], part);
     append(*to[k], std::move(part));
   });
   for (EmptyBeam beam : cloud.empty_beams) {
@@ -182,7 +207,7 @@ void TilePointsWriter::write(TileKey tile, const Waiting& waiting) const {
   if (!waiting.points.empty()) {
     const fs::path file = folder_ / points_file_of(tile);
     std::ofstream out(file, std::ios::binary | std::ios::app);
-    out << kPointsHead << waiting.points.size() << attributes_ << '\n';
+    out << kPointsHead << waiting.points.size() << attributes_of(waiting.points) << '\n';
     put(out, waiting.points.positions);
     for_each_attribute([&](const auto& attribute) { put(out, attribute.of(waiting.points)); });
     out.close();
@@ -227,7 +252,9 @@ void read_tile_points(const fs::path& folder, TileKey tile, PointCloud& cloud,
       if (chosen.size() < piece.size()) piece = gather(piece, chosen);
     }
     piece.origin = cloud.origin;
-    if (!piece.empty()) append(cloud, std::move(piece));
+    if (piece.empty()) continue;
+    even_out(cloud, piece);
+    append(cloud, std::move(piece));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,8 @@ class TilePointsWriter {
                    const Executor& executor);
 
   /// The first cloud's origin is the city's; others are moved to it. Empty beams go to the tile in
-  /// which they begin. Errors: data (a cloud with other attributes than the first), io.
+  /// which they begin. Errors: data (a cloud with other attributes than the first; instances and
+  /// kinds of origins may be missing), io.
   void add(const PointCloud& cloud);
   /// Writes what waits. Call once, last.
   std::map<TileKey, TileCount> finish();
@@ -61,7 +63,7 @@ class TilePointsWriter {
   const Executor& executor_;
   std::size_t waiting_points_ = 0;
   Vec3d origin_;
-  std::string attributes_;  ///< names of those that there are
+  std::optional<std::string> attributes_;  ///< names of those that all clouds have
   bool is_begun_ = false;
   std::map<TileKey, Waiting> waiting_;
   std::map<TileKey, TileCount> counts_;

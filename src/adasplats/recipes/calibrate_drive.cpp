@@ -149,8 +149,9 @@ class CalibrationFiles {
 };
 
 /// Loads all scans; what no window needs is not solved at once.
-void estimate_loaded(const CalibrateJob& job, Session& session, CalibrateResult& result) {
-  auto [cloud, loaded] = load_cloud(job.inputs, job.load, session.executor, session.progress);
+void estimate_loaded(const CalibrateJob& job, const OpenInputs& inputs, Session& session,
+                     CalibrateResult& result) {
+  auto [cloud, loaded] = inputs.load(session.executor, session.progress);
   result.loaded = std::move(loaded);
   if (job.calibrate.ranges || job.calibrate.elevations) require_one_sensor(result.loaded.drives);
   auto [calibration, report] = calibrate_drives(
@@ -176,11 +177,12 @@ void estimate_piecewise(const CalibrateJob& job, DrivePieces& pieces, Session& s
 
 CalibrateResult estimated(const CalibrateJob& job, Session& session) {
   CalibrateResult result;
-  auto pieces = DrivePieces::open(job.inputs, job.load, job.windows.window_scans, session);
+  const OpenInputs inputs(job.inputs, job.load, session.executor, session.progress);
+  auto pieces = DrivePieces::of(inputs, job.windows.window_scans, session);
   if (pieces)
     estimate_piecewise(job, *pieces, session, result);
   else
-    estimate_loaded(job, session, result);
+    estimate_loaded(job, inputs, session, result);
   result.sensor = sensor_of_all(result.loaded.drives);
   result.corrected = result.given;
   if (!result.calibration.empty() && !adasplats::apply(result.calibration, result.corrected))

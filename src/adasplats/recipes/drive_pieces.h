@@ -2,28 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
+#include <cstddef>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "adasplats/calibrate/windows.h"
-#include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/load/open_inputs.h"
 #include "adasplats/pipeline/session/repeated_warnings.h"
 #include "adasplats/pipeline/session/session.h"
 
 namespace adasplats {
 
-/// Drives that are too long to stand in memory, read some scans at a time by load_cloud.
+/// Drives that are too long to stand in memory, read some scans at a time.
 class DrivePieces {
  public:
-  /// Nothing where the drives are to be loaded at once: all of them are no longer than
-  /// `window_scans`, or one is not a sequence folder of KITTI's layout (of others it takes all
-  /// points to tell the scans). Opens the sequences. Errors: those of load_cloud for them.
-  static std::optional<DrivePieces> open(std::span<const std::filesystem::path> inputs,
-                                         const LoadOptions& load, std::size_t window_scans,
-                                         Session& session);
+  /// Nothing where the inputs are to be loaded at once: not all of them are drives, or none is
+  /// longer than `window_scans`. `inputs` must outlive it.
+  static std::optional<DrivePieces> of(const OpenInputs& inputs, std::size_t window_scans,
+                                       Session& session);
 
   /// Valid while this lives.
   std::vector<DriveSource> sources();
@@ -33,11 +30,11 @@ class DrivePieces {
   void end();
 
  private:
-  DrivePieces(const LoadOptions& load, Session& session);
+  DrivePieces(const OpenInputs& inputs, Session& session);
   PointCloud read(std::size_t drive, ScanSpan span);
   void count(const LoadReport& piece);
 
-  LoadOptions load_;
+  const OpenInputs* inputs_;
   Session* session_;
   std::shared_ptr<RepeatedWarnings> warnings_;
   LoadReport report_;

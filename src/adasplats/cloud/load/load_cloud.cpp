@@ -6,18 +6,15 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "adasplats/cloud/beams/empty_beams.h"
-#include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/cloud_part.h"
-#include "adasplats/cloud/load/data_tree.h"
 #include "adasplats/cloud/load/dropped_points.h"
-#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/open_inputs.h"
 #include "adasplats/cloud/load/point_origins.h"
 #include "adasplats/cloud/load/timed_points.h"
 #include "adasplats/cloud/vehicle/driven_path.h"
@@ -25,138 +22,11 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/large_vector.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/io/bags/recording.h"
-#include "adasplats/io/base/box_text.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/packets/capture_reader.h"
 
 namespace adasplats {
 
 namespace {
-
-using Input = CloudInput;
-
-/// Something to read: a file, or a drive that is open already.
-struct Source {
-  Input input;
-  std::optional<KittiSequence> drive;
-};
-
-std::vector<Input> list_inputs(std::span<const std::filesystem::path> paths) {
-  if (paths.empty()) throw Error(ErrorKind::usage, "no inputs to load");
-  std::vector<Input> inputs, sequences;
-  for (const std::filesystem::path& path : paths) {
-    const std::vector<Input> found = cloud_inputs(path);
-    inputs.insert(inputs.end(), found.begin(), found.end());
-  }
-  std::ranges::copy_if(inputs, std::back_inserter(sequences), &Input::is_sequence);
-  if (sequences.size() > 1) require_one_world(sequences);
-  return inputs;
-}
-
-/// The inputs, folders of scans with a trajectory as one drive each.
-std::vector<Source> open_sources(std::span<const std::filesystem::path> paths,
-                                 const LoadOptions& options, const Executor& executor,
-                                 ProgressSink& progress) {
-  std::vector<std::filesystem::path> others;
-  std::vector<Source> sources;
-  for (const std::filesystem::path& path : paths) {
-    std::optional<KittiSequence> drive;
-    if (!options.trajectory.empty() || is_drive_by_itself(path))
-      drive = open_frame_drive(drive_of(path, options), executor, progress);
-    if (drive)
-      sources.push_back({{path, true}, std::move(drive)});
-    else
-      others.push_back(path);
-  }
-  if (!others.empty() || paths.empty())
-    for (const Input& input : list_inputs(others)) sources.push_back({input, {}});
-  return sources;
-}
-
-Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
-
-/// What is wrong with options whatever the inputs are.
-void require_sound(const LoadOptions& options) {
-  if (options.scan_stride == 0) throw usage("a scan stride of 0");
-  if (options.scan_count == 0) throw usage("a scan count of 0");
-  const int sensor_fields = !options.sensor_x_field.empty() + !options.sensor_y_field.empty() +
-                            !options.sensor_z_field.empty();
-  if (sensor_fields != 0 && sensor_fields != 3)
-    throw usage("the columns of the sensor position are three or none");
-  if (options.viewpoint && !options.trajectory.empty())
-    throw usage("a viewpoint and a trajectory both give the sensor position");
-  if (options.viewpoint && !is_place(*options.viewpoint))
-    throw usage("the viewpoint is not finite, or beyond 1e12 m");
-  check_settings(options);
-}
-
-void require_options_that_fit(const LoadOptions& options, std::span<const Source> sources) {
-  const auto is_sequence = [](const Source& source) { return source.input.is_sequence; };
-  const bool any_drive =
-      std::ranges::any_of(sources, [](const Source& source) { return source.drive.has_value(); });
-  const bool any_sequence = std::ranges::any_of(sources, is_sequence);
-  const bool any_file = !std::ranges::all_of(sources, is_sequence);
-  const LoadOptions defaults;
-  const bool chooses_scans = options.first_scan != defaults.first_scan ||
-                             options.scan_count != defaults.scan_count ||
-                             options.scan_stride != defaults.scan_stride;
-  if (chooses_scans && !any_sequence)
-    throw usage("scans are chosen, but no input is a sequence folder");
-  if ((!options.sensor_x_field.empty() || !options.label_field.empty()) && !any_file)
-    throw usage("columns are named, but no input is a file of points");
-  if (!options.selection.is_all() && any_sequence)
-    throw usage(
-        "`extent`, `level` and `resolution` choose points of files, and an input is a drive");
-  if (options.beams_from_poses && !any_sequence)
-    throw usage("beams are to start at poses, but no input is a sequence folder");
-  if (!options.boxes.empty() && !any_drive)
-    throw usage("boxes are given, but no input is a folder of scans with times and a trajectory");
-  const bool states_frames = options.points_in == PointsIn::sensor ||
-                             options.sweep_points != SweepPoints::found ||
-                             !options.scan_times.empty();
-  if (states_frames && !any_drive)
-    throw usage(
-        "`points_in`, `sweep_points` and `scan_times` are for a folder of scans, one a file, with "
-        "a `trajectory`; no input is one in the frame of its sensor");
-  const bool any_recording = std::ranges::any_of(
-      sources, [](const Source& source) { return is_recording(source.input.path); });
-  if ((!options.topic.empty() || !options.poses_topic.empty()) && !any_recording)
-    throw usage("`topic` and `poses_topic` are for a recording (MCAP, ROS bag); no input is one");
-  const bool any_tree = std::ranges::any_of(
-      sources, [](const Source& source) { return data_tree_of(source.input.path) != nullptr; });
-  if (!options.scene.empty() && !any_tree)
-    throw usage("`scene` is for a data root of nuScenes; no input is one");
-  const auto is_of_packets = [](const Source& source) { return is_capture(source.input.path); };
-  if (!options.packets_of.empty() && std::ranges::none_of(sources, is_of_packets))
-    throw usage("`packets_of` is for a capture of packets (.pcap, .pcapng); no input is one");
-  const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
-  if (states_origins && !any_file)
-    throw usage("a sensor position is given, but every input has its own");
-}
-
-/// In whole steps of a file's coordinates, as its points are: headers may hold more digits.
-Vec3d in_steps(Vec3d place, Vec3d step) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (step[axis] > 0) place[axis] = std::round(place[axis] / step[axis]) * step[axis];
-  return place;
-}
-
-/// Of an extent without points.
-Error nothing_within(std::span<const Source> sources, const LoadOptions& options) {
-  const std::filesystem::path& first = sources.front().input.path;
-  std::string message = "no point of " + first.string();
-  if (sources.size() > 1) message += " and " + std::to_string(sources.size() - 1) + " more inputs";
-  message += " lies in the extent " +
-             box_text(options.selection.extent->low, options.selection.extent->high);
-  if (is_las(first)) {
-    const LasFacts las = read_las_facts(first);
-    message += "; " + first.string() + " has " +
-               box_text(in_steps(las.box_min, las.scale), in_steps(las.box_max, las.scale)) +
-               " by its header";
-  }
-  return {ErrorKind::data, message};
-}
 
 /// What is read, and the one coordinate system of all.
 struct ReadParts {
@@ -164,18 +34,16 @@ struct ReadParts {
   Crs crs;
 };
 
-ReadParts read_parts(std::span<const Source> sources, const LoadOptions& options,
+ReadParts read_parts(std::span<const OpenInput> sources, const LoadOptions& options,
                      const Executor& executor, ProgressSink& progress) {
   std::vector<CloudPart> parts;
   SharedCrs crs;
   std::size_t points = 0;
   std::uint32_t scans = 0;
-  for (const Source& source : sources) {
+  for (const OpenInput& source : sources) {
     const std::filesystem::path& path = source.input.path;
-    if (source.input.is_sequence) {
-      const KittiSequence sequence =
-          source.drive ? *source.drive : open_sequence(path, options, executor);
-      parts.push_back(read_sequence_part(sequence, options, scans, executor, progress));
+    if (source.sequence) {
+      parts.push_back(read_sequence_part(*source.sequence, options, scans, executor, progress));
     } else {
       parts.push_back(read_file_part(path, options, progress, &executor));
     }
@@ -186,7 +54,6 @@ ReadParts read_parts(std::span<const Source> sources, const LoadOptions& options
       throw Error(ErrorKind::data,
                   path.string() + ": with it the cloud has more than 4294967295 points");
   }
-  if (points == 0 && options.selection.extent) throw nothing_within(sources, options);
   if (const std::string warning = crs.warning(); !warning.empty()) progress.warn(warning);
   return {std::move(parts), crs.crs()};
 }
@@ -274,12 +141,6 @@ std::size_t mark_unknown(std::vector<float>& intensities, const Kept& kept,
                                }
                                return count;
                              });
-}
-
-/// What the inputs are called in a message about all of them.
-std::string name_of(std::span<const std::filesystem::path> inputs) {
-  return inputs.front().string() +
-         (inputs.size() == 1 ? "" : " and " + std::to_string(inputs.size() - 1) + " more inputs");
 }
 
 Extents extents_of(const CloudPart& part, const Kept& kept, const Executor& executor) {
@@ -451,17 +312,24 @@ Kept own_body(const PointCloud& cloud, std::optional<double> radius_m, const Kep
   return points_within(cloud, *radius_m, executor);
 }
 
+/// What is known of the inputs beyond a piece of them.
+struct PieceContext {
+  bool has_whole_scans = true;  ///< all scans have all of their points
+  PathBeyond beyond;
+};
+
 /// Leaves out the points with a flag in `moving` and those of the vehicle: on it, and where it
 /// drove. The cloud is gone through once, when all of them are known.
-void leave_out(PointCloud& cloud, Kept moving, const LoadOptions& options, LoadReport& report,
-               const Executor& executor) {
+void leave_out(PointCloud& cloud, Kept moving, const LoadOptions& options, const PathBeyond& beyond,
+               LoadReport& report, const Executor& executor) {
   Kept left_out;
   report.in_boxes = add_flags(moving, left_out);
   moving = {};
   report.own_body = add_flags(own_body(cloud, options.own_body_m, left_out, executor), left_out);
   DrivenPathOptions path;
   path.half_width_m = options.driven_path_m;
-  report.driven_path = add_flags(find_in_driven_path(cloud, path, executor, left_out), left_out);
+  report.driven_path =
+      add_flags(find_in_driven_path(cloud, path, executor, left_out, beyond), left_out);
   if (report.in_boxes + report.own_body + report.driven_path == 0) return;
   for (std::uint8_t& flag : left_out) flag = flag == 0 ? 1 : 0;  // now of those that stay
   keep_only(cloud, left_out, executor);
@@ -482,8 +350,8 @@ Kept in_boxes(const Gathered& gathered) {
 }
 
 /// Finds what of the parts is finite, and counts it.
-void look_at_parts(std::span<const Source> sources, const LoadOptions& options, Gathered& gathered,
-                   LoadReport& report, const Executor& executor) {
+void look_at_parts(std::span<const OpenInput> sources, const LoadOptions& options,
+                   Gathered& gathered, LoadReport& report, const Executor& executor) {
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
     CloudPart& part = gathered.parts[p];
     gathered.kept.emplace_back();
@@ -492,8 +360,9 @@ void look_at_parts(std::span<const Source> sources, const LoadOptions& options, 
     report.points_read += part.size();
     if (part.is_sequence) {
       report.beams.push_back(part.beams.description());
-      report.drives.push_back({sources[p].input.path, part.beams.sensor, part.runs.size(),
-                               sources[p].drive ? sources[p].drive->facts : DriveFacts{}});
+      report.drives.push_back(
+          {sources[p].input.path, part.beams.sensor, part.runs.size(),
+           sources[p].is_frame_drive ? sources[p].sequence->facts : DriveFacts{}});
     }
     report.dropped_not_finite += count_dropped(gathered.kept.back());
     report.no_returns += count_no_returns(part, gathered.kept.back());
@@ -502,23 +371,25 @@ void look_at_parts(std::span<const Source> sources, const LoadOptions& options, 
   }
 }
 
-}  // namespace
-
-std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
-                                             const LoadOptions& options, const Executor& executor,
-                                             ProgressSink& progress) {
-  require_sound(options);
-  const std::vector<Source> sources = open_sources(inputs, options, executor, progress);
-  require_options_that_fit(options, sources);
+/// Loads inputs that are open; `name` is what they are called in messages about all of them.
+std::pair<PointCloud, LoadReport> load_open(std::span<const OpenInput> sources,
+                                            const LoadOptions& options, const std::string& name,
+                                            const PieceContext& context, const Executor& executor,
+                                            ProgressSink& progress) {
   const PointOrigins origins(options);
   LoadReport report;
   LoadClock clock(report.seconds);
   auto [parts, crs] = read_parts(sources, options, executor, progress);
+  const auto is_empty = [](const CloudPart& part) { return part.size() == 0; };
+  if (!options.selection.is_all() && std::ranges::all_of(parts, is_empty)) {
+    PointCloud none;
+    none.crs = std::move(crs);
+    return {std::move(none), std::move(report)};
+  }
   Gathered gathered{std::move(parts)};
   const std::optional<PlacedByTimes> placed =
       place_by_times(gathered.parts, options, executor, progress);
-  const bool any_drive =
-      std::ranges::any_of(sources, [](const Source& source) { return source.drive.has_value(); });
+  const bool any_drive = std::ranges::any_of(sources, &OpenInput::is_frame_drive);
   require_used(options, placed.has_value() || any_drive, placed.has_value() || any_drive);
   Trajectory scan_poses = scan_poses_of(gathered.parts, placed);
 
@@ -532,8 +403,8 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
   std::size_t dropped = 0;
   for (const Kept& kept : gathered.kept) dropped += count_dropped(kept);
   report.dropped_far = dropped - report.dropped_not_finite;
-  report_dropped(name_of(inputs), report, options, progress);
-  require_metres(name_of(inputs), extents.low, extents.high, crs, progress);
+  report_dropped(name, report, options, progress);
+  require_metres(name, extents.low, extents.high, crs, progress);
   const Vec3d origin = choose_origin(extents.low, extents.high);
 
   Kept moving = in_boxes(gathered);
@@ -542,21 +413,56 @@ std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::pa
     require_sensor_places(gathered.parts[p], gathered.kept[p]);
     clouds.push_back(
         localized(std::move(gathered.parts[p]), gathered.kept[p], origin, origins, executor));
-    const Input& input = sources[p].input;
+    const CloudInput& input = sources[p].input;
     if (!input.is_sequence) check_origins(clouds.back(), input.path, options, executor);
   }
   PointCloud cloud = joined(std::move(clouds), origin, std::move(scan_poses), progress);
   cloud.crs = std::move(crs);
   clock.end("place");
   // Before any point is taken away: where one was, its beam did return.
-  if (options.empty_beams && options.selection.is_all())
+  if (options.empty_beams && context.has_whole_scans)
     cloud.empty_beams = find_empty_beams(cloud, {}, executor);
   clock.end("find empty beams");
-  leave_out(cloud, std::move(moving), options, report, executor);
-  report_own_body(name_of(inputs), report, options, progress);
+  leave_out(cloud, std::move(moving), options, context.beyond, report, executor);
+  report_own_body(name, report, options, progress);
   clock.end("leave the vehicle out");
   report.origins = count_origins(cloud);
   return {std::move(cloud), report};
+}
+
+}  // namespace
+
+std::pair<PointCloud, LoadReport> OpenInputs::load(const Executor& executor,
+                                                   ProgressSink& progress) const {
+  const PieceContext context = {options_.selection.is_all(), {}};
+  auto loaded = load_open(inputs_, options_, name_, context, executor, progress);
+  if (loaded.second.points_read == 0 && options_.selection.extent) throw nothing_within_extent();
+  return loaded;
+}
+
+std::pair<PointCloud, LoadReport> OpenInputs::load(const InputPiece& piece,
+                                                   const Executor& executor,
+                                                   ProgressSink& progress) const {
+  const OpenInput& input = inputs_.at(piece.input);
+  const bool is_all = piece.first == 0 && piece.count == InputPiece().count;
+  LoadOptions part = options_;
+  PieceContext context = {options_.selection.is_all(), {}};
+  if (input.sequence) context.beyond = path_beyond(piece);
+  if (input.sequence && !is_all) {
+    part.first_scan += static_cast<std::size_t>(piece.first) * options_.scan_stride;
+    part.scan_count = static_cast<std::size_t>(piece.count);
+  } else if (!is_all) {
+    part.selection.records = RecordSpan{piece.first, piece.count};
+    context.has_whole_scans = context.has_whole_scans && piece.has_whole_scans;
+    context.beyond = piece.beyond;
+  }
+  return load_open({&input, 1}, part, input.input.path.string(), context, executor, progress);
+}
+
+std::pair<PointCloud, LoadReport> load_cloud(std::span<const std::filesystem::path> inputs,
+                                             const LoadOptions& options, const Executor& executor,
+                                             ProgressSink& progress) {
+  return OpenInputs(inputs, options, executor, progress).load(executor, progress);
 }
 
 }  // namespace adasplats

@@ -10,6 +10,7 @@
 
 #include "adasplats/cloud/load/court_test.h"
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/load/open_inputs.h"
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
@@ -124,6 +125,35 @@ TEST(PandaSetDrive, PointsOriginsClassesAndIntensities) {
   EXPECT_EQ(report.drives[0].sensor, "hesai-pandar64");
   EXPECT_NE(report.drives[0].facts.left_out.find("5 points of the PandarGT"), std::string::npos);
   EXPECT_NE(report.drives[0].facts.intensities.find("divided by 255"), std::string::npos);
+}
+
+// Oracle: the drive in one piece.
+TEST(PandaSetDrive, ScansCanBeLoadedPieceByPiece) {
+  const PandaCourt court(5);
+  const auto [whole, whole_report] = court.load();
+  LoadOptions options;
+  options.own_body_m = 0;
+  options.driven_path_m = 0;
+  ProgressSink quiet;
+  const OpenInputs inputs(std::span(&court.path(), 1), options, Executor(2), quiet);
+  ASSERT_TRUE(inputs.are_drives());
+  ASSERT_EQ(inputs.chosen_scans(0), 5U);
+  std::size_t points = 0;
+  for (const InputPiece piece : {InputPiece{0, 0, 2}, InputPiece{0, 2, 2}, InputPiece{0, 4, 2}}) {
+    const auto [part, report] = inputs.load(piece, Executor(2), quiet);
+    EXPECT_EQ(part.scan_poses.size(), piece.first == 4 ? 1U : 2U);
+    EXPECT_EQ(report.drives.at(0).sensor, whole_report.drives.at(0).sensor);
+    ASSERT_LE(points + part.size(), whole.size());
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const std::size_t k = points + i;
+      ASSERT_EQ(part.world(i), whole.world(k)) << k;
+      ASSERT_EQ(part.sensor_positions[i], whole.sensor_positions[k]) << k;
+      ASSERT_EQ(part.classes[i], whole.classes[k]) << k;
+      ASSERT_EQ(part.scan_indices[i] + piece.first, whole.scan_indices[k]) << k;
+    }
+    points += part.size();
+  }
+  EXPECT_EQ(points, whole.size());
 }
 
 // Oracle: by hand: a single pose stands for the whole scan.

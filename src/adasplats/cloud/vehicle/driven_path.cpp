@@ -58,24 +58,49 @@ bool is_within(Vec3d offset, double radius_m) {
   return square < most * (1 - kSure) || std::hypot(offset.x, offset.y) <= radius_m;
 }
 
-/// The path from place to place, a step apart, and how long it is.
+/// Where the sensor was in a scan, relative to the cloud's origin.
+struct ScanPlace {
+  Vec3d at;
+  bool is_own = true;  ///< the scan is in the cloud
+};
+
+/// The places of a cloud's scans, between those beyond.
+std::vector<ScanPlace> places_of_path(const std::vector<Vec3d>& own, const PathBeyond& beyond,
+                                      Vec3d origin) {
+  std::vector<ScanPlace> places;
+  for (const Vec3d world : beyond.before) places.push_back({world - origin, false});
+  for (const Vec3d at : own) places.push_back({at, true});
+  for (const Vec3d world : beyond.after) places.push_back({world - origin, false});
+  return places;
+}
+
+/// The path from place to place, a step apart, and how long it is; without what is far from all
+/// points.
 class Path {
  public:
-  Path(const std::vector<Vec3d>& scans, const DrivenPathOptions& options) {
+  Path(const std::vector<ScanPlace>& scans, const PointCloud& cloud,
+       const DrivenPathOptions& options) {
+    for (const Vec3f point : cloud.positions) {
+      low_ = min(low_, point);
+      high_ = max(high_, point);
+    }
     for (std::size_t k = 0; k < scans.size(); ++k) {
-      const double apart_m = k == 0 ? 0 : length(scans[k] - scans[k - 1]);
+      const auto [at, is_own] = scans[k];
+      const Vec3d last = scans[k == 0 ? 0 : k - 1].at;
+      const double apart_m = length(at - last);
       const bool joined = k > 0 && apart_m <= options.most_apart_m;
       const int steps = joined ? static_cast<int>(apart_m / options.step_m) : 0;
       if (joined) length_m_ += apart_m;
       for (int step = 1; step <= steps; ++step)
-        add(scans[k - 1] + (step / (steps + 1.0)) * (scans[k] - scans[k - 1]));
-      add(scans[k]);
+        add(last + (step / (steps + 1.0)) * (at - last), is_own);
+      add(at, is_own);
     }
     for (const auto& [key, places] : cells_) near_[slot_of(key)] = 1;
   }
 
   double length_m() const { return length_m_; }
   const std::vector<Vec3d>& places() const { return places_; }
+  bool is_own(std::size_t place) const { return is_own_[place] != 0; }  ///< of the cloud's scans
 
   /// Calls body(place, offset from it) for the places within a cell or so of a point.
   template <class Body>
@@ -98,14 +123,24 @@ class Path {
   static std::uint64_t key(std::int64_t x, std::int64_t y) {
     return static_cast<std::uint64_t>(x) << 32 ^ static_cast<std::uint32_t>(y);
   }
-  void add(Vec3d place) {
+  void add(Vec3d place, bool is_own) {
     // A vehicle at rest adds nothing.
     if (!places_.empty() && length(place - places_.back()) < 0.2 * kCell_m) return;
+    if (!is_own && is_far(place)) return;
     const auto [x, y] = cell_of(place);
     for (std::int64_t dx = -1; dx <= 1; ++dx)
       for (std::int64_t dy = -1; dy <= 1; ++dy)
         cells_[key(x + dx, y + dy)].push_back(places_.size());
     places_.push_back(place);
+    is_own_.push_back(is_own ? 1 : 0);
+  }
+  /// Whether no point is within the cells around a place.
+  bool is_far(Vec3d place) const {
+    constexpr double kReach_m = 2 * kCell_m;
+    return place.x < static_cast<double>(low_.x) - kReach_m ||
+           place.y < static_cast<double>(low_.y) - kReach_m ||
+           place.x > static_cast<double>(high_.x) + kReach_m ||
+           place.y > static_cast<double>(high_.y) + kReach_m;
   }
   /// Most points are near no place, which these few bytes tell.
   static std::size_t slot_of(std::uint64_t key) {
@@ -114,7 +149,10 @@ class Path {
   }
   static constexpr unsigned kSlotBits = 16;
 
+  static constexpr float kNone = std::numeric_limits<float>::infinity();
+  Vec3f low_{kNone, kNone, kNone}, high_{-kNone, -kNone, -kNone};  // of the points
   std::vector<Vec3d> places_;
+  std::vector<std::uint8_t> is_own_;
   /// The places in a cell and in those around it.
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> cells_;
   std::vector<std::uint8_t> near_ = std::vector<std::uint8_t>(std::size_t{1} << kSlotBits);
@@ -156,11 +194,17 @@ std::vector<double> heights_above_ground(const Looked& points, const Path& path,
   return heights;
 }
 
-/// The height at most places, which holds where nobody saw the ground; nothing where it is none: it
-/// varies, or hardly any place has one.
-std::optional<double> usual_height(std::vector<double> heights, const DrivenPathOptions& options) {
-  const std::size_t places = heights.size();
-  std::erase_if(heights, [](double height) { return std::isnan(height); });
+/// The height at most places of the cloud's scans, which holds where nobody saw the ground; nothing
+/// where it is none: it varies, or hardly any place has one.
+std::optional<double> usual_height(const std::vector<double>& all, const Path& path,
+                                   const DrivenPathOptions& options) {
+  std::vector<double> heights;
+  std::size_t places = 0;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (!path.is_own(k)) continue;
+    ++places;
+    if (!std::isnan(all[k])) heights.push_back(all[k]);
+  }
   if (heights.empty() || 2 * heights.size() < places) return std::nullopt;
   std::ranges::sort(heights);
   const double low = heights[heights.size() / 10], high = heights[heights.size() * 9 / 10];
@@ -173,14 +217,16 @@ std::optional<double> usual_height(std::vector<double> heights, const DrivenPath
 std::vector<std::uint8_t> find_in_driven_path(const PointCloud& cloud,
                                               const DrivenPathOptions& options,
                                               const Executor& executor,
-                                              std::span<const std::uint8_t> left_out) {
+                                              std::span<const std::uint8_t> left_out,
+                                              const PathBeyond& beyond) {
   if (!(options.half_width_m > 0) || cloud.sensor_positions.empty() || cloud.scan_indices.empty())
     return {};
   const Looked points{cloud, left_out};
-  const Path path(places_of_scans(points, executor), options);
+  const Path path(places_of_path(places_of_scans(points, executor), beyond, cloud.origin), cloud,
+                  options);
   if (path.length_m() < options.least_path_m) return {};
   std::vector<double> heights = heights_above_ground(points, path, options, executor);
-  const std::optional<double> usual = usual_height(heights, options);
+  const std::optional<double> usual = usual_height(heights, path, options);
   if (!usual) return {};
   for (double& height : heights)
     if (std::isnan(height)) height = *usual;

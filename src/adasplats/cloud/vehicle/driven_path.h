@@ -28,14 +28,22 @@ struct DrivenPathOptions {
   std::size_t least_points = 20;  ///< that say where the ground is at a place
 };
 
+/// Where the sensor was in scans that are not in a cloud which is a piece of a drive, in order,
+/// world coordinates.
+struct PathBeyond {
+  std::vector<Vec3d> before, after;
+};
+
 /// The points in the volume that the carrier of the sensor passed through, 1 or 0 each; empty: none
 /// or no such volume (origins not measured, a sensor that hardly moved, one in the air, no ground
-/// below it), counting only those without a flag in `left_out` (1 or 0 each; empty: all count).
+/// below it), counting only those without a flag in `left_out` (1 or 0 each; empty: all count). The
+/// carrier passed `beyond`, too; whether there is such a volume say the scans of the cloud.
 /// What was measured there had gone when the carrier passed, or came later: mostly vehicles ahead.
 /// Up is +z. Time: two passes over the points.
 std::vector<std::uint8_t> find_in_driven_path(const PointCloud& cloud,
                                               const DrivenPathOptions& options,
                                               const Executor& executor,
-                                              std::span<const std::uint8_t> left_out = {});
+                                              std::span<const std::uint8_t> left_out = {},
+                                              const PathBeyond& beyond = {});
 
 }  // namespace adasplats

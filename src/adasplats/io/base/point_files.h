@@ -33,8 +33,7 @@ struct PointSelection {
   /// need, m; where both are given the fewer.
   std::optional<std::uint32_t> level;
   std::optional<double> resolution_m;
-  /// Of a file whose records can be read at random (records_at_random()) those of a span; of LAZ
-  /// those of the chunks that begin in it, so that spans which cover the file have each point once.
+  /// Of a file whose records can be read at random (records_at_random()) those of a span.
   std::optional<RecordSpan> records;
 
   bool asks_levels() const { return level || resolution_m; }
@@ -112,8 +111,9 @@ Table read_bin(const std::filesystem::path& path);
 /// Any of the formats above and PLY, by the file's extension (any case) and first bytes, which must
 /// not contradict each other. What is not selected is left out: of LAS and LAZ as it is read, of
 /// others when all is there.
-/// Errors: as theirs; std::logic_error for records of a file that are not at random; an unknown format is ErrorKind::data naming what is understood; usage (levels
-/// are asked for, and the file has none).
+/// Errors: as theirs; std::logic_error for records of a file that are not at random; an unknown
+/// format is ErrorKind::data naming what is understood; usage (levels are asked for, and the file
+/// has none).
 Table read_points(const std::filesystem::path& path, const LasReadOptions& options = {});
 
 /// The coordinate system that a file of points says, without reading the points. Errors: as theirs.

@@ -3,10 +3,9 @@
 #include "adasplats/io/las/laz.h"
 
 #include <algorithm>
+#include <cstring>
 #include <deque>
 #include <memory>
-#include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -63,8 +62,10 @@ struct OpenChunk {
   std::vector<std::byte> packed;
   std::unique_ptr<PackedChunk> decoder;
   std::uint64_t left = 0;             // points that are still packed
+  std::uint64_t next_record = 0;      // number of the next of them
   std::vector<std::byte> records;     // the next of them, unpacked
   std::size_t wanted = 0, sound = 0;  // how many those should be, and are from the first
+  std::size_t taken = 0;              // how many of the sound ones are in the span, in front
   bool is_cut_short = false;          // the packed bytes end too early
   KeptRecords kept;                   // of the records
 };
@@ -123,6 +124,7 @@ class LazReader {
     chunk.packed.assign(packed.begin(), packed.end());
     chunk.decoder = make_packed_chunk(layout_.packing, chunk.packed);
     chunk.left = chunk.place.points;
+    chunk.next_record = chunk.place.first_record;
     unread_ -= chunk.left;
   }
 
@@ -137,7 +139,8 @@ class LazReader {
       chunk.sound = plausible_.count(chunk.records.data(), whole);
       chunk.left -= chunk.wanted;
       if (chunk.sound < chunk.wanted) chunk.is_cut_short = whole < chunk.wanted;
-      chunk.kept = keep_wanted(table_.schema(), chunk.records.data(), chunk.sound);
+      take_span(chunk);
+      chunk.kept = keep_wanted(table_.schema(), chunk.records.data(), chunk.taken);
     };
     if (executor_ != nullptr)
       executor_->for_chunks(open_.size(), 1, unpack_one);
@@ -145,12 +148,28 @@ class LazReader {
       for (std::size_t k = 0; k < open_.size(); ++k) unpack_one(k, k + 1);
   }
 
+  /// Moves those of the sound records that are in the span to the front.
+  void take_span(OpenChunk& chunk) const {
+    const std::uint64_t begin = chunk.next_record, end = begin + chunk.sound;
+    chunk.next_record += chunk.wanted;
+    chunk.taken = chunk.sound;
+    if (!layout_.span) return;
+    const std::uint64_t first = std::clamp(layout_.span->first, begin, end);
+    const std::uint64_t last = std::clamp(layout_.span->first + layout_.span->count, first, end);
+    chunk.taken = static_cast<std::size_t>(last - first);
+    const std::size_t bytes = layout_.packing.record_bytes;
+    if (first > begin)
+      std::memmove(chunk.records.data(),
+                   chunk.records.data() + static_cast<std::size_t>(first - begin) * bytes,
+                   chunk.taken * bytes);
+  }
+
   /// Hands over what is unpacked without a gap before it.
   void hand_over() {
     std::vector<WantedRecords> parts;
     for (const OpenChunk& chunk : open_) {
       if (chunk.wanted == 0 || !fault_.empty()) break;
-      parts.push_back({chunk.records.data(), chunk.sound, chunk.kept});
+      parts.push_back({chunk.records.data(), chunk.taken, chunk.kept});
       if (chunk.sound < chunk.wanted)
         fault_ = "the chunk at byte " + std::to_string(chunk.place.offset_bytes) +
                  (chunk.is_cut_short ? " ends within a point"
@@ -181,47 +200,39 @@ class LazReader {
   std::string fault_;
 };
 
-/// Leaves the chunks that begin in a span of the records.
-class ChunksOfSpan {
- public:
-  ChunksOfSpan(const LazLayout& whole, RecordSpan span) {
-    std::uint64_t first = 0;
-    for (const LazChunk& chunk : whole.chunks) {
-      if (span.contains(first)) offsets_.insert(chunk.offset_bytes);
-      first += chunk.points;
-    }
-  }
-
-  /// Of some of the chunks.
-  void choose_in(LazLayout& layout) const {
-    std::erase_if(layout.chunks,
-                  [&](const LazChunk& chunk) { return !offsets_.contains(chunk.offset_bytes); });
-    layout.header.points = 0;
-    for (const LazChunk& chunk : layout.chunks) layout.header.points += chunk.points;
-  }
-
- private:
-  std::set<std::uint64_t> offsets_;
-};
+/// Leaves the chunks with points of a span; gives how many points of it they have.
+std::uint64_t choose_span(RecordSpan span, LazLayout& layout) {
+  if (!layout.has_table)
+    throw std::logic_error("read_laz: records of a file that has them not at random");
+  std::uint64_t wanted = 0;
+  const auto is_beside = [&](const LazChunk& chunk) {
+    const std::uint64_t begin = std::max(span.first, chunk.first_record);
+    const std::uint64_t end = std::min(span.first + span.count, chunk.first_record + chunk.points);
+    wanted += begin < end ? end - begin : 0;
+    return begin >= end;
+  };
+  std::erase_if(layout.chunks, is_beside);
+  layout.span = span;
+  layout.header.points = 0;
+  for (const LazChunk& chunk : layout.chunks) layout.header.points += chunk.points;
+  return wanted;
+}
 
 }  // namespace
 
 Table read_laz(const std::filesystem::path& path, const LasReadOptions& options) {
   LazLayout layout = read_laz_layout(path, options.salvage);
-  const std::optional<RecordSpan>& records = options.selection.records;
-  std::optional<ChunksOfSpan> chunks;
-  if (records && layout.header.points > 0) {
-    if (!layout.has_table)
-      throw std::logic_error("read_laz: records of a file that has them not at random");
-    chunks.emplace(layout, *records);
-  }
+  const std::uint64_t all = layout.header.points;
   choose_chunks(path, options.selection, layout);
-  if (chunks) chunks->choose_in(layout);
-  const std::uint64_t points = layout.header.points;
+  std::uint64_t points = layout.header.points;
+  if (options.selection.records && points > 0)
+    points = choose_span(options.selection.records->within(all), layout);
+  LasHeader header = layout.header;
+  header.points = points;
   // The count is not to be believed before the points are there; a point of a sensor takes two
   // bytes or more.
   InputFile file(path);
-  LasTable table(path, layout.header, options.selection.extent,
+  LasTable table(path, header, options.selection.extent,
                  static_cast<std::size_t>(std::min(points, file.size_bytes() / 2)));
   LazReader reader(path, layout, options.executor, table);
   reader.read();

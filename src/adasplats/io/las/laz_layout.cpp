@@ -75,6 +75,7 @@ class TableReader {
       chunk.points =
           of_all == kVariableChunks ? entry.points : std::min<std::uint64_t>(of_all, left);
       check(chunk, k, left);
+      chunk.first_record = layout_.header.points - left;
       left -= chunk.points;
       if (chunk.points > 0) chunks.push_back(chunk);
     }

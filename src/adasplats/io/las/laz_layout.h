@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
+#include "adasplats/io/base/record_span.h"
 #include "adasplats/io/las/las_header.h"
 #include "adasplats/io/laz/laz_item.h"
 
@@ -16,6 +18,7 @@ struct LazChunk {
   std::uint64_t offset_bytes = 0;  ///< in the file
   std::uint64_t bytes = 0;
   std::uint64_t points = 0;
+  std::uint64_t first_record = 0;  ///< number of its first point in the file
 };
 
 /// What a LAZ file says of itself, checked as far as that goes without unpacking points.
@@ -25,7 +28,8 @@ struct LazLayout {
   std::uint64_t first_chunk_bytes = 0;  ///< its offset in the file
   /// False: where a chunk begins is known once the one before has been unpacked.
   bool has_table = false;
-  std::vector<LazChunk> chunks;  ///< of a file that has a table
+  std::vector<LazChunk> chunks;    ///< of a file that has a table
+  std::optional<RecordSpan> span;  ///< of which records are wanted; nothing: all of the chunks
 };
 
 /// Reads the header, LASzip's record and the table of chunks. With `salvage` a broken table of

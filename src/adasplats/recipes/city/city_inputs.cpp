@@ -3,14 +3,17 @@
 #include "adasplats/recipes/city/city_inputs.h"
 
 #include <algorithm>
-#include <array>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/load/cloud_inputs.h"
+#include "adasplats/cloud/load/file_pieces.h"
 #include "adasplats/cloud/load/one_crs.h"
+#include "adasplats/cloud/load/open_inputs.h"
+#include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/pipeline/model/calibrate_on_device.h"
 #include "adasplats/pipeline/session/repeated_warnings.h"
@@ -18,6 +21,8 @@
 
 namespace adasplats {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Scans that are read at once.
 constexpr std::size_t kPieceScans = 200;
@@ -30,7 +35,7 @@ void correct(const Calibration& calibration, PointCloud& cloud, const Executor& 
 }
 
 CityPoints read_drives(const ModelJob& job, DrivePieces& pieces, Session& session,
-                       const std::function<void(const PointCloud&)>& take) {
+                       const TakePoints& take) {
   CityPoints points;
   const Stopwatch watch;
   if (job.calibration.on)
@@ -43,7 +48,7 @@ CityPoints read_drives(const ModelJob& job, DrivePieces& pieces, Session& sessio
     for (std::size_t begin = 0; begin < drive.scans; begin += kPieceScans) {
       PointCloud cloud = drive.read({begin, std::min(drive.scans, begin + kPieceScans)});
       correct(points.calibration, cloud, session.executor);
-      take(cloud);
+      take(std::move(cloud));
     }
   }
   pieces.end();
@@ -51,32 +56,67 @@ CityPoints read_drives(const ModelJob& job, DrivePieces& pieces, Session& sessio
   return points;
 }
 
-CityPoints read_files(const ModelJob& job, const std::vector<CloudInput>& files, Session& session,
-                      const std::function<void(const PointCloud&)>& take) {
+/// What one file's pieces must have in common with those of all others.
+class PiecesInCommon {
+ public:
+  explicit PiecesInCommon(ProgressSink& warnings) : warnings_(warnings) {}
+
+  /// Throws data where a piece is in another coordinate system than the first, or the clock of its
+  /// points is another: one of the two was not understood.
+  void require(const fs::path& file, const PointCloud& cloud, const LoadReport& loaded) {
+    if (!crs_)
+      crs_ = {file, cloud.crs};
+    else if (file != crs_->first)
+      require_one_crs({*crs_, {file, cloud.crs}}, warnings_);
+    if (!loaded.timed) return;
+    const std::string clock = loaded.timed->clock;
+    if (!clock_) clock_ = {file, clock};
+    if (clock == clock_->second) return;
+    throw Error(ErrorKind::data,
+                file.string() +
+                    ": the clocks of points and trajectory are not those of other points (" +
+                    clock + "; those of " + clock_->first.string() + ": " + clock_->second +
+                    "); state `time_offset`, or model these inputs apart");
+  }
+
+ private:
+  ProgressSink& warnings_;
+  std::optional<std::pair<fs::path, Crs>> crs_;
+  std::optional<std::pair<fs::path, std::string>> clock_;
+};
+
+CityPoints read_files(const ModelJob& job, const OpenInputs& inputs,
+                      std::span<const InputPiece> pieces, Session& session,
+                      const TakePoints& take) {
   CityPoints points;
-  RepeatedWarnings warnings(session.progress, "files");
-  Crs first;
-  session.progress.begin_step("read points", files.size());
-  for (std::size_t k = 0; k < files.size(); ++k) {
-    const std::array input = {files[k].path};
-    const auto [cloud, loaded] = load_cloud(input, job.load, session.executor, warnings);
+  RepeatedWarnings warnings(session.progress, "pieces of the files");
+  PiecesInCommon in_common(warnings);
+  bool is_timed = false;
+  session.progress.begin_step("read points", pieces.size());
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    auto [cloud, loaded] = inputs.load(pieces[k], session.executor, warnings);
     points.read += loaded.points_read;
-    if (k == 0)
-      first = cloud.crs;
-    else
-      require_one_crs({{files[0].path, first}, {files[k].path, cloud.crs}}, warnings);
-    take(cloud);
+    is_timed = is_timed || loaded.timed;
+    if (!cloud.empty()) {
+      in_common.require(inputs.inputs()[pieces[k].input].input.path, cloud, loaded);
+      take(std::move(cloud));
+    }
     session.progress.advance(k + 1);
   }
   session.progress.end_step();
   warnings.end();
+  if (points.read == 0 && job.load.selection.extent) throw inputs.nothing_within_extent();
+  if (is_timed && job.calibration.on)
+    session.progress.warn(
+        "points with times that are read piece by piece are not calibrated (scans in files, or in "
+        "a recording, are)");
   return points;
 }
 
-CityPoints read_at_once(const ModelJob& job, Session& session,
-                        const std::function<void(const PointCloud&)>& take) {
+CityPoints read_at_once(const ModelJob& job, const OpenInputs& inputs, Session& session,
+                        const TakePoints& take) {
   CityPoints points;
-  auto [cloud, loaded] = load_cloud(job.inputs, job.load, session.executor, session.progress);
+  auto [cloud, loaded] = inputs.load(session.executor, session.progress);
   points.read = loaded.points_read;
   const Stopwatch watch;
   if (job.calibration.on)
@@ -85,22 +125,25 @@ CityPoints read_at_once(const ModelJob& job, Session& session,
                              .first;
   points.calibrated_s = watch.seconds();
   correct(points.calibration, cloud, session.executor);
-  take(cloud);
+  take(std::move(cloud));
   return points;
 }
 
 }  // namespace
 
-CityPoints read_city_points(const ModelJob& job, Session& session,
-                            const std::function<void(const PointCloud&)>& take) {
-  auto pieces = DrivePieces::open(job.inputs, job.load, kPieceScans, session);
-  if (pieces) return read_drives(job, *pieces, session, take);
-  std::vector<CloudInput> inputs;
-  for (const std::filesystem::path& path : job.inputs)
-    for (CloudInput& input : cloud_inputs(path)) inputs.push_back(std::move(input));
-  const bool all_files = std::ranges::none_of(inputs, &CloudInput::is_sequence);
-  if (inputs.size() > 1 && all_files) return read_files(job, inputs, session, take);
-  return read_at_once(job, session, take);
+CityPoints read_city_points(const ModelJob& job, Session& session, const TakePoints& take,
+                            std::uint64_t piece_records) {
+  const OpenInputs inputs(job.inputs, job.load, session.executor, session.progress);
+  auto drives = DrivePieces::of(inputs, kPieceScans, session);
+  if (drives) return read_drives(job, *drives, session, take);
+  const bool any_drive = std::ranges::any_of(
+      inputs.inputs(), [](const OpenInput& input) { return input.input.is_sequence; });
+  if (!any_drive) {
+    const std::vector<InputPiece> pieces =
+        file_pieces(inputs, piece_records, session.executor, session.progress);
+    if (pieces.size() > 1) return read_files(job, inputs, pieces, session, take);
+  }
+  return read_at_once(job, inputs, session, take);
 }
 
 }  // namespace adasplats

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 
 #include "adasplats/calibrate/calibration.h"
@@ -18,9 +20,17 @@ struct CityPoints {
   double calibrated_s = 0;  ///< that finding it took
 };
 
+/// Records of a file that are read at once: 100 chunks of LAZ as LASzip writes them.
+inline constexpr std::uint64_t kPieceRecords = 5'000'000;
+
+/// Takes some of the points.
+using TakePoints = std::function<void(PointCloud&&)>;
+
 /// Calls `take` for the points of a job piece by piece, corrected where the job calibrates: drives
-/// longer than a window by 200 scans, else file by file, else all at once.
-CityPoints read_city_points(const ModelJob& job, Session& session,
-                            const std::function<void(const PointCloud&)>& take);
+/// longer than a window by 200 scans, files one by one, large ones with records at random
+/// (records_at_random()) by `piece_records`, else all at once. Errors: those of load_cloud; data
+/// for pieces in different coordinate systems, or with different clocks.
+CityPoints read_city_points(const ModelJob& job, Session& session, const TakePoints& take,
+                            std::uint64_t piece_records = kPieceRecords);
 
 }  // namespace adasplats

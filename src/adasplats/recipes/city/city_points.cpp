@@ -58,8 +58,10 @@ void read_points(CityWork& work) {
   reading.load.empty_beams = work.options.empty_beams && work.options.balance_rounds > 0;
   const std::optional<LabelScheme> scheme = work.scheme();
   const LabelScheme* const known = scheme ? &*scheme : nullptr;
-  const CityPoints read = read_city_points(reading, work.session, [&](const PointCloud& cloud) {
+  const CityPoints read = read_city_points(reading, work.session, [&](PointCloud&& cloud) {
     const bool is_first = !box;
+    cloud.scan_indices = {};  // all that they were for is done
+    cloud.lasers = {};
     writer.add(cloud);
     if (is_first) {
       work.common.crs = cloud.crs;

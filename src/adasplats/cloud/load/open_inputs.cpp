@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/cloud/load/open_inputs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "adasplats/cloud/load/cloud_part.h"
+#include "adasplats/cloud/load/data_tree.h"
+#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/core/error.h"
+#include "adasplats/io/bags/recording.h"
+#include "adasplats/io/base/box_text.h"
+#include "adasplats/io/base/point_files.h"
+#include "adasplats/io/packets/capture_reader.h"
+
+namespace adasplats {
+
+namespace {
+
+std::vector<CloudInput> list_inputs(std::span<const std::filesystem::path> paths) {
+  if (paths.empty()) throw Error(ErrorKind::usage, "no inputs to load");
+  std::vector<CloudInput> inputs, sequences;
+  for (const std::filesystem::path& path : paths) {
+    const std::vector<CloudInput> found = cloud_inputs(path);
+    inputs.insert(inputs.end(), found.begin(), found.end());
+  }
+  std::ranges::copy_if(inputs, std::back_inserter(sequences), &CloudInput::is_sequence);
+  if (sequences.size() > 1) require_one_world(sequences);
+  return inputs;
+}
+
+/// The inputs, folders of scans with a trajectory as one drive each.
+std::vector<OpenInput> opened(std::span<const std::filesystem::path> paths,
+                              const LoadOptions& options, const Executor& executor,
+                              ProgressSink& progress) {
+  std::vector<std::filesystem::path> others;
+  std::vector<OpenInput> inputs;
+  for (const std::filesystem::path& path : paths) {
+    std::optional<KittiSequence> drive;
+    if (!options.trajectory.empty() || is_drive_by_itself(path))
+      drive = open_frame_drive(drive_of(path, options), executor, progress);
+    if (drive)
+      inputs.push_back({{path, true}, std::move(drive), true});
+    else
+      others.push_back(path);
+  }
+  if (!others.empty() || paths.empty())
+    for (const CloudInput& input : list_inputs(others)) inputs.push_back({input, {}, false});
+  return inputs;
+}
+
+Error usage(const std::string& message) { return {ErrorKind::usage, message}; }
+
+/// What is wrong with options whatever the inputs are.
+void require_sound(const LoadOptions& options) {
+  if (options.scan_stride == 0) throw usage("a scan stride of 0");
+  if (options.scan_count == 0) throw usage("a scan count of 0");
+  const int sensor_fields = !options.sensor_x_field.empty() + !options.sensor_y_field.empty() +
+                            !options.sensor_z_field.empty();
+  if (sensor_fields != 0 && sensor_fields != 3)
+    throw usage("the columns of the sensor position are three or none");
+  if (options.viewpoint && !options.trajectory.empty())
+    throw usage("a viewpoint and a trajectory both give the sensor position");
+  if (options.viewpoint && !is_place(*options.viewpoint))
+    throw usage("the viewpoint is not finite, or beyond 1e12 m");
+  check_settings(options);
+}
+
+void require_options_that_fit(const LoadOptions& options, std::span<const OpenInput> inputs) {
+  const auto is_sequence = [](const OpenInput& input) { return input.input.is_sequence; };
+  const bool any_drive = std::ranges::any_of(inputs, &OpenInput::is_frame_drive);
+  const bool any_sequence = std::ranges::any_of(inputs, is_sequence);
+  const bool any_file = !std::ranges::all_of(inputs, is_sequence);
+  const LoadOptions defaults;
+  const bool chooses_scans = options.first_scan != defaults.first_scan ||
+                             options.scan_count != defaults.scan_count ||
+                             options.scan_stride != defaults.scan_stride;
+  if (chooses_scans && !any_sequence)
+    throw usage("scans are chosen, but no input is a sequence folder");
+  if ((!options.sensor_x_field.empty() || !options.label_field.empty()) && !any_file)
+    throw usage("columns are named, but no input is a file of points");
+  if (!options.selection.is_all() && any_sequence)
+    throw usage(
+        "`extent`, `level` and `resolution` choose points of files, and an input is a drive");
+  if (options.beams_from_poses && !any_sequence)
+    throw usage("beams are to start at poses, but no input is a sequence folder");
+  if (!options.boxes.empty() && !any_drive)
+    throw usage("boxes are given, but no input is a folder of scans with times and a trajectory");
+  const bool states_frames = options.points_in == PointsIn::sensor ||
+                             options.sweep_points != SweepPoints::found ||
+                             !options.scan_times.empty();
+  if (states_frames && !any_drive)
+    throw usage(
+        "`points_in`, `sweep_points` and `scan_times` are for a folder of scans, one a file, with "
+        "a `trajectory`; no input is one in the frame of its sensor");
+  const bool any_recording = std::ranges::any_of(
+      inputs, [](const OpenInput& input) { return is_recording(input.input.path); });
+  if ((!options.topic.empty() || !options.poses_topic.empty()) && !any_recording)
+    throw usage("`topic` and `poses_topic` are for a recording (MCAP, ROS bag); no input is one");
+  const bool any_tree = std::ranges::any_of(
+      inputs, [](const OpenInput& input) { return data_tree_of(input.input.path) != nullptr; });
+  if (!options.scene.empty() && !any_tree)
+    throw usage("`scene` is for a data root of nuScenes; no input is one");
+  const auto is_of_packets = [](const OpenInput& input) { return is_capture(input.input.path); };
+  if (!options.packets_of.empty() && std::ranges::none_of(inputs, is_of_packets))
+    throw usage("`packets_of` is for a capture of packets (.pcap, .pcapng); no input is one");
+  const bool states_origins = options.viewpoint || (!options.trajectory.empty() && !any_drive);
+  if (states_origins && !any_file)
+    throw usage("a sensor position is given, but every input has its own");
+}
+
+/// In whole steps of a file's coordinates, as its points are: headers may hold more digits.
+Vec3d in_steps(Vec3d place, Vec3d step) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (step[axis] > 0) place[axis] = std::round(place[axis] / step[axis]) * step[axis];
+  return place;
+}
+
+/// What the inputs are called in a message about all of them.
+std::string name_of(std::span<const std::filesystem::path> inputs) {
+  return inputs.front().string() +
+         (inputs.size() == 1 ? "" : " and " + std::to_string(inputs.size() - 1) + " more inputs");
+}
+
+}  // namespace
+
+OpenInputs::OpenInputs(std::span<const std::filesystem::path> inputs, const LoadOptions& options,
+                       const Executor& executor, ProgressSink& progress)
+    : options_(options) {
+  require_sound(options);
+  inputs_ = opened(inputs, options, executor, progress);
+  name_ = name_of(inputs);
+  require_options_that_fit(options, inputs_);
+  for (OpenInput& input : inputs_)
+    if (input.input.is_sequence && !input.sequence)
+      input.sequence = open_sequence(input.input.path, options, executor);
+}
+
+bool OpenInputs::are_drives() const {
+  return std::ranges::all_of(inputs_,
+                             [](const OpenInput& input) { return input.input.is_sequence; });
+}
+
+std::size_t OpenInputs::chosen_scans(std::size_t input) const {
+  const std::size_t scans = inputs_.at(input).sequence->scans.size();
+  if (options_.first_scan >= scans) return 0;
+  return std::min(options_.scan_count,
+                  (scans - options_.first_scan - 1) / options_.scan_stride + 1);
+}
+
+/// Of a piece of a drive: where all other scans of all drives were.
+PathBeyond OpenInputs::path_beyond(const InputPiece& piece) const {
+  PathBeyond beyond;
+  for (std::size_t k = 0; k < inputs_.size(); ++k) {
+    if (!inputs_[k].sequence) continue;
+    const Trajectory& poses = inputs_[k].sequence->trajectory;
+    const std::size_t scans = chosen_scans(k);
+    for (std::size_t scan = 0; scan < scans; ++scan) {
+      const bool is_before = k < piece.input || (k == piece.input && scan < piece.first);
+      if (!is_before && k == piece.input && scan - piece.first < piece.count) continue;
+      const std::size_t pose = options_.first_scan + scan * options_.scan_stride;
+      (is_before ? beyond.before : beyond.after)
+          .push_back(poses[pose].world_from_sensor.translation);
+    }
+  }
+  return beyond;
+}
+
+Error OpenInputs::nothing_within_extent() const {
+  const std::filesystem::path& first = inputs_.front().input.path;
+  std::string message = "no point of " + first.string();
+  if (inputs_.size() > 1) message += " and " + std::to_string(inputs_.size() - 1) + " more inputs";
+  message += " lies in the extent " +
+             box_text(options_.selection.extent->low, options_.selection.extent->high);
+  if (is_las(first)) {
+    const LasFacts las = read_las_facts(first);
+    message += "; " + first.string() + " has " +
+               box_text(in_steps(las.box_min, las.scale), in_steps(las.box_max, las.scale)) +
+               " by its header";
+  }
+  return {ErrorKind::data, message};
+}
+
+}  // namespace adasplats
