@@ -188,6 +188,37 @@ class City(ProgramTest):
                      says=["--remove moving"])
         self.assertFalse(self.unfinished.exists())
 
+    def test_tiles_are_chosen_by_the_memory(self):
+        place = tiny_place()
+        street = self.folder / "street.ply"
+        write_cloud(street, [(x + shift, y, z, label) for shift in range(0, 400, 40)
+                             for x, y, z, label in place])
+        command = ["model", street, "--labels", "semantickitti", "--device", "cpu", "--threads", "2"]
+        needed_gb = 10 * len(place) * 340e-9  # kModelBytesAPoint
+        # It fits.
+        self.run_good(*command, "--memory", f"{2.5 * needed_gb:.6f}", "-o", self.folder / "whole.ply")
+        # It does not.
+        memory = ["--memory", f"{0.6 * needed_gb:.6f}"]
+        self.run_bad(64, *command, *memory, "-o", self.folder / "city.ply",
+                     says=["of --memory", "name a folder", "--tile 0"])
+        self.run_warned("modelled in tiles of 64 m", *command, *memory, "-o", self.city)
+        facts = json.loads((self.city / "city.json").read_text())
+        self.assertEqual(facts["tile_m"], 64)
+        self.assertGreater(len(facts["tiles"]), 6)
+        whole = self.folder / "whole.ply"
+        columns, expected = splats_of(whole)
+        found = [row for tile in facts["tiles"] for row in splats_of(self.city / tile["file"])[1]]
+        self.assertEqual(set(found), expected)
+        # One piece was asked for; the tasks say the tiles that were chosen.
+        self.run_good(*command, *memory, "--tile", "0", "-o", self.folder / "one.ply")
+        plan = self.run_warned("modelled in tiles", *command, *memory, "-o",
+                               self.folder / "other", "--plan").stdout
+        self.assertTrue(all("--tile 64" in line for line in plan.splitlines()), plan)
+        self.run_bad(65, *command, "--memory", "0.0001", "-o", self.folder / "none",
+                     says=["street.ply", "tiles of 16 m"])
+        self.run_bad(64, *command, *memory, "--method", "basic", "-o", self.folder / "basic.ply",
+                     says=["consistent"])
+
     def test_options(self):
         self.run_bad(64, *self.command("--method", "basic"), says=["consistent"])
         self.run_bad(64, "model", self.cloud, "-o", self.folder / "m.ply", "--halo", "3",

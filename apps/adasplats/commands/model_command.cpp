@@ -11,6 +11,7 @@
 #include "adasplats/pipeline/provenance/provenance.h"
 #include "adasplats/recipes/city/city_task.h"
 #include "adasplats/recipes/city/make_city.h"
+#include "adasplats/recipes/city/tile_choice.h"
 #include "adasplats/recipes/model_file.h"
 #include "cli/commands.h"
 #include "cli/options/build_options.h"
@@ -79,6 +80,7 @@ class ModelCommand final : public Command {
                    {".ply", ""}));
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier city");
     add_settings(app, job_.tiles);
+    add_settings(app, job_.memory);
     app.add_flag("--plan", plan_,
                  "With --tile: do what comes before the tiles, then print the command of each tile "
                  "that is to be modelled, a line each, for many processes or machines; the same "
@@ -115,6 +117,7 @@ class ModelCommand final : public Command {
     job_.removal_is_asked = is_given("--remove");
     // OptiX casts rays; models are made with CUDA alone.
     if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
+    if (!is_given("--tile") && !only_tile_) choose_tiles(session);
     if (job_.tiles.tile_m > 0) {
       require_folder_apart(job_.output, job_.inputs);
       if (only_tile_)
@@ -125,7 +128,8 @@ class ModelCommand final : public Command {
         run_city(session);
       return;
     }
-    refuse({"--halo", "--overwrite", "--plan", "--only-tile"}, "without --tile");
+    if (job_.memory.memory_gb == 0 || is_given("--tile"))
+      refuse({"--halo", "--overwrite", "--plan", "--only-tile"}, "without --tile");
     // What is no file cannot be written whatever its name is, which run_model says.
     if (!std::filesystem::exists(job_.output) || std::filesystem::is_regular_file(job_.output))
       require_ending(job_.output, ".ply");
@@ -144,6 +148,37 @@ class ModelCommand final : public Command {
   }
 
  private:
+  /// In tiles, where the inputs do not fit into memory.
+  void choose_tiles(Session& session) {
+    const bool can_be_tiles = std::holds_alternative<ConsistentOptions>(job_.build.recipe);
+    const bool is_asked = is_given("--memory");
+    if (!can_be_tiles && !is_asked) return;
+    const TileAdvice advice = advise_tiles(job_, session);
+    if (advice.tile_m == 0) return;
+    const auto gigabytes = [](double gb) { return fixed(gb, gb < 1 ? 4 : 1) + " GB"; };
+    const std::string why = "about " + grouped(static_cast<std::size_t>(advice.points)) +
+                            " points take about " + gigabytes(advice.need_gb) +
+                            " as one model, more than the " + gigabytes(advice.memory_gb) +
+                            (is_asked ? " of --memory" : " of memory that may be used");
+    if (!can_be_tiles)
+      throw Error(ErrorKind::usage,
+                  why + ", and tiles are modelled by the method consistent alone");
+    if (job_.output.extension() == ".ply")
+      throw Error(ErrorKind::usage,
+                  why + ": name a folder (-o " + job_.output.stem().string() +
+                      ") for a model in tiles, or take --tile 0 for one piece nevertheless");
+    job_.tiles.tile_m = advice.tile_m;
+    session.report["tile_m"] = advice.tile_m;
+    session.progress.warn(why + ": modelled in tiles of " + fixed(advice.tile_m, 0) + " m");
+  }
+
+  /// The command as it was given, with the tiles that were chosen.
+  std::vector<std::string> words_with_tiles() const {
+    std::vector<std::string> words = own_arguments();
+    if (!is_given("--tile")) words.insert(words.end(), {"--tile", fixed(job_.tiles.tile_m, 0)});
+    return words;
+  }
+
   static TileKey parse_tile(const std::string& name) {
     const std::optional<TileKey> tile = tile_named(name);
     if (!tile)
@@ -153,7 +188,7 @@ class ModelCommand final : public Command {
   }
 
   void run_plan(Session& session) {
-    const TaskLines lines(own_arguments(), false);
+    const TaskLines lines(words_with_tiles(), false);
     std::string text;
     session.report["tasks"] = nlohmann::ordered_json::array();
     for (const TileKey tile : plan_city(job_, session)) {

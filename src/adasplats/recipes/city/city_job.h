@@ -22,7 +22,8 @@ void visit_settings(TileChoice& choice, Visit&& visit) {
   constexpr const char* kGroup = "Cities";
   visit(Setting{.name = "tile",
                 .help = "Side of square tiles that the place is cut into and modelled one by one, "
-                        "m; the output is a folder. 0: in one piece",
+                        "m; the output is a folder. 0: in one piece, whatever memory that "
+                        "takes (default: 0 where that fits into memory)",
                 .key = "tile_m",
                 .group = kGroup,
                 .least = 0,
@@ -38,9 +39,28 @@ void visit_settings(TileChoice& choice, Visit&& visit) {
         choice.halo_m);
 }
 
+/// By what the size of tiles is chosen (advise_tiles()).
+struct MemoryChoice {
+  double memory_gb = 0;  ///< that modelling may take; 0: three quarters of what the process may use
+};
+
+template <class Visit>
+void visit_settings(MemoryChoice& choice, Visit&& visit) {
+  visit(Setting{.name = "memory",
+                .help = "Memory that modelling may take, GB: what needs more is modelled in tiles "
+                        "that fit (default: three quarters of what there is)",
+                .value = "GB",
+                .key = "memory_gb",
+                .group = "Cities",
+                .least = 0,
+                .most = 1e6},
+        choice.memory_gb);
+}
+
 /// Points of any number in, the folder of a city out.
 struct CityJob : ModelJob {
   TileChoice tiles;
+  MemoryChoice memory;
   std::filesystem::path output;
   bool overwrite = false;
 };

@@ -24,13 +24,6 @@ constexpr std::size_t kTilesAGpu = 3;
 /// Threads that one tile keeps busy on the CPU.
 constexpr std::size_t kThreadsATile = 8;
 
-std::size_t workers_of(const Session& session) {
-  const auto threads = static_cast<std::size_t>(session.executor.threads());
-  if (session.device.on_gpu())
-    return std::clamp<std::size_t>(threads, 1, kTilesAGpu * session.device.gpus.size());
-  return std::max<std::size_t>(1, threads / kThreadsATile);
-}
-
 /// What workers have to tell.
 struct News {
   std::optional<CityTile> made;
@@ -146,6 +139,13 @@ class Workers {
 
 }  // namespace
 
+std::size_t tiles_at_once(const Session& session) {
+  const auto threads = static_cast<std::size_t>(session.executor.threads());
+  if (session.device.on_gpu())
+    return std::clamp<std::size_t>(threads, 1, kTilesAGpu * session.device.gpus.size());
+  return std::max<std::size_t>(1, threads / kThreadsATile);
+}
+
 CityTile model_and_save(const CityTile& tile, const CityWork& work, const TileModeller& modeller,
                         Session& session) {
   CityTile made = tile;
@@ -160,7 +160,7 @@ CityTile model_and_save(const CityTile& tile, const CityWork& work, const TileMo
 void model_tiles(const CityWork& work, const TileModeller& modeller,
                  std::span<const CityTile> tiles, ProgressSink& warnings,
                  const std::function<void(const CityTile&)>& take) {
-  const std::size_t count = std::min(tiles.size(), workers_of(work.session));
+  const std::size_t count = std::min(tiles.size(), tiles_at_once(work.session));
   const Executor& executor = work.session.executor;
   if (count <= 1) {
     Session session = {executor, warnings, work.session.seed, work.session.device};

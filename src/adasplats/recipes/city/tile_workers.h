@@ -12,6 +12,9 @@
 
 namespace adasplats {
 
+/// How many tiles model_tiles() has in memory at a time.
+std::size_t tiles_at_once(const Session& session);
+
 /// Models tiles and saves them below the folder of the work, several at a time where the session
 /// has the threads for it, or a GPU, which is idle while a tile is read or written; of several GPUs
 /// each takes tiles in turn. Calls `take` for each tile on this thread when its file is whole, in

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#include "adasplats/recipes/city/tile_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "adasplats/core/error.h"
+#include "adasplats/io/base/number_text.h"
+#include "adasplats/pipeline/provenance/machine.h"
+#include "adasplats/recipes/city/tile_workers.h"
+
+namespace adasplats {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Scans of a drive, or places in a file, that are looked at.
+constexpr std::uint64_t kSamples = 24;
+constexpr std::uint64_t kSampledRecords = 50'000;
+
+/// No file has more points than that for its size; LAZ has the fewest bytes a point, 2 or more
+/// (kMostPointsPerByte is for broken ones).
+double most_points_of_file(const fs::path& file) {
+  std::error_code problem;
+  const auto bytes = static_cast<double>(fs::file_size(file, problem));
+  if (problem) return 0;
+  const std::string extension = lower_case(file.extension().string());
+  if (extension == ".bin") return bytes / 16;
+  if (extension == ".las" || extension == ".ply") return bytes / 12;
+  return bytes / 2;
+}
+
+void add(const PointCloud& cloud, double weight, PlaceEstimate& place) {
+  const TileGrid grid = {PlaceEstimate::kCell_m};
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    place.cells[grid.tile_of(cloud.world(i))] += weight;
+  place.points += weight * static_cast<double>(cloud.size());
+}
+
+/// Where to look at one input, and what share of it that is.
+struct Sample {
+  std::vector<InputPiece> pieces;
+  double share = 1;
+};
+
+Sample sample_of(const OpenInputs& inputs, std::size_t k) {
+  const bool is_drive = inputs.inputs()[k].input.is_sequence;
+  const std::optional<std::uint64_t> all =
+      is_drive ? inputs.chosen_scans(k)
+               : records_at_random(inputs.inputs()[k].input.path, inputs.options().salvage);
+  const std::uint64_t size = is_drive ? 1 : kSampledRecords;
+  if (!all || *all <= kSamples * size) return {{{.input = k}}, 1};
+  Sample sample;
+  for (std::uint64_t n = 0; n < kSamples; ++n)
+    sample.pieces.push_back({k, n * (*all - size) / (kSamples - 1), size, false, {}});
+  sample.share = static_cast<double>(kSamples * size) / static_cast<double>(*all);
+  return sample;
+}
+
+TileAdvice one_piece(double points, double memory_gb) {
+  return {0, points, points * kModelBytesAPoint / 1e9, memory_gb};
+}
+
+}  // namespace
+
+double PlaceEstimate::most_points_of_tile(double tile_m, double halo_m) const {
+  const TileGrid grid = {tile_m}, own = {kCell_m};
+  std::map<TileKey, double> tiles;
+  const auto near = static_cast<std::int32_t>(std::ceil(halo_m / tile_m));
+  for (const auto& [cell, count] : cells) {
+    const GroundBox square = own.box_of(cell);
+    const TileKey home = grid.tile_of({square.low_x, square.low_y, 0});
+    for (TileKey tile = {home.x - near, 0}; tile.x <= home.x + near; ++tile.x)
+      for (tile.y = home.y - near; tile.y <= home.y + near; ++tile.y) {
+        const GroundBox reach = grid.box_of(tile).grown(halo_m);
+        if (square.low_x < reach.high_x && square.high_x > reach.low_x &&
+            square.low_y < reach.high_y && square.high_y > reach.low_y)
+          tiles[tile] += count;
+      }
+  }
+  double most = 0;
+  for (const auto& [tile, count] : tiles) most = std::max(most, count);
+  return most;
+}
+
+double most_points_of(std::span<const fs::path> inputs) {
+  double points = 0;
+  for (const fs::path& input : inputs) {
+    std::error_code problem;
+    if (!fs::is_directory(input, problem)) {
+      points += most_points_of_file(input);
+      continue;
+    }
+    fs::recursive_directory_iterator entry(input, problem), end;
+    for (; !problem && entry != end; entry.increment(problem))
+      if (entry->is_regular_file(problem)) points += most_points_of_file(entry->path());
+  }
+  return points;
+}
+
+PlaceEstimate estimate_place(const OpenInputs& inputs, Session& session) {
+  PlaceEstimate place;
+  ProgressSink quiet;  // what is to be said of the inputs is said when they are read
+  std::vector<Sample> samples;
+  std::size_t pieces = 0, done = 0;
+  for (std::size_t k = 0; k < inputs.inputs().size(); ++k) {
+    samples.push_back(sample_of(inputs, k));
+    pieces += samples.back().pieces.size();
+  }
+  session.progress.begin_step("points by place", pieces);
+  for (const Sample& sample : samples) {
+    for (const InputPiece& piece : sample.pieces) {
+      add(inputs.load(piece, session.executor, quiet).first, 1 / sample.share, place);
+      session.progress.advance(++done);
+    }
+  }
+  session.progress.end_step();
+  return place;
+}
+
+TileAdvice advise_tiles(const CityJob& job, Session& session) {
+  double memory_gb = job.memory.memory_gb;
+  if (memory_gb == 0) memory_gb = 0.75 * static_cast<double>(usable_memory_bytes()) / 1e9;
+  const double most = most_points_of(job.inputs);
+  if (memory_gb == 0 || most * kModelBytesAPoint <= memory_gb * 1e9)
+    return one_piece(most, memory_gb);
+  LoadOptions load = job.load;
+  load.empty_beams = false;
+  load.own_body_m = 0;  // single scans would not tell it
+  const OpenInputs inputs(job.inputs, load, session.executor, session.progress);
+  const PlaceEstimate place = estimate_place(inputs, session);
+  TileAdvice advice = one_piece(place.points, memory_gb);
+  if (advice.need_gb <= memory_gb) return advice;
+  const auto at_once = static_cast<double>(tiles_at_once(session));
+  double need_gb = 0;
+  for (const double tile_m : {64.0, 32.0, 16.0}) {
+    need_gb =
+        at_once * place.most_points_of_tile(tile_m, job.tiles.halo_m) * kModelBytesAPoint / 1e9;
+    if (need_gb > memory_gb) continue;
+    advice.tile_m = tile_m;
+    return advice;
+  }
+  throw Error(ErrorKind::data,
+              job.inputs.front().string() + ": about " +
+                  decimal_text(std::round(place.points / 1e6)) +
+                  " million points; modelling even tiles of 16 m takes about " +
+                  decimal_text(std::ceil(need_gb * 10) / 10) + " GB, more than the " +
+                  decimal_text(memory_gb) + " GB of `memory`");
+}
+
+}  // namespace adasplats

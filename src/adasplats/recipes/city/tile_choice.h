@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+
+#include "adasplats/city/tile_grid.h"
+#include "adasplats/cloud/load/open_inputs.h"
+#include "adasplats/pipeline/session/session.h"
+#include "adasplats/recipes/city/city_job.h"
+
+namespace adasplats {
+
+/// Memory that modelling takes, a point of the cloud or of a tile with its halo. Peaks were 223
+/// (KITTI-0005, 9.4 M points, calibrated) and 318 (a street with sensor positions and beams without
+/// return, 12.3 M).
+inline constexpr double kModelBytesAPoint = 340;
+
+/// About how many points a place has, and where.
+struct PlaceEstimate {
+  static constexpr double kCell_m = 16;
+  double points = 0;
+  std::map<TileKey, double> cells;  ///< points by squares of kCell_m
+
+  /// Of the tile that takes most, with its halo.
+  double most_points_of_tile(double tile_m, double halo_m) const;
+};
+
+/// No fewer points than inputs can have, by the sizes of their files. Time: that of listing them.
+double most_points_of(std::span<const std::filesystem::path> inputs);
+
+/// Looks at scans or records all over the inputs, two million points or so; files whose records are
+/// not at random are read. Errors: those of OpenInputs.
+PlaceEstimate estimate_place(const OpenInputs& inputs, Session& session);
+
+/// What suits the memory: whether a place is to be modelled in tiles.
+struct TileAdvice {
+  double tile_m = 0;   ///< side of tiles; 0: one piece
+  double points = 0;   ///< about as many
+  double need_gb = 0;  ///< that these take in one piece
+  double memory_gb = 0;
+};
+
+/// The largest tiles of 64, 32 or 16 m that fit into `memory_gb` (MemoryChoice; 0: three quarters
+/// of what the process may use) as often as several are modelled at a time; of places that fit as
+/// they are, none. The inputs are opened where their size alone does not say that. Errors: data
+/// (not even the smallest tiles fit), those of OpenInputs.
+TileAdvice advise_tiles(const CityJob& job, Session& session);
+
+}  // namespace adasplats
