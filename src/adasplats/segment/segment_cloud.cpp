@@ -4,20 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <string>
 
 #include "adasplats/core/error.h"
+#include "adasplats/segment/full_intensity.h"
 #include "adasplats/segment/segment_engine.h"
 
 namespace adasplats {
 namespace {
 
-constexpr double kFull = 0.99;        // intensities are shares of this quantile
-constexpr float kFarthest_m = 100e3;  // grids of a cloud have 2^21 cells a side
-
 void require_places(const PointCloud& cloud) {
-  const auto is_near = [](float value) { return std::fabs(value) <= kFarthest_m; };  // no NaN
+  const auto is_near = [](float value) { return std::fabs(value) <= kSegmentReach_m; };  // no NaN
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vec3f p = cloud.positions[i];
     if (!is_near(p.x) || !is_near(p.y) || !is_near(p.z))
@@ -37,7 +34,9 @@ class Segmenter {
   Segmentation run(const SegmentEngine& engine) {
     SegmentTask task{cloud_, network_, options_};
     task.has_intensity = options_.intensity && !cloud_.intensities.empty();
-    if (task.has_intensity) task.full_intensity = full_intensity();
+    if (task.has_intensity)
+      task.full_intensity =
+          options_.full_intensity ? *options_.full_intensity : full_intensity(cloud_.intensities);
     const std::unique_ptr<TileSegmenter> tiles = engine.start(task);
     sort_into_tiles();
     // The points of a tile are in their order.
@@ -48,28 +47,6 @@ class Segmenter {
   }
 
  private:
-  struct TilePlace {
-    std::int32_t x, y;
-    auto operator<=>(const TilePlace&) const = default;
-  };
-
-  float full_intensity() const {
-    std::vector<float> known;
-    for (const float value : cloud_.intensities)
-      if (std::isfinite(value)) known.push_back(value);
-    if (known.empty()) return 1;
-    const auto place = static_cast<std::ptrdiff_t>(kFull * static_cast<double>(known.size() - 1));
-    std::nth_element(known.begin(), known.begin() + place, known.end());
-    return std::max(1e-6F, known[static_cast<std::size_t>(place)]);
-  }
-
-  TilePlace place_of(Vec3f p) const {
-    const auto cell = [&](float value) {
-      return static_cast<std::int32_t>(std::floor(static_cast<double>(value) / options_.tile_m));
-    };
-    return {cell(p.x), cell(p.y)};
-  }
-
   void sort_into_tiles() {
     const auto key_of = [](std::int32_t place) {  // sorts as the places do
       return static_cast<std::uint32_t>(place) ^ 0x80000000U;
@@ -77,7 +54,7 @@ class Segmenter {
     std::vector<std::uint64_t> keys(cloud_.size());
     executor_.for_chunks(keys.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const TilePlace place = place_of(cloud_.positions[i]);
+        const SegmentSquare place = square_of(cloud_.positions[i], options_);
         keys[i] = std::uint64_t{key_of(place.x)} << 32 | key_of(place.y);
       }
     });
@@ -85,7 +62,7 @@ class Segmenter {
     for (std::size_t k = 0; k < order_.size(); ++k) {
       if (k > 0 && keys[k] == keys[k - 1]) continue;
       begins_.push_back(k);
-      tiles_.push_back(place_of(cloud_.positions[order_[k]]));
+      tiles_.push_back(square_of(cloud_.positions[order_[k]], options_));
     }
   }
 
@@ -96,7 +73,7 @@ class Segmenter {
 
   /// The points of the tile first, then those of its neighbours that lie in its margin.
   std::vector<std::uint32_t> points_of(std::size_t tile) const {
-    const TilePlace place = tiles_[tile];
+    const SegmentSquare place = tiles_[tile];
     const std::span<const std::uint32_t> core = core_of(tile);
     std::vector<std::uint32_t> indices(core.begin(), core.end());
     const double low_x = place.x * options_.tile_m - options_.margin_m;
@@ -106,7 +83,7 @@ class Segmenter {
     for (std::int32_t dx = -reach; dx <= reach; ++dx) {
       for (std::int32_t dy = -reach; dy <= reach; ++dy) {
         if (dx == 0 && dy == 0) continue;
-        const TilePlace other{place.x + dx, place.y + dy};
+        const SegmentSquare other{place.x + dx, place.y + dy};
         const auto found = std::lower_bound(tiles_.begin(), tiles_.end(), other);
         if (found == tiles_.end() || !(*found == other)) continue;
         for (const std::uint32_t i : core_of(static_cast<std::size_t>(found - tiles_.begin()))) {
@@ -147,11 +124,18 @@ class Segmenter {
   std::size_t wanted_ = 0;
   std::vector<std::uint32_t> order_;  ///< points, tile by tile
   std::vector<std::size_t> begins_;   ///< of the tiles in it
-  std::vector<TilePlace> tiles_;
+  std::vector<SegmentSquare> tiles_;
   Segmentation result_;
 };
 
 }  // namespace
+
+SegmentSquare square_of(Vec3f position, const SegmentOptions& options) {
+  const auto number = [&](float value) {
+    return static_cast<std::int32_t>(std::floor(static_cast<double>(value) / options.tile_m));
+  };
+  return {number(position.x), number(position.y)};
+}
 
 Segmentation segment_cloud(const PointCloud& cloud, const Network& network,
                            const SegmentOptions& options, const SegmentEngine& engine,

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <compare>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "adasplats/cloud/points/point_cloud.h"
@@ -10,6 +13,9 @@
 #include "adasplats/segment/network/network.h"
 
 namespace adasplats {
+
+/// How far from the origin of their coordinates points may be: grids have 2^21 cells a side.
+inline constexpr float kSegmentReach_m = 100e3F;
 
 struct SegmentOptions {
   double tile_m = 32;     ///< side of the squares that are looked at one after the other, and...
@@ -19,7 +25,19 @@ struct SegmentOptions {
   bool probabilities = false;
   /// How many points, from the first on, get classes; the others are looked at beside them.
   std::size_t wanted = static_cast<std::size_t>(-1);
+  /// What intensities are shares of; nothing: full_intensity() of the cloud's. For parts of a place
+  /// that are to get the classes of the whole.
+  std::optional<float> full_intensity;
 };
+
+/// A square that is looked at, counted in sides from the origin of the coordinates.
+struct SegmentSquare {
+  std::int32_t x = 0, y = 0;
+  auto operator<=>(const SegmentSquare&) const = default;
+};
+/// The one that a point stands in. The classes of its points follow from them, from the points in
+/// its margin and from SegmentOptions::full_intensity, and, to the last bit, from their order.
+SegmentSquare square_of(Vec3f position, const SegmentOptions& options);
 
 struct Segmentation {
   std::vector<std::uint8_t> classes;  ///< of the points, indices into Network::classes

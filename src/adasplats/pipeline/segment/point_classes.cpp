@@ -52,8 +52,8 @@ PointClasses PointClassifier::classes_of(const PointCloud& cloud, const SegmentO
   session.progress.end_step();
   PointClasses classes;
   for (const std::string& name : network_.classes) classes.by_class.push_back({name, 0});
-  classes.ids.resize(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
+  classes.ids.resize(found.classes.size());
+  for (std::size_t i = 0; i < classes.ids.size(); ++i) {
     classes.ids[i] = ids_[found.classes[i]];
     ++classes.by_class[found.classes[i]].points;
   }

@@ -30,7 +30,7 @@ struct PointClasses {
     std::string name;
     std::size_t points = 0;
   };
-  std::vector<std::uint16_t> ids;    ///< one a point, of semantickitti_labels()
+  std::vector<std::uint16_t> ids;    ///< one a wanted point, of semantickitti_labels()
   std::vector<float> confidences;    ///< of these, 0 to 1; empty: not asked for
   std::size_t cells = 0, tiles = 0;  ///< that the network saw
   std::vector<ClassCount> by_class;  ///< of the network, in its order
@@ -51,6 +51,9 @@ class PointClassifier {
   explicit PointClassifier(const std::filesystem::path& file);
 
   const NetworkFacts& facts() const { return facts_; }
+  /// The network's classes, and their ids in semantickitti_labels().
+  const std::vector<std::string>& names() const { return network_.classes; }
+  const std::vector<std::uint16_t>& ids() const { return ids_; }
   /// Whether the network has a class of what `removal` removes.
   bool tells(DynamicRemoval removal) const;
 
