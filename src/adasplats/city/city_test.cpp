@@ -118,6 +118,43 @@ TEST(TilePoints, ComeBackFromDiskTileByTile) {
   EXPECT_EQ(beams, 3U);
 }
 
+TEST(TilePoints, TheirOrderAndOtherClassesCanBeKept) {
+  const TemporaryFolder folder;
+  const TileGrid grid{30};
+  const Executor executor(2);
+  TilePointsWriter writer(folder.path(), grid, 700, executor, true);
+  PointCloud all;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    PointCloud cloud = random_cloud(500, {}, seed);
+    writer.add(cloud);
+    append(all, std::move(cloud));
+  }
+  std::set<std::uint64_t> numbers;
+  for (const auto& [tile, count] : writer.finish()) {
+    const std::vector<std::uint64_t> order = read_tile_order(folder.path(), tile);
+    ASSERT_EQ(order.size(), count.points);
+    EXPECT_TRUE(std::ranges::is_sorted(order));
+    numbers.insert(order.begin(), order.end());
+    std::vector<std::uint16_t> classes;
+    for (const std::uint64_t number : order)
+      classes.push_back(static_cast<std::uint16_t>(1000 + number));
+    write_tile_classes(folder.path(), tile, classes);
+    EXPECT_EQ(read_tile_classes(folder.path(), tile), classes);
+    PointCloud low;
+    read_tile_points(
+        folder.path(), tile, low, [](Vec3f p) { return p.z < 2; }, classes);
+    EXPECT_GT(low.size(), 0U);
+    for (std::size_t i = 0; i < low.size(); ++i)
+      EXPECT_EQ(low.positions[i], all.positions[low.classes[i] - 1000U]);
+    classes.pop_back();
+    const std::string why =
+        error_of([&] { read_tile_points(folder.path(), tile, low, {}, classes); }, ErrorKind::data);
+    EXPECT_NE(why.find(".classes: damaged"), std::string::npos) << why;
+  }
+  EXPECT_EQ(numbers.size(), all.size());
+  EXPECT_EQ(*numbers.rbegin(), all.size() - 1);
+}
+
 TEST(TilePoints, OnlyThoseThatAreWantedAreKept) {
   const TemporaryFolder folder;
   const Executor executor(2);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "adasplats/core/error.h"
+#include "adasplats/io/base/atomic_file.h"
 
 namespace adasplats {
 namespace {
@@ -64,15 +65,36 @@ PointCloud points_at(const PointCloud& cloud, const std::vector<std::uint32_t>& 
   return part;
 }
 
-[[noreturn]] void fail_to_write(const fs::path& file) {
-  throw Error(ErrorKind::io, file.string() + ": cannot be written; is the disk full?");
-}
-
 template <class T>
 void put(std::ofstream& out, const std::vector<T>& values) {
   static_assert(std::is_trivially_copyable_v<T>);
   out.write(reinterpret_cast<const char*>(values.data()),
             static_cast<std::streamsize>(values.size() * sizeof(T)));
+}
+
+/// Adds what `write` puts into the stream to the end of a file.
+template <class Write>
+void extend(const fs::path& file, const Write& write) {
+  std::ofstream out(file, std::ios::binary | std::ios::app);
+  write(out);
+  out.close();
+  if (!out) throw Error(ErrorKind::io, file.string() + ": cannot be written; is the disk full?");
+}
+
+/// All values of a file that holds nothing else.
+template <class T>
+std::vector<T> values_of(const fs::path& file) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  std::error_code none;
+  const auto bytes = fs::file_size(file, none);
+  if (none) throw Error(ErrorKind::no_input, file.string() + ": no such file");
+  if (bytes % sizeof(T) != 0)
+    throw Error(ErrorKind::data, file.string() + ": damaged: it ends within a value");
+  std::vector<T> values(bytes / sizeof(T));
+  std::ifstream in(file, std::ios::binary);
+  if (!in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(bytes)))
+    throw Error(ErrorKind::io, file.string() + ": cannot be read");
+  return values;
 }
 
 /// The points of a cloud that stand in one tile, ascending.
@@ -158,11 +180,17 @@ class PieceReader {
 }  // namespace
 
 std::string points_file_of(TileKey tile) { return "points/" + name_of(tile) + ".points"; }
+std::string order_file_of(TileKey tile) { return "points/" + name_of(tile) + ".order"; }
+std::string classes_file_of(TileKey tile) { return "points/" + name_of(tile) + ".classes"; }
 std::string beams_file_of(TileKey tile) { return "points/" + name_of(tile) + ".beams"; }
 
 TilePointsWriter::TilePointsWriter(fs::path folder, const TileGrid& grid, std::size_t buffered,
-                                   const Executor& executor)
-    : folder_(std::move(folder)), grid_(grid), buffered_(buffered), executor_(executor) {
+                                   const Executor& executor, bool keeps_order)
+    : folder_(std::move(folder)),
+      grid_(grid),
+      buffered_(buffered),
+      executor_(executor),
+      keeps_order_(keeps_order) {
   fs::create_directories(folder_ / "points");
 }
 
@@ -182,18 +210,21 @@ void TilePointsWriter::add(const PointCloud& cloud) {
   const bool is_moved = !(shift == Vec3d{});
   const auto moved = [&](Vec3f p) { return vec_cast<float>(vec_cast<double>(p) + shift); };
   const std::vector<TilePart> parts = parts_of(cloud, grid_, executor_);
-  std::vector<PointCloud*> to;  // a place for each tile before threads fill them
+  std::vector<Waiting*> to;  // a place for each tile before threads fill them
   to.reserve(parts.size());
-  for (const TilePart& part : parts) to.push_back(&waiting_[part.tile].points);
+  for (const TilePart& part : parts) to.push_back(&waiting_[part.tile]);
   executor_.for_chunks(parts.size(), 1, [&](std::size_t k, std::size_t) {
     PointCloud part = points_at(cloud, parts[k].points);
     if (is_moved) {
       for (Vec3f& p : part.positions) p = moved(p);
       for (Vec3f& p : part.sensor_positions) p = moved(p);
     }
-    even_out(*to[k], part);
-    append(*to[k], std::move(part));
+    even_out(to[k]->points, part);
+    append(to[k]->points, std::move(part));
+    if (keeps_order_)
+      for (const std::uint32_t i : parts[k].points) to[k]->order.push_back(added_ + i);
   });
+  added_ += cloud.size();
   for (EmptyBeam beam : cloud.empty_beams) {
     const TileKey tile = grid_.tile_of(cloud.origin + vec_cast<double>(beam.origin));
     if (is_moved) beam.origin = moved(beam.origin);
@@ -204,22 +235,16 @@ void TilePointsWriter::add(const PointCloud& cloud) {
 }
 
 void TilePointsWriter::write(TileKey tile, const Waiting& waiting) const {
-  if (!waiting.points.empty()) {
-    const fs::path file = folder_ / points_file_of(tile);
-    std::ofstream out(file, std::ios::binary | std::ios::app);
-    out << kPointsHead << waiting.points.size() << attributes_of(waiting.points) << '\n';
-    put(out, waiting.points.positions);
-    for_each_attribute([&](const auto& attribute) { put(out, attribute.of(waiting.points)); });
-    out.close();
-    if (!out) fail_to_write(file);
-  }
-  if (!waiting.beams.empty()) {
-    const fs::path file = folder_ / beams_file_of(tile);
-    std::ofstream out(file, std::ios::binary | std::ios::app);
-    put(out, waiting.beams);
-    out.close();
-    if (!out) fail_to_write(file);
-  }
+  if (!waiting.points.empty())
+    extend(folder_ / points_file_of(tile), [&](std::ofstream& out) {
+      out << kPointsHead << waiting.points.size() << attributes_of(waiting.points) << '\n';
+      put(out, waiting.points.positions);
+      for_each_attribute([&](const auto& attribute) { put(out, attribute.of(waiting.points)); });
+    });
+  if (!waiting.order.empty())
+    extend(folder_ / order_file_of(tile), [&](std::ofstream& out) { put(out, waiting.order); });
+  if (!waiting.beams.empty())
+    extend(folder_ / beams_file_of(tile), [&](std::ofstream& out) { put(out, waiting.beams); });
 }
 
 void TilePointsWriter::write_all() {
@@ -241,10 +266,27 @@ std::map<TileKey, TileCount> TilePointsWriter::finish() {
   return counts_;
 }
 
-void read_tile_points(const fs::path& folder, TileKey tile, PointCloud& cloud,
-                      const std::function<bool(Vec3f)>& wanted) {
+void read_tile_pieces(const fs::path& folder, TileKey tile,
+                      FunctionRef<void(PointCloud& piece)> take) {
   PieceReader reader(folder / points_file_of(tile));
-  for (PointCloud piece; reader.read(piece);) {
+  for (PointCloud piece; reader.read(piece);) take(piece);
+}
+
+void read_tile_points(const fs::path& folder, TileKey tile, PointCloud& cloud,
+                      const std::function<bool(Vec3f)>& wanted,
+                      std::span<const std::uint16_t> classes) {
+  std::size_t read = 0;
+  const auto fail = [&] {
+    throw Error(ErrorKind::data, (folder / classes_file_of(tile)).string() +
+                                     ": damaged: not a class for every point");
+  };
+  read_tile_pieces(folder, tile, [&](PointCloud& piece) {
+    if (!classes.empty()) {
+      if (piece.size() > classes.size() - read) fail();
+      const auto own = classes.subspan(read, piece.size());
+      piece.classes.assign(own.begin(), own.end());
+    }
+    read += piece.size();
     if (wanted) {
       std::vector<std::uint32_t> chosen;
       for (std::uint32_t i = 0; i < piece.size(); ++i)
@@ -252,24 +294,32 @@ void read_tile_points(const fs::path& folder, TileKey tile, PointCloud& cloud,
       if (chosen.size() < piece.size()) piece = gather(piece, chosen);
     }
     piece.origin = cloud.origin;
-    if (piece.empty()) continue;
+    if (piece.empty()) return;
     even_out(cloud, piece);
     append(cloud, std::move(piece));
-  }
+  });
+  if (!classes.empty() && read != classes.size()) fail();
+}
+
+std::vector<std::uint64_t> read_tile_order(const fs::path& folder, TileKey tile) {
+  return values_of<std::uint64_t>(folder / order_file_of(tile));
+}
+
+std::vector<std::uint16_t> read_tile_classes(const fs::path& folder, TileKey tile) {
+  return values_of<std::uint16_t>(folder / classes_file_of(tile));
+}
+
+void write_tile_classes(const fs::path& folder, TileKey tile,
+                        std::span<const std::uint16_t> classes) {
+  write_file_in_place(folder / classes_file_of(tile),
+                      {reinterpret_cast<const char*>(classes.data()), classes.size_bytes()});
 }
 
 std::vector<EmptyBeam> read_tile_beams(const fs::path& folder, TileKey tile) {
   const fs::path file = folder / beams_file_of(tile);
   std::error_code none;
-  const auto bytes = fs::file_size(file, none);
-  if (none || bytes == 0) return {};
-  if (bytes % sizeof(EmptyBeam) != 0)
-    throw Error(ErrorKind::data, file.string() + ": damaged: it ends within a beam");
-  std::vector<EmptyBeam> beams(bytes / sizeof(EmptyBeam));
-  std::ifstream in(file, std::ios::binary);
-  if (!in.read(reinterpret_cast<char*>(beams.data()), static_cast<std::streamsize>(bytes)))
-    throw Error(ErrorKind::io, file.string() + ": cannot be read");
-  return beams;
+  if (!fs::exists(file, none)) return {};
+  return values_of<EmptyBeam>(file);
 }
 
 }  // namespace adasplats

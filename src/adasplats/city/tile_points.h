@@ -3,16 +3,19 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "adasplats/city/tile_grid.h"
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
+#include "adasplats/core/function_ref.h"
 
 namespace adasplats {
 
@@ -20,10 +23,15 @@ namespace adasplats {
 // pieces one behind another: a line "adasplats points 1 COUNT NAME..." with the attributes that
 // there are (PointAttribute::name), then the positions (three floats a point, relative to the
 // city's origin) and the attributes' values, one array behind another, as this machine has them
-// (little-endian). Files of beams without return: EmptyBeam after EmptyBeam.
+// (little-endian). Files of beams without return: EmptyBeam after EmptyBeam. Of the order of
+// points: a number of 64 bits a point, how many came before it in all tiles. Of classes that points
+// did not come with: a number of 16 bits a point.
 
-/// Where the points and the empty beams of a tile are, below the folder of a city.
+/// Where the points of a tile, their order, their classes and the empty beams are, below the folder
+/// of a city.
 std::string points_file_of(TileKey tile);
+std::string order_file_of(TileKey tile);
+std::string classes_file_of(TileKey tile);
 std::string beams_file_of(TileKey tile);
 
 /// What is known of a tile's points when all are written.
@@ -36,10 +44,10 @@ struct TileCount {
 class TilePointsWriter {
  public:
   /// `folder`: of the city, with the folders "points" and "beams" (made where they are not there).
-  /// At most `buffered` points wait in memory. `executor` must outlive it; files are the same for
-  /// any number of threads.
+  /// At most `buffered` points wait in memory. `keeps_order`: writes files of the order, too.
+  /// `executor` must outlive it; files are the same for any number of threads.
   TilePointsWriter(std::filesystem::path folder, const TileGrid& grid, std::size_t buffered,
-                   const Executor& executor);
+                   const Executor& executor, bool keeps_order = false);
 
   /// The first cloud's origin is the city's; others are moved to it. Empty beams go to the tile in
   /// which they begin. Errors: data (a cloud with other attributes than the first; instances and
@@ -52,6 +60,7 @@ class TilePointsWriter {
  private:
   struct Waiting {
     PointCloud points;
+    std::vector<std::uint64_t> order;
     std::vector<EmptyBeam> beams;
   };
   void write(TileKey tile, const Waiting& waiting) const;
@@ -61,6 +70,8 @@ class TilePointsWriter {
   TileGrid grid_;
   std::size_t buffered_;
   const Executor& executor_;
+  bool keeps_order_;
+  std::uint64_t added_ = 0;  ///< points
   std::size_t waiting_points_ = 0;
   Vec3d origin_;
   std::optional<std::string> attributes_;  ///< names of those that all clouds have
@@ -69,10 +80,21 @@ class TilePointsWriter {
   std::map<TileKey, TileCount> counts_;
 };
 
+/// Gives a tile's points to `take`, piece by piece. Errors: data (the file is damaged: with its
+/// name), those of files.
+void read_tile_pieces(const std::filesystem::path& folder, TileKey tile,
+                      FunctionRef<void(PointCloud& piece)> take);
 /// Adds those of a tile's points to `cloud` for which `wanted` (of a position) holds; all without.
-/// Errors: data (the file is damaged: with its name), those of files.
+/// `classes`, where given: of all the tile's points, in place of those that they came with. Errors:
+/// as above, and data (there are not as many classes as points).
 void read_tile_points(const std::filesystem::path& folder, TileKey tile, PointCloud& cloud,
-                      const std::function<bool(Vec3f)>& wanted = {});
+                      const std::function<bool(Vec3f)>& wanted = {},
+                      std::span<const std::uint16_t> classes = {});
+std::vector<std::uint64_t> read_tile_order(const std::filesystem::path& folder, TileKey tile);
+std::vector<std::uint16_t> read_tile_classes(const std::filesystem::path& folder, TileKey tile);
+void write_tile_classes(const std::filesystem::path& folder, TileKey tile,
+                        std::span<const std::uint16_t> classes);
+/// None where there is no file.
 std::vector<EmptyBeam> read_tile_beams(const std::filesystem::path& folder, TileKey tile);
 
 }  // namespace adasplats
