@@ -41,11 +41,11 @@ class ModelMaker {
   /// `inputs`: what the points come from, where they come from files.
   ModelMaker(const ModelOptions& options, std::span<const std::filesystem::path> inputs,
              LoadPoints load_points, Session& session)
-      : options_(options), load_points_(std::move(load_points)), session_(session) {
-    if (options_.segment.on)
-      prepare_segmentation();
-    else
-      scheme_ = label_scheme_for(options_.labels, inputs);
+      : options_(options),
+        classifier_(classifier_for(options)),  // says what is wrong before anything is loaded
+        load_points_(std::move(load_points)),
+        session_(session) {
+    scheme_ = classifier_ ? semantickitti_labels() : label_scheme_for(options_.labels, inputs);
     if (!scheme_ && method_of(options_.build.recipe) == SplatMethod::semantic) {
       throw Error(ErrorKind::usage,
                   "the method semantic needs labels (semantickitti, paris-carla-3d, pandaset, "
@@ -83,26 +83,10 @@ class ModelMaker {
     return cloud;
   }
 
-  /// Throws what is wrong with the choice before anything is loaded.
-  void prepare_segmentation() {
-    if (!options_.labels.empty())
-      throw Error(ErrorKind::usage,
-                  "`labels` has no effect with `segment`: the points get classes "
-                  "of SemanticKITTI from a network");
-    classifier_.emplace(options_.segment.network);
-    scheme_ = semantickitti_labels();
-    if (options_.build.remove == DynamicRemoval::moving &&
-        !classifier_->tells(options_.build.remove))
-      throw Error(ErrorKind::usage,
-                  "`remove` moving: the network does not tell what moves from "
-                  "what could (`remove` movable)");
-  }
-
   void segment(PointCloud& cloud, ModelResult& result) {
     const Stopwatch watch;
     const bool had_labels = !cloud.classes.empty();
-    if (had_labels)
-      session_.progress.warn("the labels of the points are replaced by the network's (`segment`)");
+    if (had_labels) session_.progress.warn(kLabelsReplaced);
     PointClasses found = classifier_->classes_of(cloud, {}, session_);
     classes_ = std::move(found.ids);
     cloud.classes = classes_;
@@ -167,6 +151,20 @@ bool uses_empty_beams(const ModelRecipe& recipe) {
 }
 
 }  // namespace
+
+std::optional<PointClassifier> classifier_for(const ModelOptions& options) {
+  if (!options.segment.on) return std::nullopt;
+  if (!options.labels.empty())
+    throw Error(ErrorKind::usage,
+                "`labels` has no effect with `segment`: the points get classes "
+                "of SemanticKITTI from a network");
+  std::optional<PointClassifier> classifier(options.segment.network);
+  if (options.build.remove == DynamicRemoval::moving && !classifier->tells(options.build.remove))
+    throw Error(ErrorKind::usage,
+                "`remove` moving: the network does not tell what moves from "
+                "what could (`remove` movable)");
+  return classifier;
+}
 
 std::vector<UnusedSetting> unused_settings(const SegmentChoice& choice) {
   return choice.on ? std::vector<UnusedSetting>() : all_unused(choice, "without segmentation");

@@ -72,6 +72,10 @@ void visit_settings(SegmentChoice& choice, Visit&& visit) {
         choice.network);
 }
 
+/// The warning where points come with labels.
+inline constexpr const char* kLabelsReplaced =
+    "the labels of the points are replaced by the network's (`segment`)";
+
 /// What has no effect where nothing is segmented.
 std::vector<UnusedSetting> unused_settings(const SegmentChoice& choice);
 
@@ -85,6 +89,11 @@ struct ModelOptions {
   bool removal_is_asked = false;
   CalibrationChoice calibration;
 };
+
+/// The network that gives the points their classes; nothing where none is to. Errors: usage (labels
+/// beside it, `remove` moving of a network that knows nothing that moves), those of
+/// PointClassifier.
+std::optional<PointClassifier> classifier_for(const ModelOptions& options);
 
 /// Of point files.
 struct ModelJob : ModelOptions {

@@ -26,19 +26,19 @@ constexpr std::size_t kThreadsATile = 8;
 
 /// What workers have to tell.
 struct News {
-  std::optional<CityTile> made;
+  std::optional<std::size_t> done;
   std::string warning;
 };
 
-/// The tiles that are left, and what became of the others.
-class TileQueue {
+/// The pieces of work that are left, and what became of the others.
+class WorkQueue {
  public:
-  explicit TileQueue(std::span<const CityTile> tiles) : tiles_(tiles) {}
+  explicit WorkQueue(std::size_t count) : count_(count) {}
 
-  std::optional<CityTile> next() {
+  std::optional<std::size_t> next() {
     const std::lock_guard lock(mutex_);
-    if (stops_ || next_ == tiles_.size()) return std::nullopt;
-    return tiles_[next_++];
+    if (stops_ || next_ == count_) return std::nullopt;
+    return next_++;
   }
   void tell(News news) {
     const std::lock_guard lock(mutex_);
@@ -75,7 +75,7 @@ class TileQueue {
   }
 
  private:
-  std::span<const CityTile> tiles_;
+  std::size_t count_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::size_t next_ = 0, ended_ = 0;
@@ -87,21 +87,23 @@ class TileQueue {
 /// Warnings of one worker.
 class QueuedWarnings final : public ProgressSink {
  public:
-  explicit QueuedWarnings(TileQueue& queue) : queue_(queue) {}
+  explicit QueuedWarnings(WorkQueue& queue) : queue_(queue) {}
   void warn(std::string_view message) override { queue_.tell({{}, std::string(message)}); }
 
  private:
-  TileQueue& queue_;
+  WorkQueue& queue_;
 };
 
-void work_on(TileQueue& queue, const CityWork& work, const TileModeller& modeller, int threads,
-             DeviceChoice device) {
+void work_on(WorkQueue& queue, const Session& whole, int threads, DeviceChoice device,
+             const std::function<void(std::size_t, Session&)>& work) {
   try {
     const Executor executor(threads);
     QueuedWarnings warnings(queue);
-    Session session = {executor, warnings, work.session.seed, device};
-    while (const std::optional<CityTile> tile = queue.next())
-      queue.tell({model_and_save(*tile, work, modeller, session), {}});
+    Session session = {executor, warnings, whole.seed, device};
+    while (const std::optional<std::size_t> k = queue.next()) {
+      work(*k, session);
+      queue.tell({k, {}});
+    }
   } catch (...) {
     queue.fail(std::current_exception());
   }
@@ -118,7 +120,7 @@ DeviceChoice device_of(const DeviceChoice& all, std::size_t k) {
 /// Threads that end before what they work on does.
 class Workers {
  public:
-  explicit Workers(TileQueue& queue) : queue_(queue) {}
+  explicit Workers(WorkQueue& queue) : queue_(queue) {}
   ~Workers() {
     queue_.stop();
     for (std::thread& thread : threads_) thread.join();
@@ -133,7 +135,7 @@ class Workers {
   std::size_t size() const { return threads_.size(); }
 
  private:
-  TileQueue& queue_;
+  WorkQueue& queue_;
   std::vector<std::thread> threads_;
 };
 
@@ -157,34 +159,49 @@ CityTile model_and_save(const CityTile& tile, const CityWork& work, const TileMo
   return made;
 }
 
-void model_tiles(const CityWork& work, const TileModeller& modeller,
-                 std::span<const CityTile> tiles, ProgressSink& warnings,
-                 const std::function<void(const CityTile&)>& take) {
-  const std::size_t count = std::min(tiles.size(), tiles_at_once(work.session));
-  const Executor& executor = work.session.executor;
-  if (count <= 1) {
-    Session session = {executor, warnings, work.session.seed, work.session.device};
-    for (const CityTile& tile : tiles) take(model_and_save(tile, work, modeller, session));
+void work_side_by_side(std::size_t count, const Session& session, ProgressSink& warnings,
+                       const std::function<void(std::size_t, Session&)>& work,
+                       const std::function<void(std::size_t)>& take) {
+  const std::size_t at_once = std::min(count, tiles_at_once(session));
+  const Executor& executor = session.executor;
+  if (at_once <= 1) {
+    Session own = {executor, warnings, session.seed, session.device};
+    for (std::size_t k = 0; k < count; ++k) {
+      work(k, own);
+      take(k);
+    }
     return;
   }
-  TileQueue queue(tiles);
+  WorkQueue queue(count);
   {
     Workers workers(queue);
-    const int threads = std::max(1, executor.threads() / static_cast<int>(count));
-    for (std::size_t k = 0; k < count; ++k)
-      workers.add([&, device = device_of(work.session.device, k)] {
-        work_on(queue, work, modeller, threads, device);
+    const int threads = std::max(1, executor.threads() / static_cast<int>(at_once));
+    for (std::size_t k = 0; k < at_once; ++k)
+      workers.add([&, device = device_of(session.device, k)] {
+        work_on(queue, session, threads, device, work);
       });
     std::deque<News> news;
     while (queue.wait(workers.size(), news)) {
       executor.check_interruption();
       for (const News& each : news) {
-        if (each.made) take(*each.made);
+        if (each.done) take(*each.done);
         if (!each.warning.empty()) warnings.warn(each.warning);
       }
     }
   }
   queue.rethrow();
+}
+
+void model_tiles(const CityWork& work, const TileModeller& modeller,
+                 std::span<const CityTile> tiles, ProgressSink& warnings,
+                 const std::function<void(const CityTile&)>& take) {
+  std::vector<CityTile> made(tiles.begin(), tiles.end());
+  work_side_by_side(
+      made.size(), work.session, warnings,
+      [&](std::size_t k, Session& session) {
+        made[k] = model_and_save(tiles[k], work, modeller, session);
+      },
+      [&](std::size_t k) { take(made[k]); });
 }
 
 }  // namespace adasplats

@@ -12,14 +12,20 @@
 
 namespace adasplats {
 
-/// How many tiles model_tiles() has in memory at a time.
+/// How many pieces of work_side_by_side(), tiles say, are in memory at a time.
 std::size_t tiles_at_once(const Session& session);
 
-/// Models tiles and saves them below the folder of the work, several at a time where the session
-/// has the threads for it, or a GPU, which is idle while a tile is read or written; of several GPUs
-/// each takes tiles in turn. Calls `take` for each tile on this thread when its file is whole, in
-/// any order: with its splats, their box and the SHA-256 of the file. Warnings go to `warnings`
-/// there, too. Errors: the first of a tile, when the others that had begun are ended.
+/// Does `count` pieces of work, each about a tile, several at a time where the session has the
+/// threads for it, or a GPU, which is idle while a tile is read or written; of several GPUs each
+/// takes pieces in turn. Calls work(k, session) with a session of the thread's own, and take(k) on
+/// this thread when piece k is done, in any order. Warnings go to `warnings` there, too. Errors:
+/// the first of a piece, when the others that had begun are ended.
+void work_side_by_side(std::size_t count, const Session& session, ProgressSink& warnings,
+                       const std::function<void(std::size_t k, Session& session)>& work,
+                       const std::function<void(std::size_t k)>& take);
+
+/// Models tiles and saves them below the folder of the work, side by side. Calls `take` for each
+/// when its file is whole: with its splats, their box and the SHA-256 of the file.
 void model_tiles(const CityWork& work, const TileModeller& modeller,
                  std::span<const CityTile> tiles, ProgressSink& warnings,
                  const std::function<void(const CityTile&)>& take);
