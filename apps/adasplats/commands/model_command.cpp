@@ -31,7 +31,7 @@ constexpr const char* kModelExamples =
     "  adasplats model sequences/00 -o place.ply --scans 0:100:2 --remove moving\n"
     "  adasplats model cloud.laz -o place.ply --method semantic --segment\n"
     "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n"
-    "  adasplats model strips/ -o city --tile 64 --trajectory drive.csv\n"
+    "  adasplats model strips/ -o city --tile 64 --segment --trajectory drive.csv\n"
     "  adasplats model strips/ -o city --tile 64 --plan --trajectory drive.csv > tasks\n";
 
 /// What the method itself counts and measures.
@@ -219,7 +219,7 @@ class ModelCommand final : public Command {
           (result.tiles_resumed == 0
                ? std::string()
                : ", " + grouped(result.tiles_resumed) + " of the tiles made by an earlier run") +
-          "\n");
+          "\n" + (result.segmented ? segmentation_text(*result.segmented) : ""));
   }
 
   CityJob job_;

@@ -50,10 +50,6 @@ const ConsistentOptions& consistent_options_of(const CityJob& job) {
   const auto* ours = std::get_if<ConsistentOptions>(&job.build.recipe);
   if (ours == nullptr)
     throw Error(ErrorKind::usage, "tiles are modelled by the method consistent alone");
-  if (job.segment.on)
-    throw Error(ErrorKind::usage,
-                "`segment` does not work tile by tile yet: segment the points first (adasplats "
-                "segment), and model what it writes");
   return *ours;
 }
 
@@ -73,6 +69,8 @@ Json content_of(const CityJob& job) {
   put_settings(job.calibration, json);
   json["remove"] = name_of(job.build.remove);
   json["labels"] = job.labels;
+  json["segment"] = job.segment.on;
+  json["network"] = job.segment.network.string();
   json["reflectances"] = job.build.reflectances;
   json["scans"] = {job.load.first_scan, job.load.scan_count, job.load.scan_stride};
   return json;

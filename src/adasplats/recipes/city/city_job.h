@@ -65,10 +65,11 @@ struct CityJob : ModelJob {
   bool overwrite = false;
 };
 
-/// The options of the method. Errors: usage (a method that is not `consistent`; `segment`).
+/// The options of the method. Errors: usage (a method that is not `consistent`).
 const ConsistentOptions& consistent_options_of(const CityJob& job);
 
-/// What the files of a city depend on, for its adasplats.json. Errors: as above.
+/// What the files of a city depend on, for its adasplats.json; of a network its file alone, and not
+/// what is in it. Errors: as above.
 nlohmann::ordered_json content_of(const CityJob& job);
 
 }  // namespace adasplats

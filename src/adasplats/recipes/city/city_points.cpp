@@ -34,24 +34,18 @@ void grow(std::optional<CurveBox>& box, CurveBox more, Vec3d shift) {
   box->high = max(box->high, more.high);
 }
 
-/// Adds the rays of a piece to those of the whole.
-void count_rays(const PointCloud& cloud, const LabelScheme* scheme, CityWork& work,
-                RangeCounts& ranges) {
-  const RemovedPoints removed = points_to_remove(cloud, scheme, work.job.build.remove);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!is_beam(cloud.origin_kind(i))) continue;
-    const float range_m = length(cloud.positions[i] - cloud.sensor_positions[i]);
-    ranges.add(range_m);
-    const bool stays =
-        removed.ids.empty() || cloud.classes.empty() || removed.ids[cloud.classes[i]] == 0;
-    if (stays && static_cast<double>(range_m) >= work.options.least_range_m) ++work.facts.rays;
-  }
+void add_ranges(const PointCloud& cloud, RangeCounts& ranges) {
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (is_beam(cloud.origin_kind(i)))
+      ranges.add(length(cloud.positions[i] - cloud.sensor_positions[i]));
 }
 
 /// The points to their tiles; fills in facts and what tiles have in common.
 void read_points(CityWork& work) {
   const CityJob& job = work.job;
-  TilePointsWriter writer(work.folder, work.tiles.grid, kBufferedPoints, work.session.executor);
+  const bool has_labels = !job.segment.on;  // else a network gives classes when all are sorted
+  TilePointsWriter writer(work.folder, work.tiles.grid, kBufferedPoints, work.session.executor,
+                          job.segment.on);
   RangeCounts ranges;
   std::optional<CurveBox> box;
   ModelJob reading = job;
@@ -63,12 +57,12 @@ void read_points(CityWork& work) {
     cloud.scan_indices = {};  // all that they were for is done
     cloud.lasers = {};
     writer.add(cloud);
-    if (is_first) {
-      work.common.crs = cloud.crs;
+    if (is_first) work.common.crs = cloud.crs;
+    if (is_first && has_labels)
       check_label_use({job.labels, job.build.remove, job.removal_is_asked}, cloud, known,
                       work.session.progress);
-    }
-    count_rays(cloud, known, work, ranges);
+    add_ranges(cloud, ranges);
+    if (has_labels) work.facts.rays += count_rays(cloud, known, work);
     if (!cloud.empty())
       grow(box, curve_box_of(cloud.positions, work.session.executor),
            cloud.origin - writer.origin());
@@ -100,15 +94,29 @@ void find_tiles(CityWork& work) {
     if (count.points > 0) work.tiles.tiles.insert(tile);
 }
 
-}  // namespace
-
-std::vector<std::string> files_of_points(const CityFacts& facts) {
+std::vector<std::string> files_of_points(const CityWork& work) {
   std::vector<std::string> files;
-  for (const auto& [tile, count] : facts.tiles) {
+  for (const auto& [tile, count] : work.facts.tiles) {
     if (count.points > 0) files.push_back(points_file_of(tile));
+    if (count.points > 0 && work.job.segment.on) files.push_back(order_file_of(tile));
     if (count.empty_beams > 0) files.push_back(beams_file_of(tile));
   }
   return files;
+}
+
+}  // namespace
+
+std::size_t count_rays(const PointCloud& cloud, const LabelScheme* scheme, const CityWork& work) {
+  const RemovedPoints removed = points_to_remove(cloud, scheme, work.job.build.remove);
+  std::size_t rays = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!is_beam(cloud.origin_kind(i))) continue;
+    const float range_m = length(cloud.positions[i] - cloud.sensor_positions[i]);
+    const bool stays =
+        removed.ids.empty() || cloud.classes.empty() || removed.ids[cloud.classes[i]] == 0;
+    if (stays && static_cast<double>(range_m) >= work.options.least_range_m) ++rays;
+  }
+  return rays;
 }
 
 void load_sorted(CityWork& work) {
@@ -122,7 +130,7 @@ void sort_points(CityWork& work, ResumableFolder& folder) {
   fs::create_directories(work.path("points"));
   if (folder.has(kPointsFile)) {
     load_sorted(work);
-    for (const std::string& file : files_of_points(work.facts))
+    for (const std::string& file : files_of_points(work))
       if (!folder.has(file))
         throw Error(ErrorKind::data, work.path(file).string() + ": not as it was written; remove " +
                                          work.folder.string() + " to start anew");
@@ -134,7 +142,7 @@ void sort_points(CityWork& work, ResumableFolder& folder) {
   save_model(work.path(kCityCommonFile), work.common);
   write_file_in_place(work.path(kPointsFile), text_of(work.facts));
   folder.record(std::string(kCityCommonFile));
-  folder.record(digests_of(files_of_points(work.facts), work));
+  folder.record(digests_of(files_of_points(work), work));
   folder.record(std::string(kPointsFile));
   find_tiles(work);
 }

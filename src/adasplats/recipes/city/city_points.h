@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
 #include "adasplats/pipeline/output/resumable_folder.h"
 #include "adasplats/recipes/city/city_work.h"
 
@@ -15,7 +17,7 @@ void sort_points(CityWork& work, ResumableFolder& folder);
 /// Facts, what tiles have in common, and the tiles to model, of points that were sorted.
 void load_sorted(CityWork& work);
 
-/// The files of sorted points.
-std::vector<std::string> files_of_points(const CityFacts& facts);
+/// How many measured rays of some points stay, by the points' classes.
+std::size_t count_rays(const PointCloud& cloud, const LabelScheme* scheme, const CityWork& work);
 
 }  // namespace adasplats

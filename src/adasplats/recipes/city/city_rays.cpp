@@ -22,7 +22,7 @@ namespace {
 PointCloud points_that_stay(TileKey tile, const LabelScheme* scheme, const CityWork& work) {
   PointCloud cloud;
   cloud.origin = work.facts.origin;
-  read_tile_points(work.folder, tile, cloud);
+  read_points_of(tile, work, cloud);
   const RemovedPoints removed = points_to_remove(cloud, scheme, work.job.build.remove);
   if (removed.ids.empty() || cloud.classes.empty()) return cloud;
   std::vector<std::uint32_t> stay;

@@ -3,12 +3,14 @@
 #include "adasplats/recipes/city/city_task.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "adasplats/core/error.h"
 #include "adasplats/pipeline/output/folder_task.h"
+#include "adasplats/recipes/city/city_classes.h"
 #include "adasplats/recipes/city/city_points.h"
 #include "adasplats/recipes/city/city_survey.h"
 #include "adasplats/recipes/city/city_tiles.h"
@@ -25,8 +27,8 @@ Error no_such_tile(TileKey tile, const fs::path& city) {
 
 /// What is known of the whole, of the files of the folder.
 void load_what_is_known(CityWork& work, const FolderTask& task) {
-  const std::array<std::string, 4> files = {kPointsFile, kCityCommonFile, kSpacingFile,
-                                            kResponseFile};
+  std::vector<std::string> files = {kPointsFile, kCityCommonFile, kSpacingFile, kResponseFile};
+  if (work.job.segment.on) files.emplace_back(kClassesFile);
   for (const std::string& file : files)
     if (!task.is_recorded(file))
       throw Error(ErrorKind::no_input, task.path().string() +
@@ -34,6 +36,7 @@ void load_what_is_known(CityWork& work, const FolderTask& task) {
                                            "; plan again (`plan`)");
   task.require(files);
   load_sorted(work);
+  if (work.job.segment.on) load_classes(work);
   work.typical = load_spacing(work.path(kSpacingFile));
   work.response = load_response(work.path(kResponseFile));
 }

@@ -40,19 +40,24 @@ SplatModel TileModeller::model(TileKey tile, Session& session) const {
   const WholePlace whole = whole_of(tile);
   ModelOptions options = work_.job;
   options.calibration.on = false;
+  options.segment.on = false;                  // the points have their classes
   options.labels = work_.common.label_scheme;  // also where the inputs alone said it
   options.build.whole = &whole;
   options.build.reflectances =
       options.build.reflectances && (tile == pilot_ || whole.response.has_value());
   SplatModel model = make_model([&] { return points_around(tile, work_); }, options, session).first;
   model.label_scheme = work_.common.label_scheme;
+  model.network_sha256 = work_.common.network_sha256;
   keep_own(tile, model);
   return model;
 }
 
 std::vector<std::string> TileModeller::files_for(TileKey tile) const {
   std::vector<std::string> files;
-  for (const TileKey near : tiles_around(tile, work_)) files.push_back(points_file_of(near));
+  for (const TileKey near : tiles_around(tile, work_)) {
+    files.push_back(points_file_of(near));
+    if (work_.job.segment.on) files.push_back(classes_file_of(near));
+  }
   for (const TileKey from : passing_.sources(tile))
     files.push_back(rays_file_of(from, RaySort::passing));
   for (const TileKey from : empty_.sources(tile))

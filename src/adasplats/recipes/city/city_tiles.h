@@ -21,7 +21,8 @@ class TileModeller {
   /// others `work.response`. Several threads may call it, each with a session of its own.
   SplatModel model(TileKey tile, Session& session) const;
 
-  /// The files of the folder that hold the points and the rays that a tile is modelled with.
+  /// The files of the folder that hold the points, their classes where a network gives them, and
+  /// the rays that a tile is modelled with.
   std::vector<std::string> files_for(TileKey tile) const;
 
  private:

@@ -63,6 +63,7 @@ CityWork::CityWork(const CityJob& its_job, Session& its_session, fs::path its_fo
 }
 
 std::optional<LabelScheme> CityWork::scheme() const {
+  if (job.segment.on) return semantickitti_labels();
   return label_scheme_for(job.labels, job.inputs);
 }
 
@@ -82,16 +83,29 @@ TileKey pilot_tile(const CityWork& work) {
   return std::ranges::max_element(tiles, {}, &CityTile::points)->key;
 }
 
-std::vector<TileKey> tiles_around(TileKey tile, const CityWork& work) {
+std::vector<TileKey> tiles_in(const GroundBox& ground, const CityWork& work) {
   const TileGrid& grid = work.tiles.grid;
-  const GroundBox reach = work.tiles.reach_of(tile);
-  const TileKey low = grid.tile_of({reach.low_x, reach.low_y, 0});
-  const TileKey high = grid.tile_of({reach.high_x, reach.high_y, 0});
+  const TileKey low = grid.tile_of({ground.low_x, ground.low_y, 0});
+  const TileKey high = grid.tile_of({ground.high_x, ground.high_y, 0});
   std::vector<TileKey> found;
   for (TileKey near = low; near.x <= high.x; ++near.x)
     for (near.y = low.y; near.y <= high.y; ++near.y)
       if (work.tiles.tiles.contains(near)) found.push_back(near);
   return found;
+}
+
+std::vector<TileKey> tiles_around(TileKey tile, const CityWork& work) {
+  return tiles_in(work.tiles.reach_of(tile), work);
+}
+
+void read_points_of(TileKey tile, const CityWork& work, PointCloud& cloud,
+                    const std::function<bool(Vec3f)>& wanted) {
+  std::vector<std::uint16_t> classes;
+  if (work.job.segment.on) classes = read_tile_classes(work.folder, tile);
+  if (work.job.segment.on && classes.empty())
+    throw Error(ErrorKind::data,
+                work.path(classes_file_of(tile)).string() + ": damaged: it has no classes");
+  read_tile_points(work.folder, tile, cloud, wanted, classes);
 }
 
 PointCloud points_around(TileKey tile, const CityWork& work) {
@@ -100,7 +114,7 @@ PointCloud points_around(TileKey tile, const CityWork& work) {
   cloud.origin = work.facts.origin;
   cloud.crs = work.common.crs;
   for (const TileKey near : tiles_around(tile, work))
-    read_tile_points(work.folder, near, cloud, [&](Vec3f p) {
+    read_points_of(near, work, cloud, [&](Vec3f p) {
       return reach.contains(work.facts.origin + vec_cast<double>(p));
     });
   cloud.crs = work.common.crs;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "adasplats/pipeline/output/resumable_folder.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/pipeline/session/repeated_warnings.h"
+#include "adasplats/recipes/city/city_classes.h"
 #include "adasplats/recipes/city/city_level_files.h"
 #include "adasplats/recipes/city/city_points.h"
 #include "adasplats/recipes/city/city_rays.h"
@@ -31,8 +33,11 @@ using Json = nlohmann::ordered_json;
 class CityMaker {
  public:
   CityMaker(const CityJob& job, Session& session)
-      : folder_(job.output, job.overwrite, kCityCommand, content_of(job)),
-        work_(job, session, folder_.path()) {}
+      : classifier_(classifier_for(job)),
+        folder_(job.output, job.overwrite, kCityCommand, content_with_network(job)),
+        work_(job, session, folder_.path()) {
+    if (classifier_) work_.common.network_sha256 = classifier_->facts().sha256;
+  }
 
   CityResult run() {
     prepare();
@@ -53,6 +58,13 @@ class CityMaker {
   }
 
  private:
+  /// Tasks do not run the network, and so do not look what is in it.
+  Json content_with_network(const CityJob& job) const {
+    Json content = content_of(job);
+    if (classifier_) content["network_sha256"] = classifier_->facts().sha256;
+    return content;
+  }
+
   template <class Work>
   void step(const char* name, const Work& work) {
     const Stopwatch watch;
@@ -64,9 +76,11 @@ class CityMaker {
   void prepare() {
     step("points", [&] { sort_points(work_, folder_); });
     result_.steps.push_back({"calibration_of_points", work_.calibrated_s});
+    if (classifier_) step("segment", [&] { give_classes(*classifier_, work_, folder_); });
     step("rays", [&] { hand_out_rays(work_, folder_); });
     step("spacing", [&] { survey_spacing(work_, folder_); });
     result_.points_read = work_.facts.points_read;
+    result_.segmented = work_.segmented;
     result_.city.tiles = tiles_to_model(work_);
   }
 
@@ -159,6 +173,7 @@ class CityMaker {
     return files;
   }
 
+  std::optional<PointClassifier> classifier_;
   ResumableFolder folder_;
   CityWork work_;
   CityResult result_;
@@ -184,6 +199,7 @@ Json to_json(const CityResult& result) {
                {"primitives", result.city.splats()},    {"tiles", result.city.tiles.size()},
                {"tiles_resumed", result.tiles_resumed}, {"tile_m", result.city.grid.side_m},
                {"halo_m", result.city.halo_m}};
+  if (result.segmented) json["segmentation"] = to_json(*result.segmented);
   json["seconds"]["total"] = result.seconds;
   for (const StepTime& step : result.steps) json["seconds"][step.name] = step.seconds;
   return json;

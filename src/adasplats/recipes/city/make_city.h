@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <vector>
 
 #include "adasplats/city/city_manifest.h"
@@ -16,7 +17,8 @@ namespace adasplats {
 struct CityResult {
   CityManifest city;
   std::size_t points_read = 0;
-  std::size_t tiles_resumed = 0;  ///< an interrupted run had made
+  std::size_t tiles_resumed = 0;           ///< an interrupted run had made
+  std::optional<SegmentReport> segmented;  ///< where a network gave the points classes
   std::vector<StepTime> steps;
   double seconds = 0;
 };
@@ -29,8 +31,7 @@ struct CityResult {
 /// Splats farther than the halo from all borders are those of one large model of the points, but
 /// for choices between equally good ones that follow from others far away. Reflectances are by the
 /// response of the sensor in the tile with the most points.
-/// Errors: usage (a method that is not `consistent`; `segment`), those of make_model and of
-/// ResumableFolder.
+/// Errors: usage (a method that is not `consistent`), those of make_model and of ResumableFolder.
 CityResult make_city(const CityJob& job, Session& session);
 
 /// Does all that comes before the tiles, and the tile that the others need the sensor's response

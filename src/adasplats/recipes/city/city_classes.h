@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "adasplats/pipeline/output/resumable_folder.h"
+#include "adasplats/pipeline/segment/point_classes.h"
+#include "adasplats/recipes/city/city_work.h"
+
+namespace adasplats {
+
+/// Gives the points of all tiles the classes that a network gives the whole place in one cloud,
+/// into a file a tile beside its points (city/tile_points.h); needs the sorted points with their
+/// order. Fills in CityWork::segmented, and how many rays stay. What an earlier run has done stays.
+/// Errors: data (points farther than 100 km from the city's origin; damaged files), those of
+/// PointClassifier::classes_of.
+void give_classes(const PointClassifier& classifier, CityWork& work, ResumableFolder& folder);
+
+/// CityWork::segmented and how many rays stay, of classes that were given.
+void load_classes(CityWork& work);
+
+}  // namespace adasplats

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The adasplats authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "adasplats/city/square_classes.h"
+#include "adasplats/pipeline/segment/point_classes.h"
+#include "adasplats/recipes/city/city_work.h"
+
+namespace adasplats {
+
+/// Squares that a network looks at, from the lowest to the highest, inclusive: those whose middle
+/// is in one tile, which may have no points.
+struct SquareGroup {
+  TileKey tile;
+  SegmentSquare low, high;
+
+  bool contains(SegmentSquare square) const {
+    return square.x >= low.x && square.x <= high.x && square.y >= low.y && square.y <= high.y;
+  }
+};
+
+/// The tile whose group a square is in.
+TileKey group_of(SegmentSquare square, const SegmentOptions& options, const CityWork& work);
+/// All squares that may have points, each in one group; by their tiles.
+std::vector<SquareGroup> groups_of_squares(const SegmentOptions& options, const CityWork& work);
+
+/// The classes of the points that stand in the squares: those that the whole place in one cloud
+/// gets, since squares are looked at whole and with all that is around them, points in the order in
+/// which they were read. Reads the points of tiles near them; memory: what the squares and their
+/// margins hold, without attributes. Errors: data (damaged files of points).
+SquareClasses classes_of_squares(const SquareGroup& group, const PointClassifier& classifier,
+                                 const SegmentOptions& options, const CityWork& work,
+                                 Session& session);
+
+}  // namespace adasplats
