@@ -128,9 +128,8 @@ void require_within(const CityTile& tile, const SplatModel& part, const fs::path
     const std::string name(1, "xyz"[axis]);
     throw Error(ErrorKind::data, file.string() + ": its splats have " + name + " from " +
                                      decimal_text(from) + " to " + decimal_text(to) +
-                                     "; the city's manifest says " +
-                                     decimal_text(tile.low[axis]) + " to " +
-                                     decimal_text(tile.high[axis]));
+                                     "; the city's manifest says " + decimal_text(tile.low[axis]) +
+                                     " to " + decimal_text(tile.high[axis]));
   }
 }
 

@@ -145,12 +145,12 @@ TileAdvice advise_tiles(const CityJob& job, Session& session) {
     advice.tile_m = tile_m;
     return advice;
   }
-  throw Error(ErrorKind::data,
-              job.inputs.front().string() + ": about " +
-                  decimal_text(std::round(place.points / 1e6)) +
-                  " million points; modelling even tiles of 16 m takes about " +
-                  decimal_text(std::ceil(need_gb * 10) / 10) + " GB, more than the " +
-                  decimal_text(memory_gb) + " GB of `memory`");
+  throw Error(ErrorKind::data, job.inputs.front().string() + ": about " +
+                                   decimal_text(std::round(place.points / 1e6)) +
+                                   " million points; modelling even tiles of 16 m takes about " +
+                                   decimal_text(std::ceil(need_gb * 10) / 10) +
+                                   " GB, more than the " + decimal_text(memory_gb) +
+                                   " GB of `memory`");
 }
 
 }  // namespace adasplats
