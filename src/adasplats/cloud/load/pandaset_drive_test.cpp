@@ -139,7 +139,7 @@ TEST(PandaSetDrive, ScansCanBeLoadedPieceByPiece) {
   ASSERT_TRUE(inputs.are_drives());
   ASSERT_EQ(inputs.chosen_scans(0), 5U);
   std::size_t points = 0;
-  for (const InputPiece piece : {InputPiece{0, 0, 2}, InputPiece{0, 2, 2}, InputPiece{0, 4, 2}}) {
+  for (const InputPiece& piece : {InputPiece{0, 0, 2}, InputPiece{0, 2, 2}, InputPiece{0, 4, 2}}) {
     const auto [part, report] = inputs.load(piece, Executor(2), quiet);
     EXPECT_EQ(part.scan_poses.size(), piece.first == 4 ? 1U : 2U);
     EXPECT_EQ(report.drives.at(0).sensor, whole_report.drives.at(0).sensor);

@@ -11,6 +11,8 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/pipeline/model/make_model.h"
+#include "adasplats/pipeline/session/repeated_warnings.h"
+#include "adasplats/recipes/city/tile_workers.h"
 #include "adasplats/splats/model_engine.h"
 
 namespace adasplats {
@@ -38,15 +40,16 @@ std::vector<TileKey> surveyed(const CityWork& work) {
   return chosen;
 }
 
-void add_spacings(TileKey tile, const LabelScheme* scheme, const ModelEngine& engine,
-                  const CityWork& work, Spacings& found) {
+Spacings spacings_in(TileKey tile, const LabelScheme* scheme, const ModelEngine& engine,
+                     const CityWork& work) {
+  Spacings found;
   PointCloud cloud = points_around(tile, work);
   ClassTables tables;
   tables.removed = points_to_remove(cloud, scheme, work.job.build.remove).ids;
   WholePlace whole;
   whole.box = work.facts.box;
   const std::unique_ptr<ConsistentSteps> steps = engine.consistent_steps();
-  if (steps->load(std::move(cloud), tables, &whole) == 0) return;
+  if (steps->load(std::move(cloud), tables, &whole) == 0) return found;
   steps->fuse(work.options);
   const GroundBox own = work.tiles.grid.box_of(tile);
   for (const CellSpacing& cell : steps->spacings(work.options)) {
@@ -54,6 +57,7 @@ void add_spacings(TileKey tile, const LabelScheme* scheme, const ModelEngine& en
       continue;
     (cell.with_beam ? found.with_beam : found.without).push_back(cell.spacing);
   }
+  return found;
 }
 
 }  // namespace
@@ -77,15 +81,23 @@ void survey_spacing(CityWork& work, ResumableFolder& folder) {
   const std::vector<TileKey> chosen = surveyed(work);
   ProgressSink& progress = work.session.progress;
   progress.begin_step("spacing of cells", chosen.size());
-  Spacings found;
-  with_model_engine(work.session, [&](const ModelEngine& engine) {
-    found = {};
-    for (std::size_t k = 0; k < chosen.size(); ++k) {
-      add_spacings(chosen[k], scheme ? &*scheme : nullptr, engine, work, found);
-      progress.advance(k + 1);
-    }
-  });
+  RepeatedWarnings warnings(progress, "tiles");
+  std::vector<Spacings> of_tiles(chosen.size());
+  std::size_t done = 0;
+  const auto survey = [&](std::size_t k, Session& session) {
+    with_model_engine(session, [&](const ModelEngine& engine) {
+      of_tiles[k] = spacings_in(chosen[k], scheme ? &*scheme : nullptr, engine, work);
+    });
+  };
+  work_side_by_side(chosen.size(), work.session, warnings, survey,
+                    [&](std::size_t) { progress.advance(++done); });
   progress.end_step();
+  warnings.end();
+  Spacings found;
+  for (const Spacings& some : of_tiles) {
+    found.with_beam.insert(found.with_beam.end(), some.with_beam.begin(), some.with_beam.end());
+    found.without.insert(found.without.end(), some.without.begin(), some.without.end());
+  }
   work.typical = typical_spacing(std::move(found.with_beam), std::move(found.without));
   const Json json = {{"with_beam", work.typical.with_beam}, {"without", work.typical.without}};
   write_file_in_place(work.path(kSpacingFile), json.dump() + "\n");
