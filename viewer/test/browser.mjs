@@ -39,9 +39,10 @@ export function findBrowser() {
 
 /**
  * {page, close(), faults: what must stay empty, offline: whether a lost server is expected}.
- * `files`: a folder with a page to be used in place of the server's, or null.
+ * `files`: a folder with a page to be used in place of the server's, or null; `prepare(page)` is
+ * awaited before anything is loaded.
  */
-export async function openPage(url, size, files = null) {
+export async function openPage(url, size, files = null, prepare = async () => {}) {
   const { chromium } = await import('playwright-core');
   // Chromium takes a page that a test put in place for one from elsewhere.
   const flags = files ? [...kFlags, '--disable-features=LocalNetworkAccessChecks'] : kFlags;
@@ -74,6 +75,7 @@ export async function openPage(url, size, files = null) {
   for (const name of files ? ['app.js', 'app.css'] : [])
     await page.route(`${url}${name}`, (route) => route.fulfill({ path: join(files, name) }));
   if (files) await page.route(url, (route) => route.fulfill({ path: join(files, 'index.html') }));
+  await prepare(page);
   await page.goto(url);
   return seen;
 }
