@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <future>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,6 +18,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/error_points.h"
 #include "adasplats/evaluate/splat_errors.h"
+#include "adasplats/levels/level_file.h"
 #include "adasplats/pipeline/scene/view_choice.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/view/error_layers.h"
@@ -161,9 +163,12 @@ class Loading {
 
   void add_city() {
     const fs::path& folder = sorted_.model;
-    const CityManifest city = load_city_manifest(folder);
-    auto levels = std::make_shared<const CityLevels>(folder, city);
+    // Of large cities both take long.
+    auto table =
+        std::async(std::launch::async, [&] { return read_levels(folder / kTopLevelsFile); });
     view_.city = std::make_unique<CityScene>(folder, job_.labels, session_, kTileBytes);
+    const CityManifest& city = view_.city->manifest();
+    auto levels = std::make_shared<const CityLevels>(folder, city, table.get());
     view_.picker = std::make_unique<CityPicker>(folder, city);
     ViewScene& scene = view_.scene;
     scene.place = view_.city.get();

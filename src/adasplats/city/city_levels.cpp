@@ -66,7 +66,10 @@ bool has_levels(const fs::path& folder) {
 }
 
 CityLevels::CityLevels(fs::path folder, const CityManifest& city)
-    : folder_(std::move(folder)), table_(read_levels(folder_ / kTopLevelsFile)) {
+    : CityLevels(folder, city, read_levels(folder / kTopLevelsFile)) {}
+
+CityLevels::CityLevels(fs::path folder, const CityManifest& city, LevelTable table)
+    : folder_(std::move(folder)), table_(std::move(table)) {
   check_parts(city);
   find_places();
 }

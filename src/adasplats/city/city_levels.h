@@ -46,6 +46,8 @@ class CityLevels {
  public:
   /// Errors: those of read_levels; data (of other tiles than `city` names).
   CityLevels(std::filesystem::path folder, const CityManifest& city);
+  /// The same with `table`, which read_levels() read of kTopLevelsFile.
+  CityLevels(std::filesystem::path folder, const CityManifest& city, LevelTable table);
 
   const LevelFacts& facts() const { return table_.facts; }
   std::span<const LevelNode> nodes() const { return table_.nodes; }

@@ -8,6 +8,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/io/base/json_rows.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/sha256.h"
 
@@ -21,6 +22,38 @@ constexpr int kCityVersion = 1;
 
 Json json_of(Vec3d v) { return {v.x, v.y, v.z}; }
 Vec3d vector_of(const Json& json) { return {json.at(0), json.at(1), json.at(2)}; }
+
+CityTile tile_of(const Json& json) {
+  return {{json.at("x"), json.at("y")},
+          json.at("points"),
+          json.at("splats"),
+          json.at("sha256"),
+          vector_of(json.at("low_m")),
+          vector_of(json.at("high_m"))};
+}
+
+void check_version(const Json& json, const fs::path& file) {
+  if (json.at("format") != "adasplats city")
+    throw Error(ErrorKind::data, file.string() + ": not the manifest of a city");
+  if (json.at("version") != kCityVersion)
+    throw Error(ErrorKind::data, file.string() + ": a city of version " +
+                                     json.at("version").dump() + "; this program reads version " +
+                                     std::to_string(kCityVersion));
+}
+
+/// All but the tiles, which are added to `tiles`: a city has a hundred thousand of them.
+Json parsed_manifest(const std::string& text, std::vector<CityTile>& tiles, const fs::path& file) {
+  try {
+    Json json =
+        parse_json_rows(text, "tiles", [&](const Json& tile) { tiles.push_back(tile_of(tile)); });
+    check_version(json, file);
+    return json;
+  } catch (const Json::exception&) {
+    // Tiles of another version may be other ones.
+    check_version(Json::parse(text), file);
+    throw;
+  }
+}
 
 template <class T>
 void append_to(std::vector<T>& all, const std::vector<T>& more) {
@@ -76,24 +109,11 @@ CityManifest load_city_manifest(const fs::path& folder) {
   const fs::path file = folder / kCityFile;
   const std::string text = read_file(file);
   try {
-    const Json json = Json::parse(text);
-    if (json.at("format") != "adasplats city")
-      throw Error(ErrorKind::data, file.string() + ": not the manifest of a city");
-    if (json.at("version") != kCityVersion)
-      throw Error(ErrorKind::data, file.string() + ": a city of version " +
-                                       json.at("version").dump() + "; this program reads version " +
-                                       std::to_string(kCityVersion));
     CityManifest city;
+    const Json json = parsed_manifest(text, city.tiles, file);
     city.grid.side_m = json.at("tile_m");
     city.halo_m = json.at("halo_m");
     city.origin = vector_of(json.at("origin_m"));
-    for (const Json& tile : json.at("tiles"))
-      city.tiles.push_back({{tile.at("x"), tile.at("y")},
-                            tile.at("points"),
-                            tile.at("splats"),
-                            tile.at("sha256"),
-                            vector_of(tile.at("low_m")),
-                            vector_of(tile.at("high_m"))});
     if (!(city.grid.side_m > 0) || !std::ranges::is_sorted(city.tiles, {}, &CityTile::key))
       throw Error(ErrorKind::data, file.string() + ": damaged: its tiles are not in order");
     return city;

@@ -17,6 +17,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/input_file.h"
+#include "adasplats/io/base/json_rows.h"
 
 namespace adasplats {
 namespace {
@@ -75,16 +76,28 @@ std::string first_line(InputFile& file) {
   }
 }
 
-Json parsed_head(InputFile& file) {
-  const std::string line = first_line(file);
-  Json json = Json::parse(line);
+void check_version(const Json& json, const InputFile& file) {
   if (json.at("format") != kFormat)
     throw Error(ErrorKind::data, file.path().string() + ": no levels of detail of a city");
   if (json.at("version") != kLevelsVersion)
     throw Error(ErrorKind::data, file.path().string() + ": levels of detail of version " +
                                      json.at("version").dump() + "; this program reads version " +
                                      std::to_string(kLevelsVersion));
-  return json;
+}
+
+/// All but the parts, which are added to `parts`: a city has a hundred thousand of them.
+Json parsed_head(InputFile& file, std::vector<LevelPart>& parts) {
+  const std::string line = first_line(file);
+  try {
+    Json json =
+        parse_json_rows(line, "parts", [&](const Json& part) { parts.push_back(part_of(part)); });
+    check_version(json, file);
+    return json;
+  } catch (const Json::exception&) {
+    // Parts of another version may be other ones.
+    check_version(Json::parse(line), file);
+    throw;
+  }
 }
 
 LevelFacts facts_of(const Json& json, const fs::path& path) {
@@ -151,10 +164,9 @@ void check_parts(const LevelTable& table, const fs::path& path) {
 }
 
 LevelTable table_of(InputFile& file) {
-  const Json json = parsed_head(file);
   LevelTable table;
+  const Json json = parsed_head(file, table.parts);
   table.facts = facts_of(json, file.path());
-  for (const Json& part : json.at("parts")) table.parts.push_back(part_of(part));
   const std::uint64_t nodes = json.at("nodes");
   if (nodes == 0 || nodes > file.remaining() / sizeof(LevelNode) ||
       nodes > std::numeric_limits<std::uint32_t>::max())

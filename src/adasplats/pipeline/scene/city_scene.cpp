@@ -253,6 +253,7 @@ const GpuScene* CityScene::gpu() const { return impl_->tiles->gpu(); }
 const World* CityScene::world() const { return impl_->world ? &*impl_->world : nullptr; }
 const LabelScheme* CityScene::labels() const { return impl_->labels ? &*impl_->labels : nullptr; }
 std::shared_ptr<const PrimitiveTable> CityScene::primitive_table() const { return impl_->table; }
+const CityManifest& CityScene::manifest() const { return impl_->city; }
 TileStreamCounts CityScene::counts() const { return impl_->stream->counts(); }
 
 float CityScene::highest_intensity() const {

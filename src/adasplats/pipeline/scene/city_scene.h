@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "adasplats/city/city_manifest.h"
 #include "adasplats/city/tile_stream.h"
 #include "adasplats/pipeline/scene/scan_place.h"
 #include "adasplats/pipeline/session/session.h"
@@ -40,6 +41,7 @@ class CityScene final : public ScanPlace {
   /// Of all splats.
   std::pair<Vec3d, Vec3d> middle_box() const override;
   std::size_t make_ready(std::span<const ScanMotion> scans, double reach_m) const override;
+  const CityManifest& manifest() const;
   /// What was done so far.
   TileStreamCounts counts() const;
 
