@@ -278,11 +278,10 @@ class Http(ServerTest):
             self.assertIn(name.encode(), page)
         scene = json.loads(self.server.get(self.root + "scene.json")[2])
         layer = scene["layers"][0]
-        nodes = self.server.get(self.root + "layers/0/nodes.bin")[2]
-        self.assertEqual(struct.unpack_from("<II", nodes), (layer["nodes"], 0))
-        self.assertEqual(len(nodes), 8 + 48 * layer["nodes"])
+        nodes = self.server.get(self.root + "layers/0/table/0.bin")[2]
+        self.assertEqual(len(nodes), 48 * layer["nodes"])
         for node in range(layer["nodes"]):
-            count = struct.unpack_from("<I", nodes, 8 + 48 * node + 40)[0]
+            count = struct.unpack_from("<I", nodes, 48 * node + 40)[0]
             elements = self.server.get(f"{self.root}layers/0/nodes/{node}.bin")[2]
             self.assertEqual(len(elements), 16 * count)
 
@@ -310,12 +309,13 @@ class Http(ServerTest):
 
     def test_unknown_paths(self):
         for path in ["x", "index.htm", "place.ply", "secret.txt", "layers", "layers/", "layers/0",
-                     "layers/0/", "layers/1/nodes.bin", "layers/-1/nodes.bin", "layers//nodes.bin",
+                     "layers/0/", "layers/1/table/0.bin", "layers/-1/table/0.bin",
+                     "layers//table/0.bin", "layers/0/table/1.bin", "layers/0/table/",
                      "layers/0/nodes/", "layers/0/nodes/.bin",
                      "layers/0/nodes/-1.bin", "layers/0/nodes/4294967296.bin",
                      "layers/0/nodes/18446744073709551616.bin", "layers/0/nodes/1e1.bin",
                      "layers/0/nodes/0x1.bin", "layers/0/nodes/0.bin/", "layers/0/nodes/%200.bin",
-                     "layers/" + "9" * 1000 + "/nodes.bin", "scans/0.bin", "scans/-1.bin",
+                     "layers/" + "9" * 1000 + "/table/0.bin", "scans/0.bin", "scans/-1.bin",
                      "scene.json/", "scene.json%00", "APP.JS", "live/x", "app.js.map"]:
             self.assertEqual(self.server.get(self.root + path)[0], 404, path)
 

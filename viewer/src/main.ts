@@ -3,6 +3,8 @@
 
 // Starts the page: reads the scene, as soon as somebody answers.
 
+// First: it asks for what is needed while the rest of the scripts begins.
+import { askOnce } from './server/early';
 import { App } from './app';
 import { showBanner } from './panels/notices';
 import { parseScene, ProtocolError, type SceneInfo } from './server/protocol';
@@ -12,7 +14,7 @@ const kPauseMs = 1000;
 async function readScene(): Promise<SceneInfo> {
   for (;;) {
     try {
-      const reply = await fetch('scene.json');
+      const reply = await askOnce('scene.json');
       if (reply.ok) return parseScene(await reply.json());
       showBanner(`The server answers ${reply.status}`);
     } catch (error) {

@@ -5,6 +5,7 @@
 
 import { byId } from './panels/dom';
 import { showBanner } from './panels/notices';
+import { forgetEarly } from './server/early';
 import { parseScene, type SceneInfo } from './server/protocol';
 import type { SceneView } from './picture/scene_view';
 
@@ -51,6 +52,7 @@ export class SceneSource {
   /** A server that came back may serve another scene. Rejects while nobody answers. */
   async readAgain() {
     showBanner('Not connected: trying again');
+    forgetEarly();
     const reply = await fetch('scene.json');
     if (!reply.ok) throw new Error(`scene.json: ${reply.status}`);
     const scene = parseScene(await reply.json());

@@ -19,6 +19,8 @@ import { Check, changed, isBackground, kSize, realServer, shareOf, skip, sleep }
 /** What is promised is 3 s on a machine with nothing else to do; others may run beside the test. */
 const kFirstPictureMs = 15_000;
 const kPageMegabytes = 500;
+/** What a first picture needs of a city of any size: a block of its table, nodes of few elements. */
+const kMostEarlyBytes = 4e6;
 /** Of the places of the picture, that may be behind in a moment: an edge that is a pixel off. */
 const kMostHoles = 0.01;
 const kStep_m = 4;
@@ -42,10 +44,30 @@ async function pageBytes(t) {
   return usedSize + embedderHeapUsedSize + backingStorageSize + (await t.state()).loadedBytes;
 }
 
+/** Of the city, with the bytes of each. */
+async function requests(t, before) {
+  const all = await t.page.evaluate(() =>
+    performance.getEntriesByType('resource').map((e) => ({
+      path: new URL(e.name).pathname.split('/').slice(2).join('/'),
+      ended: e.responseEnd,
+      bytes: e.transferSize,
+    })),
+  );
+  return all.filter(({ path, ended }) => path.startsWith('layers/') && ended <= before);
+}
+
+async function asksForLittle(t, firstPictureMs) {
+  const early = await requests(t, firstPictureMs);
+  const bytes = early.reduce((sum, r) => sum + r.bytes, 0);
+  console.log(`      ${early.length} requests for ${bytes} bytes of the city before it`);
+  assert.ok(bytes < kMostEarlyBytes, `${bytes} bytes before the first picture`);
+}
+
 async function opens(t, began) {
   await t.until('a picture', (s) => s.firstPictureMs !== null);
   const took = Date.now() - began;
   const { firstPictureMs } = await t.state();
+  await asksForLittle(t, firstPictureMs);
   console.log(
     `      first picture ${took} ms after the command, ${Math.round(firstPictureMs)} ms after the page's load`,
   );
@@ -53,6 +75,8 @@ async function opens(t, began) {
   await t.call('setRunning', false);
   const { elements } = await t.settled();
   assert.ok(elements > 0);
+  const paths = (await requests(t, Infinity)).map((r) => r.path);
+  assert.equal(new Set(paths).size, paths.length, 'a node was asked for twice');
   assert.ok(shareOf(await t.pixels(), (p) => !isBackground(p)) > 0.1, 'little is drawn');
   await t.shot('1-open');
 }

@@ -13,6 +13,7 @@ import { makeTree } from './mock_tree.mjs';
 import { kClasses, makeElements, meet, randomOf } from './mock_world.mjs';
 
 const kToken = 'mock';
+const kBlockBytes = 48 * 1024;
 const kPauseMs = 60;
 const kOrigin = [650000, 6860000, 40];
 const kSensors = [
@@ -116,7 +117,7 @@ function makeScene(trees) {
     box: [tree.box.low, tree.box.high],
   });
   return {
-    version: 1,
+    version: 2,
     name: 'made-up street',
     origin_m: kOrigin,
     layers: [
@@ -154,6 +155,8 @@ function makeScene(trees) {
     command: ['adasplats', 'simulate', 'made up.ply'],
   };
 }
+
+const blockOf = (number) => [number * kBlockBytes, (number + 1) * kBlockBytes];
 
 /** One page's live channel. */
 class Session {
@@ -299,8 +302,8 @@ async function serve(folder, options) {
       const bytes = trees[Number(node[1])]?.elements[Number(node[2])];
       return options.nonsense && node[2] % 5 === 3 ? bytes?.subarray(0, -5) : bytes;
     }
-    const tree = path.match(/^layers\/(\d)\/nodes\.bin$/);
-    if (tree) return trees[Number(tree[1])]?.nodes;
+    const block = path.match(/^layers\/(\d)\/table\/(\d+)\.bin$/);
+    if (block) return trees[Number(block[1])]?.table.subarray(...blockOf(Number(block[2])));
     const scan = path.match(/^scans\/(\d+)\.bin$/);
     if (scan && scene.scans[Number(scan[1])])
       return scanPacket(

@@ -68,7 +68,7 @@ function elementBytes(elements, box, largest, points) {
   return bytes;
 }
 
-/** {nodes: Buffer of nodes.bin, elements: Buffer of each node, box}. */
+/** {table: Buffer of all its rows, elements: Buffer of each node, box}. */
 export function makeTree(all, points) {
   const queue = [{ own: all, level: 0 }];
   for (let i = 0; i < queue.length; ++i) {
@@ -85,16 +85,15 @@ export function makeTree(all, points) {
     node.children = parts.length;
     queue.push(...parts.map((own) => ({ own, level: node.level + 1 })));
   }
-  const head = Buffer.alloc(8 + 48 * queue.length);
-  head.writeUInt32LE(queue.length, 0);
+  const table = Buffer.alloc(48 * queue.length);
   const elements = queue.map((node, i) => {
     const box = bounds(node.drawn);
     const largest = node.drawn.reduce((most, e) => Math.max(most, e.radius), 0);
     const floats = [...box.low, ...box.high, node.spacing, largest];
-    floats.forEach((v, k) => head.writeFloatLE(v, 8 + 48 * i + 4 * k));
+    floats.forEach((v, k) => table.writeFloatLE(v, 48 * i + 4 * k));
     const words = [node.first, node.children, node.drawn.length, node.level];
-    words.forEach((v, k) => head.writeUInt32LE(v, 8 + 48 * i + 32 + 4 * k));
+    words.forEach((v, k) => table.writeUInt32LE(v, 48 * i + 32 + 4 * k));
     return elementBytes(node.drawn, box, largest, points);
   });
-  return { nodes: head, elements, box: bounds(all) };
+  return { table, elements, box: bounds(all) };
 }

@@ -110,7 +110,9 @@ class TopTree {
     add_splats(root, elements, range, splats);
   }
 
-  /// Branches first, breadth first, then tile after tile what is below its root.
+  /// Branches first, breadth first, then tile after tile what is below its root: in the order of
+  /// the tree, so that what is near by stands near by in the table, too, of which the page asks for
+  /// parts.
   void number() {
     order_ = {root_};
     table_.nodes.resize(1);
@@ -128,7 +130,8 @@ class TopTree {
       table_.nodes.resize(order_.size(), LevelNode{.level = node.level + 1});
       table_.nodes[n] = node;
     }
-    for (std::size_t p = 0; p < table_.parts.size(); ++p) number_below(p);
+    for (const std::size_t b : order_)
+      if (branches_[b].part) number_below(*branches_[b].part);
   }
 
   void number_below(std::size_t p) {

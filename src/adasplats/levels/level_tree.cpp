@@ -242,11 +242,8 @@ void add_splats(const LevelNode& node, std::span<const LevelElement> elements,
 }
 
 std::string nodes_bytes(std::span<const LevelNode> nodes) {
-  const std::uint32_t head[2] = {static_cast<std::uint32_t>(nodes.size()), 0};
-  std::string bytes(sizeof(head) + nodes.size_bytes(), '\0');
-  std::memcpy(bytes.data(), head, sizeof(head));
-  std::memcpy(bytes.data() + sizeof(head), nodes.data(), nodes.size_bytes());
-  return bytes;
+  // Bytes as characters: what a reply's body is made of.
+  return {reinterpret_cast<const char*>(nodes.data()), nodes.size_bytes()};
 }
 
 }  // namespace adasplats

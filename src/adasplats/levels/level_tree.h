@@ -128,7 +128,7 @@ struct LevelSplats {
 void add_splats(const LevelNode& node, std::span<const LevelElement> elements,
                 ByteRange intensities, LevelSplats& splats);
 
-/// A layer's nodes.bin.
+/// Rows of a layer's table, as the page reads them.
 std::string nodes_bytes(std::span<const LevelNode> nodes);
 
 /// The octahedral code of a unit vector, and back to 1e-4.

@@ -22,7 +22,7 @@ struct HttpReply {
   SharedBytes body;  ///< null: empty
 };
 
-/// The answer to the path behind "/TOKEN/", without its query ("layers/0/nodes.bin"; "" is the
+/// The answer to the path behind "/TOKEN/", without its query ("layers/0/table/0.bin"; "" is the
 /// folder itself); status 404 where there is nothing. Called on the server's thread.
 using HttpHandler = std::function<HttpReply(std::string_view path)>;
 

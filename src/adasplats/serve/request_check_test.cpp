@@ -19,7 +19,7 @@ std::string path_of(std::string_view target) {
 
 TEST(PathBehindToken, IsDecodedAndWithoutQuery) {
   EXPECT_EQ(path_of("/tok/"), "");
-  EXPECT_EQ(path_of("/tok/layers/0/nodes.bin"), "layers/0/nodes.bin");
+  EXPECT_EQ(path_of("/tok/layers/0/table/0.bin"), "layers/0/table/0.bin");
   EXPECT_EQ(path_of("/tok/a?b=/../c"), "a");
   EXPECT_EQ(path_of("/tok/?"), "");
   EXPECT_EQ(path_of("/tok/a%20b%C3%a4"), "a b\u00e4");

@@ -38,19 +38,17 @@ TEST(CityView, PagesServeTheWholeCityAsOneLayer) {
   EXPECT_EQ(told["layers"][0]["kind"], "splats");
   EXPECT_EQ(told["layers"][0]["count"], city.splats());
   EXPECT_TRUE(told["layers"][0]["has_classes"]);
-  const HttpReply table = pages.get("layers/0/nodes.bin");
+  const HttpReply table = pages.get("layers/0/table/0.bin");
   ASSERT_EQ(table.status, 200);
-  std::uint32_t nodes = 0;
-  std::memcpy(&nodes, table.body->data(), sizeof(nodes));
-  ASSERT_EQ(table.body->size(), 8 + 48 * std::size_t{nodes});
-  EXPECT_EQ(told["layers"][0]["nodes"], nodes);
+  const std::uint32_t nodes = told["layers"][0]["nodes"];
+  ASSERT_EQ(table.body->size(), 48 * std::size_t{nodes});
   std::size_t in_leaves = 0;
   std::vector<bool> is_child(nodes, false);
   for (std::uint32_t n = 0; n < nodes; ++n) {
     std::uint32_t first = 0, children = 0, count = 0;
-    std::memcpy(&first, table.body->data() + 8 + 48 * n + 32, 4);
-    std::memcpy(&children, table.body->data() + 8 + 48 * n + 36, 4);
-    std::memcpy(&count, table.body->data() + 8 + 48 * n + 40, 4);
+    std::memcpy(&first, table.body->data() + 48 * n + 32, 4);
+    std::memcpy(&children, table.body->data() + 48 * n + 36, 4);
+    std::memcpy(&count, table.body->data() + 48 * n + 40, 4);
     const HttpReply node = pages.get("layers/0/nodes/" + std::to_string(n) + ".bin");
     ASSERT_EQ(node.status, 200);
     EXPECT_EQ(node.body->size(), 16 * std::size_t{count});

@@ -11,6 +11,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Of docs/viewer_protocol.md.
+constexpr int kProtocolVersion = 2;
+
 Json json_of(Vec3d v) { return {v.x, v.y, v.z}; }
 Json json_of(ByteRange range) { return {range.low, range.high}; }
 
@@ -115,7 +118,8 @@ Json sensors_json() {
 }  // namespace
 
 std::string scene_json(const ViewScene& scene) {
-  Json json = {{"version", 1}, {"name", scene.name}, {"origin_m", json_of(scene.origin)}};
+  Json json = {
+      {"version", kProtocolVersion}, {"name", scene.name}, {"origin_m", json_of(scene.origin)}};
   json["layers"] = Json::array();
   for (std::size_t i = 0; i < scene.layers.size(); ++i)
     json["layers"].push_back(layer_json(scene.layers[i], i));

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/view/view_pages.h"
 
+#include <algorithm>
 #include <charconv>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -53,12 +55,7 @@ HttpReply binary(SharedBytes bytes) {
 }  // namespace
 
 ViewPages::ViewPages(const ViewScene& scene)
-    : scene_(scene), scene_json_(shared(adasplats::scene_json(scene))) {
-  for (const ViewLayer& layer : scene_.layers)
-    nodes_.push_back(shared(nodes_bytes(nodes_of(layer))));
-  for (const ViewLayer& layer : scene_.geometries)
-    nodes_.push_back(shared(nodes_bytes(nodes_of(layer))));
-}
+    : scene_(scene), scene_json_(shared(adasplats::scene_json(scene))) {}
 
 HttpReply ViewPages::get(std::string_view path) const {
   if (path == "scene.json") return {200, "application/json", scene_json_};
@@ -71,22 +68,31 @@ HttpReply ViewPages::get(std::string_view path) const {
   return not_found();
 }
 
-/// "L/nodes.bin" or "L/nodes/N.bin".
+/// What objects are made of follows the layers.
+const ViewLayer* ViewPages::layer_of(std::string_view text) const {
+  const auto number = number_of(text);
+  const std::size_t layers = scene_.layers.size();
+  if (!number || *number >= layers + scene_.geometries.size()) return nullptr;
+  return *number < layers ? &scene_.layers[*number] : &scene_.geometries[*number - layers];
+}
+
+/// "L/table/B.bin" or "L/nodes/N.bin".
 HttpReply ViewPages::layer(std::string_view path) const {
   const std::size_t slash = path.find('/');
-  if (slash == std::string_view::npos) return not_found();
-  const auto number = number_of(path.substr(0, slash));
-  if (!number || *number >= nodes_.size()) return not_found();
+  const ViewLayer* const found = layer_of(path.substr(0, slash));
+  if (slash == std::string_view::npos || found == nullptr) return not_found();
   const std::string_view rest = path.substr(slash + 1);
-  if (rest == "nodes.bin") return binary(nodes_[*number]);
-  if (!rest.starts_with("nodes/")) return not_found();
-  // What objects are made of follows the layers.
-  const ViewLayer& found = *number < scene_.layers.size()
-                               ? scene_.layers[*number]
-                               : scene_.geometries[*number - scene_.layers.size()];
-  const auto node = binary_number(rest.substr(6));
-  if (!node || *node >= nodes_of(found).size()) return not_found();
-  return binary(shared(node_bytes(found, *node)));
+  const bool is_table = rest.starts_with("table/");
+  if (!is_table && !rest.starts_with("nodes/")) return not_found();
+  const auto number = binary_number(rest.substr(6));
+  const std::span<const LevelNode> nodes = nodes_of(*found);
+  const std::size_t numbers =
+      is_table ? (nodes.size() + kTableBlock - 1) / kTableBlock : nodes.size();
+  if (!number || *number >= numbers) return not_found();
+  if (!is_table) return binary(shared(node_bytes(*found, *number)));
+  const std::size_t first = *number * kTableBlock;
+  return binary(
+      shared(nodes_bytes(nodes.subspan(first, std::min(kTableBlock, nodes.size() - first)))));
 }
 
 HttpReply ViewPages::recorded_scan(std::string_view name) const {

@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string_view>
-#include <vector>
 
 #include "adasplats/serve/http_server.h"
 #include "adasplats/view/view_scene.h"
 
 namespace adasplats {
+
+/// Nodes of a layer's table that the page asks for at a time: what a first picture needs is the
+/// same of a layer of any size.
+inline constexpr std::size_t kTableBlock = 1024;
 
 /// Answers the page's GETs (docs/viewer_protocol.md): the page, scene.json, layers and recorded
 /// scans, and nothing else. `scene` must outlive it.
@@ -21,11 +25,11 @@ class ViewPages {
 
  private:
   HttpReply layer(std::string_view path) const;
+  const ViewLayer* layer_of(std::string_view number) const;
   HttpReply recorded_scan(std::string_view name) const;
 
   const ViewScene& scene_;
   SharedBytes scene_json_;
-  std::vector<SharedBytes> nodes_;  ///< nodes.bin of each layer, and of each geometry
 };
 
 }  // namespace adasplats

@@ -5,8 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "adasplats/core/maths/random.h"
+#include "adasplats/levels/level_tree.h"
 #include "adasplats/view/page_files.h"
 #include "adasplats/view/room_test.h"
 
@@ -17,16 +21,15 @@ namespace {
 TEST(ViewPages, LayersAreTheirTrees) {
   const Room room;
   const ViewPages pages(room.view);
-  const HttpReply table = pages.get("layers/0/nodes.bin");
+  const HttpReply table = pages.get("layers/0/table/0.bin");
   ASSERT_EQ(table.status, 200);
-  std::uint32_t nodes = 0;
-  std::memcpy(&nodes, table.body->data(), sizeof(nodes));
-  ASSERT_EQ(table.body->size(), 8 + 48 * std::size_t{nodes});
+  const std::size_t nodes = room.view.layers[0].tree.nodes().size();
+  ASSERT_EQ(table.body->size(), 48 * nodes);
   std::size_t in_leaves = 0;
-  for (std::uint32_t n = 0; n < nodes; ++n) {
+  for (std::size_t n = 0; n < nodes; ++n) {
     std::uint32_t children = 0, count = 0;
-    std::memcpy(&children, table.body->data() + 8 + 48 * n + 36, 4);
-    std::memcpy(&count, table.body->data() + 8 + 48 * n + 40, 4);
+    std::memcpy(&children, table.body->data() + 48 * n + 36, 4);
+    std::memcpy(&count, table.body->data() + 48 * n + 40, 4);
     const HttpReply node = pages.get("layers/0/nodes/" + std::to_string(n) + ".bin");
     ASSERT_EQ(node.status, 200);
     EXPECT_EQ(node.body->size(), 16 * std::size_t{count});
@@ -35,21 +38,63 @@ TEST(ViewPages, LayersAreTheirTrees) {
   EXPECT_EQ(in_leaves, room.model.splats()->size());
 }
 
+// Oracle: the tree. Its table is more than one block, and the last one is no whole one.
+TEST(ViewPages, LargeTablesComeInBlocks) {
+  std::vector<Vec3f> points;
+  for (std::uint64_t i = 0; i < 20'000; ++i) {
+    Random random(3, 1, i);
+    points.push_back(
+        vec_cast<float>(Vec3d{random.uniform(0, 90), random.uniform(0, 90), random.uniform(0, 9)}));
+  }
+  ViewScene scene;
+  const LevelInput input{
+      .disks = {}, .positions = points, .classes = {}, .intensities = {}, .errors_m = {}};
+  scene.layers.push_back({"points",
+                          false,
+                          false,
+                          false,
+                          false,
+                          LevelTree(input, {.leaf_size = 12}, Executor(2)),
+                          {},
+                          {}});
+  const std::span<const LevelNode> nodes = nodes_of(scene.layers[0]);
+  ASSERT_GT(nodes.size(), 2 * kTableBlock);
+  ASSERT_NE(nodes.size() % kTableBlock, 0U);
+  const ViewPages pages(scene);
+  std::string all;
+  for (std::size_t block = 0; block * kTableBlock < nodes.size(); ++block) {
+    const HttpReply reply = pages.get("layers/0/table/" + std::to_string(block) + ".bin");
+    ASSERT_EQ(reply.status, 200);
+    EXPECT_LE(reply.body->size(), kTableBlock * sizeof(LevelNode));
+    all += *reply.body;
+  }
+  ASSERT_EQ(all.size(), nodes.size_bytes());
+  EXPECT_EQ(std::memcmp(all.data(), nodes.data(), all.size()), 0);
+  const std::size_t behind = nodes.size() / kTableBlock + 1;
+  EXPECT_EQ(pages.get("layers/0/table/" + std::to_string(behind) + ".bin").status, 404);
+}
+
 TEST(ViewPages, WhatThereIsNotIsNotFound) {
   const Room room;
   const ViewPages pages(room.view);
   for (const char* path : {"layers",
                            "layers/",
                            "layers/0",
-                           "layers/2/nodes.bin",
-                           "layers/-1/nodes.bin",
-                           "layers/0x0/nodes.bin",
+                           "layers/2/table/0.bin",
+                           "layers/-1/table/0.bin",
+                           "layers/0x0/table/0.bin",
                            "layers/0/nodes/999999.bin",
                            "layers/0/nodes/.bin",
                            "layers/0/nodes/1",
                            "layers/0/nodes/+1.bin",
                            "layers/0/nodes/1.bin/",
-                           "layers/18446744073709551616/nodes.bin",
+                           "layers/18446744073709551616/table/0.bin",
+                           "layers/0/table",
+                           "layers/0/table/",
+                           "layers/0/table/1.bin",
+                           "layers/0/table/-1.bin",
+                           "layers/0/table/18014398509481984.bin",
+                           "layers/0/nodes.bin",
                            "scans/0.bin",
                            "scans/../scene.json",
                            "/etc/passwd",

@@ -19,7 +19,7 @@ Json told(const ViewScene& scene) { return Json::parse(scene_json(scene)); }
 TEST(ViewScene, TheSceneIsWhatThereIs) {
   const Room room;
   const Json json = told(room.view);
-  EXPECT_EQ(json["version"], 1);
+  EXPECT_EQ(json["version"], 2);
   EXPECT_EQ(json["origin_m"], Json({5000, 6000, 0}));
   ASSERT_EQ(json["layers"].size(), 2U);
   EXPECT_EQ(json["layers"][0]["kind"], "splats");

@@ -6,6 +6,7 @@
 import { byId, make } from '../panels/dom';
 import { showToast } from '../panels/notices';
 import { Layer } from '../picture/layer';
+import { NodeTable } from '../picture/node_table';
 import type { SceneView } from '../picture/scene_view';
 import type { Vec3 } from '../server/protocol';
 import { makeLocalTree } from './local_tree';
@@ -59,7 +60,8 @@ export class DroppedFiles {
       const tree = makeLocalTree(points, file.name, this.nextId++, this.origin_m);
       if (Math.max(...tree.info.box.flat().map(Math.abs)) > kFarthestM)
         throw new Error('more than 100 km from the scene');
-      this.view.set.add(new Layer(tree.info, tree.nodes, this.view.shared, tree.bytes));
+      const table = NodeTable.of(tree.nodes);
+      this.view.set.add(new Layer(tree.info, table, this.view.shared, tree.bytes));
       this.view.moved();
       this.added();
     } catch (error) {

@@ -4,7 +4,6 @@
 // A layer of splats or points: its tree, and a mesh for each node that is there.
 
 import {
-  Box3,
   BufferAttribute,
   BufferGeometry,
   GLSL3,
@@ -18,8 +17,10 @@ import {
   Vector3,
   type IUniform,
 } from 'three';
-import { nodeBox, parentsOf, type Tree } from './lod';
-import { elementBytes, kTriangleBytes, parseElements, type TreeNode } from '../server/binary';
+import type { Tree } from './lod';
+import { NodeTable } from './node_table';
+import { elementBytes, kTriangleBytes, parseElements, parseNodes } from '../server/binary';
+import { ask } from '../server/early';
 import type { LayerInfo } from '../server/protocol';
 import {
   kDiskFragment,
@@ -65,13 +66,18 @@ function forget(attribute: BufferAttribute) {
   });
 }
 
+/** A layer of the server, with the first block of its table. Rejects as Layer.load(). */
+export async function openLayer(info: LayerInfo, shared: SharedUniforms): Promise<Layer> {
+  const layer = new Layer(info, new NodeTable(info.nodes), shared);
+  layer.addBlock(0, await layer.loadBlock(0, new AbortController().signal));
+  return layer;
+}
+
 export class Layer implements Tree {
   visible = true;
   bytes = 0;
   /** Of the nodes that have come so far. */
   readonly classes = new Set<number>();
-  readonly boxes: Box3[];
-  readonly parents: Int32Array;
   private readonly loaded = new Map<number, Loaded>();
   private readonly material: RawShaderMaterial;
   /** The uniform `has`. */
@@ -79,13 +85,11 @@ export class Layer implements Tree {
 
   constructor(
     readonly info: LayerInfo,
-    readonly nodes: TreeNode[],
+    readonly table: NodeTable,
     shared: SharedUniforms,
     /** The bytes of each node where no server has them. */
     private readonly local: ArrayBuffer[] | null = null,
   ) {
-    this.boxes = nodes.map(nodeBox);
-    this.parents = parentsOf(nodes);
     const { has_classes, has_intensities, has_errors } = info;
     this.has_bits =
       (has_classes ? 1 : 0) |
@@ -118,7 +122,7 @@ export class Layer implements Tree {
   }
 
   has(node: number): boolean {
-    return this.loaded.has(node) || this.nodes[node].count === 0;
+    return this.loaded.has(node) || this.table.node(node).count === 0;
   }
 
   /** Whether the page holds its data, and no server does. */
@@ -128,17 +132,31 @@ export class Layer implements Tree {
 
   /** The bytes of a node. Rejects as fetch does, and where the server does not have it. */
   async load(node: number, signal: AbortSignal): Promise<ArrayBuffer> {
-    if (this.local) return this.local[node];
-    const url = `layers/${this.info.id}/nodes/${node}.bin`;
-    const reply = await fetch(url, { signal });
-    if (!reply.ok) throw new Error(`${url}: ${reply.status}`);
-    return reply.arrayBuffer();
+    return this.local ? this.local[node] : ask(this.url(`nodes/${node}.bin`), signal);
+  }
+
+  /** The bytes of a block of the table. Rejects likewise. */
+  loadBlock(block: number, signal: AbortSignal): Promise<ArrayBuffer> {
+    return ask(this.url(`table/${block}.bin`), signal);
+  }
+
+  /** Takes what the server said of a block. Errors: ProtocolError. */
+  addBlock(block: number, bytes: ArrayBuffer) {
+    if (!this.table.hasBlock(block))
+      this.table.add(block, parseNodes(bytes, block, this.table.size));
+  }
+
+  /** The children of a node, of which the table tells from now on. Rejects as addBlock(). */
+  async childrenOf(node: number, signal: AbortSignal): Promise<number[]> {
+    for (const block of this.table.missingBelow(node))
+      this.addBlock(block, await this.loadBlock(block, signal));
+    return this.table.childrenOf(node);
   }
 
   /** Takes what the server said of a node. Errors: ProtocolError. */
   add(node: number, bytes: ArrayBuffer) {
     if (this.loaded.has(node)) return;
-    const count = this.nodes[node].count;
+    const count = this.table.node(node).count;
     const { kind, has_classes } = this.info;
     const elements = parseElements(bytes, count, kind);
     const words = elementBytes(kind) / 4;
@@ -163,6 +181,13 @@ export class Layer implements Tree {
       copy.onBeforeRender = () => this.setNode(node, oneClass);
       return copy;
     });
+  }
+
+  /** An element that is nowhere, to make ready what the layer is drawn with. */
+  sample(): Mesh | Points {
+    const object = this.make(new Uint32Array(elementBytes(this.info.kind) / 4));
+    object.frustumCulled = false;
+    return object;
   }
 
   /** Null where a node is empty. */
@@ -197,13 +222,17 @@ export class Layer implements Tree {
     this.material.dispose();
   }
 
+  private url(path: string): string {
+    return `layers/${this.info.id}/${path}`;
+  }
+
   private make(elements: Uint32Array): Mesh | Points {
     if (this.info.kind === 'points') return this.points(elements);
     return this.info.kind === 'mesh' ? this.triangles(elements) : this.disks(elements);
   }
 
   private setNode(node: number, oneClass: number | null) {
-    const { low, high, largest_radius_m, spacing_m } = this.nodes[node];
+    const { low, high, largest_radius_m, spacing_m } = this.table.node(node);
     const { uniforms } = this.material;
     uniforms.low.value.set(...low);
     uniforms.size.value.set(high[0] - low[0], high[1] - low[1], high[2] - low[2]);

@@ -4,10 +4,9 @@
 // The layers that there are, which of them are shown, and their nodes as they are wanted.
 
 import type { Box3 } from 'three';
-import { Layer, type SharedUniforms } from './layer';
-import { ancestors, type Cut } from './lod';
-import { FetchQueue } from '../server/node_store';
-import { parseNodes } from '../server/binary';
+import { openLayer, type Layer, type SharedUniforms } from './layer';
+import type { BlockRef, Cut, NodeRef } from './lod';
+import { FetchQueue, type Fetch } from '../server/node_store';
 import type { LayerInfo, SceneInfo } from '../server/protocol';
 
 /** A node that was used so lately is not unloaded. */
@@ -41,7 +40,7 @@ export class LayerSet {
   /** Replaces the server's layers, keeps what the page added. False: another call came since. */
   async load(scene: SceneInfo): Promise<boolean> {
     const generation = ++this.generation;
-    const layers = await Promise.all(scene.layers.map((info) => this.loadLayer(info)));
+    const layers = await Promise.all(scene.layers.map((info) => openLayer(info, this.shared)));
     if (generation !== this.generation) return false;
     this.queue.clear();
     const added = this.layers.filter((l) => l.isLocal);
@@ -79,7 +78,7 @@ export class LayerSet {
   }
 
   get boxes(): Box3[] {
-    return this.layers.filter((l) => l.nodes.length > 0).map((l) => l.boxes[0]);
+    return this.layers.filter((l) => l.table.size > 0).map((l) => l.table.box(0));
   }
 
   /** Notes what a picture was made of, and drops what no picture needed for long. */
@@ -89,7 +88,7 @@ export class LayerSet {
         .flatMap((c) => c.drawn)
         .filter((r) => r.tree === layer)
         .map((r) => r.node);
-      layer.touch(ancestors(layer, new Set(nodes), layer.parents), now);
+      layer.touch(layer.table.withAncestors(nodes), now);
     }
     let bytes = this.layers.reduce((sum, l) => sum + l.bytes, 0);
     if (bytes < this.memoryLimit) return;
@@ -103,26 +102,40 @@ export class LayerSet {
   }
 
   want(cuts: Cut[]) {
-    const { generation } = this;
-    const wanted = cuts.flatMap((c) => c.wanted).sort((a, b) => b.pixels - a.pixels);
-    this.queue.want(
-      wanted.map(({ tree, node }) => {
-        const layer = tree as Layer;
-        const arrived = (bytes: ArrayBuffer) => {
-          if (generation !== this.generation && !layer.isLocal) return;
-          layer.add(node, bytes);
-          this.arrivals = true;
-        };
-        const load = (signal: AbortSignal) => layer.load(node, signal);
-        return { key: `${layer.info.id}/${node}`, load, arrived };
-      }),
-    );
+    const wanted = [
+      ...cuts.flatMap((c) => c.blocks).map((b) => ({ ...this.blockFetch(b), pixels: b.pixels })),
+      ...cuts.flatMap((c) => c.wanted).map((n) => ({ ...this.nodeFetch(n), pixels: n.pixels })),
+    ];
+    this.queue.want(wanted.sort((a, b) => b.pixels - a.pixels));
   }
 
-  private async loadLayer(info: LayerInfo): Promise<Layer> {
-    const reply = await fetch(`layers/${info.id}/nodes.bin`);
-    if (!reply.ok) throw new Error(`layer ${info.name}: ${reply.status}`);
-    return new Layer(info, parseNodes(await reply.arrayBuffer()), this.shared);
+  private nodeFetch({ tree, node }: NodeRef): Fetch {
+    const layer = tree as Layer;
+    return this.fetchOf(layer, `${node}`, {
+      load: (signal) => layer.load(node, signal),
+      arrived: (bytes) => layer.add(node, bytes),
+    });
+  }
+
+  private blockFetch({ tree, block }: BlockRef): Fetch {
+    const layer = tree as Layer;
+    return this.fetchOf(layer, `table/${block}`, {
+      load: (signal) => layer.loadBlock(block, signal),
+      arrived: (bytes) => layer.addBlock(block, bytes),
+    });
+  }
+
+  private fetchOf(layer: Layer, name: string, { load, arrived }: Omit<Fetch, 'key'>): Fetch {
+    const { generation } = this;
+    return {
+      key: `${layer.info.id}/${name}`,
+      load,
+      arrived: (bytes) => {
+        if (generation !== this.generation && !layer.isLocal) return;
+        arrived(bytes);
+        this.arrivals = true;
+      },
+    };
   }
 }
 

@@ -3,13 +3,13 @@
 
 // Level of detail: which nodes of the layers' trees are drawn, within a budget of elements.
 
-import { Box3, Frustum, Vector3 } from 'three';
-import type { TreeNode } from '../server/binary';
+import type { Frustum, Vector3 } from 'three';
+import type { NodeTable } from './node_table';
 
 /** A tree whose nodes come one by one. */
 export interface Tree {
-  nodes: TreeNode[];
-  boxes: Box3[];
+  /** Of which the first block is there. */
+  table: NodeTable;
   has(node: number): boolean;
   /** Whether a node is drawn at any cost: nothing coarser stands for it. */
   isWhole: boolean;
@@ -19,6 +19,12 @@ export interface NodeRef {
   tree: Tree;
   node: number;
   /** Pixels that its spacing covers on the screen. */
+  pixels: number;
+}
+
+export interface BlockRef {
+  tree: Tree;
+  block: number;
   pixels: number;
 }
 
@@ -34,20 +40,24 @@ export interface Cut {
   drawn: NodeRef[];
   /** Asked for, most wanted first. */
   wanted: NodeRef[];
+  /** Blocks of tables that tell what else to ask for, likewise. */
+  blocks: BlockRef[];
   /** Of the drawn nodes. */
   elements: number;
   /** The budget, not the screen, decided. */
   limited: boolean;
+  /** All in sight has come that the budget and the screen allow. */
+  complete: boolean;
 }
 
 /** A spacing of fewer pixels than this is not refined. */
 const kFinePixels = 1.2;
 
 /** Largest first. */
-class Heap {
-  private items: NodeRef[] = [];
+class Heap<T extends { pixels: number }> {
+  private items: T[] = [];
 
-  push(item: NodeRef) {
+  push(item: T) {
     const items = this.items;
     let i = items.push(item) - 1;
     while (i > 0) {
@@ -59,7 +69,7 @@ class Heap {
     items[i] = item;
   }
 
-  pop(): NodeRef | undefined {
+  pop(): T | undefined {
     const items = this.items;
     const top = items[0];
     const last = items.pop();
@@ -78,85 +88,108 @@ class Heap {
   }
 }
 
-/**
- * The box that a node and all below it fill: the centers of its splats, and around them the largest
- * radius, and the cells whose means the centers are; those are of cells of half the size, and so on.
- */
-export function nodeBox(node: TreeNode): Box3 {
-  return new Box3(new Vector3(...node.low), new Vector3(...node.high)).expandByScalar(
-    node.largest_radius_m + 2 * node.spacing_m,
-  );
+/** A node in sight; whether it is drawn, or what is above it meanwhile. */
+interface Step extends NodeRef {
+  drawn: boolean;
 }
 
-function projected(tree: Tree, node: number, view: View): NodeRef {
-  const distance = Math.max(tree.boxes[node].distanceToPoint(view.eye), 0.1);
-  return { tree, node, pixels: (tree.nodes[node].spacing_m * view.focal_px) / distance };
-}
+/** Chooses a cut. */
+class Cutter {
+  private readonly cut: Cut = {
+    drawn: [],
+    wanted: [],
+    blocks: [],
+    elements: 0,
+    limited: false,
+    complete: true,
+  };
+  private readonly heap = new Heap<Step>();
+  /** Elements once all that is asked for has come. */
+  private planned = 0;
 
-function childrenOf(ref: NodeRef, view: View): NodeRef[] {
-  const { first_child, child_count } = ref.tree.nodes[ref.node];
-  return Array.from({ length: child_count }, (_, i) => projected(ref.tree, first_child + i, view));
+  constructor(
+    private readonly view: View,
+    private readonly budget: number,
+  ) {}
+
+  run(trees: Tree[]): Cut {
+    const { cut, heap, view } = this;
+    for (const tree of trees) if (tree.table.size > 0) this.begin(tree);
+    for (let step = heap.pop(); step !== undefined; step = heap.pop()) this.take(step);
+    const distance = ({ tree, node }: NodeRef) => tree.table.box(node).distanceToPoint(view.eye);
+    cut.drawn.sort((a, b) => distance(a) - distance(b));
+    cut.wanted.sort((a, b) => b.pixels - a.pixels);
+    return cut;
+  }
+
+  private begin(tree: Tree) {
+    const root = { ...this.projected(tree, 0), drawn: tree.has(0) };
+    if (!root.drawn) this.cut.wanted.push({ ...root, pixels: Infinity });
+    if (!this.inSight(root)) return;
+    this.cut.complete &&= root.drawn;
+    this.planned += tree.table.node(0).count;
+    if (root.drawn) this.cut.elements += tree.table.node(0).count;
+    this.heap.push(root);
+  }
+
+  private take(step: Step) {
+    const { cut, budget } = this;
+    const { tree, node, pixels } = step;
+    const { count, child_count } = tree.table.node(node);
+    if (child_count === 0 || pixels < kFinePixels) return this.keep(step);
+    const unknown = tree.table.missingBelow(node);
+    for (const block of unknown) this.askForBlock(tree, block, pixels);
+    if (unknown.length > 0) {
+      cut.complete = false;
+      return this.keep(step);
+    }
+    const children = tree.table.childrenOf(node).map((child) => this.projected(tree, child));
+    const seen = children.filter((child) => this.inSight(child));
+    const added = seen.reduce((sum, c) => sum + tree.table.node(c.node).count, -count);
+    if (this.planned + added > budget && !tree.isWhole) {
+      cut.limited = true;
+      return this.keep(step);
+    }
+    this.planned += added;
+    for (const child of children)
+      if (!tree.has(child.node))
+        cut.wanted.push({ ...child, pixels: seen.includes(child) ? pixels : pixels * 0.1 });
+    // What is below is asked for at once, not when the children have come.
+    const drawn = step.drawn && seen.every((child) => tree.has(child.node));
+    if (drawn) {
+      cut.elements += added;
+    } else {
+      cut.complete = false;
+      this.keep(step);
+    }
+    for (const child of seen) this.heap.push({ ...child, drawn });
+  }
+
+  private keep(step: Step) {
+    if (step.drawn) this.cut.drawn.push(step);
+  }
+
+  private askForBlock(tree: Tree, block: number, pixels: number) {
+    if (!this.cut.blocks.some((b) => b.tree === tree && b.block === block))
+      this.cut.blocks.push({ tree, block, pixels });
+  }
+
+  private inSight({ tree, node }: NodeRef): boolean {
+    return this.view.frustum.intersectsBox(tree.table.box(node));
+  }
+
+  private projected(tree: Tree, node: number): NodeRef {
+    const { eye, focal_px } = this.view;
+    const distance = Math.max(tree.table.box(node).distanceToPoint(eye), 0.1);
+    return { tree, node, pixels: (tree.table.node(node).spacing_m * focal_px) / distance };
+  }
 }
 
 /**
  * Refines the node that looks coarsest until the screen is fine or the budget is spent. A node
- * gives way only where all of its children in sight are there, so nothing ever has a hole.
+ * gives way only where all of its children in sight are there, so nothing ever has a hole. All
+ * that the finest such picture has, and what is above it, is asked for together.
  */
 export function chooseCut(trees: Tree[], view: View, budget: number): Cut {
-  const cut: Cut = { drawn: [], wanted: [], elements: 0, limited: false };
-  const heap = new Heap();
-  const inSight = (r: NodeRef) => view.frustum.intersectsBox(r.tree.boxes[r.node]);
-  for (const tree of trees) {
-    if (tree.nodes.length === 0) continue;
-    const root = projected(tree, 0, view);
-    if (!tree.has(0)) cut.wanted.push({ ...root, pixels: Infinity });
-    else if (inSight(root)) {
-      heap.push(root);
-      cut.elements += tree.nodes[0].count;
-    }
-  }
-  for (let ref = heap.pop(); ref !== undefined; ref = heap.pop()) {
-    const { count, child_count } = ref.tree.nodes[ref.node];
-    if (child_count === 0 || ref.pixels < kFinePixels) {
-      cut.drawn.push(ref);
-      continue;
-    }
-    const children = childrenOf(ref, view);
-    const seen = children.filter(inSight);
-    const added = seen.reduce((sum, c) => sum + c.tree.nodes[c.node].count, -count);
-    if (cut.elements + added > budget && !ref.tree.isWhole) {
-      cut.limited = true;
-      cut.drawn.push(ref);
-      continue;
-    }
-    const missing = children.filter((c) => !c.tree.has(c.node));
-    for (const child of missing)
-      cut.wanted.push({ ...child, pixels: seen.includes(child) ? ref.pixels : ref.pixels * 0.1 });
-    if (seen.some((c) => !c.tree.has(c.node))) {
-      cut.drawn.push(ref);
-      continue;
-    }
-    cut.elements += added;
-    for (const child of seen) heap.push(child);
-  }
-  const distance = (r: NodeRef) => r.tree.boxes[r.node].distanceToPoint(view.eye);
-  cut.drawn.sort((a, b) => distance(a) - distance(b));
-  cut.wanted.sort((a, b) => b.pixels - a.pixels);
-  return cut;
-}
-
-/** Tells the store which nodes are in use: those drawn, and above them what may return. */
-export function ancestors(tree: Tree, drawn: Set<number>, parents: Int32Array): Set<number> {
-  const used = new Set<number>();
-  for (const node of drawn) for (let n = node; n >= 0 && !used.has(n); n = parents[n]) used.add(n);
-  if (tree.nodes.length > 0) used.add(0);
-  return used;
-}
-
-export function parentsOf(nodes: TreeNode[]): Int32Array {
-  const parents = new Int32Array(nodes.length).fill(-1);
-  nodes.forEach((node, i) => {
-    for (let c = 0; c < node.child_count; ++c) parents[node.first_child + c] = i;
-  });
-  return parents;
+  return new Cutter(view, budget).run(trees);
 }

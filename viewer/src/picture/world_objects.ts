@@ -16,8 +16,7 @@ import {
 import type { Grabbable } from '../driving/pointer';
 import { matrixOf } from '../driving/pose';
 import { poseAt } from '../driving/timeline';
-import { Layer } from './layer';
-import { parseNodes, type TreeNode } from '../server/binary';
+import { openLayer, type Layer } from './layer';
 import type { ObjectInfo, Pose, SceneInfo } from '../server/protocol';
 import type { SceneView } from './scene_view';
 
@@ -59,9 +58,9 @@ class PlacedObject {
 
   /** How far along a ray its box begins; null: beside it. */
   met(ray: Ray): number | null {
-    if (!this.group.visible || this.layer.nodes.length === 0) return null;
+    if (!this.group.visible || this.layer.table.size === 0) return null;
     const own = ray.clone().applyMatrix4(this.group.matrix.clone().invert());
-    const hit = own.intersectBox(this.layer.boxes[0], new Vector3());
+    const hit = own.intersectBox(this.layer.table.box(0), new Vector3());
     return hit ? hit.applyMatrix4(this.group.matrix).distanceTo(ray.origin) : null;
   }
 }
@@ -169,25 +168,27 @@ export class WorldObjects implements Grabbable {
   }
 
   private async loadGeometry({ geometry }: ObjectInfo): Promise<Layer> {
-    const reply = await fetch(`layers/${geometry.id}/nodes.bin`);
-    if (!reply.ok) throw new Error(`${geometry.name}: ${reply.status}`);
-    const nodes = parseNodes(await reply.arrayBuffer());
-    const layer = new Layer(geometry, nodes, this.view.shared);
+    const layer = await openLayer(geometry, this.view.shared);
     const { signal } = new AbortController();
-    for (const node of detailOf(layer)) layer.add(node, await layer.load(node, signal));
+    for (const node of await detailOf(layer, signal))
+      layer.add(node, await layer.load(node, signal));
     return layer;
   }
 }
 
 /** The finest level of the tree that is not too much; leaves above it, too. */
-function detailOf({ nodes }: Layer): number[] {
-  const deepest = Math.max(0, ...nodes.map((n) => n.level));
-  const isIn = (n: TreeNode, level: number) =>
-    n.level === level || (n.level < level && n.child_count === 0);
-  const cut = (level: number) => nodes.flatMap((n, i) => (isIn(n, level) ? [i] : []));
-  for (let level = deepest; level > 0; --level) {
-    const found = cut(level);
-    if (found.reduce((sum, n) => sum + nodes[n].count, 0) <= kMostElements) return found;
+async function detailOf(layer: Layer, signal: AbortSignal): Promise<number[]> {
+  const { table } = layer;
+  let nodes = [0];
+  for (;;) {
+    const next: number[] = [];
+    for (const node of nodes) {
+      const children = await layer.childrenOf(node, signal);
+      next.push(...(children.length > 0 ? children : [node]));
+    }
+    const isFinest = next.every((n, i) => n === nodes[i]);
+    const elements = next.reduce((sum, n) => sum + table.node(n).count, 0);
+    if (isFinest || elements > kMostElements) return nodes;
+    nodes = next;
   }
-  return cut(0);
 }

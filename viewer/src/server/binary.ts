@@ -17,6 +17,8 @@ export interface TreeNode {
 }
 
 const kNodeBytes = 48;
+/** Nodes of a tree's table that come at a time. */
+export const kBlockNodes = 1024;
 export const kElementBytes = 16;
 export const kTriangleBytes = 40;
 
@@ -25,8 +27,9 @@ export function elementBytes(kind: LayerKind): number {
   return kind === 'mesh' ? kTriangleBytes : kElementBytes;
 }
 
-function treeNode(view: DataView, index: number, nodes: number): TreeNode {
-  const at = 8 + kNodeBytes * index;
+/** The row at `row` of the bytes, which is that of node `index` of `nodes`. */
+function treeNode(view: DataView, row: number, index: number, nodes: number): TreeNode {
+  const at = kNodeBytes * row;
   const float = (i: number) => view.getFloat32(at + 4 * i, true);
   const word = (i: number) => view.getUint32(at + 4 * i, true);
   const node: TreeNode = {
@@ -42,20 +45,20 @@ function treeNode(view: DataView, index: number, nodes: number): TreeNode {
   // Children come later than their parent: so a tree that lies cannot make the page loop.
   const end = node.first_child + node.child_count;
   if (node.child_count > 8 || (node.child_count > 0 && (node.first_child <= index || end > nodes)))
-    throw new ProtocolError(`nodes.bin: node ${index} has children that cannot be`);
+    throw new ProtocolError(`node ${index} has children that cannot be`);
   if (![...node.low, ...node.high, node.spacing_m, node.largest_radius_m].every(Number.isFinite))
-    throw new ProtocolError(`nodes.bin: node ${index} has a box that is not finite`);
+    throw new ProtocolError(`node ${index} has a box that is not finite`);
   return node;
 }
 
-/** nodes.bin. */
-export function parseNodes(bytes: ArrayBuffer): TreeNode[] {
-  if (bytes.byteLength < 8) throw new ProtocolError('nodes.bin: too short');
+/** table/B.bin, of a tree of so many nodes. */
+export function parseNodes(bytes: ArrayBuffer, block: number, nodes: number): TreeNode[] {
+  const first = block * kBlockNodes;
+  const count = Math.min(kBlockNodes, nodes - first);
+  if (bytes.byteLength !== kNodeBytes * count)
+    throw new ProtocolError(`table/${block}.bin: ${bytes.byteLength} bytes for ${count} nodes`);
   const view = new DataView(bytes);
-  const count = view.getUint32(0, true);
-  if (bytes.byteLength !== 8 + kNodeBytes * count)
-    throw new ProtocolError(`nodes.bin: ${bytes.byteLength} bytes for ${count} nodes`);
-  return Array.from({ length: count }, (_, i) => treeNode(view, i, count));
+  return Array.from({ length: count }, (_, i) => treeNode(view, i, first + i, nodes));
 }
 
 /** nodes/N.bin: four words an element, ten a triangle. */

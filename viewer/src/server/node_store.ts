@@ -28,7 +28,9 @@ export class FetchQueue {
   }
 
   want(fetches: Fetch[]) {
-    this.wanted = fetches;
+    // Each once; what is under way comes, or is wanted again when it failed.
+    const keys = new Set(this.underWay.keys());
+    this.wanted = fetches.filter((f) => !keys.has(f.key) && keys.add(f.key));
     this.start();
   }
 
@@ -51,7 +53,6 @@ export class FetchQueue {
     let waits = Infinity;
     for (const one of this.wanted) {
       if (this.underWay.size >= kAtOnce) return;
-      if (this.underWay.has(one.key)) continue;
       const pause = this.pauses.get(one.key);
       if (pause && pause.until > now) waits = Math.min(waits, pause.until - now);
       else void this.run(one);

@@ -3,6 +3,8 @@
 
 // What the server says, as types, and read with distrust: docs/viewer_protocol.md.
 
+const kVersion = 2;
+
 export type Vec3 = [number, number, number];
 /** x, y, z, qx, qy, qz, qw: local_from_sensor. */
 export type Pose = [number, number, number, number, number, number, number];
@@ -268,8 +270,8 @@ function objectInfo(value: unknown, what: string): ObjectInfo {
 /** scene.json. */
 export function parseScene(value: unknown): SceneInfo {
   const v = fields(value, 'scene.json');
-  if (v.version !== 1)
-    throw new ProtocolError(`scene.json: version ${String(v.version)}, this page knows 1`);
+  if (v.version !== kVersion)
+    throw new ProtocolError(`scene.json: version ${String(v.version)}, this page knows ${kVersion}`);
   const canSimulate = v.can_simulate === true;
   return {
     name: text(v.name, 'name'),

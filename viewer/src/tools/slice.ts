@@ -68,25 +68,30 @@ export class SliceFrame {
 }
 
 /** Leaves that touch the slice, or coarser nodes where those hold too much. */
-function nodesOf(layer: Layer, frame: SliceFrame): { nodes: number[]; coarse: boolean } {
-  let nodes = layer.nodes.length > 0 ? [0] : [];
+async function nodesOf(
+  layer: Layer,
+  frame: SliceFrame,
+  signal: AbortSignal,
+): Promise<{ nodes: number[]; coarse: boolean }> {
+  const { table } = layer;
+  let nodes = table.size > 0 ? [0] : [];
   for (;;) {
-    const next = nodes.flatMap((n) => {
-      const { first_child, child_count } = layer.nodes[n];
-      if (child_count === 0) return [n];
-      const children = Array.from({ length: child_count }, (_, i) => first_child + i);
-      return children.filter((c) => frame.touches(layer.nodes[c]));
-    });
+    const next: number[] = [];
+    for (const node of nodes) {
+      const children = await layer.childrenOf(node, signal);
+      if (children.length === 0) next.push(node);
+      else next.push(...children.filter((c) => frame.touches(table.node(c))));
+    }
     if (next.length === nodes.length && next.every((n, i) => n === nodes[i]))
       return { nodes, coarse: false };
-    const count = next.reduce((sum, n) => sum + layer.nodes[n].count, 0);
+    const count = next.reduce((sum, n) => sum + table.node(n).count, 0);
     if (count > kMostFetched) return { nodes, coarse: true };
     nodes = next;
   }
 }
 
 function pointsOf(layer: Layer, node: number, bytes: ArrayBuffer, frame: SliceFrame): SlicePoint[] {
-  const { low, high } = layer.nodes[node];
+  const { low, high } = layer.table.node(node);
   const halves = new Uint16Array(bytes);
   const all = new Uint8Array(bytes);
   const scale = [0, 1, 2].map((i) => (high[i] - low[i]) / 65535);
@@ -115,9 +120,9 @@ export async function slicePoints(layers: Layer[], slice: Slice, signal: AbortSi
   const points: SlicePoint[] = [];
   let coarse = false;
   for (const layer of layers.filter((l) => l.info.kind !== 'mesh')) {
-    const found = nodesOf(layer, frame);
+    const found = await nodesOf(layer, frame, signal);
     coarse ||= found.coarse;
-    const waiting = found.nodes.filter((n) => layer.nodes[n].count > 0);
+    const waiting = found.nodes.filter((n) => layer.table.node(n).count > 0);
     const worker = async () => {
       for (let n = waiting.pop(); n !== undefined; n = waiting.pop())
         points.push(...pointsOf(layer, n, await layer.load(n, signal), frame));
