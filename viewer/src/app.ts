@@ -44,6 +44,8 @@ import { WorldObjects } from './picture/world_objects';
 const kFiguresMs = 250;
 /** That the LiDAR waits for the first picture. */
 const kPatienceMs = 3000;
+/** Without a GPU, for all that is in sight: scans would take the processor that draws it. */
+const kSoftwarePatienceMs = 10_000;
 
 export class App {
   private readonly view: SceneView;
@@ -74,6 +76,7 @@ export class App {
     const canvas = byId<HTMLCanvasElement>('view');
     const failed = (error: unknown) => this.loadFailed(error);
     const view = (this.view = new SceneView(canvas, failed));
+    if (scene.layers.length > 0) view.prepare(scene.layers[0]);
     this.source = new SceneSource(scene, view, { loaded: () => this.loaded(), failed });
     this.scans = this.makeScans();
     const { live, cloud } = this.scans;
@@ -174,6 +177,9 @@ export class App {
     // Where nothing is in sight there is none.
     const patience = new Promise((done) => window.setTimeout(done, kPatienceMs));
     await Promise.race([shown, patience]);
+    const end = performance.now() + kSoftwarePatienceMs;
+    while (view.stage.software && view.statistics.loading && performance.now() < end)
+      await new Promise((resolve) => window.setTimeout(resolve, kFiguresMs));
   }
 
   private makePanel(): SidePanel {

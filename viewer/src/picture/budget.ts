@@ -12,12 +12,19 @@ const kSlowSoftwareMs = 90;
 /** Of the budget, that a slow picture leaves. */
 const kMostAtOnce = 0.8;
 const kQuickMs = 24;
+/** Of the first picture: what any machine draws soon, with all that is made for the first time. */
+const kFirst = 400_000;
+const kFirstSoftware = 20_000;
+/** A picture at rest may take so long where it is waited for: nothing else is done meanwhile. */
+const kMostStillMs = 1200;
 /** A longer pause between frames tells about the page, not about the drawing. */
 const kOddMs = 2000;
 
 export class Budget {
   private moving: number;
   private smoothedMs = 33;
+  /** Milliseconds an element; 0: not known. */
+  private pace = 0;
 
   constructor(private readonly software: boolean) {
     this.moving = software ? 120_000 : 1_500_000;
@@ -28,9 +35,21 @@ export class Budget {
     return this.moving;
   }
 
+  /** Of the first picture. */
+  get first(): number {
+    return this.software ? kFirstSoftware : kFirst;
+  }
+
   /** Once it rests: such a picture is drawn once. */
   get still(): number {
-    return Math.min(this.moving * (3), kMost);
+    const most = this.pace > 0 ? Math.max(kMostStillMs / this.pace, kLeast) : kMost;
+    return Math.min(3 * this.moving, most, kMost);
+  }
+
+  /** A picture of so many elements took so long in all. Of few it tells little. */
+  drawn(ms: number, elements: number) {
+    const pace = ms / Math.max(elements, kLeast);
+    this.pace = this.pace > 0 ? (this.pace + pace) / 2 : pace;
   }
 
   /** Two pictures in a row took so long; `limited`: a larger budget would be used. */

@@ -7,13 +7,14 @@
 import { Frustum, Matrix4, Object3D, Vector2, Vector3 } from 'three';
 import { Budget } from './budget';
 import { CameraRig } from '../driving/camera_rig';
-import type { Layer, SharedUniforms } from './layer';
+import { Layer, type SharedUniforms } from './layer';
 import { LayerSet } from './layer_set';
 import { chooseCut, type Cut, type View } from './lod';
 import { ClipBox } from './clip';
 import { ClassPalette } from './class_palette';
 import { ColorMaps } from './color_maps';
-import type { SceneInfo } from '../server/protocol';
+import { NodeTable } from './node_table';
+import type { LayerInfo, SceneInfo } from '../server/protocol';
 import { kColorModes, type ColorMode } from './shaders';
 import { Stage, type Area } from './stage';
 
@@ -35,6 +36,10 @@ export interface ViewStatistics {
 }
 
 const kRestMs = 220;
+/** So long nothing is drawn until something of the model can be. */
+const kPatienceMs = 3000;
+/** So long the coarsest nodes wait for those that the first picture is to have. */
+const kFirstCutMs = 400;
 const kMegabyte = 1 << 20;
 
 export class SceneView {
@@ -69,6 +74,9 @@ export class SceneView {
   private wasStill = false;
   private readonly frameTimes: number[] = [];
   private firstPictureMs: number | null = null;
+  private startedMs = 0;
+  /** Since when something of the model could be drawn. */
+  private drawableMs: number | null = null;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -93,7 +101,13 @@ export class SceneView {
     this.resize();
   }
 
+  /** Makes ready what a layer is drawn with, while its nodes come. */
+  prepare(info: LayerInfo) {
+    void this.stage.prepare(new Layer(info, new NodeTable(0), this.shared).sample());
+  }
+
   start() {
+    this.startedMs = performance.now();
     const loop = (now: number) => {
       requestAnimationFrame(loop);
       this.frame(now);
@@ -160,12 +174,16 @@ export class SceneView {
       nodes: sum((c) => c.drawn.length),
       loadedNodes: this.layers.reduce((s, l) => s + l.loadedNodes, 0),
       loadedBytes: this.layers.reduce((s, l) => s + l.bytes, 0),
-      loading: this.set.busy || this.cuts.some((c) => c.wanted.length > 0),
+      loading: this.isLoading,
       limited: this.cuts.some((c) => c.limited),
       framesPerSecond: this.framesPerSecond(),
       budget: Math.round(this.budget.interactive),
       firstPictureMs: this.firstPictureMs,
     };
+  }
+
+  private get isLoading(): boolean {
+    return this.set.busy || this.cuts.some((c) => c.wanted.length + c.blocks.length > 0);
   }
 
   /** Parts of the canvas that show the scene. */
@@ -227,6 +245,7 @@ export class SceneView {
     this.beforeFrame(dt);
     this.rig.controls.update(dt);
     const still = now - this.movedMs > kRestMs;
+    if (this.firstPictureMs === null && !this.canBegin(now)) return;
     const refine = still && !this.wasStill && this.cuts.some((c) => c.limited);
     this.takeArrivals(still, now);
     if (this.modelInLastFrame && !still)
@@ -241,32 +260,59 @@ export class SceneView {
     this.frameTimes.push(now);
   }
 
-  private drawModel(still: boolean, now: number) {
-    this.wasStill = still;
-    this.modelDirty = this.set.arrivals = this.arrived = false;
-    this.lastModelMs = now;
+  /** Pictures of nothing would only keep the first one of something from being drawn. */
+  private canBegin(now: number): boolean {
+    if (now - this.startedMs > kPatienceMs) return true;
+    if (this.layers.length === 0) return false;
+    this.chooseCuts(this.look(), false, now);
+    if (this.cuts.every((c) => c.complete)) return true;
+    if (this.cuts.every((c) => c.elements === 0)) return false;
+    this.drawableMs ??= now;
+    return now - this.drawableMs > kFirstCutMs;
+  }
+
+  /** As the camera stands now. */
+  private look(): View {
     const { areas, rig } = this;
     rig.camera.aspect = areas[0].width / areas[0].height;
     rig.camera.updateProjectionMatrix();
     rig.fitDepth();
     rig.camera.updateMatrixWorld();
-    const view = this.view(areas[0].height);
+    return this.view(areas[0].height);
+  }
+
+  private drawModel(still: boolean, now: number) {
+    this.wasStill = still;
+    this.modelDirty = this.set.arrivals = this.arrived = false;
+    this.lastModelMs = now;
+    const { areas, rig } = this;
+    const view = this.look();
     this.shared.focal_px.value = view.focal_px;
     this.chooseCuts(view, still, now);
     this.stage.beginModel();
     areas.forEach((area, i) => this.stage.drawModel(objectsOf(this.cuts[i]), area, rig.camera));
     if (!this.stage.software) return;
     // Without a GPU pictures would queue up behind each other, and the page stand still for them.
+    const began = performance.now();
     this.stage.finish();
-    this.modelMs = performance.now() - now;
+    this.modelMs = performance.now() - began;
+    this.budget.drawn(
+      this.modelMs,
+      this.cuts.reduce((sum, c) => sum + c.elements, 0),
+    );
   }
 
   private chooseCuts(view: View, still: boolean, now: number) {
     const { areas } = this;
-    const budget = (still ? this.budget.still : this.budget.interactive) / areas.length;
+    const budget = this.elementsAllowed(still) / areas.length;
     this.cuts = areas.map((_, i) => chooseCut(this.layersOf(i), view, budget));
     this.set.keepUsed(this.cuts, now);
     this.set.want(this.cuts);
+  }
+
+  private elementsAllowed(still: boolean): number {
+    if (this.firstPictureMs === null) return this.budget.first;
+    return still ? this.budget.still : this.budget.interactive;
   }
 
   /**
@@ -286,12 +332,16 @@ export class SceneView {
 
   private drawScreen() {
     this.screenDirty = false;
-    this.stage.drawScreen(this.areas, this.rig.camera);
-    if (this.firstPictureMs === null && this.cuts.some((c) => c.elements > 0)) {
-      this.stage.finish();
-      this.firstPictureMs = performance.now();
-      this.firstShown();
-    }
+    const isFirst = this.firstPictureMs === null && this.cuts.some((c) => c.elements > 0);
+    this.stage.drawScreen(this.areas, this.rig.camera, !isFirst);
+    if (!isFirst) return;
+    this.stage.finish();
+    this.firstPictureMs = performance.now();
+    this.firstShown();
+    // What lies over it comes next; what was not worth waiting for, when it is there.
+    this.invalidate();
+    this.chooseCuts(this.look(), true, this.firstPictureMs);
+    this.arrived = this.wasStill = true;
   }
 
   private view(height: number): View {

@@ -49,6 +49,8 @@ export class Stage {
   private readonly probe: DepthProbe;
   private readonly screenCamera = new OrthographicCamera();
   private readonly size = new Vector2(1, 1);
+  /** A picture of the model was begun. */
+  private isBegun = false;
 
   constructor(canvas: HTMLCanvasElement) {
     this.software = isSoftware();
@@ -87,6 +89,7 @@ export class Stage {
   }
 
   beginModel() {
+    this.isBegun = true;
     this.target.scissorTest = false;
     this.target.viewport.set(0, 0, this.size.x, this.size.y);
     this.renderer.setRenderTarget(this.target);
@@ -103,8 +106,37 @@ export class Stage {
     this.model.children = [];
   }
 
-  /** The picture of the model, and over it the rest, in each area. */
-  drawScreen(areas: Area[], camera: PerspectiveCamera) {
+  /**
+   * Makes ready what an object of the model and the screen are drawn with, while nobody waits:
+   * programs first, and once they are there what drivers make only when something is drawn.
+   */
+  async prepare(object: Object3D) {
+    const { screenCamera: camera } = this;
+    await Promise.all([this.compile(object, this.target), this.compile(this.screen, null)]);
+    if (this.isBegun) return;
+    this.beginModel();
+    this.drawModel([object], { x: 0, y: 0, width: 1, height: 1 }, camera);
+    this.drawPicture(camera);
+    this.isBegun = false;
+  }
+
+  /** The picture of the model, and where `overlay` over it the rest, in each area. */
+  drawScreen(areas: Area[], camera: PerspectiveCamera, overlay: boolean) {
+    this.drawPicture(camera);
+    if (overlay) this.drawOverlay(areas, camera);
+  }
+
+  /** Begins at once; whoever can ask drivers whether they are done waits without blocking. */
+  private async compile(object: Object3D, target: WebGLRenderTarget | null) {
+    const { renderer, screenCamera: camera } = this;
+    renderer.setRenderTarget(target);
+    const asks = renderer.extensions.has('KHR_parallel_shader_compile');
+    const done = asks ? renderer.compileAsync(object, camera) : renderer.compile(object, camera);
+    renderer.setRenderTarget(null);
+    await done;
+  }
+
+  private drawPicture(camera: { near: number; far: number }) {
     const { renderer, size } = this;
     renderer.setRenderTarget(null);
     renderer.setScissorTest(false);
@@ -118,6 +150,10 @@ export class Stage {
     uniforms.pixel_ratio.value = this.pixelRatio;
     renderer.clear(true, true, false);
     renderer.render(this.screen, this.screenCamera);
+  }
+
+  private drawOverlay(areas: Area[], camera: PerspectiveCamera) {
+    const { renderer } = this;
     renderer.setScissorTest(true);
     for (const area of areas) {
       const [x, y, w, h] = [area.x, area.y, area.width, area.height].map(
