@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 
-// One look at a running `adasplats view` with headless Chromium, for view_city.py: what happens until
-// the page shows its first picture and until all that is in sight has come. Prints JSON.
+// One look at a running `adasplats view` with headless Chromium, for view_city.py: what happens
+// until the page shows its first picture and until all that is in sight has come. Prints JSON.
 //
 // Usage: view_city.mjs URL SERVER_PID [--page FOLDER] [--shots FOLDER] [--until first|all]
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -21,7 +21,7 @@ const kFrames = 5;
 /** Clock ticks a second in /proc (sysconf(_SC_CLK_TCK) of every Linux on x86 and ARM). */
 const kTicks = 100;
 
-/** In the page, before its own scripts: notes each picture of disks when the GPU has finished it. */
+/** In the page, before its own scripts: notes each picture of disks when it is finished. */
 function watchPictures(keepsFirst) {
   const seen = { pictures: [], disks: 0, began: 0 };
   window.seenPictures = seen.pictures;
@@ -38,13 +38,14 @@ function watchPictures(keepsFirst) {
     const result = readPixels.apply(this, words);
     const { began, disks } = seen;
     if (disks > 0) seen.pictures.push({ began_ms: began, ended_ms: performance.now(), disks });
-    else if (keepsFirst && seen.pictures.length > 0) window.firstPicture ??= this.canvas.toDataURL();
+    else if (keepsFirst && seen.pictures.length > 0)
+      window.firstPicture ??= this.canvas.toDataURL();
     seen.disks = 0;
     return result;
   };
 }
 
-/** User and system time of a process and those that it waited for, seconds; 0 where it has ended. */
+/** Time of a process and those that it waited for, seconds; 0 where it has ended. */
 function cpuSeconds(pid) {
   try {
     const stat = readFileSync(`/proc/${pid}/stat`, 'utf8');

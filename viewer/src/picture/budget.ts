@@ -16,7 +16,7 @@ const kQuickMs = 24;
 const kFirst = 400_000;
 const kFirstSoftware = 20_000;
 /** A picture at rest may take so long where it is waited for: nothing else is done meanwhile. */
-const kMostStillMs = 1200;
+const kMostStillMs = 2000;
 /** A longer pause between frames tells about the page, not about the drawing. */
 const kOddMs = 2000;
 

@@ -16,6 +16,8 @@ export class LayerSet {
   layers: Layer[] = [];
   /** A node has come since this was last set to false. */
   arrivals = false;
+  /** Called when a node or a block of a table has come. */
+  arrived: () => void = () => {};
   private readonly queue: FetchQueue;
   private generation = 0;
   /** Which layers were visible before errors were looked at. */
@@ -134,6 +136,7 @@ export class LayerSet {
         if (generation !== this.generation && !layer.isLocal) return;
         arrived(bytes);
         this.arrivals = true;
+        this.arrived();
       },
     };
   }

@@ -52,6 +52,8 @@ export interface Cut {
 
 /** A spacing of fewer pixels than this is not refined. */
 const kFinePixels = 1.2;
+/** Nodes out of sight come after all that are in sight, however coarse these look. */
+const kUnseen = 1e-6;
 
 /** Largest first. */
 class Heap<T extends { pixels: number }> {
@@ -153,7 +155,7 @@ class Cutter {
     this.planned += added;
     for (const child of children)
       if (!tree.has(child.node))
-        cut.wanted.push({ ...child, pixels: seen.includes(child) ? pixels : pixels * 0.1 });
+        cut.wanted.push({ ...child, pixels: seen.includes(child) ? pixels : pixels * kUnseen });
     // What is below is asked for at once, not when the children have come.
     const drawn = step.drawn && seen.every((child) => tree.has(child.node));
     if (drawn) {

@@ -75,6 +75,9 @@ export class SceneView {
   private readonly frameTimes: number[] = [];
   private firstPictureMs: number | null = null;
   private startedMs = 0;
+  private hurries = false;
+  /** What the first picture is drawn with, until it was drawn once. */
+  private sample: Object3D | null = null;
   /** Since when something of the model could be drawn. */
   private drawableMs: number | null = null;
 
@@ -97,13 +100,15 @@ export class SceneView {
     };
     const memoryLimit = (this.stage.software ? 128 : 384) * kMegabyte;
     this.set = new LayerSet(this.shared, memoryLimit, failed);
+    this.set.arrived = () => this.hurry();
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement ?? canvas);
     this.resize();
   }
 
   /** Makes ready what a layer is drawn with, while its nodes come. */
   prepare(info: LayerInfo) {
-    void this.stage.prepare(new Layer(info, new NodeTable(0), this.shared).sample());
+    this.sample = new Layer(info, new NodeTable(0), this.shared).sample();
+    this.stage.compile(this.sample);
   }
 
   start() {
@@ -156,6 +161,7 @@ export class SceneView {
     const [low, high] = scene.middle_box;
     this.shared.height_range_m.value.set(low[2], Math.max(high[2], low[2] + 0.1));
     this.moved();
+    this.hurry();
   }
 
   get layers(): Layer[] {
@@ -260,10 +266,34 @@ export class SceneView {
     this.frameTimes.push(now);
   }
 
+  /**
+   * The first picture, and what is asked for until then, do not wait for the browser's frames: these
+   * are rare while programs are made.
+   */
+  private hurry() {
+    if (this.firstPictureMs !== null || this.hurries) return;
+    this.hurries = true;
+    window.setTimeout(() => {
+      this.hurries = false;
+      const now = performance.now();
+      if (this.firstPictureMs !== null || this.startedMs === 0) return;
+      if (!this.canBegin(now)) return this.warm();
+      this.drawModel(false, now);
+      this.drawScreen();
+    });
+  }
+
+  /** While what was asked for is under way. */
+  private warm() {
+    if (this.sample) this.stage.warm(this.sample);
+    this.sample = null;
+  }
+
   /** Pictures of nothing would only keep the first one of something from being drawn. */
   private canBegin(now: number): boolean {
     if (now - this.startedMs > kPatienceMs) return true;
     if (this.layers.length === 0) return false;
+    this.rig.controls.update(0);
     this.chooseCuts(this.look(), false, now);
     if (this.cuts.every((c) => c.complete)) return true;
     if (this.cuts.every((c) => c.elements === 0)) return false;

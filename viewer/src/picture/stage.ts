@@ -49,8 +49,6 @@ export class Stage {
   private readonly probe: DepthProbe;
   private readonly screenCamera = new OrthographicCamera();
   private readonly size = new Vector2(1, 1);
-  /** A picture of the model was begun. */
-  private isBegun = false;
 
   constructor(canvas: HTMLCanvasElement) {
     this.software = isSoftware();
@@ -89,7 +87,6 @@ export class Stage {
   }
 
   beginModel() {
-    this.isBegun = true;
     this.target.scissorTest = false;
     this.target.viewport.set(0, 0, this.size.x, this.size.y);
     this.renderer.setRenderTarget(this.target);
@@ -106,34 +103,27 @@ export class Stage {
     this.model.children = [];
   }
 
-  /**
-   * Makes ready what an object of the model and the screen are drawn with, while nobody waits:
-   * programs first, and once they are there what drivers make only when something is drawn.
-   */
-  async prepare(object: Object3D) {
+  /** Begins to make the programs that an object of the model and the screen are drawn with. */
+  compile(object: Object3D) {
+    const { renderer, screenCamera: camera } = this;
+    renderer.setRenderTarget(this.target);
+    renderer.compile(object, camera);
+    renderer.setRenderTarget(null);
+    renderer.compile(this.screen, camera);
+  }
+
+  /** Draws it, for what drivers make only then, and waits for the programs. Of no picture yet. */
+  warm(object: Object3D) {
     const { screenCamera: camera } = this;
-    await Promise.all([this.compile(object, this.target), this.compile(this.screen, null)]);
-    if (this.isBegun) return;
     this.beginModel();
     this.drawModel([object], { x: 0, y: 0, width: 1, height: 1 }, camera);
     this.drawPicture(camera);
-    this.isBegun = false;
   }
 
   /** The picture of the model, and where `overlay` over it the rest, in each area. */
   drawScreen(areas: Area[], camera: PerspectiveCamera, overlay: boolean) {
     this.drawPicture(camera);
     if (overlay) this.drawOverlay(areas, camera);
-  }
-
-  /** Begins at once; whoever can ask drivers whether they are done waits without blocking. */
-  private async compile(object: Object3D, target: WebGLRenderTarget | null) {
-    const { renderer, screenCamera: camera } = this;
-    renderer.setRenderTarget(target);
-    const asks = renderer.extensions.has('KHR_parallel_shader_compile');
-    const done = asks ? renderer.compileAsync(object, camera) : renderer.compile(object, camera);
-    renderer.setRenderTarget(null);
-    await done;
   }
 
   private drawPicture(camera: { near: number; far: number }) {
