@@ -65,7 +65,7 @@ bool has_levels(const fs::path& folder) {
   return fs::exists(folder / kTopLevelsFile, none);
 }
 
-CityLevels::CityLevels(fs::path folder, const CityManifest& city)
+CityLevels::CityLevels(const fs::path& folder, const CityManifest& city)
     : CityLevels(folder, city, read_levels(folder / kTopLevelsFile)) {}
 
 CityLevels::CityLevels(fs::path folder, const CityManifest& city, LevelTable table)

@@ -45,7 +45,7 @@ bool has_levels(const std::filesystem::path& folder);
 class CityLevels {
  public:
   /// Errors: those of read_levels; data (of other tiles than `city` names).
-  CityLevels(std::filesystem::path folder, const CityManifest& city);
+  CityLevels(const std::filesystem::path& folder, const CityManifest& city);
   /// The same with `table`, which read_levels() read of kTopLevelsFile.
   CityLevels(std::filesystem::path folder, const CityManifest& city, LevelTable table);
 
