@@ -56,7 +56,7 @@ constexpr FuzzTarget kTargets[] = {
     {"glb", "a.glb", "scene/gltf.cpp", &read_gltf},
     {"splats", "a.ply", "splats/model/splat_model.cpp", &read_splat_model},
     {"world", "a.toml car.ply", "simulate/world/world_file.cpp", &read_world},
-    {"city", "city.json", "city/city_manifest.cpp", &read_city},
+    {"city", "city.json", "city/city_manifest.cpp io/base/json_rows.cpp", &read_city},
     {"levels", "a.levels", "levels/level_file.cpp", &read_level_file},
     {"network", "", "segment/network/network.cpp", &read_network_bytes},
     // Drives
