@@ -46,6 +46,13 @@ class ScansOfFile {
   }
 
   bool is_shuffled() const { return is_shuffled_; }
+  /// Records of the longest scan.
+  std::uint64_t longest() const {
+    std::uint64_t longest = 0;
+    for (std::size_t scan = 0; scan < scans_.size(); ++scan)
+      longest = std::max(longest, end_of(scan) - scans_[scan].begin);
+    return longest;
+  }
 
   /// Pieces of whole scans, each with the path beyond.
   std::vector<InputPiece> pieces(std::size_t input, std::uint64_t most_records) const {
@@ -82,6 +89,14 @@ class ScansOfFile {
   bool is_shuffled_ = false;
 };
 
+/// Says what is not known of the pieces of a file.
+void warn_of_cut_scans(const std::filesystem::path& file, const std::string& why,
+                       ProgressSink& progress) {
+  progress.warn(file.string() + ": " + why +
+                "; as it is read piece by piece, beams without return are not looked for, nor is "
+                "traffic in the path of the vehicle beyond a piece");
+}
+
 /// Pieces of whole scans; nothing where the file has none.
 std::vector<InputPiece> pieces_by_scans(const std::filesystem::path& file, std::size_t input,
                                         std::uint64_t all, std::uint64_t records,
@@ -94,10 +109,12 @@ std::vector<InputPiece> pieces_by_scans(const std::filesystem::path& file, std::
     part.selection.records = RecordSpan{first, records};
     if (scans.take(read_file_part(file, part, quiet, &executor))) continue;
     if (scans.is_shuffled())
-      progress.warn(file.string() +
-                    ": its scans are not one behind another; as it is read piece by piece, beams "
-                    "without return are not looked for, nor is traffic in the path of the vehicle "
-                    "beyond a piece");
+      warn_of_cut_scans(file, "its scans are not one behind another", progress);
+    return {};
+  }
+  if (scans.longest() > 2 * records) {
+    warn_of_cut_scans(file, "it has a scan of " + std::to_string(scans.longest()) + " points",
+                      progress);
     return {};
   }
   return scans.pieces(input, records);

@@ -172,10 +172,15 @@ TEST(FilePieces, AreCutBetweenScansAndKnowThePathBeyond) {
     const std::vector<Vec3d>& after = pieces[k].beyond.after;
     EXPECT_EQ((after.empty() ? Vec3d{6, 0, 2} : after.back()), (Vec3d{6, 0, 2}));
   }
-  // Scans that are longer than a piece stay whole.
-  EXPECT_EQ(file_pieces(inputs, 100, executor, progress).size(), 7U);
+  // Scans that are longer than a piece stay whole, but for those that are much longer.
+  EXPECT_EQ(file_pieces(inputs, 400, executor, progress).size(), 7U);
   EXPECT_EQ(file_pieces(inputs, 4900, executor, progress).size(), 1U);
   EXPECT_TRUE(progress.warnings.empty());
+  const std::vector<InputPiece> cut = file_pieces(inputs, 100, executor, progress);
+  ASSERT_EQ(cut.size(), 49U);
+  EXPECT_FALSE(cut[0].has_whole_scans);
+  ASSERT_EQ(progress.warnings.size(), 1U);
+  EXPECT_NE(progress.warnings[0].find("a scan of 700 points"), std::string::npos);
 }
 
 TEST(FilePieces, ScansThatAreNotInOrderAreSaid) {
