@@ -117,8 +117,11 @@ def main():
     for role, city in found if given.shots else []:  # pictures take time, so of runs that do not count
         look(programs[role], city, given, folder_of_shots(given, role, city))
     facts = {}
+    # Of paths the last names: where they lay says nothing.
+    command = " ".join(["bench/view_city.py", *(word if word.startswith("-") else pathlib.Path(word).name
+                                                for word in sys.argv[1:])])
     for role, program in programs.items():
-        facts[role] = {"provenance": provenance_of(program), "cities": []}
+        facts[role] = {"provenance": {**provenance_of(program), "command": command}, "cities": []}
         for city in given.cities:
             manifest = json.loads((city / "city.json").read_text(encoding="utf-8"))
             facts[role]["cities"].append({"city": city.name, "splats": manifest["splats"],
