@@ -162,5 +162,6 @@ function(adasplats_test name)
   # Real recordings for the tests that take them (src/adasplats/core/recordings_test.h).
   target_compile_definitions(${target} PRIVATE ADASPLATS_TEST_DATA="${ADASPLATS_TEST_DATA}")
   add_test(NAME ${name} COMMAND ${target})
-  set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+  # With sanitizers and recordings one of them takes five minutes, on cores that others use ten.
+  set_tests_properties(${name} PROPERTIES TIMEOUT 1800)
 endfunction()
