@@ -187,6 +187,21 @@ class ProgramTest(unittest.TestCase):
         self.run_good(*arguments, "--report", path)
         return json.loads(path.read_text(encoding="utf-8"))
 
+    def kill_behind(self, journal, lines, *arguments):
+        """Runs the program and kills it when a journal has that many lines; whether it was in time."""
+        process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE)
+        try:
+            while process.poll() is None:
+                if journal.exists() and journal.read_bytes().count(b"\n") >= lines:
+                    break
+                time.sleep(0.0005)
+            process.send_signal(signal.SIGKILL)
+            process.communicate(timeout=100)
+        finally:
+            process.kill()
+        return process.returncode != 0
+
     def stop_with_lock(self, process):
         """Stops a process when it has a lock: that of the folder that it fills."""
         while process.poll() is None:

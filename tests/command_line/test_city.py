@@ -5,7 +5,6 @@ import json
 import resource
 import signal
 import subprocess
-import time
 import unittest
 
 from support import PROGRAM, ProgramTest, tiny_place, tree_digest, write_cloud
@@ -106,20 +105,7 @@ class City(ProgramTest):
         self.assertIn(b"element vertex %d\n" % splats, gaussians.read_bytes()[:400])
 
     def end_early(self, lines):
-        """Kills a run after the journal has that many lines; whether it was in time."""
-        journal = self.unfinished / "journal.sha256"
-        process = subprocess.Popen([PROGRAM, *map(str, self.command())], stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE)
-        try:
-            while process.poll() is None:
-                if journal.exists() and journal.read_bytes().count(b"\n") >= lines:
-                    break
-                time.sleep(0.0005)
-            process.send_signal(signal.SIGKILL)
-            process.communicate(timeout=100)
-        finally:
-            process.kill()
-        return process.returncode != 0
+        return self.kill_behind(self.unfinished / "journal.sha256", lines, *self.command())
 
     def test_killed_runs_go_on(self):
         whole = self.folder / "whole"
@@ -197,6 +183,10 @@ class City(ProgramTest):
         needed_gb = 10 * len(place) * 340e-9  # kModelBytesAPoint
         # It fits.
         self.run_good(*command, "--memory", f"{2.5 * needed_gb:.6f}", "-o", self.folder / "whole.ply")
+        self.run_bad(64, *command, "--memory", "1", "-o", self.city,
+                     says=["fit", "city.ply", "--tile 64"])
+        self.run_bad(66, "model", self.folder / "none.las", "--memory", "1", "-o", self.city,
+                     says=["none.las"])
         # It does not.
         memory = ["--memory", f"{0.6 * needed_gb:.6f}"]
         self.run_bad(64, *command, *memory, "-o", self.folder / "city.ply",

@@ -4,12 +4,9 @@
 import hashlib
 import json
 import shlex
-import signal
-import subprocess
-import time
 import unittest
 
-from support import PROGRAM, ProgramTest, run, tiny_place, tree_digest, write_cloud, write_network
+from support import ProgramTest, run, tiny_place, tree_digest, write_cloud, write_network
 from test_city import splats_of
 
 REPLACED = "adasplats: warning: the labels of the points are replaced by the network's (--segment)\n"
@@ -94,20 +91,7 @@ class SegmentedCity(ProgramTest):
         self.assertIn(digest, self.run_good("info", self.city).stdout)
 
     def end_early(self, lines):
-        """Kills a run after the journal has that many lines; whether it was in time."""
-        journal = self.unfinished / "journal.sha256"
-        process = subprocess.Popen([PROGRAM, *map(str, self.command())], stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE)
-        try:
-            while process.poll() is None:
-                if journal.exists() and journal.read_bytes().count(b"\n") >= lines:
-                    break
-                time.sleep(0.0005)
-            process.send_signal(signal.SIGKILL)
-            process.communicate(timeout=100)
-        finally:
-            process.kill()
-        return process.returncode != 0
+        return self.kill_behind(self.unfinished / "journal.sha256", lines, *self.command())
 
     def test_killed_runs_go_on(self):
         whole = self.folder / "whole"

@@ -9,6 +9,7 @@
 #include "adasplats/pipeline/model/unused_settings.h"
 #include "adasplats/pipeline/output/output_check.h"
 #include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/recipes/city/city_task.h"
 #include "adasplats/recipes/city/make_city.h"
 #include "adasplats/recipes/city/tile_choice.h"
@@ -153,8 +154,16 @@ class ModelCommand final : public Command {
     const bool can_be_tiles = std::holds_alternative<ConsistentOptions>(job_.build.recipe);
     const bool is_asked = is_given("--memory");
     if (!can_be_tiles && !is_asked) return;
+    for (const std::filesystem::path& input : job_.inputs) require_input(input);
     const TileAdvice advice = advise_tiles(job_, session);
-    if (advice.tile_m == 0) return;
+    if (advice.tile_m == 0) {
+      if (is_asked && job_.output.extension() != ".ply")
+        throw Error(ErrorKind::usage,
+                    "the points fit into --memory as one model: name a file (-o " +
+                        job_.output.filename().string() +
+                        ".ply), or take --tile 64 for a folder of tiles");
+      return;
+    }
     const auto gigabytes = [](double gb) { return fixed(gb, gb < 1 ? 4 : 1) + " GB"; };
     const std::string why = "about " + grouped(static_cast<std::size_t>(advice.points)) +
                             " points take about " + gigabytes(advice.need_gb) +

@@ -3,6 +3,7 @@
 #include "adasplats/recipes/city/city_inputs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 #include "adasplats/cloud/load/open_inputs.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/pipeline/model/calibrate_on_device.h"
 #include "adasplats/pipeline/session/repeated_warnings.h"
 #include "adasplats/recipes/drive_pieces.h"
@@ -55,6 +57,34 @@ CityPoints read_drives(const ModelJob& job, DrivePieces& pieces, Session& sessio
   points.read = pieces.report().points_read;
   return points;
 }
+
+/// Throws data for a piece so far from the first that points would be dropped as far if all were
+/// loaded at once: it is in another frame, or is another place.
+class OnePlace {
+ public:
+  explicit OnePlace(double max_distance_m) : max_distance_m_(max_distance_m) {}
+
+  void require(const PointCloud& cloud) {
+    if (cloud.empty()) return;
+    const Vec3d at = cloud.world(cloud.size() / 2);
+    if (!first_) first_ = at;
+    const double away_m = length(at - *first_);
+    if (away_m <= max_distance_m_) return;
+    throw Error(ErrorKind::data,
+                "points of the inputs are " + decimal_text(std::round(away_m / 1000)) +
+                    " km apart (at " + place_text(*first_) + " and " + place_text(at) +
+                    "): some are in another frame, or of another place; `max_distance` allows it");
+  }
+
+ private:
+  static std::string place_text(Vec3d at) {
+    return decimal_text(std::round(at.x)) + ", " + decimal_text(std::round(at.y)) + ", " +
+           decimal_text(std::round(at.z));
+  }
+
+  double max_distance_m_;
+  std::optional<Vec3d> first_;
+};
 
 /// What one file's pieces must have in common with those of all others.
 class PiecesInCommon {
@@ -131,8 +161,13 @@ CityPoints read_at_once(const ModelJob& job, const OpenInputs& inputs, Session& 
 
 }  // namespace
 
-CityPoints read_city_points(const ModelJob& job, Session& session, const TakePoints& take,
+CityPoints read_city_points(const ModelJob& job, Session& session, const TakePoints& take_piece,
                             std::uint64_t piece_records) {
+  OnePlace one_place(job.load.max_distance_m);
+  const TakePoints take = [&](PointCloud&& cloud) {
+    one_place.require(cloud);
+    take_piece(std::move(cloud));
+  };
   const OpenInputs inputs(job.inputs, job.load, session.executor, session.progress);
   auto drives = DrivePieces::of(inputs, kPieceScans, session);
   if (drives) return read_drives(job, *drives, session, take);

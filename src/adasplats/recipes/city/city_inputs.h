@@ -29,7 +29,8 @@ using TakePoints = std::function<void(PointCloud&&)>;
 /// Calls `take` for the points of a job piece by piece, corrected where the job calibrates: drives
 /// longer than a window by 200 scans, files one by one, large ones with records at random
 /// (records_at_random()) by `piece_records`, else all at once. Errors: those of load_cloud; data
-/// for pieces in different coordinate systems, or with different clocks.
+/// for pieces in different coordinate systems, with different clocks, or farther from the first
+/// than LoadOptions::max_distance_m.
 CityPoints read_city_points(const ModelJob& job, Session& session, const TakePoints& take,
                             std::uint64_t piece_records = kPieceRecords);
 

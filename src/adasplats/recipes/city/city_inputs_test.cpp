@@ -121,6 +121,19 @@ TEST(CityInputs, FilesOutsideOfTheExtentHaveNoPoints) {
   EXPECT_NE(error_of(inputs, load).find("lies in the extent"), std::string::npos);
 }
 
+// Oracle: at once such points are dropped as far, which is an error where they are many.
+TEST(CityInputs, PiecesOfTwoPlacesAreAnError) {
+  const TemporaryFolder folder;
+  write_ply(folder.path() / "a.ply", 1500, Ground(1500, 0, 40).columns());
+  write_ply(folder.path() / "b.ply", 1500, Ground(1500, 500e3, 40).columns());
+  const std::vector<fs::path> inputs = {folder.path() / "a.ply", folder.path() / "b.ply"};
+  const std::string why = error_of(inputs);
+  EXPECT_NE(why.find("500 km apart"), std::string::npos) << why;
+  LoadOptions load;
+  load.max_distance_m = 1e6;
+  EXPECT_EQ(taken(inputs, 1000, load).world().size(), 3000U);
+}
+
 TEST(CityInputs, PiecesOfTwoCoordinateSystemsAreAnError) {
   const TemporaryFolder folder;
   LasWriteOptions options;
