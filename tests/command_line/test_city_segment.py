@@ -127,7 +127,7 @@ class SegmentedCity(ProgramTest):
         names = [words[words.index("--only-tile") + 1] for words in commands]
         # Classes were given by the plan: tasks do without the network.
         hidden = self.network.rename(self.folder / "hidden")
-        classes = self.unfinished / "points" / f"{names[0]}.classes"
+        classes = self.unfinished / "layers/0/points" / f"{names[0]}.classes"
         content = classes.read_bytes()
         classes.write_bytes(content[:-1] + bytes([content[-1] ^ 1]))
         self.run_bad(65, *self.command("--only-tile", names[0]), says=[classes.name])

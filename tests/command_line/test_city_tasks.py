@@ -190,8 +190,9 @@ class CityTasks(ProgramTest):
 
     def test_damage_of_what_tiles_are_made_of(self):
         name = self.tiles()[0]
-        for file in ["points/points.json", "points/spacing.json", "points/response.ply",
-                     f"points/{name}", f"rays/{name}.passing"]:
+        for file in ["layers/0/points/points.json", "layers/0/points/spacing.json",
+                     "layers/0/points/response.ply", "layers/layers.json",
+                     f"layers/0/points/{name}", f"layers/0/rays/{name}.passing"]:
             found = [path for path in self.unfinished.glob(file + "*") if path.is_file()]
             self.assertEqual(len(found), 1, file)
             content = found[0].read_bytes()

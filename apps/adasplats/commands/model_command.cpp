@@ -5,11 +5,13 @@
 #include <string>
 
 #include "adasplats/io/bags/recording.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/io/point_format.h"
 #include "adasplats/pipeline/model/unused_settings.h"
 #include "adasplats/pipeline/output/output_check.h"
 #include "adasplats/pipeline/provenance/provenance.h"
 #include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/recipes/city/city_addition.h"
 #include "adasplats/recipes/city/city_task.h"
 #include "adasplats/recipes/city/make_city.h"
 #include "adasplats/recipes/city/tile_choice.h"
@@ -82,6 +84,13 @@ class ModelCommand final : public Command {
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier city");
     add_settings(app, job_.tiles);
     add_settings(app, job_.memory);
+    app.add_flag("--keep-points", job_.keep_points,
+                 "With --tile: leave the points in the city's folder, so that others can be added")
+        ->group("Cities");
+    add_path(app, "--add-to", job_.add_to,
+             "Add the points to a city that was made with --keep-points: the output is a city of "
+             "both, with its tiles and the same options")
+        ->group("Cities");
     app.add_flag("--plan", plan_,
                  "With --tile: do what comes before the tiles, then print the command of each tile "
                  "that is to be modelled, a line each, for many processes or machines; the same "
@@ -118,9 +127,14 @@ class ModelCommand final : public Command {
     job_.removal_is_asked = is_given("--remove");
     // OptiX casts rays; models are made with CUDA alone.
     if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
-    if (!is_given("--tile") && !only_tile_) choose_tiles(session);
+    if (!job_.add_to.empty())
+      take_tiles_of_city();
+    else if (!is_given("--tile") && !only_tile_)
+      choose_tiles(session);
     if (job_.tiles.tile_m > 0) {
       require_folder_apart(job_.output, job_.inputs);
+      if (!job_.add_to.empty())
+        require_folder_apart(job_.output, std::vector<std::filesystem::path>{job_.add_to});
       if (only_tile_)
         run_tile(session);
       else if (plan_)
@@ -130,7 +144,7 @@ class ModelCommand final : public Command {
       return;
     }
     if (job_.memory.memory_gb == 0 || is_given("--tile"))
-      refuse({"--halo", "--overwrite", "--plan", "--only-tile"}, "without --tile");
+      refuse({"--halo", "--overwrite", "--plan", "--only-tile", "--keep-points"}, "without --tile");
     // What is no file cannot be written whatever its name is, which run_model says.
     if (!std::filesystem::exists(job_.output) || std::filesystem::is_regular_file(job_.output))
       require_ending(job_.output, ".ply");
@@ -181,10 +195,20 @@ class ModelCommand final : public Command {
     session.progress.warn(why + ": modelled in tiles of " + fixed(advice.tile_m, 0) + " m");
   }
 
+  /// Where they are not given: as the city's are that points are added to.
+  void take_tiles_of_city() {
+    if (is_given("--tile") && is_given("--halo")) return;
+    const TileChoice tiles = tiles_of_city(job_.add_to);
+    if (!is_given("--tile")) job_.tiles.tile_m = tiles.tile_m;
+    if (!is_given("--halo")) job_.tiles.halo_m = tiles.halo_m;
+  }
+
   /// The command as it was given, with the tiles that were chosen.
   std::vector<std::string> words_with_tiles() const {
     std::vector<std::string> words = own_arguments();
-    if (!is_given("--tile")) words.insert(words.end(), {"--tile", fixed(job_.tiles.tile_m, 0)});
+    if (!is_given("--tile")) words.insert(words.end(), {"--tile", decimal_text(job_.tiles.tile_m)});
+    if (!is_given("--halo") && !job_.add_to.empty())
+      words.insert(words.end(), {"--halo", decimal_text(job_.tiles.halo_m)});
     return words;
   }
 

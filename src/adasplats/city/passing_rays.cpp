@@ -42,6 +42,16 @@ RaysByTile by_tile(std::size_t count, const Executor& executor, const Visit& vis
 
 }  // namespace
 
+std::vector<TileKey> TileSet::touched(const GroundBox& ground) const {
+  const TileKey low = grid.tile_of({ground.low_x, ground.low_y, 0});
+  const TileKey high = grid.tile_of({ground.high_x, ground.high_y, 0});
+  std::vector<TileKey> found;
+  for (TileKey tile = low; tile.x <= high.x; ++tile.x)
+    for (tile.y = low.y; tile.y <= high.y; ++tile.y)
+      if (tiles.contains(tile)) found.push_back(tile);
+  return found;
+}
+
 std::set<TileKey> TileSet::crossed(Vec3d from, Vec3d to) const {
   std::set<TileKey> found;
   const auto low =
@@ -127,6 +137,12 @@ std::vector<TileKey> RayFiles::sources(TileKey tile) const {
   const auto found = places_.find(tile);
   if (found != places_.end())
     for (const Place& place : found->second) tiles.push_back(place.from);
+  return tiles;
+}
+
+std::vector<TileKey> RayFiles::targets() const {
+  std::vector<TileKey> tiles;
+  for (const auto& [tile, places] : places_) tiles.push_back(tile);
   return tiles;
 }
 

@@ -26,6 +26,8 @@ struct TileSet {
 
   /// The ground that a tile is modelled on.
   GroundBox reach_of(TileKey tile) const { return grid.box_of(tile).grown(halo_m); }
+  /// Those that a piece of the ground touches, in order.
+  std::vector<TileKey> touched(const GroundBox& ground) const;
   /// Those whose reach a straight way has a part in.
   std::set<TileKey> crossed(Vec3d from, Vec3d to) const;
 };
@@ -52,6 +54,8 @@ class RayFiles {
   PointCloud read(TileKey tile) const;
   /// The tiles whose files have rays for one.
   std::vector<TileKey> sources(TileKey tile) const;
+  /// The tiles that there are rays for.
+  std::vector<TileKey> targets() const;
 
  private:
   struct Place {

@@ -185,19 +185,20 @@ std::string classes_file_of(TileKey tile) { return "points/" + name_of(tile) + "
 std::string beams_file_of(TileKey tile) { return "points/" + name_of(tile) + ".beams"; }
 
 TilePointsWriter::TilePointsWriter(fs::path folder, const TileGrid& grid, std::size_t buffered,
-                                   const Executor& executor, bool keeps_order)
+                                   const Executor& executor, bool keeps_order,
+                                   std::optional<Vec3d> origin)
     : folder_(std::move(folder)),
       grid_(grid),
       buffered_(buffered),
       executor_(executor),
-      keeps_order_(keeps_order) {
+      keeps_order_(keeps_order),
+      origin_(origin) {
   fs::create_directories(folder_ / "points");
 }
 
 void TilePointsWriter::add(const PointCloud& cloud) {
   if (cloud.empty() && cloud.empty_beams.empty()) return;
-  if (!is_begun_) origin_ = cloud.origin;
-  is_begun_ = true;
+  if (!origin_) origin_ = cloud.origin;
   if (!cloud.empty()) {
     const std::string attributes = needed_attributes_of(cloud);
     if (!attributes_) attributes_ = attributes;
@@ -206,7 +207,7 @@ void TilePointsWriter::add(const PointCloud& cloud) {
                                        " at first, then" + attributes +
                                        "; model such inputs one by one");
   }
-  const Vec3d shift = cloud.origin - origin_;
+  const Vec3d shift = cloud.origin - *origin_;
   const bool is_moved = !(shift == Vec3d{});
   const auto moved = [&](Vec3f p) { return vec_cast<float>(vec_cast<double>(p) + shift); };
   const std::vector<TilePart> parts = parts_of(cloud, grid_, executor_);

@@ -45,17 +45,21 @@ class TilePointsWriter {
  public:
   /// `folder`: of the city, with the folders "points" and "beams" (made where they are not there).
   /// At most `buffered` points wait in memory. `keeps_order`: writes files of the order, too.
-  /// `executor` must outlive it; files are the same for any number of threads.
+  /// `executor` must outlive it; files are the same for any number of threads. `origin`: the
+  /// city's, where it is known; else that of the first cloud.
   TilePointsWriter(std::filesystem::path folder, const TileGrid& grid, std::size_t buffered,
-                   const Executor& executor, bool keeps_order = false);
+                   const Executor& executor, bool keeps_order = false,
+                   std::optional<Vec3d> origin = std::nullopt);
 
-  /// The first cloud's origin is the city's; others are moved to it. Empty beams go to the tile in
+  /// Clouds are moved to the city's origin. Empty beams go to the tile in
   /// which they begin. Errors: data (a cloud with other attributes than the first; instances and
   /// kinds of origins may be missing), io.
   void add(const PointCloud& cloud);
   /// Writes what waits. Call once, last.
   std::map<TileKey, TileCount> finish();
-  Vec3d origin() const { return origin_; }
+  Vec3d origin() const { return origin_.value_or(Vec3d{}); }
+  /// The names of those that all points have, each with a space before it.
+  std::string attributes() const { return attributes_.value_or(""); }
 
  private:
   struct Waiting {
@@ -73,9 +77,8 @@ class TilePointsWriter {
   bool keeps_order_;
   std::uint64_t added_ = 0;  ///< points
   std::size_t waiting_points_ = 0;
-  Vec3d origin_;
-  std::optional<std::string> attributes_;  ///< names of those that all clouds have
-  bool is_begun_ = false;
+  std::optional<Vec3d> origin_;
+  std::optional<std::string> attributes_;
   std::map<TileKey, Waiting> waiting_;
   std::map<TileKey, TileCount> counts_;
 };

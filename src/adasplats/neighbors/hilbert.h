@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -57,7 +58,8 @@ ADASPLATS_HD constexpr std::uint64_t hilbert_key_by_turns(std::uint32_t x, std::
 }
 
 /// The box that a curve runs over. Parts of a cloud whose curve runs over the box of the whole
-/// come in the order that they have in the whole.
+/// come in the order that they have in the whole. Beyond its cube the curve begins anew in cube
+/// after cube, so that a box can be kept when points are added outside.
 struct CurveBox {
   Vec3f low, high;
 };
@@ -83,7 +85,11 @@ struct HilbertGrid {
 
  private:
   ADASPLATS_HD std::uint32_t along(float v, float from) const {
-    const float at = (v - from) * cells_per_m;
+    float at = (v - from) * cells_per_m;
+    if (at < 0.0F || at > kCells) {
+      constexpr float kPeriod = kCells + 1.0F;
+      at -= std::floor(at / kPeriod) * kPeriod;
+    }
     return static_cast<std::uint32_t>(kCells < at ? kCells : at);
   }
 };
@@ -97,7 +103,7 @@ std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z);
 /// x, y, z and then by index. Consecutive points are near each other, and runs of them fill
 /// compact boxes, which Morton order does not give.
 std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const Executor& executor);
-/// The same over a box that holds them all.
+/// The same over another box, which need not hold them.
 std::vector<std::uint32_t> hilbert_order(std::span<const Vec3f> points, const CurveBox& box,
                                          const Executor& executor);
 

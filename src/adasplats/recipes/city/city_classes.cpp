@@ -46,7 +46,7 @@ void require_reach(const CurveBox& box) {
 /// Gives what `find` makes of each tile with points to `take`, in their order on this thread; some
 /// are looked at at a time.
 template <class Find, class Take>
-void for_tiles(const CityWork& work, const Find& find, const Take& take) {
+void for_tiles(const LayerWork& work, const Find& find, const Take& take) {
   const std::vector<TileKey> tiles(work.tiles.tiles.begin(), work.tiles.tiles.end());
   const auto threads = static_cast<std::size_t>(work.session.executor.threads());
   const std::size_t at_once = std::max<std::size_t>(1, threads / kThreadsATile);
@@ -59,15 +59,15 @@ void for_tiles(const CityWork& work, const Find& find, const Take& take) {
 }
 
 /// What intensities are shares of in the whole place; nothing where points have none.
-std::optional<float> full_intensity_of(const CityWork& work, ResumableFolder& folder) {
+std::optional<float> full_intensity_of(const LayerWork& work, ResumableFolder& folder) {
   const std::filesystem::path file = work.path(kIntensityFile);
-  if (folder.has(kIntensityFile)) {
+  if (folder.has(work.layer.file(kIntensityFile))) {
     const Json full = Json::parse(read_file(file));
     return full.is_null() ? std::nullopt : std::optional<float>(full.get<float>());
   }
   const auto intensities_of = [&](TileKey tile) {
     std::vector<float> all;
-    read_tile_pieces(work.folder, tile, [&](const PointCloud& piece) {
+    read_tile_pieces(work.folder(), tile, [&](const PointCloud& piece) {
       all.insert(all.end(), piece.intensities.begin(), piece.intensities.end());
     });
     return all;
@@ -82,16 +82,16 @@ std::optional<float> full_intensity_of(const CityWork& work, ResumableFolder& fo
   if (has_some) for_tiles(work, intensities_of, [&](const auto& all) { search.add_second(all); });
   const std::optional<float> full = has_some ? std::optional(search.value()) : std::nullopt;
   write_file_in_place(file, (full ? Json(*full) : Json()).dump() + "\n");
-  folder.record(std::string(kIntensityFile));
+  folder.record(work.layer.file(kIntensityFile));
   return full;
 }
 
 /// Runs the network on squares that no earlier run has done.
 void segment_squares(const std::vector<SquareGroup>& groups, const PointClassifier& classifier,
-                     const SegmentOptions& options, const CityWork& work, ResumableFolder& folder) {
+                     const SegmentOptions& options, const LayerWork& work, ResumableFolder& folder) {
   std::vector<SquareGroup> to_do;
   for (const SquareGroup& group : groups)
-    if (!folder.has(squares_file_of(group.tile))) to_do.push_back(group);
+    if (!folder.has(work.layer.file(squares_file_of(group.tile)))) to_do.push_back(group);
   ProgressSink& progress = work.session.progress;
   progress.begin_step("segment", groups.size());
   std::size_t done = groups.size() - to_do.size();
@@ -104,7 +104,7 @@ void segment_squares(const std::vector<SquareGroup>& groups, const PointClassifi
         const std::string file = squares_file_of(to_do[k].tile);
         write_square_classes(work.path(file),
                              classes_of_squares(to_do[k], classifier, options, work, session));
-        digests[k] = {file, sha256_of_file(work.path(file))};
+        digests[k] = {work.layer.file(file), sha256_of_file(work.path(file))};
       },
       [&](std::size_t k) {
         folder.record(std::span(&digests[k], 1));
@@ -117,7 +117,7 @@ void segment_squares(const std::vector<SquareGroup>& groups, const PointClassifi
 /// Gives the points of one tile, in the order of their file, their classes by the squares' files.
 class ClassesOfTile {
  public:
-  ClassesOfTile(TileKey tile, const SegmentOptions& options, const CityWork& work)
+  ClassesOfTile(TileKey tile, const SegmentOptions& options, const LayerWork& work)
       : tile_(tile), options_(options), work_(work) {}
 
   std::uint16_t next(Vec3f position) {
@@ -156,7 +156,7 @@ class ClassesOfTile {
 
   TileKey tile_;
   const SegmentOptions& options_;
-  const CityWork& work_;
+  const LayerWork& work_;
   std::map<TileKey, Part> parts_;
   SegmentSquare square_;
   Part* part_ = nullptr;
@@ -171,29 +171,30 @@ struct TileTally {
 };
 
 TileTally write_classes_of(TileKey tile, const SegmentOptions& options, const LabelScheme& scheme,
-                           const CityWork& work) {
+                           const LayerWork& work) {
   TileTally tally;
   std::vector<std::uint16_t> all;
   ClassesOfTile classes(tile, options, work);
-  read_tile_pieces(work.folder, tile, [&](PointCloud& piece) {
+  read_tile_pieces(work.folder(), tile, [&](PointCloud& piece) {
     tally.had_labels = tally.had_labels || !piece.classes.empty();
     piece.classes.clear();
     for (const Vec3f p : piece.positions) {
       piece.classes.push_back(classes.next(p));
       ++tally.points[piece.classes.back()];
     }
-    tally.rays += count_rays(piece, &scheme, work);
+    tally.rays += count_rays(piece, &scheme, work.job);
     all.insert(all.end(), piece.classes.begin(), piece.classes.end());
   });
   classes.finish();
-  write_tile_classes(work.folder, tile, all);
-  tally.file = {classes_file_of(tile), sha256_of_file(work.path(classes_file_of(tile)))};
+  write_tile_classes(work.folder(), tile, all);
+  tally.file = {work.layer.file(classes_file_of(tile)),
+                sha256_of_file(work.path(classes_file_of(tile)))};
   return tally;
 }
 
 /// The files of all tiles, and what they say together.
 void write_classes(const std::vector<SquareGroup>& groups, const PointClassifier& classifier,
-                   const SegmentOptions& options, const CityWork& work, ResumableFolder& folder) {
+                   const SegmentOptions& options, const LayerWork& work, ResumableFolder& folder) {
   SegmentReport report;
   report.network = classifier.facts();
   for (const SquareGroup& group : groups) {
@@ -217,18 +218,18 @@ void write_classes(const std::vector<SquareGroup>& groups, const PointClassifier
   Json json = to_json(report);
   json["rays"] = rays;
   write_file_in_place(work.path(kClassesFile), json.dump(1) + "\n");
-  folder.record(std::string(kClassesFile));
+  folder.record(work.layer.file(kClassesFile));
 }
 
-bool is_done(const CityWork& work, const ResumableFolder& folder) {
-  return folder.has(kClassesFile) && std::ranges::all_of(work.tiles.tiles, [&](TileKey tile) {
-           return folder.has(classes_file_of(tile));
+bool is_done(const LayerWork& work, const ResumableFolder& folder) {
+  return folder.has(work.layer.file(kClassesFile)) && std::ranges::all_of(work.tiles.tiles, [&](TileKey tile) {
+           return folder.has(work.layer.file(classes_file_of(tile)));
          });
 }
 
 }  // namespace
 
-void load_classes(CityWork& work) {
+void load_classes(LayerWork& work) {
   const std::filesystem::path file = work.path(kClassesFile);
   const std::string text = read_file(file);
   try {
@@ -241,15 +242,15 @@ void load_classes(CityWork& work) {
     for (const auto& [name, points] : json.at("classes").items())
       report.classes.by_class.push_back({name, points});
     report.replaced_labels = json.at("replaced_labels");
-    work.facts.rays = json.at("rays");
+    work.layer.facts.rays = json.at("rays");
     work.segmented = std::move(report);
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::data, file.string() + ": damaged: " + error.what());
   }
 }
 
-void give_classes(const PointClassifier& classifier, CityWork& work, ResumableFolder& folder) {
-  require_reach(work.facts.box);
+void give_classes(const PointClassifier& classifier, LayerWork& work, ResumableFolder& folder) {
+  require_reach(work.layer.facts.box);
   if (!is_done(work, folder)) {
     SegmentOptions options;
     options.full_intensity = full_intensity_of(work, folder);

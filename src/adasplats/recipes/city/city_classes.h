@@ -4,18 +4,18 @@
 
 #include "adasplats/pipeline/output/resumable_folder.h"
 #include "adasplats/pipeline/segment/point_classes.h"
-#include "adasplats/recipes/city/city_work.h"
+#include "adasplats/recipes/city/point_layer.h"
 
 namespace adasplats {
 
 /// Gives the points of all tiles the classes that a network gives the whole place in one cloud,
 /// into a file a tile beside its points (city/tile_points.h); needs the sorted points with their
-/// order. Fills in CityWork::segmented, and how many rays stay. What an earlier run has done stays.
+/// order. Fills in LayerWork::segmented, and how many rays stay. What an earlier run has done stays.
 /// Errors: data (points farther than 100 km from the city's origin; damaged files), those of
 /// PointClassifier::classes_of.
-void give_classes(const PointClassifier& classifier, CityWork& work, ResumableFolder& folder);
+void give_classes(const PointClassifier& classifier, LayerWork& work, ResumableFolder& folder);
 
-/// CityWork::segmented and how many rays stay, of classes that were given.
-void load_classes(CityWork& work);
+/// LayerWork::segmented and how many rays stay, of classes that were given.
+void load_classes(LayerWork& work);
 
 }  // namespace adasplats

@@ -20,6 +20,7 @@
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/recipes/city/city_points.h"
 #include "adasplats/recipes/city/city_squares.h"
+#include "adasplats/recipes/city/city_work.h"
 #include "adasplats/segment/network/network_text_test.h"
 
 namespace adasplats::city_classes {
@@ -98,17 +99,17 @@ class CityClasses : public testing::Test {
     DeviceChoice device;
     Session session = {executor, listener, 1, device};
     ResumableFolder folder(job_.output, false, kCityCommand, {{"a", "test"}});
-    CityWork work(job_, session, folder.path());
+    LayerWork work(job_, session, folder.path());
     sort_points(work, folder);
     give_classes(PointClassifier(job_.segment.network), work, folder);
     report_ = *work.segmented;
-    rays_ = work.facts.rays;
+    rays_ = work.layer.facts.rays;
     ByNumber found;
     for (const TileKey tile : work.tiles.tiles) {
       PointCloud points;
-      points.origin = work.facts.origin;
-      read_points_of(tile, work, points);
-      const std::vector<std::uint64_t> order = read_tile_order(folder.path(), tile);
+      points.origin = work.layer.facts.origin;
+      read_points_of(tile, work.folder(), job_, points);
+      const std::vector<std::uint64_t> order = read_tile_order(work.folder(), tile);
       EXPECT_EQ(order.size(), points.size());
       for (std::size_t i = 0; i < points.size(); ++i) found[order[i]] = points.classes[i];
     }
@@ -120,7 +121,7 @@ class CityClasses : public testing::Test {
   /// Files of a kind below the unfinished folder, with when they were written.
   std::map<fs::path, fs::file_time_type> files(const std::string& ending) const {
     std::map<fs::path, fs::file_time_type> found;
-    for (const auto& entry : fs::directory_iterator(unfinished() / "points"))
+    for (const auto& entry : fs::directory_iterator(unfinished() / layer_folder(0) / "points"))
       if (entry.path().extension() == ending) found[entry.path()] = entry.last_write_time();
     return found;
   }
@@ -266,16 +267,16 @@ TEST_F(CityClasses, OtherPointsThanThoseThatGotClassesAreAnError) {
   classes_by(listener);
   DeviceChoice device;
   Session session = {executor_, listener, 1, device};
-  CityWork work(job_, session, unfinished());
+  LayerWork work(job_, session, unfinished());
   load_sorted(work);
-  const TileKey tile = pilot_tile(work);
-  std::vector<std::uint16_t> classes = read_tile_classes(work.folder, tile);
+  const TileKey tile = *work.tiles.tiles.begin();
+  std::vector<std::uint16_t> classes = read_tile_classes(work.folder(), tile);
   for (const std::size_t size : {classes.size() + 1, classes.size() - 1, std::size_t{0}}) {
     classes.resize(size);
-    write_tile_classes(work.folder, tile, classes);
+    write_tile_classes(work.folder(), tile, classes);
     PointCloud points;
     expect_error(ErrorKind::data, {name_of(tile) + ".classes", "damaged"},
-                 [&] { read_points_of(tile, work, points); });
+                 [&] { read_points_of(tile, work.folder(), job_, points); });
   }
 }
 
@@ -284,7 +285,7 @@ TEST_F(CityClasses, EverySquareIsInOneGroup) {
   classes_by(listener);
   DeviceChoice device;
   Session session = {executor_, listener, 1, device};
-  CityWork work(job_, session, unfinished());
+  LayerWork work(job_, session, unfinished());
   load_sorted(work);
   for (const double tile_m : {3.0, 7.3, 100.0}) {
     work.tiles.grid = {tile_m};

@@ -62,7 +62,8 @@ CityPoints read_drives(const ModelJob& job, DrivePieces& pieces, Session& sessio
 /// loaded at once: it is in another frame, or is another place.
 class OnePlace {
  public:
-  explicit OnePlace(double max_distance_m) : max_distance_m_(max_distance_m) {}
+  OnePlace(double max_distance_m, std::optional<Vec3d> first)
+      : max_distance_m_(max_distance_m), first_(first) {}
 
   void require(const PointCloud& cloud) {
     if (cloud.empty()) return;
@@ -162,8 +163,8 @@ CityPoints read_at_once(const ModelJob& job, const OpenInputs& inputs, Session& 
 }  // namespace
 
 CityPoints read_city_points(const ModelJob& job, Session& session, const TakePoints& take_piece,
-                            std::uint64_t piece_records) {
-  OnePlace one_place(job.load.max_distance_m);
+                            std::optional<Vec3d> place, std::uint64_t piece_records) {
+  OnePlace one_place(job.load.max_distance_m, place);
   const TakePoints take = [&](PointCloud&& cloud) {
     one_place.require(cloud);
     take_piece(std::move(cloud));

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "adasplats/calibrate/calibration.h"
 #include "adasplats/cloud/points/point_cloud.h"
@@ -30,8 +31,9 @@ using TakePoints = std::function<void(PointCloud&&)>;
 /// longer than a window by 200 scans, files one by one, large ones with records at random
 /// (records_at_random()) by `piece_records`, else all at once. Errors: those of load_cloud; data
 /// for pieces in different coordinate systems, with different clocks, or farther from the first
-/// than LoadOptions::max_distance_m.
+/// than LoadOptions::max_distance_m; where `place` is given, farther from that.
 CityPoints read_city_points(const ModelJob& job, Session& session, const TakePoints& take,
+                            std::optional<Vec3d> place = std::nullopt,
                             std::uint64_t piece_records = kPieceRecords);
 
 }  // namespace adasplats

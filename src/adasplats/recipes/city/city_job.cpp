@@ -72,6 +72,8 @@ Json content_of(const CityJob& job) {
   json["segment"] = job.segment.on;
   json["network"] = job.segment.network.string();
   json["reflectances"] = job.build.reflectances;
+  json["keep_points"] = job.keep_points;
+  if (!job.add_to.empty()) json["add_to"] = job.add_to.string();
   json["scans"] = {job.load.first_scan, job.load.scan_count, job.load.scan_stride};
   return json;
 }

@@ -61,6 +61,9 @@ void visit_settings(MemoryChoice& choice, Visit&& visit) {
 struct CityJob : ModelJob {
   TileChoice tiles;
   MemoryChoice memory;
+  bool keep_points = false;  ///< in the folder, so that others can be added
+  /// A city that the points are added to; empty: none. Its tiles are cut as `tiles` says.
+  std::filesystem::path add_to;
   std::filesystem::path output;
   bool overwrite = false;
 };

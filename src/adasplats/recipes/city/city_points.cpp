@@ -4,10 +4,12 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "adasplats/city/tile_points.h"
-#include "adasplats/cloud/labels/dynamic_removal.h"
+#include "adasplats/cloud/load/one_crs.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/sha256.h"
@@ -40,63 +42,114 @@ void add_ranges(const PointCloud& cloud, RangeCounts& ranges) {
       ranges.add(length(cloud.positions[i] - cloud.sensor_positions[i]));
 }
 
-/// The points to their tiles; fills in facts and what tiles have in common.
-void read_points(CityWork& work) {
-  const CityJob& job = work.job;
-  const bool has_labels = !job.segment.on;  // else a network gives classes when all are sorted
-  TilePointsWriter writer(work.folder, work.tiles.grid, kBufferedPoints, work.session.executor,
-                          job.segment.on);
-  RangeCounts ranges;
-  std::optional<CurveBox> box;
-  ModelJob reading = job;
-  reading.load.empty_beams = work.options.empty_beams && work.options.balance_rounds > 0;
-  const std::optional<LabelScheme> scheme = work.scheme();
-  const LabelScheme* const known = scheme ? &*scheme : nullptr;
-  const CityPoints read = read_city_points(reading, work.session, [&](PointCloud&& cloud) {
-    const bool is_first = !box;
-    cloud.scan_indices = {};  // all that they were for is done
-    cloud.lasers = {};
-    writer.add(cloud);
-    if (is_first) work.common.crs = cloud.crs;
-    if (is_first && has_labels)
-      check_label_use({job.labels, job.build.remove, job.removal_is_asked}, cloud, known,
-                      work.session.progress);
-    add_ranges(cloud, ranges);
-    if (has_labels) work.facts.rays += count_rays(cloud, known, work);
-    if (!cloud.empty())
-      grow(box, curve_box_of(cloud.positions, work.session.executor),
-           cloud.origin - writer.origin());
-  });
-  work.facts.tiles = writer.finish();
-  if (!box) throw Error(ErrorKind::data, "no points: there is nothing to model");
-  work.facts.box = *box;
-  work.facts.origin = writer.origin();
-  work.facts.points_read = read.read;
-  work.facts.empty_reach_m = ranges.empty_reach_m();
-  work.common.origin = work.facts.origin;
-  work.common.calibration = read.calibration;
-  work.calibrated_s = read.calibrated_s;
-  work.common.method = "consistent";
-  if (scheme) work.common.label_scheme = scheme_reference(job.labels, *scheme);
+/// Throws data where new points are not of the kind that the city was made of.
+void require_alike(const CityBefore& before, const std::string& attributes,
+                   const std::string& label_scheme, bool has_labels) {
+  const std::string city = before.city.string();
+  if (attributes != before.attributes)
+    throw Error(ErrorKind::data, "the points of " + city + " come with other attributes:" +
+                                     before.attributes + "; the new ones with" + attributes);
+  if (has_labels && label_scheme != before.label_scheme)
+    throw Error(ErrorKind::data,
+                "the labels of " + city + " are by the scheme \"" + before.label_scheme +
+                    "\", those of the new points by \"" + label_scheme + "\" (`labels`)");
 }
 
-/// Files of the work's folder with what they hold.
-std::vector<FileDigest> digests_of(const std::vector<std::string>& files, const CityWork& work) {
+/// The points to their tiles; fills in facts and what tiles have in common.
+class LayerReader {
+ public:
+  explicit LayerReader(LayerWork& work)
+      : work_(work),
+        has_labels_(!work.job.segment.on),
+        scheme_(scheme_of(work.job)),
+        writer_(work.folder(), work.tiles.grid, kBufferedPoints, work.session.executor,
+                work.job.segment.on, work.before ? std::optional(work.before->origin) : std::nullopt) {}
+
+  void read() {
+    ModelJob reading = work_.job;
+    reading.load.empty_beams = work_.options.empty_beams && work_.options.balance_rounds > 0;
+    const CityPoints read = read_city_points(
+        reading, work_.session, [&](PointCloud&& cloud) { take(std::move(cloud)); },
+        work_.before ? std::optional(work_.before->place) : std::nullopt);
+    LayerFacts& facts = work_.layer.facts;
+    facts.tiles = writer_.finish();
+    if (!box_) throw Error(ErrorKind::data, "no points: there is nothing to model");
+    facts.box = *box_;
+    facts.origin = writer_.origin();
+    facts.attributes = attributes();
+    facts.points_read = read.read;
+    facts.empty_reach_m = ranges_.empty_reach_m();
+    SplatModel& common = work_.common;
+    common.origin = facts.origin;
+    common.calibration = read.calibration;
+    common.method = "consistent";
+    if (scheme_) common.label_scheme = scheme_reference(work_.job.labels, *scheme_);
+    work_.calibrated_s = read.calibrated_s;
+    if (work_.before)
+      require_alike(*work_.before, facts.attributes, common.label_scheme, has_labels_);
+  }
+
+ private:
+  void take(PointCloud&& cloud) {
+    const LabelScheme* const known = scheme_ ? &*scheme_ : nullptr;
+    cloud.scan_indices = {};  // all that they were for is done
+    cloud.lasers = {};
+    if (has_labels_) work_.layer.facts.rays += count_rays(cloud, known, work_.job);
+    writer_.add(cloud);
+    if (!box_) begin_with(cloud, known);
+    add_ranges(cloud, ranges_);
+    if (!cloud.empty())
+      grow(box_, curve_box_of(cloud.positions, work_.session.executor),
+           cloud.origin - writer_.origin());
+  }
+
+  void begin_with(const PointCloud& cloud, const LabelScheme* known) {
+    const CityJob& job = work_.job;
+    work_.common.crs = cloud.crs;
+    if (work_.before) {
+      require_one_crs({{work_.before->city, work_.before->crs}, {job.inputs.front(), cloud.crs}},
+                      work_.session.progress);
+      work_.common.crs = work_.before->crs;
+    }
+    if (has_labels_)
+      check_label_use({job.labels, job.build.remove, job.removal_is_asked}, cloud, known,
+                      work_.session.progress);
+  }
+
+  /// Of the points as they are modelled: where a network gives classes, labels do not matter.
+  std::string attributes() const {
+    std::string names = writer_.attributes();
+    constexpr std::string_view kClasses = " classes";
+    if (const auto at = names.find(kClasses); !has_labels_ && at != std::string::npos)
+      names.erase(at, kClasses.size());
+    return names;
+  }
+
+  LayerWork& work_;
+  bool has_labels_;
+  std::optional<LabelScheme> scheme_;
+  TilePointsWriter writer_;
+  RangeCounts ranges_;
+  std::optional<CurveBox> box_;
+};
+
+/// Files of the layer with what they hold.
+std::vector<FileDigest> digests_of(const std::vector<std::string>& files, const LayerWork& work) {
   std::vector<FileDigest> digests(files.size());
   work.session.executor.for_chunks(files.size(), 1, [&](std::size_t k, std::size_t) {
-    digests[k] = {files[k], sha256_of_file(work.path(files[k]))};
+    digests[k] = {work.layer.file(files[k]), sha256_of_file(work.path(files[k]))};
   });
   return digests;
 }
 
-void find_tiles(CityWork& work) {
-  for (const auto& [tile, count] : work.facts.tiles)
+void find_tiles(LayerWork& work) {
+  for (const auto& [tile, count] : work.layer.facts.tiles)
     if (count.points > 0) work.tiles.tiles.insert(tile);
 }
 
-std::vector<std::string> files_of_points(const CityWork& work) {
+std::vector<std::string> files_of_points(const LayerWork& work) {
   std::vector<std::string> files;
-  for (const auto& [tile, count] : work.facts.tiles) {
+  for (const auto& [tile, count] : work.layer.facts.tiles) {
     if (count.points > 0) files.push_back(points_file_of(tile));
     if (count.points > 0 && work.job.segment.on) files.push_back(order_file_of(tile));
     if (count.empty_beams > 0) files.push_back(beams_file_of(tile));
@@ -106,44 +159,30 @@ std::vector<std::string> files_of_points(const CityWork& work) {
 
 }  // namespace
 
-std::size_t count_rays(const PointCloud& cloud, const LabelScheme* scheme, const CityWork& work) {
-  const RemovedPoints removed = points_to_remove(cloud, scheme, work.job.build.remove);
-  std::size_t rays = 0;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!is_beam(cloud.origin_kind(i))) continue;
-    const float range_m = length(cloud.positions[i] - cloud.sensor_positions[i]);
-    const bool stays =
-        removed.ids.empty() || cloud.classes.empty() || removed.ids[cloud.classes[i]] == 0;
-    if (stays && static_cast<double>(range_m) >= work.options.least_range_m) ++rays;
-  }
-  return rays;
-}
-
-void load_sorted(CityWork& work) {
-  work.facts = load_facts(work.path(kPointsFile));
-  work.common = load_model(work.path(kCityCommonFile));
-  work.common.origin = work.facts.origin;
+void load_sorted(LayerWork& work) {
+  work.layer.facts = load_facts(work.path(kPointsFile));
+  work.common = load_model(work.path(kLayerCommonFile));
+  work.common.origin = work.layer.facts.origin;
   find_tiles(work);
 }
 
-void sort_points(CityWork& work, ResumableFolder& folder) {
-  fs::create_directories(work.path("points"));
-  if (folder.has(kPointsFile)) {
+void sort_points(LayerWork& work, ResumableFolder& folder) {
+  if (folder.has(work.layer.file(kPointsFile))) {
     load_sorted(work);
     for (const std::string& file : files_of_points(work))
-      if (!folder.has(file))
+      if (!folder.has(work.layer.file(file)))
         throw Error(ErrorKind::data, work.path(file).string() + ": not as it was written; remove " +
-                                         work.folder.string() + " to start anew");
+                                         work.city.string() + " to start anew");
     return;
   }
-  fs::remove_all(work.path("points"));  // what a killed run left half done
-  fs::remove_all(work.path("rays"));
-  read_points(work);
-  save_model(work.path(kCityCommonFile), work.common);
-  write_file_in_place(work.path(kPointsFile), text_of(work.facts));
-  folder.record(std::string(kCityCommonFile));
+  fs::remove_all(work.folder());  // what a killed run left half done
+  fs::create_directories(work.path("points"));
+  LayerReader(work).read();
+  save_model(work.path(kLayerCommonFile), work.common);
+  write_file_in_place(work.path(kPointsFile), text_of(work.layer.facts));
+  folder.record(work.layer.file(kLayerCommonFile));
   folder.record(digests_of(files_of_points(work), work));
-  folder.record(std::string(kPointsFile));
+  folder.record(work.layer.file(kPointsFile));
   find_tiles(work);
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,50 +20,70 @@
 namespace adasplats {
 namespace {
 
-/// A tile's points without those that a model is made without.
-PointCloud points_that_stay(TileKey tile, const LabelScheme* scheme, const CityWork& work) {
-  PointCloud cloud;
-  cloud.origin = work.facts.origin;
-  read_points_of(tile, work, cloud);
-  const RemovedPoints removed = points_to_remove(cloud, scheme, work.job.build.remove);
-  if (removed.ids.empty() || cloud.classes.empty()) return cloud;
-  std::vector<std::uint32_t> stay;
-  for (std::uint32_t i = 0; i < cloud.size(); ++i)
-    if (removed.ids[cloud.classes[i]] == 0) stay.push_back(i);
-  return gather(cloud, stay);
-}
+namespace fs = std::filesystem;
 
-void write_rays_of(TileKey tile, const TileCount& count, const LabelScheme* scheme,
-                   const CityWork& work) {
-  const Executor& executor = work.session.executor;
-  RaysByTile passing, empty;
-  if (count.points > 0)
-    passing = passing_rays(points_that_stay(tile, scheme, work), work.tiles,
-                           work.options.least_range_m, executor);
-  if (count.empty_beams > 0) {
-    PointCloud ends = ends_of(read_tile_beams(work.folder, tile), work.facts.empty_reach_m);
-    ends.origin = work.facts.origin;
-    empty = crossing_rays(ends, work.tiles, executor);
+/// The rays of a layer for tiles.
+class LayerRays {
+ public:
+  LayerRays(const PointLayer& layer, const TileSet& tiles, const CityWork& work)
+      : layer_(layer), tiles_(tiles), work_(work), scheme_(scheme_of(work.job)) {}
+
+  /// Writes the rays that begin in a tile.
+  void write(TileKey tile) const {
+    const Executor& executor = work_.session.executor;
+    const TileCount& count = layer_.facts.tiles.at(tile);
+    RaysByTile passing, empty;
+    if (count.points > 0)
+      passing =
+          passing_rays(points_that_stay(tile), tiles_, work_.options.least_range_m, executor);
+    if (count.empty_beams > 0) {
+      PointCloud ends = ends_of(read_tile_beams(folder(), tile), layer_.facts.empty_reach_m);
+      ends.origin = work_.origin();
+      empty = crossing_rays(ends, tiles_, executor);
+    }
+    write_rays(folder() / rays_file_of(tile, RaySort::passing), passing);
+    write_rays(folder() / rays_file_of(tile, RaySort::empty), empty);
   }
-  write_rays(work.path(rays_file_of(tile, RaySort::passing)), passing);
-  write_rays(work.path(rays_file_of(tile, RaySort::empty)), empty);
-}
+
+  std::vector<std::string> files_of(TileKey tile) const {
+    return {layer_.file(rays_file_of(tile, RaySort::passing)),
+            layer_.file(rays_file_of(tile, RaySort::empty))};
+  }
+
+ private:
+  fs::path folder() const { return work_.path(layer_.folder); }
+
+  /// A tile's points without those that a model is made without.
+  PointCloud points_that_stay(TileKey tile) const {
+    PointCloud cloud;
+    cloud.origin = work_.origin();
+    read_points_of(tile, folder(), work_.job, cloud);
+    const RemovedPoints removed =
+        points_to_remove(cloud, scheme_ ? &*scheme_ : nullptr, work_.job.build.remove);
+    if (removed.ids.empty() || cloud.classes.empty()) return cloud;
+    std::vector<std::uint32_t> stay;
+    for (std::uint32_t i = 0; i < cloud.size(); ++i)
+      if (removed.ids[cloud.classes[i]] == 0) stay.push_back(i);
+    return gather(cloud, stay);
+  }
+
+  const PointLayer& layer_;
+  const TileSet& tiles_;
+  const CityWork& work_;
+  std::optional<LabelScheme> scheme_;
+};
 
 /// Threads for each tile that is in memory at a time.
 constexpr std::size_t kThreadsForRays = 4;
 
-std::vector<std::string> files_of_rays(TileKey tile) {
-  return {rays_file_of(tile, RaySort::passing), rays_file_of(tile, RaySort::empty)};
-}
-
 /// Writes the rays of some tiles at the same time.
-void write_rays_of_all(std::span<const TileKey> tiles, const LabelScheme* scheme,
-                       const CityWork& work, ResumableFolder& folder) {
+void write_rays_of_all(std::span<const TileKey> tiles, const LayerRays& rays, const CityWork& work,
+                       ResumableFolder& folder) {
   std::vector<FileDigest> digests(2 * tiles.size());
   work.session.executor.for_chunks(tiles.size(), 1, [&](std::size_t k, std::size_t) {
-    write_rays_of(tiles[k], work.facts.tiles.at(tiles[k]), scheme, work);
+    rays.write(tiles[k]);
     std::size_t next = 2 * k;
-    for (const std::string& file : files_of_rays(tiles[k]))
+    for (const std::string& file : rays.files_of(tiles[k]))
       digests[next++] = {file, sha256_of_file(work.path(file))};
   });
   folder.record(digests);
@@ -69,20 +91,20 @@ void write_rays_of_all(std::span<const TileKey> tiles, const LabelScheme* scheme
 
 }  // namespace
 
-void hand_out_rays(const CityWork& work, ResumableFolder& folder) {
-  std::filesystem::create_directories(work.path("rays"));
-  const std::optional<LabelScheme> scheme = work.scheme();
+void hand_out_rays(const PointLayer& layer, const TileSet& tiles, const CityWork& work,
+                   ResumableFolder& folder) {
+  fs::create_directories(work.path(layer.file("rays")));
+  const LayerRays rays(layer, tiles, work);
   ProgressSink& progress = work.session.progress;
   std::vector<TileKey> to_do;
-  for (const auto& [tile, count] : work.facts.tiles)
-    if (!folder.has(files_of_rays(tile))) to_do.push_back(tile);
+  for (const auto& [tile, count] : layer.facts.tiles)
+    if (!folder.has(rays.files_of(tile))) to_do.push_back(tile);
   progress.begin_step("rays", to_do.size());
   const auto threads = static_cast<std::size_t>(work.session.executor.threads());
   const std::size_t at_once = std::max<std::size_t>(1, threads / kThreadsForRays);
   for (std::size_t first = 0; first < to_do.size(); first += at_once) {
     const std::size_t count = std::min(at_once, to_do.size() - first);
-    write_rays_of_all(std::span(to_do).subspan(first, count), scheme ? &*scheme : nullptr, work,
-                      folder);
+    write_rays_of_all(std::span(to_do).subspan(first, count), rays, work, folder);
     progress.advance(first + count);
   }
   progress.end_step();

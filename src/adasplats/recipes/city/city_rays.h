@@ -7,8 +7,9 @@
 
 namespace adasplats {
 
-/// Hands the rays of the points of each tile to the tiles that they cross, on disk: needs the
-/// sorted points. What an earlier run has handed out stays.
-void hand_out_rays(const CityWork& work, ResumableFolder& folder);
+/// Hands the rays of a layer's points to those of `tiles` that they cross, on disk, by the tiles
+/// that they begin in: needs the sorted points. What an earlier run has handed out stays.
+void hand_out_rays(const PointLayer& layer, const TileSet& tiles, const CityWork& work,
+                   ResumableFolder& folder);
 
 }  // namespace adasplats

@@ -31,15 +31,15 @@ GroundBox reach_of(const SquareGroup& group, const SegmentOptions& options) {
 /// The points of squares and around them, of one tile after another.
 class PointsOfSquares {
  public:
-  PointsOfSquares(const SquareGroup& group, const SegmentOptions& options, const CityWork& work)
+  PointsOfSquares(const SquareGroup& group, const SegmentOptions& options, const LayerWork& work)
       : group_(group), options_(options), work_(work), reach_(reach_of(group, options)) {
     GroundBox ground = reach_;
-    ground.low_x += work.facts.origin.x;
-    ground.high_x += work.facts.origin.x;
-    ground.low_y += work.facts.origin.y;
-    ground.high_y += work.facts.origin.y;
-    cloud_.origin = work.facts.origin;
-    for (const TileKey tile : tiles_in(ground, work)) add(tile);
+    ground.low_x += work.layer.facts.origin.x;
+    ground.high_x += work.layer.facts.origin.x;
+    ground.low_y += work.layer.facts.origin.y;
+    ground.high_y += work.layer.facts.origin.y;
+    cloud_.origin = work.layer.facts.origin;
+    for (const TileKey tile : work.tiles.touched(ground)) add(tile);
   }
 
   /// As one cloud: those in the squares first, each part in the order in which they were read.
@@ -66,9 +66,9 @@ class PointsOfSquares {
  private:
   void add(TileKey tile) {
     tiles_.emplace_back(tile, keys_.size());
-    const std::vector<std::uint64_t> order = read_tile_order(work_.folder, tile);
+    const std::vector<std::uint64_t> order = read_tile_order(work_.folder(), tile);
     std::size_t read = 0;
-    read_tile_pieces(work_.folder, tile, [&](const PointCloud& piece) {
+    read_tile_pieces(work_.folder(), tile, [&](const PointCloud& piece) {
       if (piece.size() > order.size() - read) fail(tile);
       for (std::size_t i = 0; i < piece.size(); ++i) add(piece, i, order[read + i]);
       read += piece.size();
@@ -93,7 +93,7 @@ class PointsOfSquares {
 
   const SquareGroup& group_;
   const SegmentOptions& options_;
-  const CityWork& work_;
+  const LayerWork& work_;
   GroundBox reach_;
   PointCloud cloud_;
   std::vector<std::uint64_t> keys_;                     ///< as points were read: their order
@@ -104,14 +104,14 @@ class PointsOfSquares {
 
 }  // namespace
 
-TileKey group_of(SegmentSquare square, const SegmentOptions& options, const CityWork& work) {
+TileKey group_of(SegmentSquare square, const SegmentOptions& options, const LayerWork& work) {
   const Vec3d middle = {(square.x + 0.5) * options.tile_m, (square.y + 0.5) * options.tile_m, 0};
-  return work.tiles.grid.tile_of(work.facts.origin + middle);
+  return work.tiles.grid.tile_of(work.layer.facts.origin + middle);
 }
 
-std::vector<SquareGroup> groups_of_squares(const SegmentOptions& options, const CityWork& work) {
+std::vector<SquareGroup> groups_of_squares(const SegmentOptions& options, const LayerWork& work) {
   std::map<TileKey, SquareGroup> groups;
-  const Vec3d origin = work.facts.origin;
+  const Vec3d origin = work.layer.facts.origin;
   for (const TileKey tile : work.tiles.tiles) {
     const GroundBox box = work.tiles.grid.box_of(tile).grown(kRounding_m);
     const auto number = [&](double at_m) {
@@ -134,7 +134,7 @@ std::vector<SquareGroup> groups_of_squares(const SegmentOptions& options, const 
 }
 
 SquareClasses classes_of_squares(const SquareGroup& group, const PointClassifier& classifier,
-                                 const SegmentOptions& options, const CityWork& work,
+                                 const SegmentOptions& options, const LayerWork& work,
                                  Session& session) {
   PointsOfSquares points(group, options, work);
   if (points.own() == 0) return {};

@@ -6,7 +6,7 @@
 
 #include "adasplats/city/square_classes.h"
 #include "adasplats/pipeline/segment/point_classes.h"
-#include "adasplats/recipes/city/city_work.h"
+#include "adasplats/recipes/city/point_layer.h"
 
 namespace adasplats {
 
@@ -22,16 +22,16 @@ struct SquareGroup {
 };
 
 /// The tile whose group a square is in.
-TileKey group_of(SegmentSquare square, const SegmentOptions& options, const CityWork& work);
+TileKey group_of(SegmentSquare square, const SegmentOptions& options, const LayerWork& work);
 /// All squares that may have points, each in one group; by their tiles.
-std::vector<SquareGroup> groups_of_squares(const SegmentOptions& options, const CityWork& work);
+std::vector<SquareGroup> groups_of_squares(const SegmentOptions& options, const LayerWork& work);
 
 /// The classes of the points that stand in the squares: those that the whole place in one cloud
 /// gets, since squares are looked at whole and with all that is around them, points in the order in
 /// which they were read. Reads the points of tiles near them; memory: what the squares and their
 /// margins hold, without attributes. Errors: data (damaged files of points).
 SquareClasses classes_of_squares(const SquareGroup& group, const PointClassifier& classifier,
-                                 const SegmentOptions& options, const CityWork& work,
+                                 const SegmentOptions& options, const LayerWork& work,
                                  Session& session);
 
 }  // namespace adasplats

@@ -31,7 +31,7 @@ struct Spacings {
 /// Tiles all over the city whose cells say how dense cells are: all of them, or every n-th.
 std::vector<TileKey> surveyed(const CityWork& work) {
   std::size_t points = 0;
-  for (const auto& [tile, count] : work.facts.tiles) points += count.points;
+  for (const TileKey tile : work.tiles.tiles) points += work.points_in(tile);
   const std::size_t every = std::max<std::size_t>(1, points / kSurveyedPoints);
   std::vector<TileKey> chosen;
   std::size_t k = 0;
@@ -47,13 +47,13 @@ Spacings spacings_in(TileKey tile, const LabelScheme* scheme, const ModelEngine&
   ClassTables tables;
   tables.removed = points_to_remove(cloud, scheme, work.job.build.remove).ids;
   WholePlace whole;
-  whole.box = work.facts.box;
+  whole.box = work.first().box;
   const std::unique_ptr<ConsistentSteps> steps = engine.consistent_steps();
   if (steps->load(std::move(cloud), tables, &whole) == 0) return found;
   steps->fuse(work.options);
   const GroundBox own = work.tiles.grid.box_of(tile);
   for (const CellSpacing& cell : steps->spacings(work.options)) {
-    if (!(cell.spacing > 0) || !own.contains(work.facts.origin + vec_cast<double>(cell.place)))
+    if (!(cell.spacing > 0) || !own.contains(work.origin() + vec_cast<double>(cell.place)))
       continue;
     (cell.with_beam ? found.with_beam : found.without).push_back(cell.spacing);
   }
@@ -77,7 +77,7 @@ void survey_spacing(CityWork& work, ResumableFolder& folder) {
     work.typical = load_spacing(work.path(kSpacingFile));
     return;
   }
-  const std::optional<LabelScheme> scheme = work.scheme();
+  const std::optional<LabelScheme> scheme = scheme_of(work.job);
   const std::vector<TileKey> chosen = surveyed(work);
   ProgressSink& progress = work.session.progress;
   progress.begin_step("spacing of cells", chosen.size());

@@ -25,18 +25,29 @@ Error no_such_tile(TileKey tile, const fs::path& city) {
           "`only_tile` " + name_of(tile) + ": no points of " + city.string() + " are there"};
 }
 
-/// What is known of the whole, of the files of the folder.
-void load_what_is_known(CityWork& work, const FolderTask& task) {
-  std::vector<std::string> files = {kPointsFile, kCityCommonFile, kSpacingFile, kResponseFile};
-  if (work.job.segment.on) files.emplace_back(kClassesFile);
+/// Files that the plan has made, as they were written.
+void require_planned(const std::vector<std::string>& files, const FolderTask& task) {
   for (const std::string& file : files)
     if (!task.is_recorded(file))
       throw Error(ErrorKind::no_input, task.path().string() +
                                            ": it is not planned to the end: it has no " + file +
                                            "; plan again (`plan`)");
   task.require(files);
-  load_sorted(work);
-  if (work.job.segment.on) load_classes(work);
+}
+
+/// What is known of the whole, of the files of the folder.
+void load_what_is_known(CityWork& work, const FolderTask& task) {
+  require_planned({kLayersFile, kSpacingFile, kResponseFile}, task);
+  const std::size_t layers = load_layer_count(work.path(kLayersFile));
+  std::vector<std::string> files;
+  for (std::size_t k = 0; k < layers; ++k) {
+    const PointLayer layer = {layer_folder(k), {}};
+    files.push_back(layer.file(kPointsFile));
+    files.push_back(layer.file(kLayerCommonFile));
+    if (work.job.segment.on) files.push_back(layer.file(kClassesFile));
+  }
+  require_planned(files, task);
+  load_layers(layers, work);
   work.typical = load_spacing(work.path(kSpacingFile));
   work.response = load_response(work.path(kResponseFile));
 }
@@ -46,11 +57,16 @@ void load_what_is_known(CityWork& work, const FolderTask& task) {
 void check_files(TileKey tile, const TileModeller& modeller, const CityWork& work,
                  const FolderTask& task) {
   task.require(modeller.files_for(tile));
-  for (const auto& [from, count] : work.facts.tiles)
-    for (const RaySort sort : {RaySort::passing, RaySort::empty})
-      if (!fs::is_regular_file(work.path(rays_file_of(from, sort))))
-        throw Error(ErrorKind::data, work.path(rays_file_of(from, sort)).string() +
-                                         ": it is not there any more; plan again (`plan`)");
+  for (const PointLayer& layer : work.layers) {
+    for (const auto& [from, count] : layer.facts.tiles) {
+      for (const RaySort sort : {RaySort::passing, RaySort::empty}) {
+        const fs::path file = work.path(layer.file(rays_file_of(from, sort)));
+        if (!fs::is_regular_file(file))
+          throw Error(ErrorKind::data,
+                      file.string() + ": it is not there any more; plan again (`plan`)");
+      }
+    }
+  }
 }
 
 /// Of a city that is finished.

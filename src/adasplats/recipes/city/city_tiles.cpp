@@ -10,28 +10,38 @@ namespace adasplats {
 namespace {
 
 /// All tiles that rays may begin in.
-std::set<TileKey> tiles_with_rays(const CityFacts& facts) {
+std::set<TileKey> tiles_with_rays(const LayerFacts& facts) {
   std::set<TileKey> all;
   for (const auto& [tile, count] : facts.tiles) all.insert(tile);
   return all;
 }
 
+void add_rays(PointCloud& all, const PointCloud& more) {
+  all.positions.insert(all.positions.end(), more.positions.begin(), more.positions.end());
+  all.sensor_positions.insert(all.sensor_positions.end(), more.sensor_positions.begin(),
+                              more.sensor_positions.end());
+}
+
 }  // namespace
 
-TileModeller::TileModeller(const CityWork& work)
-    : work_(work),
-      tiles_(tiles_to_model(work)),
-      pilot_(pilot_tile(work)),
-      passing_(work.folder, tiles_with_rays(work.facts), RaySort::passing),
-      empty_(work.folder, tiles_with_rays(work.facts), RaySort::empty) {}
+TileModeller::TileModeller(const CityWork& work) : work_(work), tiles_(tiles_to_model(work)) {
+  if (work.layers.size() == 1) pilot_ = pilot_tile(work);
+  for (const PointLayer& layer : work.layers) {
+    const std::set<TileKey> from = tiles_with_rays(layer.facts);
+    const std::filesystem::path folder = work.path(layer.folder);
+    rays_.push_back({{folder, from, RaySort::passing}, {folder, from, RaySort::empty}});
+  }
+}
 
 WholePlace TileModeller::whole_of(TileKey tile) const {
   WholePlace whole;
-  whole.box = work_.facts.box;
+  whole.box = work_.first().box;
   whole.typical = work_.typical;
-  whole.rays = work_.facts.rays;
-  whole.passing = passing_.read(tile);
-  whole.empty = empty_.read(tile);
+  whole.rays = work_.first().rays;
+  for (const LayerRays& rays : rays_) {
+    add_rays(whole.passing, rays.passing.read(tile));
+    add_rays(whole.empty, rays.empty.read(tile));
+  }
   if (tile != pilot_) whole.response = work_.response;
   return whole;
 }
@@ -54,14 +64,18 @@ SplatModel TileModeller::model(TileKey tile, Session& session) const {
 
 std::vector<std::string> TileModeller::files_for(TileKey tile) const {
   std::vector<std::string> files;
-  for (const TileKey near : tiles_around(tile, work_)) {
-    files.push_back(points_file_of(near));
-    if (work_.job.segment.on) files.push_back(classes_file_of(near));
+  for (std::size_t k = 0; k < work_.layers.size(); ++k) {
+    const PointLayer& layer = work_.layers[k];
+    for (const TileKey near : tiles_around(tile, work_)) {
+      if (!layer.has_points(near)) continue;
+      files.push_back(layer.file(points_file_of(near)));
+      if (work_.job.segment.on) files.push_back(layer.file(classes_file_of(near)));
+    }
+    for (const TileKey from : rays_[k].passing.sources(tile))
+      files.push_back(layer.file(rays_file_of(from, RaySort::passing)));
+    for (const TileKey from : rays_[k].empty.sources(tile))
+      files.push_back(layer.file(rays_file_of(from, RaySort::empty)));
   }
-  for (const TileKey from : passing_.sources(tile))
-    files.push_back(rays_file_of(from, RaySort::passing));
-  for (const TileKey from : empty_.sources(tile))
-    files.push_back(rays_file_of(from, RaySort::empty));
   return files;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "adasplats/city/passing_rays.h"
@@ -29,10 +30,15 @@ class TileModeller {
   WholePlace whole_of(TileKey tile) const;
   void keep_own(TileKey tile, SplatModel& model) const;
 
+  /// Where a layer's rays for each tile are.
+  struct LayerRays {
+    RayFiles passing, empty;
+  };
+
   const CityWork& work_;
   std::vector<CityTile> tiles_;
-  TileKey pilot_;
-  RayFiles passing_, empty_;
+  std::optional<TileKey> pilot_;  ///< nothing where the response was known before
+  std::vector<LayerRays> rays_;   ///< layer by layer
 };
 
 /// The response of the sensor, of a file of a model; nothing where it has none.

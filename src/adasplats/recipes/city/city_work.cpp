@@ -8,52 +8,12 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/recipes/city/city_classes.h"
+#include "adasplats/recipes/city/city_points.h"
 
 namespace adasplats {
-namespace {
 
-namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
-Json json_of(Vec3f v) { return {v.x, v.y, v.z}; }
-Vec3f float_vector(const Json& json) { return {json.at(0), json.at(1), json.at(2)}; }
-
-}  // namespace
-
-std::string text_of(const CityFacts& facts) {
-  Json json = {{"origin_m", {facts.origin.x, facts.origin.y, facts.origin.z}},
-               {"low_m", json_of(facts.box.low)},
-               {"high_m", json_of(facts.box.high)},
-               {"points_read", facts.points_read},
-               {"rays", facts.rays},
-               {"empty_reach_m", facts.empty_reach_m},
-               {"tiles", Json::array()}};
-  for (const auto& [tile, count] : facts.tiles)
-    json["tiles"].push_back({tile.x, tile.y, count.points, count.empty_beams});
-  return json.dump(1) + "\n";
-}
-
-CityFacts load_facts(const fs::path& file) {
-  const std::string text = read_file(file);
-  try {
-    const Json json = Json::parse(text);
-    CityFacts facts;
-    const Json& origin = json.at("origin_m");
-    facts.origin = {origin.at(0), origin.at(1), origin.at(2)};
-    facts.box = {float_vector(json.at("low_m")), float_vector(json.at("high_m"))};
-    facts.points_read = json.at("points_read");
-    facts.rays = json.at("rays");
-    facts.empty_reach_m = json.at("empty_reach_m");
-    for (const Json& tile : json.at("tiles"))
-      facts.tiles[{tile.at(0), tile.at(1)}] = {tile.at(2), tile.at(3)};
-    return facts;
-  } catch (const Json::exception& error) {
-    throw Error(ErrorKind::data, file.string() + ": damaged: " + error.what());
-  }
-}
-
-CityWork::CityWork(const CityJob& its_job, Session& its_session, fs::path its_folder)
+CityWork::CityWork(const CityJob& its_job, Session& its_session, std::filesystem::path its_folder)
     : job(its_job),
       options(consistent_options_of(its_job)),
       session(its_session),
@@ -62,9 +22,36 @@ CityWork::CityWork(const CityJob& its_job, Session& its_session, fs::path its_fo
   tiles.halo_m = job.tiles.halo_m;
 }
 
-std::optional<LabelScheme> CityWork::scheme() const {
-  if (job.segment.on) return semantickitti_labels();
-  return label_scheme_for(job.labels, job.inputs);
+void CityWork::add(PointLayer layer) {
+  for (const auto& [tile, count] : layer.facts.tiles)
+    if (count.points > 0) tiles.tiles.insert(tile);
+  layers.push_back(std::move(layer));
+}
+
+void load_layers(std::size_t count, CityWork& work) {
+  for (std::size_t k = 0; k < count; ++k) {
+    LayerWork sorted(work.job, work.session, work.folder, k);
+    load_sorted(sorted);
+    if (work.job.segment.on) load_classes(sorted);
+    if (k == 0) work.common = sorted.common;
+    work.add(std::move(sorted.layer));
+  }
+}
+
+std::size_t load_layer_count(const std::filesystem::path& file) {
+  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
+  if (!json.is_object() || !json.contains("layers") || !json["layers"].is_number_unsigned())
+    throw Error(ErrorKind::data, file.string() + ": damaged");
+  return json["layers"];
+}
+
+std::size_t CityWork::points_in(TileKey tile) const {
+  std::size_t points = 0;
+  for (const PointLayer& layer : layers) {
+    const auto found = layer.facts.tiles.find(tile);
+    if (found != layer.facts.tiles.end()) points += found->second.points;
+  }
+  return points;
 }
 
 std::vector<CityTile> tiles_to_model(const CityWork& work) {
@@ -72,7 +59,7 @@ std::vector<CityTile> tiles_to_model(const CityWork& work) {
   for (const TileKey tile : work.tiles.tiles) {
     CityTile made;
     made.key = tile;
-    made.points = work.facts.tiles.at(tile).points;
+    made.points = work.points_in(tile);
     tiles.push_back(made);
   }
   return tiles;
@@ -83,40 +70,23 @@ TileKey pilot_tile(const CityWork& work) {
   return std::ranges::max_element(tiles, {}, &CityTile::points)->key;
 }
 
-std::vector<TileKey> tiles_in(const GroundBox& ground, const CityWork& work) {
-  const TileGrid& grid = work.tiles.grid;
-  const TileKey low = grid.tile_of({ground.low_x, ground.low_y, 0});
-  const TileKey high = grid.tile_of({ground.high_x, ground.high_y, 0});
-  std::vector<TileKey> found;
-  for (TileKey near = low; near.x <= high.x; ++near.x)
-    for (near.y = low.y; near.y <= high.y; ++near.y)
-      if (work.tiles.tiles.contains(near)) found.push_back(near);
-  return found;
-}
-
 std::vector<TileKey> tiles_around(TileKey tile, const CityWork& work) {
-  return tiles_in(work.tiles.reach_of(tile), work);
-}
-
-void read_points_of(TileKey tile, const CityWork& work, PointCloud& cloud,
-                    const std::function<bool(Vec3f)>& wanted) {
-  std::vector<std::uint16_t> classes;
-  if (work.job.segment.on) classes = read_tile_classes(work.folder, tile);
-  if (work.job.segment.on && classes.empty())
-    throw Error(ErrorKind::data,
-                work.path(classes_file_of(tile)).string() + ": damaged: it has no classes");
-  read_tile_points(work.folder, tile, cloud, wanted, classes);
+  return work.tiles.touched(work.tiles.reach_of(tile));
 }
 
 PointCloud points_around(TileKey tile, const CityWork& work) {
   const GroundBox reach = work.tiles.reach_of(tile);
   PointCloud cloud;
-  cloud.origin = work.facts.origin;
+  cloud.origin = work.origin();
   cloud.crs = work.common.crs;
-  for (const TileKey near : tiles_around(tile, work))
-    read_points_of(near, work, cloud, [&](Vec3f p) {
-      return reach.contains(work.facts.origin + vec_cast<double>(p));
-    });
+  for (const TileKey near : tiles_around(tile, work)) {
+    for (const PointLayer& layer : work.layers) {
+      if (!layer.has_points(near)) continue;
+      read_points_of(near, work.path(layer.folder), work.job, cloud, [&](Vec3f p) {
+        return reach.contains(work.origin() + vec_cast<double>(p));
+      });
+    }
+  }
   cloud.crs = work.common.crs;
   return cloud;
 }

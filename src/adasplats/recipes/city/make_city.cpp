@@ -3,6 +3,7 @@
 #include "adasplats/recipes/city/make_city.h"
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -15,6 +16,7 @@
 #include "adasplats/pipeline/output/resumable_folder.h"
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/pipeline/session/repeated_warnings.h"
+#include "adasplats/recipes/city/city_addition.h"
 #include "adasplats/recipes/city/city_classes.h"
 #include "adasplats/recipes/city/city_level_files.h"
 #include "adasplats/recipes/city/city_points.h"
@@ -34,10 +36,9 @@ class CityMaker {
  public:
   CityMaker(const CityJob& job, Session& session)
       : classifier_(classifier_for(job)),
-        folder_(job.output, job.overwrite, kCityCommand, content_with_network(job)),
-        work_(job, session, folder_.path()) {
-    if (classifier_) work_.common.network_sha256 = classifier_->facts().sha256;
-  }
+        before_(job.add_to.empty() ? nullptr : std::make_unique<CityToExtend>(job)),
+        folder_(job.output, job.overwrite, kCityCommand, whole_content(job)),
+        work_(job, session, folder_.path()) {}
 
   CityResult run() {
     prepare();
@@ -50,7 +51,10 @@ class CityMaker {
   std::vector<TileKey> plan() {
     prepare();
     fs::create_directories(work_.path("tiles"));
-    model_pilot(TileModeller(work_), work_.session.progress);
+    if (before_)
+      take_over_tiles();
+    else
+      model_pilot(TileModeller(work_), work_.session.progress);
     std::vector<TileKey> to_do;
     for (const CityTile& tile : result_.city.tiles)
       if (!is_made(tile.key)) to_do.push_back(tile.key);
@@ -58,10 +62,11 @@ class CityMaker {
   }
 
  private:
-  /// Tasks do not run the network, and so do not look what is in it.
-  Json content_with_network(const CityJob& job) const {
+  /// Tasks do not run the network, and so do not look what is in it; nor into the city before.
+  Json whole_content(const CityJob& job) const {
     Json content = content_of(job);
     if (classifier_) content["network_sha256"] = classifier_->facts().sha256;
+    if (before_) content["added_to"] = before_->content();
     return content;
   }
 
@@ -74,14 +79,51 @@ class CityMaker {
 
   /// All that comes before the tiles.
   void prepare() {
-    step("points", [&] { sort_points(work_, folder_); });
-    result_.steps.push_back({"calibration_of_points", work_.calibrated_s});
-    if (classifier_) step("segment", [&] { give_classes(*classifier_, work_, folder_); });
-    step("rays", [&] { hand_out_rays(work_, folder_); });
+    LayerWork reading(work_.job, work_.session, folder_.path(), before_ ? before_->layers() : 0);
+    if (classifier_) reading.common.network_sha256 = classifier_->facts().sha256;
+    step("points", [&] { read_points(reading); });
+    result_.steps.push_back({"calibration_of_points", reading.calibrated_s});
+    if (classifier_) step("segment", [&] { give_classes(*classifier_, reading, folder_); });
+    result_.points_read = reading.layer.facts.points_read;
+    result_.segmented = reading.segmented;
+    work_.add(std::move(reading.layer));
+    step("rays", [&] { hand_out(); });
     step("spacing", [&] { survey_spacing(work_, folder_); });
-    result_.points_read = work_.facts.points_read;
-    result_.segmented = work_.segmented;
     result_.city.tiles = tiles_to_model(work_);
+  }
+
+  void read_points(LayerWork& reading) {
+    if (before_) {
+      before_->hand_over_layers(folder_, work_.session.executor);
+      load_layers(before_->layers(), work_);
+      reading.before = before_->before();
+    }
+    if (before_ && reading.common.network_sha256 != work_.common.network_sha256)
+      throw Error(ErrorKind::usage, "the points of " + work_.job.add_to.string() +
+                                        " have their classes by another network (`network`)");
+    sort_points(reading, folder_);
+    if (!before_) work_.common = reading.common;
+  }
+
+  /// Rays to all tiles, or where points are added to those that these reach.
+  void hand_out() {
+    hand_out_rays(work_.layers.back(), work_.tiles, work_, folder_);
+    reached_ = work_.tiles;
+    if (before_) reached_.tiles = tiles_reached(work_);
+    for (std::size_t k = 0; k + 1 < work_.layers.size(); ++k)
+      hand_out_rays(work_.layers[k], reached_, work_, folder_);
+    write_file_in_place(work_.path(kLayersFile),
+                        Json({{"layers", work_.layers.size()}}).dump() + "\n");
+    folder_.record(std::string(kLayersFile));
+  }
+
+  /// Those that nothing that was added reaches.
+  void take_over_tiles() {
+    work_.response = load_response(work_.path(kResponseFile));
+    for (const CityTile& tile : before_->manifest().tiles) {
+      if (reached_.tiles.contains(tile.key)) continue;
+      if (!folder_.has(model_file_of(tile.key))) before_->hand_over_tile(tile, folder_);
+    }
   }
 
   /// Its tile comes first: the others need the response that it finds.
@@ -100,10 +142,13 @@ class CityMaker {
     const TileModeller modeller(work_);
     RepeatedWarnings warnings(work_.session.progress, "tiles");
     work_.session.progress.begin_step("tiles", work_.tiles.tiles.size());
-    model_pilot(modeller, warnings);
+    if (before_)
+      take_over_tiles();
+    else
+      model_pilot(modeller, warnings);
     std::vector<CityTile> to_do;
     for (CityTile& tile : result_.city.tiles)
-      if (tile.key != pilot_tile(work_) && !take_made(tile)) to_do.push_back(tile);
+      if ((before_ || tile.key != pilot_tile(work_)) && !take_made(tile)) to_do.push_back(tile);
     std::size_t done = result_.city.tiles.size() - to_do.size();
     work_.session.progress.advance(done);
     adasplats::model_tiles(work_, modeller, to_do, warnings, [&](const CityTile& made) {
@@ -148,34 +193,42 @@ class CityMaker {
 
   void write_manifest() {
     result_.city.grid = work_.tiles.grid;
-    result_.city.origin = work_.facts.origin;
+    result_.city.origin = work_.origin();
     result_.city.halo_m = work_.tiles.halo_m;
     if (result_.city.splats() == 0)
       throw Error(ErrorKind::data, "no splats: no surface was found in any tile");
     write_level_files(result_.city, folder_, work_.session);
-    if (work_.response) {
-      work_.common.response = *work_.response;
-      save_model(work_.path(kCityCommonFile), work_.common);
-      folder_.record(std::string(kCityCommonFile));
-    }
+    if (work_.response) work_.common.response = *work_.response;
+    save_model(work_.path(kCityCommonFile), work_.common);
+    folder_.record(std::string(kCityCommonFile));
     write_file_in_place(work_.path(kCityFile), city_text(result_.city));
     folder_.record(std::string(kCityFile));
-    fs::remove_all(work_.path("rays"));
-    fs::remove_all(work_.path("points"));
-    folder_.commit({{"points", result_.city.points()}, {"splats", result_.city.splats()}}, aids());
+    const std::vector<std::string> none_of_it = aids();
+    for (const PointLayer& layer : work_.layers) fs::remove_all(work_.path(layer.file("rays")));
+    if (!keeps_points()) fs::remove_all(work_.path("layers"));
+    folder_.commit({{"points", result_.city.points()}, {"splats", result_.city.splats()}},
+                   none_of_it);
   }
+
+  bool keeps_points() const { return work_.job.keep_points || before_; }
 
   /// What was recorded and is no part of the city.
   std::vector<std::string> aids() const {
     std::vector<std::string> files;
-    for (const auto& [file, hash] : folder_.recorded())
-      if (file.starts_with("rays/") || file.starts_with("points/")) files.push_back(file);
+    for (const auto& [file, hash] : folder_.recorded()) {
+      const bool is_of_layer = file.starts_with("layers/");
+      const bool stays = file.find("/points/") != std::string::npos &&
+                         !file.ends_with(".order") && !file.ends_with(".squares");
+      if (is_of_layer && !(keeps_points() && stays)) files.push_back(file);
+    }
     return files;
   }
 
   std::optional<PointClassifier> classifier_;
+  std::unique_ptr<CityToExtend> before_;  ///< null: the city is made of the job's inputs alone
   ResumableFolder folder_;
   CityWork work_;
+  TileSet reached_;  ///< tiles that are not as in the city before
   CityResult result_;
 };
 
