@@ -8,6 +8,7 @@
 #include "adasplats/core/constants.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/recipes/city/city_addition.h"
 #include "cli/commands.h"
 #include "cli/options/load_options.h"
 #include "cli/options/option_types.h"
@@ -86,7 +87,7 @@ class InfoCommand final : public Command {
            "Files, sequence folders and recordings; without any: as --devices")
         ->type_name("PATH");
     app.add_flag("--devices", devices_, "List the GPUs of this machine, or why there are none");
-    app.add_flag("--verify", verify_, "Check every tile of a city by its SHA-256");
+    app.add_flag("--verify", verify_, "Check every tile and all points of a city by their SHA-256");
     app.add_option("--labels", labels_,
                    "Names the classes: semantickitti, paris-carla-3d, pandaset, nuscenes, asprs or "
                    "a TOML file")
@@ -112,6 +113,7 @@ class InfoCommand final : public Command {
       if (verify_ && is_city(input)) {
         const CityManifest city = load_city_manifest(input);
         verify_city(input, city);
+        verify_layers(input);
         if (has_levels(input)) CityLevels(input, city).verify();
       }
       const FileFacts facts = run_info(input, labels_, load_, session);

@@ -91,6 +91,7 @@ class ModelCommand final : public Command {
              "Add the points to a city that was made with --keep-points: the output is a city of "
              "both, with its tiles and the same options")
         ->group("Cities");
+    add_settings(app, job_.addition);
     app.add_flag("--plan", plan_,
                  "With --tile: do what comes before the tiles, then print the command of each tile "
                  "that is to be modelled, a line each, for many processes or machines; the same "
@@ -252,7 +253,27 @@ class ModelCommand final : public Command {
           (result.tiles_resumed == 0
                ? std::string()
                : ", " + grouped(result.tiles_resumed) + " of the tiles made by an earlier run") +
-          "\n" + (result.segmented ? segmentation_text(*result.segmented) : ""));
+          "\n" + addition_text(result) +
+          (result.segmented ? segmentation_text(*result.segmented) : ""));
+  }
+
+  /// What became of points that were added to a city.
+  std::string addition_text(const CityResult& result) const {
+    if (!result.fit) return "";
+    const PointFit& fit = *result.fit;
+    std::string text = grouped(result.tiles_kept) + " tiles as they were in " +
+                       job_.add_to.string() + ", the others modelled again; ";
+    if (result.alignment)
+      text += grouped(result.alignment->aligned) + " of " + grouped(result.alignment->groups) +
+              " groups of ten scans laid on it, shifted by " +
+              centimetres(result.alignment->median_shift_m) + " in the median, " +
+              centimetres(result.alignment->largest_shift_m) + " at most; ";
+    if (fit.parts > 0)
+      text += "new points lie " + centimetres(length(fit.shift_m)) + " beside it, in single tiles " +
+              centimetres(fit.part_shift_m);
+    else
+      text += "they have next to nothing in common";
+    return text + "\n";
   }
 
   CityJob job_;

@@ -11,6 +11,7 @@
 #include "adasplats/core/maths/small_cholesky.h"
 #include "adasplats/core/maths/small_motion.h"
 #include "adasplats/evaluate/beam_accuracy_internal.h"
+#include "adasplats/evaluate/registration_sums.h"
 
 namespace adasplats {
 namespace {
@@ -20,29 +21,6 @@ constexpr int kRegistrationSteps = 12;
 constexpr double kFirstWidth_m = 0.15, kLastWidth_m = 0.03;
 /// Prior on a step, in squared metres of residual: a scan that hits nothing stays.
 constexpr double kPrior = 1e-3;
-
-/// Sums of a Gauss-Newton step over a rotation about the sensor and a shift.
-struct Sums {
-  std::array<double, 36> matrix{};
-  std::array<double, 6> right{};
-
-  void add(Vec3d arm, Vec3d normal, double residual_m, double width_m) {
-    const double share = width_m * width_m / (width_m * width_m + residual_m * residual_m);
-    const double weight = share * share;
-    const Vec3d turning = cross(arm, normal);
-    const std::array<double, 6> row = {turning.x, turning.y, turning.z,
-                                       normal.x,  normal.y,  normal.z};
-    for (std::size_t a = 0; a < 6; ++a) {
-      right[a] += weight * row[a] * residual_m;
-      for (std::size_t b = 0; b < 6; ++b) matrix[a * 6 + b] += weight * row[a] * row[b];
-    }
-  }
-  Sums& operator+=(const Sums& other) {
-    for (std::size_t k = 0; k < matrix.size(); ++k) matrix[k] += other.matrix[k];
-    for (std::size_t k = 0; k < right.size(); ++k) right[k] += other.right[k];
-    return *this;
-  }
-};
 
 Vec3d normal_at(const SceneView& scene, std::uint32_t primitive) {
   return vec_cast<double>(unit_normal(scene, primitive));
@@ -75,9 +53,9 @@ RigidTransform improved(const Tracer& tracer, const SceneView& scene, RigidTrans
     rays[k].direction = vec_cast<float>(pose.rotation * (way / length(way)));
   }
   tracer.nearest(rays, hits, executor);
-  Sums sums = executor.sum_chunks(
-      beams.size(), kFineGrain, Sums{}, [&](std::size_t begin, std::size_t end) {
-        Sums part;
+  RegistrationSums sums = executor.sum_chunks(
+      beams.size(), kFineGrain, RegistrationSums{}, [&](std::size_t begin, std::size_t end) {
+        RegistrationSums part;
         for (std::size_t k = begin; k < end; ++k) {
           if (!hits[k].valid()) continue;
           const Vec3d hit = vec_cast<double>(rays[k].origin) +

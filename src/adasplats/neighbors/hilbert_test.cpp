@@ -37,6 +37,23 @@ TEST(HilbertKey, OfConsecutiveCellsAreNeighbors) {
   }
 }
 
+// A box is kept when points are added outside it: near points stay near along the curve there, too.
+TEST(HilbertGrid, BeginsAnewBeyondItsCube) {
+  const HilbertGrid grid({0, 0, 0}, {16, 8, 4});
+  const float period_m = 16.0F * (1U << kHilbertBits) / HilbertGrid::kCells;
+  const Vec3f p = {3.3F, 7.9F, 15.1F};
+  const Vec3<std::uint32_t> cell = grid.cell(p);
+  for (const int cubes : {-3, -1, 1, 2}) {
+    const float shift = static_cast<float>(cubes) * period_m;
+    const Vec3<std::uint32_t> moved = grid.cell(p + Vec3f{shift, shift, shift});
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(static_cast<double>(moved[axis]), static_cast<double>(cell[axis]), 16) << cubes;
+  }
+  EXPECT_LT(grid.cell({-1e6F, 1e6F, 0}).x, 1U << kHilbertBits);
+  EXPECT_LT(grid.cell({-1e-9F, 0, 0}).x, 1U << kHilbertBits);
+  EXPECT_EQ(grid.cell({16, 0, 0}).x, (1U << kHilbertBits) - 1);
+}
+
 TEST(HilbertGrid, CoversTheCubeOverTheLongestSide) {
   const HilbertGrid grid({-2, 0, 1}, {2, 1, 2});
   constexpr std::uint32_t kLast = (1U << kHilbertBits) - 1;

@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 /// What may differ between the job that made a city and one that adds to it: what is read, and how
 /// it is corrected.
 constexpr const char* kOfInputs[] = {"inputs",      "input_bytes", "load",  "scans",
-                                     "keep_points", "add_to",      "labels", "network"};
+                                     "keep_points", "add_to",      "labels", "network", "most_shift_m"};
 
 Json settings_of(const CityJob& job) {
   Json settings = content_of(job);
@@ -41,6 +41,27 @@ Json content_in(const fs::path& city) {
   if (!content.is_object() || !content.contains("outputs") || !content["outputs"].is_object())
     throw Error(ErrorKind::data, file.string() + ": damaged");
   return content;
+}
+
+/// Whether a tile is modelled with points of the last layer, or beside a tile that is new: splats
+/// that it had there belong to that one now.
+bool has_new_points(TileKey tile, const CityWork& work) {
+  const PointLayer& added = work.layers.back();
+  const GroundBox reach = work.tiles.reach_of(tile);
+  for (const TileKey near : work.tiles.touched(work.tiles.grid.box_of(tile).grown(1e-3)))
+    if (added.has_points(near) && work.points_in(near) == added.facts.tiles.at(near).points)
+      return true;
+  for (const TileKey near : tiles_around(tile, work)) {
+    if (!added.has_points(near)) continue;
+    bool found = false;
+    read_tile_pieces(work.path(added.folder), near, [&](const PointCloud& piece) {
+      found = found || std::ranges::any_of(piece.positions, [&](Vec3f p) {
+                return reach.contains(work.origin() + vec_cast<double>(p));
+              });
+    });
+    if (found) return true;
+  }
+  return false;
 }
 
 /// A file of the same content at another place, without copying it where that can be done.
@@ -97,6 +118,15 @@ CityBefore CityToExtend::before() const {
   return before;
 }
 
+void verify_layers(const fs::path& city) {
+  if (!fs::exists(city / layer_folder(0))) return;
+  const Json content = content_in(city);
+  for (const auto& [name, digest] : content["outputs"].items())
+    if (name.starts_with("layers/") && Json(sha256_of_file(city / name)) != digest)
+      throw Error(ErrorKind::data, (city / name).string() +
+                                       ": not the file that was written (its SHA-256 differs)");
+}
+
 Json CityToExtend::content() const {
   return {{"sha256", digest_of(kCityFile)}, {"made_of", *content_}};
 }
@@ -142,8 +172,7 @@ std::set<TileKey> tiles_reached(const CityWork& work) {
     for (const TileKey tile : RayFiles(work.path(added.folder), begin, sort).targets())
       reached.insert(tile);
   for (const TileKey tile : work.tiles.tiles)
-    for (const TileKey near : tiles_around(tile, work))
-      if (added.has_points(near)) reached.insert(tile);
+    if (!reached.contains(tile) && has_new_points(tile, work)) reached.insert(tile);
   return reached;
 }
 

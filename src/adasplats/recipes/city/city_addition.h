@@ -28,6 +28,7 @@ class CityToExtend {
   /// its points being kept, or otherwise than the job says: with the setting that differs).
   explicit CityToExtend(const CityJob& job);
 
+  const std::filesystem::path& path() const { return city_; }
   /// How many layers of points it has.
   std::size_t layers() const { return layers_; }
   CityBefore before() const;
@@ -52,6 +53,9 @@ class CityToExtend {
   std::map<std::string, std::string> digests_;       ///< SHA-256 by file
   std::size_t layers_ = 0;
 };
+
+/// Throws data where a file of a city's points is not the one that was written. Errors: no_input.
+void verify_layers(const std::filesystem::path& city);
 
 /// The tiles that points or rays of the last layer reach: all others are as they were. Needs the
 /// rays of that layer.

@@ -163,10 +163,11 @@ CityPoints read_at_once(const ModelJob& job, const OpenInputs& inputs, Session& 
 }  // namespace
 
 CityPoints read_city_points(const ModelJob& job, Session& session, const TakePoints& take_piece,
-                            std::optional<Vec3d> place, std::uint64_t piece_records) {
-  OnePlace one_place(job.load.max_distance_m, place);
+                            const CityReading& reading) {
+  OnePlace one_place(job.load.max_distance_m, reading.place);
   const TakePoints take = [&](PointCloud&& cloud) {
     one_place.require(cloud);
+    if (reading.lay_on) reading.lay_on(cloud);
     take_piece(std::move(cloud));
   };
   const OpenInputs inputs(job.inputs, job.load, session.executor, session.progress);
@@ -176,7 +177,7 @@ CityPoints read_city_points(const ModelJob& job, Session& session, const TakePoi
       inputs.inputs(), [](const OpenInput& input) { return input.input.is_sequence; });
   if (!any_drive) {
     const std::vector<InputPiece> pieces =
-        file_pieces(inputs, piece_records, session.executor, session.progress);
+        file_pieces(inputs, reading.piece_records, session.executor, session.progress);
     if (pieces.size() > 1) return read_files(job, inputs, pieces, session, take);
   }
   return read_at_once(job, inputs, session, take);

@@ -27,13 +27,21 @@ inline constexpr std::uint64_t kPieceRecords = 5'000'000;
 /// Takes some of the points.
 using TakePoints = std::function<void(PointCloud&&)>;
 
+/// How a city's inputs are read.
+struct CityReading {
+  std::uint64_t piece_records = kPieceRecords;
+  /// Where the points are that these are added to, world coordinates.
+  std::optional<Vec3d> place = std::nullopt;
+  /// Moves the points of scans behind what the job's calibration did; may be empty.
+  std::function<void(PointCloud&)> lay_on = {};
+};
+
 /// Calls `take` for the points of a job piece by piece, corrected where the job calibrates: drives
 /// longer than a window by 200 scans, files one by one, large ones with records at random
-/// (records_at_random()) by `piece_records`, else all at once. Errors: those of load_cloud; data
+/// (records_at_random()) by so many, else all at once. Errors: those of load_cloud; data
 /// for pieces in different coordinate systems, with different clocks, or farther from the first
 /// than LoadOptions::max_distance_m; where `place` is given, farther from that.
 CityPoints read_city_points(const ModelJob& job, Session& session, const TakePoints& take,
-                            std::optional<Vec3d> place = std::nullopt,
-                            std::uint64_t piece_records = kPieceRecords);
+                            const CityReading& reading = {});
 
 }  // namespace adasplats

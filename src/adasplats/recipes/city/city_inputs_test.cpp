@@ -75,7 +75,7 @@ Taken taken(const std::vector<fs::path>& inputs, std::uint64_t piece_records,
   Taken taken;
   taken.read = read_city_points(
       job, session, [&](PointCloud&& cloud) { taken.clouds.push_back(std::move(cloud)); },
-      std::nullopt, piece_records);
+      {.piece_records = piece_records});
   taken.warnings = progress.warnings;
   return taken;
 }

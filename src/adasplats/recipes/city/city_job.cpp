@@ -73,7 +73,10 @@ Json content_of(const CityJob& job) {
   json["network"] = job.segment.network.string();
   json["reflectances"] = job.build.reflectances;
   json["keep_points"] = job.keep_points;
-  if (!job.add_to.empty()) json["add_to"] = job.add_to.string();
+  if (!job.add_to.empty()) {
+    json["add_to"] = job.add_to.string();
+    put_settings(job.addition, json);
+  }
   json["scans"] = {job.load.first_scan, job.load.scan_count, job.load.scan_stride};
   return json;
 }

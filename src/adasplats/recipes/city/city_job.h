@@ -57,6 +57,22 @@ void visit_settings(MemoryChoice& choice, Visit&& visit) {
         choice.memory_gb);
 }
 
+/// What points that are added to a city must be like.
+struct AdditionChoice {
+  double most_shift_m = 0.1;  ///< that they may lie beside its splats (PointFit)
+};
+
+template <class Visit>
+void visit_settings(AdditionChoice& choice, Visit&& visit) {
+  visit(Setting{.name = "most_shift",
+                .help = "How far points may lie beside the city that they are added to, m",
+                .key = "most_shift_m",
+                .group = "Cities",
+                .least = 0,
+                .most = 1'000},
+        choice.most_shift_m);
+}
+
 /// Points of any number in, the folder of a city out.
 struct CityJob : ModelJob {
   TileChoice tiles;
@@ -64,6 +80,7 @@ struct CityJob : ModelJob {
   bool keep_points = false;  ///< in the folder, so that others can be added
   /// A city that the points are added to; empty: none. Its tiles are cut as `tiles` says.
   std::filesystem::path add_to;
+  AdditionChoice addition;
   std::filesystem::path output;
   bool overwrite = false;
 };

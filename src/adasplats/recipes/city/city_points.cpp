@@ -15,6 +15,7 @@
 #include "adasplats/io/base/sha256.h"
 #include "adasplats/pipeline/model/label_use.h"
 #include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/recipes/city/city_alignment.h"
 #include "adasplats/recipes/city/city_inputs.h"
 #include "adasplats/splats/rays/measured_rays.h"
 
@@ -42,17 +43,21 @@ void add_ranges(const PointCloud& cloud, RangeCounts& ranges) {
       ranges.add(length(cloud.positions[i] - cloud.sensor_positions[i]));
 }
 
-/// Throws data where new points are not of the kind that the city was made of.
-void require_alike(const CityBefore& before, const std::string& attributes,
-                   const std::string& label_scheme, bool has_labels) {
-  const std::string city = before.city.string();
+/// Throws data where new points come with other attributes than the city's.
+void require_attributes(const CityBefore& before, const std::string& attributes) {
   if (attributes != before.attributes)
-    throw Error(ErrorKind::data, "the points of " + city + " come with other attributes:" +
-                                     before.attributes + "; the new ones with" + attributes);
-  if (has_labels && label_scheme != before.label_scheme)
-    throw Error(ErrorKind::data,
-                "the labels of " + city + " are by the scheme \"" + before.label_scheme +
-                    "\", those of the new points by \"" + label_scheme + "\" (`labels`)");
+    throw Error(ErrorKind::data, "the points of " + before.city.string() +
+                                     " come with other attributes:" + before.attributes +
+                                     "; the new ones with" + attributes);
+}
+
+/// Throws data where their labels are of another scheme.
+void require_scheme(const CityBefore& before, const std::string& label_scheme) {
+  if (label_scheme != before.label_scheme)
+    throw Error(ErrorKind::data, "the labels of " + before.city.string() +
+                                     " are of the scheme '" + before.label_scheme +
+                                     "', those of the new points of '" + label_scheme +
+                                     "' (`labels`)");
 }
 
 /// The points to their tiles; fills in facts and what tiles have in common.
@@ -66,11 +71,12 @@ class LayerReader {
                 work.job.segment.on, work.before ? std::optional(work.before->origin) : std::nullopt) {}
 
   void read() {
+    if (scheme_) work_.common.label_scheme = scheme_reference(work_.job.labels, *scheme_);
+    if (work_.before && scheme_) require_scheme(*work_.before, work_.common.label_scheme);
     ModelJob reading = work_.job;
     reading.load.empty_beams = work_.options.empty_beams && work_.options.balance_rounds > 0;
     const CityPoints read = read_city_points(
-        reading, work_.session, [&](PointCloud&& cloud) { take(std::move(cloud)); },
-        work_.before ? std::optional(work_.before->place) : std::nullopt);
+        reading, work_.session, [&](PointCloud&& cloud) { take(std::move(cloud)); }, how());
     LayerFacts& facts = work_.layer.facts;
     facts.tiles = writer_.finish();
     if (!box_) throw Error(ErrorKind::data, "no points: there is nothing to model");
@@ -81,15 +87,23 @@ class LayerReader {
     facts.empty_reach_m = ranges_.empty_reach_m();
     SplatModel& common = work_.common;
     common.origin = facts.origin;
-    common.calibration = read.calibration;
+    common.calibration = alignment() == nullptr ? read.calibration
+                                                : alignment()->behind(read.calibration);
     common.method = "consistent";
-    if (scheme_) common.label_scheme = scheme_reference(work_.job.labels, *scheme_);
     work_.calibrated_s = read.calibrated_s;
-    if (work_.before)
-      require_alike(*work_.before, facts.attributes, common.label_scheme, has_labels_);
   }
 
  private:
+  CityAlignment* alignment() const { return work_.before ? work_.before->alignment : nullptr; }
+
+  CityReading how() const {
+    CityReading reading;
+    if (work_.before) reading.place = work_.before->place;
+    if (alignment() != nullptr)
+      reading.lay_on = [to = alignment()](PointCloud& cloud) { to->lay_on(cloud); };
+    return reading;
+  }
+
   void take(PointCloud&& cloud) {
     const LabelScheme* const known = scheme_ ? &*scheme_ : nullptr;
     cloud.scan_indices = {};  // all that they were for is done
@@ -110,6 +124,7 @@ class LayerReader {
       require_one_crs({{work_.before->city, work_.before->crs}, {job.inputs.front(), cloud.crs}},
                       work_.session.progress);
       work_.common.crs = work_.before->crs;
+      require_attributes(*work_.before, attributes());
     }
     if (has_labels_)
       check_label_use({job.labels, job.build.remove, job.removal_is_asked}, cloud, known,

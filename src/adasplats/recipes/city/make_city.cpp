@@ -17,7 +17,9 @@
 #include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/pipeline/session/repeated_warnings.h"
 #include "adasplats/recipes/city/city_addition.h"
+#include "adasplats/recipes/city/city_alignment.h"
 #include "adasplats/recipes/city/city_classes.h"
+#include "adasplats/recipes/city/city_fit.h"
 #include "adasplats/recipes/city/city_level_files.h"
 #include "adasplats/recipes/city/city_points.h"
 #include "adasplats/recipes/city/city_rays.h"
@@ -87,21 +89,29 @@ class CityMaker {
     result_.points_read = reading.layer.facts.points_read;
     result_.segmented = reading.segmented;
     work_.add(std::move(reading.layer));
+    if (before_) step("fit", [&] { result_.fit = require_fit(*before_, work_, folder_); });
     step("rays", [&] { hand_out(); });
     step("spacing", [&] { survey_spacing(work_, folder_); });
     result_.city.tiles = tiles_to_model(work_);
   }
 
   void read_points(LayerWork& reading) {
+    std::unique_ptr<CityAlignment> alignment;
     if (before_) {
       before_->hand_over_layers(folder_, work_.session.executor);
       load_layers(before_->layers(), work_);
       reading.before = before_->before();
+      if (work_.job.calibration.on && work_.job.calibration.options.poses) {
+        alignment = std::make_unique<CityAlignment>(before_->path(), before_->manifest(),
+                                                    work_.session.executor);
+        reading.before->alignment = alignment.get();
+      }
     }
     if (before_ && reading.common.network_sha256 != work_.common.network_sha256)
       throw Error(ErrorKind::usage, "the points of " + work_.job.add_to.string() +
                                         " have their classes by another network (`network`)");
     sort_points(reading, folder_);
+    if (alignment && alignment->report().groups > 0) result_.alignment = alignment->report();
     if (!before_) work_.common = reading.common;
   }
 
@@ -122,6 +132,7 @@ class CityMaker {
     work_.response = load_response(work_.path(kResponseFile));
     for (const CityTile& tile : before_->manifest().tiles) {
       if (reached_.tiles.contains(tile.key)) continue;
+      ++result_.tiles_kept;
       if (!folder_.has(model_file_of(tile.key))) before_->hand_over_tile(tile, folder_);
     }
   }
@@ -252,6 +263,11 @@ Json to_json(const CityResult& result) {
                {"primitives", result.city.splats()},    {"tiles", result.city.tiles.size()},
                {"tiles_resumed", result.tiles_resumed}, {"tile_m", result.city.grid.side_m},
                {"halo_m", result.city.halo_m}};
+  if (result.fit) {
+    json["tiles_kept"] = result.tiles_kept;
+    json["fit"] = to_json(*result.fit);
+    if (result.alignment) json["alignment"] = to_json(*result.alignment);
+  }
   if (result.segmented) json["segmentation"] = to_json(*result.segmented);
   json["seconds"]["total"] = result.seconds;
   for (const StepTime& step : result.steps) json["seconds"][step.name] = step.seconds;

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "adasplats/city/city_manifest.h"
+#include "adasplats/evaluate/point_fit.h"
 #include "adasplats/pipeline/session/session.h"
+#include "adasplats/recipes/city/city_alignment.h"
 #include "adasplats/recipes/city/city_job.h"
 #include "adasplats/splats/build_model.h"
 
@@ -18,6 +20,9 @@ struct CityResult {
   CityManifest city;
   std::size_t points_read = 0;
   std::size_t tiles_resumed = 0;           ///< an interrupted run had made
+  std::size_t tiles_kept = 0;              ///< of a city that points were added to, as they were
+  std::optional<AlignmentReport> alignment;  ///< of scans that were added
+  std::optional<PointFit> fit;             ///< of points that were added, to that city
   std::optional<SegmentReport> segmented;  ///< where a network gave the points classes
   std::vector<StepTime> steps;
   double seconds = 0;

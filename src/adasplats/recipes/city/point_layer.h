@@ -12,10 +12,10 @@
 #include "adasplats/city/passing_rays.h"
 #include "adasplats/city/tile_points.h"
 #include "adasplats/cloud/labels/label_scheme.h"
-#include "adasplats/neighbors/hilbert.h"
 #include "adasplats/pipeline/model/make_model.h"
 #include "adasplats/pipeline/session/session.h"
 #include "adasplats/recipes/city/city_job.h"
+#include "adasplats/splats/consistent/whole_place.h"
 #include "adasplats/splats/model/splat_model.h"
 
 namespace adasplats {
@@ -28,6 +28,7 @@ namespace adasplats {
 inline constexpr const char* kPointsFile = "points/points.json";    ///< LayerFacts
 inline constexpr const char* kLayerCommonFile = "points/common.ply";  ///< LayerWork::common
 inline constexpr const char* kClassesFile = "points/classes.json";  ///< of points by a network
+inline constexpr const char* kFitFile = "points/fit.json";  ///< of an addition: require_fit()
 
 /// What is known of the points of a layer when all are read.
 struct LayerFacts {
@@ -60,6 +61,8 @@ struct PointLayer {
 /// "layers/0": where the n-th layer is.
 std::string layer_folder(std::size_t number);
 
+class CityAlignment;
+
 /// What new points have in common with those of the city that they are added to.
 struct CityBefore {
   std::filesystem::path city;
@@ -67,7 +70,8 @@ struct CityBefore {
   Crs crs;
   std::string label_scheme;
   std::string attributes;
-  Vec3d place;  ///< somewhere in the city, world coordinates
+  Vec3d place;              ///< somewhere in the city, world coordinates
+  CityAlignment* alignment = nullptr;  ///< lays the scans on the city's splats; null: they stay
 };
 
 /// What the steps that read a layer share. Each fills in what it finds out, or reads what an
