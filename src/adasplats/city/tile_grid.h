@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <compare>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,9 +39,24 @@ struct GroundBox {
   GroundBox grown(double by_m) const {
     return {low_x - by_m, low_y - by_m, high_x + by_m, high_y + by_m};
   }
+  /// The smallest that holds both.
+  GroundBox with(const GroundBox& other) const {
+    return {std::min(low_x, other.low_x), std::min(low_y, other.low_y),
+            std::max(high_x, other.high_x), std::max(high_y, other.high_y)};
+  }
+  /// Whether they have a place in common, be it on their edges.
+  bool touches(const GroundBox& other) const {
+    return low_x <= other.high_x && other.low_x <= high_x && low_y <= other.high_y &&
+           other.low_y <= high_y;
+  }
   /// Whether a straight way from one place to another has a part in it, seen from above.
   bool is_crossed(Vec3d from, Vec3d to) const;
 };
+
+/// Holds nothing: with() gives the other box.
+inline constexpr GroundBox kNoGround = {
+    std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+    -std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 
 /// Square tiles that cover the ground, counted from the world's zero.
 struct TileGrid {

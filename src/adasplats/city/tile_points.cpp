@@ -248,6 +248,17 @@ void TilePointsWriter::write(TileKey tile, const Waiting& waiting) const {
     extend(folder_ / beams_file_of(tile), [&](std::ofstream& out) { put(out, waiting.beams); });
 }
 
+GroundBox TilePointsWriter::box_of_rays(const PointCloud& points) const {
+  GroundBox box = kNoGround;
+  for (const auto* places : {&points.positions, &points.sensor_positions})
+    for (const Vec3f p : *places) {
+      const double x = origin().x + static_cast<double>(p.x);
+      const double y = origin().y + static_cast<double>(p.y);
+      box = box.with({x, y, x, y});
+    }
+  return box;
+}
+
 void TilePointsWriter::write_all() {
   std::vector<std::pair<TileKey, const Waiting*>> files;
   for (const auto& [tile, waiting] : waiting_) {
@@ -255,9 +266,15 @@ void TilePointsWriter::write_all() {
     counts_[tile].points += waiting.points.size();
     counts_[tile].empty_beams += waiting.beams.size();
   }
+  std::vector<GroundBox> rays(files.size());
   executor_.for_chunks(files.size(), 1, [&](std::size_t k, std::size_t) {
     write(files[k].first, *files[k].second);
+    rays[k] = box_of_rays(files[k].second->points);
   });
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    GroundBox& box = counts_[files[k].first].rays;
+    box = box.with(rays[k]);
+  }
   waiting_.clear();
   waiting_points_ = 0;
 }

@@ -38,6 +38,8 @@ std::string beams_file_of(TileKey tile);
 struct TileCount {
   std::size_t points = 0;
   std::size_t empty_beams = 0;
+  /// Holds the points and where they were measured from: what their rays can cross.
+  GroundBox rays = kNoGround;
 };
 
 /// Puts points into the files of their tiles.
@@ -68,6 +70,7 @@ class TilePointsWriter {
     std::vector<EmptyBeam> beams;
   };
   void write(TileKey tile, const Waiting& waiting) const;
+  GroundBox box_of_rays(const PointCloud& points) const;
   void write_all();
 
   std::filesystem::path folder_;

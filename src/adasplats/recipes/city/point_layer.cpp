@@ -19,6 +19,10 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 Json json_of(Vec3f v) { return {v.x, v.y, v.z}; }
+Json json_of(const GroundBox& box) { return {box.low_x, box.low_y, box.high_x, box.high_y}; }
+GroundBox ground_box(const Json& json) {
+  return {json.at(0), json.at(1), json.at(2), json.at(3)};
+}
 Vec3f float_vector(const Json& json) { return {json.at(0), json.at(1), json.at(2)}; }
 
 }  // namespace
@@ -33,7 +37,8 @@ std::string text_of(const LayerFacts& facts) {
                {"attributes", facts.attributes},
                {"tiles", Json::array()}};
   for (const auto& [tile, count] : facts.tiles)
-    json["tiles"].push_back({tile.x, tile.y, count.points, count.empty_beams});
+    json["tiles"].push_back({tile.x, tile.y, count.points, count.empty_beams,
+                             json_of(count.points > 0 ? count.rays : GroundBox{})});
   return json.dump(1) + "\n";
 }
 
@@ -50,7 +55,7 @@ LayerFacts load_facts(const fs::path& file) {
     facts.empty_reach_m = json.at("empty_reach_m");
     facts.attributes = json.at("attributes");
     for (const Json& tile : json.at("tiles"))
-      facts.tiles[{tile.at(0), tile.at(1)}] = {tile.at(2), tile.at(3)};
+      facts.tiles[{tile.at(0), tile.at(1)}] = {tile.at(2), tile.at(3), ground_box(tile.at(4))};
     return facts;
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::data, file.string() + ": damaged: " + error.what());
