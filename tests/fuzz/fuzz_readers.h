@@ -37,6 +37,7 @@ void read_gltf(const Input& input);
 void read_splat_model(const Input& input);
 void read_world(const Input& input);
 void read_city(const Input& input);
+void read_layer_facts(const Input& input);
 void read_level_file(const Input& input);
 void read_network_bytes(const Input& input);
 

@@ -57,6 +57,7 @@ constexpr FuzzTarget kTargets[] = {
     {"splats", "a.ply", "splats/model/splat_model.cpp", &read_splat_model},
     {"world", "a.toml car.ply", "simulate/world/world_file.cpp", &read_world},
     {"city", "city.json", "city/city_manifest.cpp io/base/json_rows.cpp", &read_city},
+    {"city-points", "points.json", "city/layer_facts.cpp", &read_layer_facts},
     {"levels", "a.levels", "levels/level_file.cpp", &read_level_file},
     {"network", "", "segment/network/network.cpp", &read_network_bytes},
     // Drives

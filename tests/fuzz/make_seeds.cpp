@@ -238,6 +238,10 @@ void add_cities(Seeds& seeds) {
              R"("tiles":[{"x":-1,"y":2,"points":9,"splats":2,"sha256":"ab","low_m":[0,0,0],)"
              R"("high_m":[1,2,3]},{"x":0,"y":2,"points":0,"splats":0,"sha256":"cd",)"
              R"("low_m":[0,0,0],"high_m":[0,0,0]}]})"});
+  seeds.add("city-points",
+            {R"({"origin_m":[1,2,0],"low_m":[0,0,0],"high_m":[5,6,7],"points_read":9,"rays":8,)"
+             R"("empty_reach_m":40.5,"attributes":" sensor_positions classes",)"
+             R"("tiles":[[-1,2,9,0,[0,1,2,3]],[0,2,0,4,[0,0,0,0]]]})"});
   LevelTable tree;
   tree.facts = {3, true, true, {0.25F, 0.5F}};
   tree.nodes = {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "adasplats/city/city_manifest.h"
+#include "adasplats/city/layer_facts.h"
 #include "adasplats/levels/level_file.h"
 #include "adasplats/scene/gltf.h"
 #include "adasplats/scene/mesh_model.h"
@@ -50,6 +51,13 @@ void read_city(const Input& input) {
   const CityManifest city = load_city_manifest(input.file.parent_path());
   require(city.grid.side_m > 0, "tiles that have a size");
   require(std::ranges::is_sorted(city.tiles, {}, &CityTile::key), "tiles in their order");
+}
+
+void read_layer_facts(const Input& input) {
+  const LayerFacts facts = load_facts(input.file);
+  require(is_finite(facts.origin), "an origin");
+  for (const auto& [tile, count] : facts.tiles)
+    require(count.points == 0 || count.rays.low_x <= count.rays.high_x, "rays that are somewhere");
 }
 
 void read_level_file(const Input& input) {

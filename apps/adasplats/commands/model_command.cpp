@@ -269,8 +269,8 @@ class ModelCommand final : public Command {
               centimetres(result.alignment->median_shift_m) + " in the median, " +
               centimetres(result.alignment->largest_shift_m) + " at most; ";
     if (fit.parts > 0)
-      text += "new points lie " + centimetres(length(fit.shift_m)) + " beside it, in single tiles " +
-              centimetres(fit.part_shift_m);
+      text += "new points lie " + centimetres(length(fit.shift_m)) +
+              " beside it, in single tiles " + centimetres(fit.part_shift_m);
     else
       text += "they have next to nothing in common";
     return text + "\n";

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "adasplats/city/layer_facts.h"
 #include "adasplats/city/tile_grid.h"
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
@@ -33,14 +34,6 @@ std::string points_file_of(TileKey tile);
 std::string order_file_of(TileKey tile);
 std::string classes_file_of(TileKey tile);
 std::string beams_file_of(TileKey tile);
-
-/// What is known of a tile's points when all are written.
-struct TileCount {
-  std::size_t points = 0;
-  std::size_t empty_beams = 0;
-  /// Holds the points and where they were measured from: what their rays can cross.
-  GroundBox rays = kNoGround;
-};
 
 /// Puts points into the files of their tiles.
 class TilePointsWriter {

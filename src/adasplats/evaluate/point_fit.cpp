@@ -137,13 +137,10 @@ class Unseen {
 
 void add_normals(const FitScene& scene, const FitRays& rays, const Executor& executor,
                  Unseen& unseen) {
-  for_fit_hits(scene, rays, {}, executor,
-               [&](Vec3d, Vec3d normal, double) { unseen.add(normal); });
+  for_fit_hits(scene, rays, {}, executor, [&](Vec3d, Vec3d normal, double) { unseen.add(normal); });
 }
 
-double weight_of(const RegistrationSums& sums) {
-  return static_cast<double>(sums.beams) + 1e-3;
-}
+double weight_of(const RegistrationSums& sums) { return static_cast<double>(sums.beams) + 1e-3; }
 
 /// The shift that all parts have in common.
 Vec3d common_shift(std::span<const FitPart> parts, const Executor& executor) {

@@ -23,8 +23,9 @@ using Json = nlohmann::ordered_json;
 
 /// What may differ between the job that made a city and one that adds to it: what is read, and how
 /// it is corrected.
-constexpr const char* kOfInputs[] = {"inputs",      "input_bytes", "load",  "scans",
-                                     "keep_points", "add_to",      "labels", "network", "most_shift_m"};
+constexpr const char* kOfInputs[] = {"inputs", "input_bytes", "load",
+                                     "scans",  "keep_points", "add_to",
+                                     "labels", "network",     "most_shift_m"};
 
 Json settings_of(const CityJob& job) {
   Json settings = content_of(job);
@@ -71,8 +72,7 @@ void link_or_copy(const fs::path& from, const fs::path& to) {
   std::error_code cannot;
   fs::create_hard_link(from, to, cannot);
   if (cannot) fs::copy_file(from, to, cannot);
-  if (cannot)
-    throw Error(ErrorKind::io, to.string() + ": cannot be written: " + cannot.message());
+  if (cannot) throw Error(ErrorKind::io, to.string() + ": cannot be written: " + cannot.message());
 }
 
 }  // namespace
@@ -100,8 +100,8 @@ CityToExtend::CityToExtend(const CityJob& job)
                                       "model all inputs together");
   const std::string differs = difference_of_runs(*content_, settings_of(job));
   if (!differs.empty())
-    throw Error(ErrorKind::usage, "what is added to " + city_.string() +
-                                      " must be modelled as it was: " + differs);
+    throw Error(ErrorKind::usage,
+                "what is added to " + city_.string() + " must be modelled as it was: " + differs);
 }
 
 CityBefore CityToExtend::before() const {
@@ -123,8 +123,8 @@ void verify_layers(const fs::path& city) {
   const Json content = content_in(city);
   for (const auto& [name, digest] : content["outputs"].items())
     if (name.starts_with("layers/") && Json(sha256_of_file(city / name)) != digest)
-      throw Error(ErrorKind::data, (city / name).string() +
-                                       ": not the file that was written (its SHA-256 differs)");
+      throw Error(ErrorKind::data,
+                  (city / name).string() + ": not the file that was written (its SHA-256 differs)");
 }
 
 Json CityToExtend::content() const {

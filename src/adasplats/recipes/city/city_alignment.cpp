@@ -17,11 +17,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kGroupScans = 10;
-constexpr double kReach_m = 40;             // of rays that are looked at
+constexpr double kReach_m = 40;              // of rays that are looked at
 constexpr std::size_t kRaysAGroup = 20'000;  // at most
-constexpr std::size_t kLeastHits = 1'000;   // that say anything of a group
-constexpr double kLeastHitShare = 0.2;      // of its rays: else most of it is not in the city
-constexpr double kSamePlace_m = 1e-3;       // where a scan is the one that was corrected before
+constexpr std::size_t kLeastHits = 1'000;    // that say anything of a group
+constexpr double kLeastHitShare = 0.2;       // of its rays: else most of it is not in the city
+constexpr double kSamePlace_m = 1e-3;        // where a scan is the one that was corrected before
 
 /// A correction at the place of one scan.
 PoseCorrection correction_at(const TimedPose& pose, const RigidTransform& motion) {
@@ -79,8 +79,8 @@ std::vector<CityAlignment::Group> CityAlignment::groups_in(const PointCloud& clo
     groups[g].rays.sensors.push_back(in_city(cloud.sensor_positions[i]));
   }
   for (Group& group : groups)
-    group.time_s = 0.5 * (cloud.scan_poses[group.first].time_s +
-                          cloud.scan_poses[group.end - 1].time_s);
+    group.time_s =
+        0.5 * (cloud.scan_poses[group.first].time_s + cloud.scan_poses[group.end - 1].time_s);
   return groups;
 }
 
@@ -163,8 +163,7 @@ void CityAlignment::lay_on(PointCloud& cloud) {
     for (std::size_t scan = drive.front().first; scan < drive.back().end; ++scan) {
       const TimedPose& pose = cloud.scan_poses[scan];
       const auto correction = correction_of(pose, drive);
-      found.poses.push_back(correction ? *correction
-                                       : correction_at(pose, RigidTransform{}));
+      found.poses.push_back(correction ? *correction : correction_at(pose, RigidTransform{}));
     }
     for (const Group& group : drive) count(group, cloud.scan_poses[group.first]);
     begin = end;

@@ -58,9 +58,9 @@ class CityAlignment {
   std::filesystem::path city_;
   const CityManifest& manifest_;
   const Executor& executor_;
-  std::vector<std::size_t> tiles_;        ///< of scene_
+  std::vector<std::size_t> tiles_;  ///< of scene_
   std::unique_ptr<FitScene> scene_;
-  std::optional<RigidTransform> last_;    ///< of the last group that had one, world coordinates
+  std::optional<RigidTransform> last_;       ///< of the last group that had one, world coordinates
   std::vector<PoseCorrection> corrections_;  ///< of all scans
   std::vector<double> shifts_m_;
   std::size_t groups_ = 0;

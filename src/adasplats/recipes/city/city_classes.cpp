@@ -88,7 +88,8 @@ std::optional<float> full_intensity_of(const LayerWork& work, ResumableFolder& f
 
 /// Runs the network on squares that no earlier run has done.
 void segment_squares(const std::vector<SquareGroup>& groups, const PointClassifier& classifier,
-                     const SegmentOptions& options, const LayerWork& work, ResumableFolder& folder) {
+                     const SegmentOptions& options, const LayerWork& work,
+                     ResumableFolder& folder) {
   std::vector<SquareGroup> to_do;
   for (const SquareGroup& group : groups)
     if (!folder.has(work.layer.file(squares_file_of(group.tile)))) to_do.push_back(group);
@@ -222,7 +223,8 @@ void write_classes(const std::vector<SquareGroup>& groups, const PointClassifier
 }
 
 bool is_done(const LayerWork& work, const ResumableFolder& folder) {
-  return folder.has(work.layer.file(kClassesFile)) && std::ranges::all_of(work.tiles.tiles, [&](TileKey tile) {
+  return folder.has(work.layer.file(kClassesFile)) &&
+         std::ranges::all_of(work.tiles.tiles, [&](TileKey tile) {
            return folder.has(work.layer.file(classes_file_of(tile)));
          });
 }

@@ -10,8 +10,8 @@ namespace adasplats {
 
 /// Gives the points of all tiles the classes that a network gives the whole place in one cloud,
 /// into a file a tile beside its points (city/tile_points.h); needs the sorted points with their
-/// order. Fills in LayerWork::segmented, and how many rays stay. What an earlier run has done stays.
-/// Errors: data (points farther than 100 km from the city's origin; damaged files), those of
+/// order. Fills in LayerWork::segmented, and how many rays stay. What an earlier run has done
+/// stays. Errors: data (points farther than 100 km from the city's origin; damaged files), those of
 /// PointClassifier::classes_of.
 void give_classes(const PointClassifier& classifier, LayerWork& work, ResumableFolder& folder);
 

@@ -69,7 +69,9 @@ PointFit measure_fit(const CityToExtend& before, const CityWork& work) {
   return fit_of_points(parts, work.session.executor);
 }
 
-std::string metres(double value_m) { return decimal_text(std::round(value_m * 1000) / 1000) + " m"; }
+std::string metres(double value_m) {
+  return decimal_text(std::round(value_m * 1000) / 1000) + " m";
+}
 
 PointFit fit_in(const std::filesystem::path& file) {
   const Json json = Json::parse(read_file(file), nullptr, false);
@@ -104,18 +106,19 @@ PointFit require_fit(const CityToExtend& before, const CityWork& work, Resumable
   if (folder.has(name)) return fit_in(work.path(name));
   const PointFit fit = measure_fit(before, work);
   if (fit.parts == 0) {
-    work.session.progress.warn(
-        "the new points and " + before.path().string() +
-        " have next to nothing in common: whether they fit is not known (" +
-        std::to_string(fit.rays) + " new rays end near its splats)");
+    work.session.progress.warn("the new points and " + before.path().string() +
+                               " have next to nothing in common: whether they fit is not known (" +
+                               std::to_string(fit.rays) + " new rays end near its splats)");
   } else if (std::max(length(fit.shift_m), fit.part_shift_m) > work.job.addition.most_shift_m) {
-    throw Error(ErrorKind::data,
-                "the new points lie beside " + before.path().string() + ": they fit best when all "
-                "are shifted by " + metres(fit.shift_m.x) + ", " + metres(fit.shift_m.y) + ", " +
-                metres(fit.shift_m.z) + ", tiles alone by " + metres(fit.part_shift_m) +
-                " (median of " + std::to_string(fit.parts) + "), and `most_shift` is " +
-                metres(work.job.addition.most_shift_m) +
-                ": both would be modelled side by side; correct their poses");
+    throw Error(ErrorKind::data, "the new points lie beside " + before.path().string() +
+                                     ": they fit best when all "
+                                     "are shifted by " +
+                                     metres(fit.shift_m.x) + ", " + metres(fit.shift_m.y) + ", " +
+                                     metres(fit.shift_m.z) + ", tiles alone by " +
+                                     metres(fit.part_shift_m) + " (median of " +
+                                     std::to_string(fit.parts) + "), and `most_shift` is " +
+                                     metres(work.job.addition.most_shift_m) +
+                                     ": both would be modelled side by side; correct their poses");
   }
   write_file_in_place(work.path(name), to_json(fit).dump(1) + "\n");
   folder.record(name);

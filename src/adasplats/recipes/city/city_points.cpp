@@ -54,10 +54,9 @@ void require_attributes(const CityBefore& before, const std::string& attributes)
 /// Throws data where their labels are of another scheme.
 void require_scheme(const CityBefore& before, const std::string& label_scheme) {
   if (label_scheme != before.label_scheme)
-    throw Error(ErrorKind::data, "the labels of " + before.city.string() +
-                                     " are of the scheme '" + before.label_scheme +
-                                     "', those of the new points of '" + label_scheme +
-                                     "' (`labels`)");
+    throw Error(ErrorKind::data, "the labels of " + before.city.string() + " are of the scheme '" +
+                                     before.label_scheme + "', those of the new points of '" +
+                                     label_scheme + "' (`labels`)");
 }
 
 /// The points to their tiles; fills in facts and what tiles have in common.
@@ -68,7 +67,8 @@ class LayerReader {
         has_labels_(!work.job.segment.on),
         scheme_(scheme_of(work.job)),
         writer_(work.folder(), work.tiles.grid, kBufferedPoints, work.session.executor,
-                work.job.segment.on, work.before ? std::optional(work.before->origin) : std::nullopt) {}
+                work.job.segment.on,
+                work.before ? std::optional(work.before->origin) : std::nullopt) {}
 
   void read() {
     if (scheme_) work_.common.label_scheme = scheme_reference(work_.job.labels, *scheme_);
@@ -87,8 +87,8 @@ class LayerReader {
     facts.empty_reach_m = ranges_.empty_reach_m();
     SplatModel& common = work_.common;
     common.origin = facts.origin;
-    common.calibration = alignment() == nullptr ? read.calibration
-                                                : alignment()->behind(read.calibration);
+    common.calibration =
+        alignment() == nullptr ? read.calibration : alignment()->behind(read.calibration);
     common.method = "consistent";
     work_.calibrated_s = read.calibrated_s;
   }

@@ -82,9 +82,8 @@ PointCloud points_around(TileKey tile, const CityWork& work) {
   for (const TileKey near : tiles_around(tile, work)) {
     for (const PointLayer& layer : work.layers) {
       if (!layer.has_points(near)) continue;
-      read_points_of(near, work.path(layer.folder), work.job, cloud, [&](Vec3f p) {
-        return reach.contains(work.origin() + vec_cast<double>(p));
-      });
+      read_points_of(near, work.path(layer.folder), work.job, cloud,
+                     [&](Vec3f p) { return reach.contains(work.origin() + vec_cast<double>(p)); });
     }
   }
   cloud.crs = work.common.crs;

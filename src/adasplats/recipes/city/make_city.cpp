@@ -228,8 +228,8 @@ class CityMaker {
     std::vector<std::string> files;
     for (const auto& [file, hash] : folder_.recorded()) {
       const bool is_of_layer = file.starts_with("layers/");
-      const bool stays = file.find("/points/") != std::string::npos &&
-                         !file.ends_with(".order") && !file.ends_with(".squares");
+      const bool stays = file.find("/points/") != std::string::npos && !file.ends_with(".order") &&
+                         !file.ends_with(".squares");
       if (is_of_layer && !(keeps_points() && stays)) files.push_back(file);
     }
     return files;

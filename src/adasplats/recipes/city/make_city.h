@@ -19,11 +19,11 @@ namespace adasplats {
 struct CityResult {
   CityManifest city;
   std::size_t points_read = 0;
-  std::size_t tiles_resumed = 0;           ///< an interrupted run had made
-  std::size_t tiles_kept = 0;              ///< of a city that points were added to, as they were
+  std::size_t tiles_resumed = 0;             ///< an interrupted run had made
+  std::size_t tiles_kept = 0;                ///< of a city that points were added to, as they were
   std::optional<AlignmentReport> alignment;  ///< of scans that were added
-  std::optional<PointFit> fit;             ///< of points that were added, to that city
-  std::optional<SegmentReport> segmented;  ///< where a network gave the points classes
+  std::optional<PointFit> fit;               ///< of points that were added, to that city
+  std::optional<SegmentReport> segmented;    ///< where a network gave the points classes
   std::vector<StepTime> steps;
   double seconds = 0;
 };

@@ -5,17 +5,16 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 
+#include "adasplats/city/layer_facts.h"
 #include "adasplats/city/passing_rays.h"
 #include "adasplats/city/tile_points.h"
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/pipeline/model/make_model.h"
 #include "adasplats/pipeline/session/session.h"
 #include "adasplats/recipes/city/city_job.h"
-#include "adasplats/splats/consistent/whole_place.h"
 #include "adasplats/splats/model/splat_model.h"
 
 namespace adasplats {
@@ -25,27 +24,10 @@ namespace adasplats {
 
 // Files of a layer, below its folder; all of them are written before the first tile that needs them
 // is modelled.
-inline constexpr const char* kPointsFile = "points/points.json";    ///< LayerFacts
+inline constexpr const char* kPointsFile = "points/points.json";      ///< LayerFacts
 inline constexpr const char* kLayerCommonFile = "points/common.ply";  ///< LayerWork::common
-inline constexpr const char* kClassesFile = "points/classes.json";  ///< of points by a network
+inline constexpr const char* kClassesFile = "points/classes.json";    ///< of points by a network
 inline constexpr const char* kFitFile = "points/fit.json";  ///< of an addition: require_fit()
-
-/// What is known of the points of a layer when all are read.
-struct LayerFacts {
-  Vec3d origin;  ///< of all clouds and models of the city's tiles, world coordinates
-  CurveBox box;
-  std::size_t points_read = 0;
-  /// Measured ones that stay. Where a network gives the points classes it is 0 in kPointsFile, and
-  /// comes from kClassesFile.
-  std::size_t rays = 0;
-  float empty_reach_m = 0;
-  std::string attributes;  ///< as TilePointsWriter::attributes() says
-  std::map<TileKey, TileCount> tiles;
-};
-
-std::string text_of(const LayerFacts& facts);
-/// Reads kPointsFile. Errors: no_input, data (damaged).
-LayerFacts load_facts(const std::filesystem::path& file);
 
 struct PointLayer {
   std::string folder;  ///< below the city's
@@ -70,7 +52,7 @@ struct CityBefore {
   Crs crs;
   std::string label_scheme;
   std::string attributes;
-  Vec3d place;              ///< somewhere in the city, world coordinates
+  Vec3d place;                         ///< somewhere in the city, world coordinates
   CityAlignment* alignment = nullptr;  ///< lays the scans on the city's splats; null: they stay
 };
 
