@@ -127,6 +127,7 @@ std::shared_ptr<ModelObject> model(py::handle points, const py::kwargs& kwargs) 
   refuse_unused(unused_settings(job.segment), kwargs);
   job.build.recipe = recipe.recipe();
   job.removal_is_asked = kwargs.contains("remove");
+  job.build.trust_origins = job.load.trust_origins;
   const bool in_memory = py::isinstance<PointCloud>(points);
   if (!in_memory) job.inputs = paths_of(points, "points", "a PointCloud, ");
   const auto cloud =

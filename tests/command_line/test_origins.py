@@ -3,7 +3,11 @@
 """Origins that nobody measured are no evidence; those that cannot be are refused."""
 import json
 import math
+import shutil
+import struct
+import tempfile
 import unittest
+from pathlib import Path
 
 from support import ProgramTest, run, tiny_place
 
@@ -48,6 +52,59 @@ class Origins(ProgramTest):
                      says=["viewpoint 40.00,0.00,0.00", "behind others"])
         self.assertFalse((self.folder / "m.ply").exists())
         self.assertEqual(self.model(ring, "--viewpoint", "0,0,0")["origins"]["stated"], 360 * 41)
+
+
+SENSOR_FLOATS = slice(3, 6)  # of a record of the measuring street: x y z, then where the sensor was
+RECORD_BYTES = 36
+
+
+class WrongOrigins(ProgramTest):
+    """The measuring street with sensor positions from which it can be seen, and was not."""
+    QUIET = ("--labels", "semantickitti", "--remove", "none", "--driven-path", "0")
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.place = Path(tempfile.mkdtemp(prefix="adasplats street "))
+        cls.addClassCleanup(shutil.rmtree, cls.place, ignore_errors=True)
+        result = run("synth", "street", "-o", cls.place / "street")
+        assert result.returncode == 0, result.stderr
+        cls.right = cls.place / "street" / "mapping.ply"
+        cls.mirrored = cls.place / "mirrored.ply"
+        header, body = cls.right.read_bytes().split(b"end_header\n", 1)
+        assert header.decode().split().count("property") == 10, header
+        body = bytearray(body)
+        for record in range(0, len(body), RECORD_BYTES):
+            values = list(struct.unpack_from("<6f", body, record))
+            x, y, z = values[SENSOR_FLOATS]
+            values[SENSOR_FLOATS] = [x, -y, z]
+            struct.pack_into("<6f", body, record, *values)
+        cls.mirrored.write_bytes(header + b"end_header\n" + body)
+
+    def test_in_one_piece(self):
+        output = self.folder / "m.ply"
+        self.run_bad(65, "model", self.mirrored, *self.QUIET, "-o", output,
+                     says=["sensor positions are not those of the points", "--trust-origins"])
+        self.assertFalse(output.exists())
+        report = self.report("model", self.right, *self.QUIET, "-o", output)
+        check = report["origin_check"]
+        self.assertGreater(check["contradicted"], 1500)
+        self.assertGreater(check["seeds"], check["contradicted"])
+        self.assertGreater(check["near_rise"], 1.0)
+        self.assertGreater(check["far_rise"], 1.1)
+        trusted = self.report("model", self.mirrored, *self.QUIET, "--trust-origins", "-o",
+                              output)
+        self.assertNotIn("origin_check", trusted)
+
+    def test_in_tiles(self):
+        city = self.folder / "city"
+        self.run_bad(65, "model", self.mirrored, *self.QUIET, "--tile", "64", "-o", city,
+                     says=["sensor positions are not those of the points", "--trust-origins"])
+        self.assertFalse(city.exists())
+        report = self.report("model", self.right, *self.QUIET, "--tile", "64", "-o",
+                             self.folder / "right")
+        self.assertGreater(report["origin_check"]["contradicted"], 1500)
+        self.assertGreater(report["origin_check"]["far_rise"], 1.1)
 
 
 if __name__ == "__main__":

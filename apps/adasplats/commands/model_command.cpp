@@ -16,6 +16,7 @@
 #include "adasplats/recipes/city/make_city.h"
 #include "adasplats/recipes/city/tile_choice.h"
 #include "adasplats/recipes/model_file.h"
+#include "adasplats/splats/consistent/origin_check.h"
 #include "cli/commands.h"
 #include "cli/options/build_options.h"
 #include "cli/options/load_options.h"
@@ -36,6 +37,13 @@ constexpr const char* kModelExamples =
     "  adasplats model a.laz b.laz -o city.ply --viewpoint 652000,6861000,60 --report city.json\n"
     "  adasplats model strips/ -o city --tile 64 --segment --trajectory drive.csv\n"
     "  adasplats model strips/ -o city --tile 64 --plan --trajectory drive.csv > tasks\n";
+
+/// How well the sensor positions explain the points; empty where that cannot be told.
+std::string origins_text(const std::optional<OriginCheck>& check) {
+  if (!check || check->near_rise == 0) return {};
+  return "Sensor positions checked: from beside them rays would go through " +
+         fixed(check->near_rise, 2) + " and " + fixed(check->far_rise, 2) + " times as much\n";
+}
 
 /// What the method itself counts and measures.
 std::string figures_of(const BuildReport& built) {
@@ -159,7 +167,7 @@ class ModelCommand final : public Command {
           " splats from " + grouped(built.points_in) + " points, " + grouped(built.points_dynamic) +
           " of them dynamic and removed" + text_of(built.removed_classes) + "\n" +
           (result.segmented ? segmentation_text(*result.segmented) : "") + figures_of(built) +
-          "\n" +
+          "\n" + (built.consistent ? origins_text(built.consistent->origins) : "") +
           (result.calibrated ? calibration_text(*result.calibrated, result.calibration) : ""));
   }
 
@@ -254,7 +262,8 @@ class ModelCommand final : public Command {
                ? std::string()
                : ", " + grouped(result.tiles_resumed) + " of the tiles made by an earlier run") +
           "\n" + addition_text(result) +
-          (result.segmented ? segmentation_text(*result.segmented) : ""));
+          (result.segmented ? segmentation_text(*result.segmented) : "") +
+          origins_text(result.origins));
   }
 
   /// What became of points that were added to a city.

@@ -212,7 +212,9 @@ void run(const ConsistentOptions& options, const ModelEngine& engine, PointCloud
   report.points_dynamic = report.points_in - report.points_noise - report.points_used;
   if (build.whole != nullptr && report.points_used == 0) return;
   require_points(report.points_used);
-  report.consistent = consistent_disks(steps, has_rays, options, step);
+  ConsistentOptions chosen = options;
+  chosen.trust_origins = options.trust_origins || build.trust_origins || build.whole != nullptr;
+  report.consistent = consistent_disks(steps, has_rays, chosen, step);
   report.ray_checked = report.consistent->checked;
   put_splats(steps.take_splats(), model);
   if (!has_reflectances || model.disks.empty()) return;
@@ -298,6 +300,10 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
         },
         options.recipe);
     clock.end();
+  }
+  if (report.consistent && report.consistent->origins) {
+    const std::string doubt = origin_doubt(*report.consistent->origins);
+    if (!doubt.empty()) progress.warn(doubt);
   }
   report.primitives = model.size();
   return result;

@@ -25,7 +25,10 @@ struct BuildOptions {
   /// Intensities become reflectances with the sensor's response, where points have known beams and
   /// intensities (ReflectancesOn); else they stay as measured.
   bool reflectances = true;
-  /// The cloud is a piece of this place (method consistent alone); nullptr: it is all there is.
+  /// Beams are taken to have started where they are said to, whatever the points say of it.
+  bool trust_origins = false;
+  /// The cloud is a piece of this place (method consistent alone), whose origins were checked;
+  /// nullptr: it is all there is.
   const WholePlace* whole = nullptr;
 };
 
@@ -59,7 +62,7 @@ class ModelEngine;
 /// order, the threads or the machine. Semantic needs `labels` and cloud.classes; dynamic removal
 /// is skipped without them. `engine` does the steps (model_engine.h; nullptr: `executor`'s
 /// threads); engines give the same bytes. Errors: data ("no points"; no labels for `semantic`; an
-/// id that the scheme does not know), usage (options out of range).
+/// id that the scheme does not know; origin_objection()), usage (options out of range).
 std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelScheme* labels,
                                                const BuildOptions& options,
                                                const Executor& executor, ProgressSink& progress,

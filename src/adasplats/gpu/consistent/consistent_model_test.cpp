@@ -19,6 +19,7 @@
 #include "adasplats/gpu/gpu_model.h"
 #include "adasplats/splats/build_model.h"
 #include "adasplats/splats/consistent/consistent_state.h"
+#include "adasplats/splats/consistent/origin_check.h"
 #include "adasplats/splats/consistent/scanned_room_test.h"
 #include "adasplats/splats/model_engine.h"
 
@@ -108,6 +109,16 @@ class SideBySide {
     EXPECT_EQ(count_different(cpu.contradicted, gpu.contradicted), 0U);
   }
 
+  void origins(const ConsistentOptions& options) {
+    const OriginCheck cpu = origin_check(cpu_->check_origins(options));
+    const OriginCheck gpu = origin_check(gpu_->check_origins(options));
+    EXPECT_GT(gpu.seeds, 0U);
+    EXPECT_EQ(cpu.seeds, gpu.seeds);
+    EXPECT_EQ(cpu.contradicted, gpu.contradicted);
+    EXPECT_EQ(cpu.near_rise, gpu.near_rise);
+    EXPECT_EQ(cpu.far_rise, gpu.far_rise);
+  }
+
   /// Gives the number of splats.
   std::size_t finish() {
     const ConsistentSplats cpu = cpu_->take_splats(), gpu = gpu_->take_splats();
@@ -141,6 +152,7 @@ std::size_t compare(const PointCloud& cloud, const ConsistentOptions& options,
   both.step("fuse", [&](auto& steps) { steps.fuse(options); });
   both.step("fit_seeds", [&](auto& steps) { steps.fit_seeds(options); });
   if (checked) {
+    both.origins(options);
     both.step("order_rays", [&](auto& steps) { steps.order_rays(options); });
     both.evidence(options);
     for (int i = 0; i < options.balance_rounds; ++i) {

@@ -181,7 +181,9 @@ std::pair<SplatModel, ModelResult> make_model(const ModelJob& job, Session& sess
     result.loaded = loaded;
     return std::move(cloud);
   };
-  ModelMaker maker(job, job.inputs, load_points, session);
+  ModelOptions options = job;
+  options.build.trust_origins |= job.load.trust_origins;
+  ModelMaker maker(options, job.inputs, load_points, session);
   SplatModel model = maker.run(result);
   result.seconds = total.seconds();
   return {std::move(model), std::move(result)};
@@ -242,6 +244,13 @@ nlohmann::ordered_json to_json(const SegmentReport& segmented) {
   return json;
 }
 
+nlohmann::ordered_json to_json(const OriginCheck& check) {
+  return {{"seeds", check.seeds},
+          {"contradicted", check.contradicted},
+          {"near_rise", check.near_rise},
+          {"far_rise", check.far_rise}};
+}
+
 nlohmann::ordered_json to_json(const ModelResult& result) {
   nlohmann::ordered_json json;
   const BuildReport& built = result.built;
@@ -271,6 +280,7 @@ nlohmann::ordered_json to_json(const ModelResult& result) {
     json["rays"] = built.consistent->rays;
     json["empty_beams"] = built.consistent->empty_beams;
     json["seeds_removed"] = built.consistent->seeds_removed;
+    if (built.consistent->origins) json["origin_check"] = to_json(*built.consistent->origins);
     json["splats_filled"] = built.consistent->splats_filled;
   } else {
     json["radius_m"] = built.radius_m;

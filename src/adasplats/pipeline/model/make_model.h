@@ -137,6 +137,8 @@ void with_model_engine(Session& session, const std::function<void(const ModelEng
 /// Of a model's --report and of `info`.
 nlohmann::ordered_json to_json(const TimedOrigins& timed);
 nlohmann::ordered_json to_json(const SegmentReport& segmented);
+/// Of the --report of models and cities.
+nlohmann::ordered_json to_json(const OriginCheck& check);
 /// The keys of a model's --report.
 nlohmann::ordered_json to_json(const ModelResult& result);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <utility>
 
 #include "adasplats/core/error.h"
@@ -74,13 +75,15 @@ std::vector<TileKey> tiles_around(TileKey tile, const CityWork& work) {
   return work.tiles.touched(work.tiles.reach_of(tile));
 }
 
-PointCloud points_around(TileKey tile, const CityWork& work) {
+namespace {
+
+PointCloud points_of_layers(TileKey tile, std::span<const PointLayer> layers,
+                            const CityWork& work) {
   const GroundBox reach = work.tiles.reach_of(tile);
   PointCloud cloud;
   cloud.origin = work.origin();
-  cloud.crs = work.common.crs;
   for (const TileKey near : tiles_around(tile, work)) {
-    for (const PointLayer& layer : work.layers) {
+    for (const PointLayer& layer : layers) {
       if (!layer.has_points(near)) continue;
       read_points_of(near, work.path(layer.folder), work.job, cloud,
                      [&](Vec3f p) { return reach.contains(work.origin() + vec_cast<double>(p)); });
@@ -88,6 +91,16 @@ PointCloud points_around(TileKey tile, const CityWork& work) {
   }
   cloud.crs = work.common.crs;
   return cloud;
+}
+
+}  // namespace
+
+PointCloud points_around(TileKey tile, const CityWork& work) {
+  return points_of_layers(tile, work.layers, work);
+}
+
+PointCloud points_around(TileKey tile, const PointLayer& layer, const CityWork& work) {
+  return points_of_layers(tile, std::span(&layer, 1), work);
 }
 
 }  // namespace adasplats

@@ -70,5 +70,7 @@ TileKey pilot_tile(const CityWork& work);
 std::vector<TileKey> tiles_around(TileKey tile, const CityWork& work);
 /// The points that a tile is modelled with: its own and those in its halo.
 PointCloud points_around(TileKey tile, const CityWork& work);
+/// Those of one layer.
+PointCloud points_around(TileKey tile, const PointLayer& layer, const CityWork& work);
 
 }  // namespace adasplats

@@ -21,6 +21,7 @@
 #include "adasplats/recipes/city/city_classes.h"
 #include "adasplats/recipes/city/city_fit.h"
 #include "adasplats/recipes/city/city_level_files.h"
+#include "adasplats/recipes/city/city_origins.h"
 #include "adasplats/recipes/city/city_points.h"
 #include "adasplats/recipes/city/city_rays.h"
 #include "adasplats/recipes/city/city_survey.h"
@@ -92,6 +93,7 @@ class CityMaker {
     if (before_) step("fit", [&] { result_.fit = require_fit(*before_, work_, folder_); });
     step("rays", [&] { hand_out(); });
     step("spacing", [&] { survey_spacing(work_, folder_); });
+    step("origin_check", [&] { result_.origins = check_city_origins(work_, folder_); });
     result_.city.tiles = tiles_to_model(work_);
   }
 
@@ -269,6 +271,7 @@ Json to_json(const CityResult& result) {
     if (result.alignment) json["alignment"] = to_json(*result.alignment);
   }
   if (result.segmented) json["segmentation"] = to_json(*result.segmented);
+  if (result.origins) json["origin_check"] = to_json(*result.origins);
   json["seconds"]["total"] = result.seconds;
   for (const StepTime& step : result.steps) json["seconds"][step.name] = step.seconds;
   return json;

@@ -24,6 +24,7 @@ struct CityResult {
   std::optional<AlignmentReport> alignment;  ///< of scans that were added
   std::optional<PointFit> fit;               ///< of points that were added, to that city
   std::optional<SegmentReport> segmented;    ///< where a network gave the points classes
+  std::optional<OriginCheck> origins;        ///< by some tiles; nothing: they were not checked
   std::vector<StepTime> steps;
   double seconds = 0;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <string>
 
 #include "adasplats/core/error.h"
 #include "adasplats/splats/consistent/consistent_steps.h"
@@ -61,6 +62,12 @@ ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
   steps.fit_seeds(options);
   report.cells = steps.counts().cells;
   report.seeds = steps.counts().seeds;
+  if (checked && !options.trust_origins) {
+    begin_step("check of sensor positions", 1 + static_cast<int>(kOriginMoves.size()));
+    report.origins = origin_check(steps.check_origins(options));
+    const std::string objection = origin_objection(*report.origins);
+    if (!objection.empty()) throw Error(ErrorKind::data, objection);
+  }
   if (checked) {
     begin_step("ray check of seeds", options.balance_rounds);
     steps.order_rays(options);

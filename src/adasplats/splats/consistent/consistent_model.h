@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string_view>
 
 #include "adasplats/core/host_device.h"
 #include "adasplats/core/setting.h"
+#include "adasplats/splats/consistent/origin_check.h"
 #include "adasplats/splats/consistent/seed_growth.h"
 #include "adasplats/splats/rays/disk_evidence.h"
 #include "adasplats/splats/rays/disk_shift.h"
@@ -43,9 +45,11 @@ struct ConsistentOptions {
   int settle_rounds = 2;
   SettleOptions settle;
   bool empty_beams = true;  ///< that are known say what is free
-  bool fill = true;         ///< where rays fall between splats, seeds are put back...
-  float missed_m = 0.15F;   ///< ...if there is nothing up to so far behind the rays' ends...
-  float met_m = 0.4F;       ///< ...and so far before them
+  /// Beams are taken to have started where they are said to; else origin_objection() is an error.
+  bool trust_origins = false;
+  bool fill = true;        ///< where rays fall between splats, seeds are put back...
+  float missed_m = 0.15F;  ///< ...if there is nothing up to so far behind the rays' ends...
+  float met_m = 0.4F;      ///< ...and so far before them
 
   double smallest_cell_m() const { return small_cell_m > 0 ? small_cell_m : cell_m; }
   /// Cells are split up to `split_scale`: planes at larger scales than the first that decides need
@@ -114,13 +118,14 @@ void check(const ConsistentOptions& consistent);
 
 /// What consistent_disks() did, in numbers.
 struct ConsistentReport {
-  bool checked = false;           ///< measured rays judged the disks
-  std::size_t cells = 0;          ///< that the points were fused in
-  std::size_t seeds = 0;          ///< of these cells, those with a disk to begin with
-  std::size_t rays = 0;           ///< measured ones, where they judged the disks
-  std::size_t empty_beams = 0;    ///< that did so, too
-  std::size_t seeds_removed = 0;  ///< that more rays contradict than confirm
-  std::size_t splats_filled = 0;  ///< put back where rays fell between disks
+  bool checked = false;                ///< measured rays judged the disks
+  std::optional<OriginCheck> origins;  ///< nothing: they were not checked
+  std::size_t cells = 0;               ///< that the points were fused in
+  std::size_t seeds = 0;               ///< of these cells, those with a disk to begin with
+  std::size_t rays = 0;                ///< measured ones, where they judged the disks
+  std::size_t empty_beams = 0;         ///< that did so, too
+  std::size_t seeds_removed = 0;       ///< that more rays contradict than confirm
+  std::size_t splats_filled = 0;       ///< put back where rays fell between disks
 };
 
 class ConsistentSteps;
@@ -128,7 +133,7 @@ class ConsistentSteps;
 /// Fuses, fits planes, checks, covers, settles what `steps` have loaded. Without known beams
 /// (`has_rays` false) or with no balance rounds the steps with rays are left out. `begin_step`
 /// hears the name of every step and of how many passes (ProgressPass) it
-/// consists.
+/// consists. Errors: data (origin_objection()).
 ConsistentReport consistent_disks(ConsistentSteps& steps, bool has_rays,
                                   const ConsistentOptions& options,
                                   const std::function<void(std::string_view, int)>& begin_step);

@@ -11,6 +11,7 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/scene/intersect.h"
 #include "adasplats/splats/consistent/consistent_model.h"
+#include "adasplats/splats/consistent/origin_check.h"
 #include "adasplats/splats/consistent/whole_place.h"
 #include "adasplats/splats/model/class_tables.h"
 #include "adasplats/splats/reflectance/reflectance.h"
@@ -52,6 +53,9 @@ class ConsistentSteps {
   virtual std::vector<CellSpacing> spacings(const ConsistentOptions& options) = 0;
   /// Splits cells where nothing is flat, fits planes, turns normals to the sensors, makes seeds.
   virtual void fit_seeds(const ConsistentOptions& options) = 0;
+  /// What the measured rays say of where they started, by pieces of the place; needs known beams.
+  /// Changes nothing.
+  virtual std::vector<MovedEvidence> check_origins(const ConsistentOptions& options) = 0;
   /// Orders the measured rays; needs known beams. Those below come after it.
   virtual void order_rays(const ConsistentOptions& options) = 0;
   /// Shrinks and removes seeds that more rays contradict than confirm: one round.

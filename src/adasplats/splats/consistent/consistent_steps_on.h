@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "adasplats/splats/consistent/consistent_state.h"
 #include "adasplats/splats/consistent/consistent_steps.h"
 #include "adasplats/splats/consistent/element_steps.h"
+#include "adasplats/splats/consistent/origin_check.h"
 #include "adasplats/splats/consistent/whole_place.h"
 #include "adasplats/splats/model/canonical_order.h"
 #include "adasplats/splats/reflectance/reflectances_on.h"
@@ -30,6 +32,9 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   std::size_t load(PointCloud cloud, const ClassTables& tables, const WholePlace* whole) override {
     [[maybe_unused]] const auto entered = place_.enter();
     const std::vector<EmptyBeam> empty = std::exchange(cloud.empty_beams, {});
+    const std::size_t beams = cloud.size() + (whole != nullptr ? whole->passing.size() : 0);
+    beams_ = sample_beams(cloud, tables.removed, beams);
+    if (whole != nullptr) append(beams_, sample_beams(whole->passing, {}, beams));
     if (whole != nullptr) {
       whole_ = {whole->typical, whole->rays, whole->response};
       empty_ = place_.load_as_it_is(whole->empty);
@@ -78,6 +83,30 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
         cells_.size(), "make seeds",
         MakeSeed{points(), cells_.view(), typical, options, planes_.data(), seeds_.data()});
     place_.wait("fit planes");
+  }
+
+  std::vector<MovedEvidence> check_origins(const ConsistentOptions& options) override {
+    [[maybe_unused]] const auto entered = place_.enter();
+    const std::size_t every = cells_.size() / kCheckedSeeds + 1;
+    auto seeds = place_.template array<Disk>(cells_.size() / every);
+    place_.for_each(seeds.size(), "choose seeds", ThinSeeds{seeds_.data(), every, seeds.data()});
+    auto cloud = place_.load_as_it_is(beams_);
+    const auto& given = place_.copied(beams_.sensor_positions);
+    const auto rays =
+        place_.rays(cloud, points_of(cloud), options.least_range_m, RayEnds::at_surfaces);
+    const float unit_m = origin_unit_m(beams_);
+    std::vector<MovedEvidence> pieces(kOriginPieces);
+    count_crossed(seeds, rays, [&](std::size_t k) -> CrossedSeeds& { return pieces[k].given; });
+    for (std::size_t m = 0; m < kOriginMoves.size(); ++m) {
+      // Rays read where they start from their cloud.
+      place_.for_each(cloud.size(), "move beams",
+                      MoveOrigin{cloud.positions.data(), given.data(), unit_m * kOriginMoves[m],
+                                 options.least_range_m, cloud.sensor_positions.data()});
+      count_crossed(seeds, rays,
+                    [&](std::size_t k) -> CrossedSeeds& { return pieces[k].moved[m]; });
+    }
+    place_.wait("check where beams started");
+    return pieces;
   }
 
   void order_rays(const ConsistentOptions& options) override {
@@ -217,6 +246,20 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
     if (passing_rays_) rays.push_back(&*passing_rays_);
     return place_.evidence(disks, std::span<const typename Place::Rays* const>(rays), options);
   }
+  /// Counts seeds piece by piece, as they stand along the curve.
+  template <class PieceOf>
+  void count_crossed(const Array<Disk>& seeds, const typename Place::Rays& rays,
+                     const PieceOf& piece_of) const {
+    const std::array all = {&rays};
+    auto counts = place_.evidence(seeds, std::span<const typename Place::Rays* const>(all),
+                                  origin_evidence());
+    for (std::size_t k = 0; k < kOriginPieces; ++k) {
+      const std::size_t first = k * seeds.size() / kOriginPieces;
+      const std::size_t end = (k + 1) * seeds.size() / kOriginPieces;
+      piece_of(k) = place_.template sum<CrossedSeeds>(end - first, "count seeds",
+                                                      CountCrossed{first, counts.view()});
+    }
+  }
   std::size_t rays_of_all() const { return whole_ ? whole_->rays : rays_->size(); }
 
   /// spacing_unit_m() of every cell.
@@ -256,6 +299,7 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   Place place_;
   std::optional<Whole> whole_;
   CurveBox box_;
+  PointCloud beams_;  ///< sample_beams()
   typename Place::Cloud cloud_;
   typename Place::Cloud empty_;    ///< ends_of() empty beams
   typename Place::Cloud passing_;  ///< WholePlace::passing

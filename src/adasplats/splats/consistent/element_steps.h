@@ -8,10 +8,12 @@
 #include "adasplats/core/host_device.h"
 #include "adasplats/scene/intersect.h"
 #include "adasplats/splats/consistent/consistent_model.h"
+#include "adasplats/splats/consistent/origin_check.h"
 #include "adasplats/splats/consistent/seed_disk.h"
 #include "adasplats/splats/consistent/seed_growth.h"
 #include "adasplats/splats/rays/disk_evidence.h"
 #include "adasplats/splats/rays/disk_shift.h"
+#include "adasplats/splats/rays/measured_ray.h"
 #include "adasplats/surface/fused_points.h"
 #include "adasplats/surface/plane_fit.h"
 
@@ -60,6 +62,46 @@ struct MakeSeed {
     const double largest_m = largest_seed_m(points, members, typical, options);
     const auto spacing_m = static_cast<double>(plane.spacing_m);
     seeds[cell] = {plane.center, seed_radius(spacing_m, largest_m, options), plane.normal};
+  }
+};
+
+/// Every n-th seed.
+struct ThinSeeds {
+  const Disk* seeds;
+  std::size_t every;
+  Disk* some;
+
+  ADASPLATS_HD void operator()(std::size_t i) const { some[i] = seeds[i * every]; }
+};
+
+/// Moves where a beam started; a beam of no length stays.
+struct MoveOrigin {
+  const Vec3f* points;
+  const Vec3f* given;
+  Vec3f move_m;
+  double least_range_m;
+  Vec3f* origins;
+
+  ADASPLATS_HD void operator()(std::size_t i) const {
+    const Vec3f moved = given[i] + move_m;
+    origins[i] = has_measured_ray(moved, points[i], least_range_m) ? moved : given[i];
+  }
+};
+
+/// Counts seeds, from one of them on, by what the rays that cross them say.
+struct CountCrossed {
+  std::size_t first;
+  EvidenceView evidence;
+
+  ADASPLATS_HD void operator()(std::size_t i, CrossedSeeds& sums) const {
+    const DiskEvidence own = evidence.of(first + i);
+    std::uint64_t yes = 0, no = 0;
+    for (std::size_t bin = 0; bin < EvidenceView::kBins; ++bin) {
+      yes += own.confirmed[bin];
+      no += own.contradicted[bin];
+    }
+    sums.crossed += yes + no > 0 ? 1 : 0;
+    sums.contradicted += no > yes ? 1 : 0;
   }
 };
 

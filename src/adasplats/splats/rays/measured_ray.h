@@ -58,9 +58,8 @@ ADASPLATS_HD inline std::uint32_t place_key(Vec3f sensor) {
 /// Rays are in so many parts of about one size each, which can be cast by turns.
 inline constexpr std::uint32_t kRayParts = 4;
 
-/// Which part a ray is in: says nothing of where it is, and depends on the ray alone, so that a
-/// piece of a place has its rays in the parts in which the whole has them.
-ADASPLATS_HD inline std::uint32_t ray_part(Vec3f sensor, Vec3f point) {
+/// Says nothing of where a ray is, and depends on the ray alone.
+ADASPLATS_HD inline std::uint32_t ray_hash(Vec3f sensor, Vec3f point) {
   std::uint32_t hash = 2166136261U;
   for (int axis = 0; axis < 3; ++axis) {
     hash = (hash ^ std::bit_cast<std::uint32_t>(sensor[axis])) * 16777619U;
@@ -70,7 +69,13 @@ ADASPLATS_HD inline std::uint32_t ray_part(Vec3f sensor, Vec3f point) {
   hash *= 0x85ebca6bU;  // the last steps of MurmurHash3: every bit decides
   hash ^= hash >> 13;
   hash *= 0xc2b2ae35U;
-  return hash >> 30;
+  return hash;
+}
+
+/// Which part a ray is in; a piece of a place has its rays in the parts in which the whole has
+/// them.
+ADASPLATS_HD inline std::uint32_t ray_part(Vec3f sensor, Vec3f point) {
+  return ray_hash(sensor, point) >> 30;
 }
 static_assert(kRayParts == 4);
 
