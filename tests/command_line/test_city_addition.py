@@ -69,7 +69,7 @@ class CityAddition(ProgramTest):
                 self.assertEqual((self.both / file).read_bytes(), (self.first / file).read_bytes())
             elif key in old:
                 self.assertNotEqual(tile["sha256"], old[key]["sha256"])
-        self.assertEqual(report["tiles_kept"], kept)
+        self.assertEqual((report["tiles_kept"], report["tiles_resumed"]), (kept, 0))
         self.assertGreater(kept, 1)
         self.assertEqual(report["points"], 2 * len(self.new_points))
         self.assertLess(report["fit"]["tile_shift_m"], 0.02)
@@ -172,6 +172,9 @@ class CityAddition(ProgramTest):
         for code, words, says in [
                 (64, self.addition(to=without), ["without", "--keep-points"]),
                 (64, self.addition("--tile", "7"), ["first", "tile_m", "7"]),
+                (64, self.addition("--tile", "0"), ["--add-to", "--tile 0"]),
+                (64, self.model(self.new, self.both, "--tile", TILE, "--most-shift", "1"),
+                 ["--most-shift", "--add-to"]),
                 (64, self.addition("--cell", "0.07"), ["first", "cell_m", "0.07"]),
                 (64, self.addition("--remove", "none"), ["first", "remove"]),
                 (64, self.addition("--no-reflectance"), ["first", "reflectances"]),

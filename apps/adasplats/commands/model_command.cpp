@@ -136,6 +136,10 @@ class ModelCommand final : public Command {
     job_.removal_is_asked = is_given("--remove");
     // OptiX casts rays; models are made with CUDA alone.
     if (session.device.kind == DeviceKind::optix) session.device.kind = DeviceKind::cuda;
+    if (job_.add_to.empty())
+      refuse({"--most-shift"}, "without --add-to");
+    else if (is_given("--tile") && job_.tiles.tile_m == 0)
+      refuse({"--add-to"}, "with --tile 0");
     if (!job_.add_to.empty())
       take_tiles_of_city();
     else if (!is_given("--tile") && !only_tile_)

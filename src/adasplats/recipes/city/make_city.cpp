@@ -182,7 +182,7 @@ class CityMaker {
     if (!is_made(tile.key)) return false;
     set_splats(load_model(work_.path(model_file_of(tile.key))), tile);
     tile.sha256 = folder_.recorded().at(model_file_of(tile.key));
-    ++result_.tiles_resumed;
+    if (reached_.tiles.contains(tile.key)) ++result_.tiles_resumed;
     return true;
   }
 
