@@ -188,7 +188,12 @@ class City(ProgramTest):
         self.run_bad(66, "model", self.folder / "none.las", "--memory", "1", "-o", self.city,
                      says=["none.las"])
         # It does not.
-        memory = ["--memory", f"{0.6 * needed_gb:.6f}"]
+        for text in ["8X", "G", "8 G", "8GiB", ""]:
+            self.run_bad(64, *command, f"--memory={text}", "-o", self.city,
+                         says=["--memory", "8, 8G or 500M"])
+        self.run_bad(64, *command, "--memory", "-1G", "-o", self.city,
+                     says=["--memory", "-1G"])
+        memory = ["--memory", f"{600 * needed_gb:.3f}MB"]
         self.run_bad(64, *command, *memory, "-o", self.folder / "city.ply",
                      says=["of --memory", "name a folder", "--tile 0"])
         self.run_warned("modelled in tiles of 64 m", *command, *memory, "-o", self.city)

@@ -91,7 +91,9 @@ class ModelCommand final : public Command {
                    {".ply", ""}));
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier city");
     add_settings(app, job_.tiles);
-    add_settings(app, job_.memory);
+    visit_settings(job_.memory, [&app](const Setting& setting, double& value) {
+      add_memory(app, setting, value)->group(setting.group);
+    });
     app.add_flag("--keep-points", job_.keep_points,
                  "With --tile: leave the points in the city's folder, so that others can be added")
         ->group("Cities");

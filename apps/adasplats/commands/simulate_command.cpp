@@ -63,12 +63,14 @@ class SimulateCommand final : public Command {
         app, "--point-order", job_.point_order, choices_of<PointOrder>(kPointOrders),
         "Of trees of data sets: as the data set's own files (KITTI's: ring by ring, "
         "counter-clockwise from straight ahead), or as fired");
-    app.add_option(
-           "--tile-memory", job_.tile_memory_gb,
-           "Of a city's tiles that are kept at a time along a trajectory, GB; without it 1, "
-           "on a GPU 6")
-        ->type_name("GB")
-        ->in_range({.name = "tile-memory", .least = 0, .above_least = true});
+    add_memory(app,
+               {.name = "tile_memory",
+                .help = "Of a city's tiles that are kept at a time along a trajectory, GB, or with "
+                        "a unit: 500M; without it 1, on a GPU 6",
+                .value = "GB",
+                .least = 0,
+                .above_least = true},
+               job_.tile_memory_gb);
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
     constexpr int kMostScans = 1'000'000'000;
     app.add_option(

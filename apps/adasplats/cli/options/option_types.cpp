@@ -156,25 +156,44 @@ Option* add_places(OptionSet& app, const std::string& name, std::vector<SensorPl
       ->repeatable();
 }
 
-Option* add_length(OptionSet& app, const Setting& setting, double& target) {
-  const auto take = [&target, setting](const std::string& text) {
-    constexpr std::pair<std::string_view, double> kUnits[] = {{"km", 1000}, {"m", 1}, {"", 1}};
-    for (const auto& [unit, metres] : kUnits) {
-      if (!text.ends_with(unit)) continue;
+namespace {
+
+/// What a number can end with, and how much one of it is; longer endings before those that they end
+/// with.
+using Units = std::span<const std::pair<std::string_view, double>>;
+
+/// A number with one of the units, or without.
+Option* add_with_unit(OptionSet& app, const Setting& setting, double& target, Units units,
+                      const std::string& unit, const std::string& examples) {
+  const auto take = [&target, setting, units, unit, examples](const std::string& text) {
+    for (const auto& [ending, size] : units) {
+      if (!text.ends_with(ending)) continue;
       double number = 0;
-      if (!parse_whole(text.substr(0, text.size() - unit.size()), number)) break;
-      if (!is_in_range(setting, number * metres))
+      if (!parse_whole(text.substr(0, text.size() - ending.size()), number)) break;
+      if (!is_in_range(setting, number * size))
         refuse_value(option_of(setting),
-                     "expected " + range_text(setting) + " (m), found '" + text + "'");
-      target = number * metres;
+                     "expected " + range_text(setting) + " (" + unit + "), found '" + text + "'");
+      target = number * size;
       return;
     }
-    refuse_value(option_of(setting),
-                 "expected a length as 500, 500m or 10km, found '" + text + "'");
+    refuse_value(option_of(setting), "expected " + examples + ", found '" + text + "'");
   };
   return app.add_option_function<std::string>(option_of(setting), take, setting.help)
-      ->type_name(setting.value)
+      ->type_name(setting.value);
+}
+
+}  // namespace
+
+Option* add_length(OptionSet& app, const Setting& setting, double& target) {
+  static constexpr std::pair<std::string_view, double> kUnits[] = {{"km", 1000}, {"m", 1}, {"", 1}};
+  return add_with_unit(app, setting, target, kUnits, "m", "a length as 500, 500m or 10km")
       ->default_str(short_number(target));
+}
+
+Option* add_memory(OptionSet& app, const Setting& setting, double& target) {
+  static constexpr std::pair<std::string_view, double> kUnits[] = {
+      {"GB", 1}, {"G", 1}, {"MB", 1e-3}, {"M", 1e-3}, {"", 1}};
+  return add_with_unit(app, setting, target, kUnits, "GB", "an amount as 8, 8G or 500M");
 }
 
 Option* add_corners(OptionSet& app, const std::string& name, std::vector<PathCorner>& target,

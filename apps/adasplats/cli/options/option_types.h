@@ -45,6 +45,8 @@ Option* add_scale(OptionSet& app, const std::string& name, GroupScale& target,
                   const std::string& help);
 /// A length in metres, or with its unit: "500", "500m", "10km".
 Option* add_length(OptionSet& app, const Setting& setting, double& target);
+/// Memory in GB (10^9 bytes), or with its unit: "8", "8G", "8GB", "500M", "500MB".
+Option* add_memory(OptionSet& app, const Setting& setting, double& target);
 /// --picture-width, pixels of a picture of 16:9.
 Option* add_picture_width(OptionSet& app, int& width);
 /// A flag with its opposite: names as "--denoise,!--no-denoise".

@@ -47,8 +47,9 @@ struct MemoryChoice {
 template <class Visit>
 void visit_settings(MemoryChoice& choice, Visit&& visit) {
   visit(Setting{.name = "memory",
-                .help = "Memory that modelling may take, GB: what needs more is modelled in tiles "
-                        "that fit (default: three quarters of what there is)",
+                .help =
+                    "Memory that modelling may take, GB, or with a unit (8G, 500M): what needs "
+                    "more is modelled in tiles that fit (default: three quarters of what there is)",
                 .value = "GB",
                 .key = "memory_gb",
                 .group = "Cities",
