@@ -20,7 +20,7 @@ constexpr std::uint64_t kEnoughOfPart = 1000, kEnough = 1500;
 // OriginCheck::near_rise and far_rise: no right place has less than the first, few have less than
 // the second (docs/fidelity.md).
 constexpr double kLeastNear = 0.96, kDoubtedNear = 1.03;
-constexpr double kLeastFar = 0.96, kDoubtedFar = 1.08;
+constexpr double kLeastFar = 0.97, kDoubtedFar = 1.08;
 
 /// Pieces with enough contradicted seeds each, of pieces that are joined with those behind them.
 std::vector<MovedEvidence> parts_of(std::span<const MovedEvidence> pieces) {
