@@ -34,6 +34,7 @@ std::vector<std::size_t> tiles_in_common(const CityManifest& city, const PointLa
   }
   if (common.size() <= kTiles) return common;
   std::vector<std::size_t> some;
+  some.reserve(kTiles);
   for (std::size_t k = 0; k < kTiles; ++k) some.push_back(common[k * common.size() / kTiles]);
   return some;
 }
@@ -65,6 +66,7 @@ PointFit measure_fit(const CityToExtend& before, const CityWork& work) {
   const CityManifest& city = before.manifest();
   const std::vector<std::size_t> tiles = tiles_in_common(city, work.layers.back());
   std::vector<FitPart> parts;
+  parts.reserve(tiles.size());
   for (const std::size_t tile : tiles) parts.push_back(part_of(tile, city, before, work));
   return fit_of_points(parts, work.session.executor);
 }
