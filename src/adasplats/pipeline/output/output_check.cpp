@@ -52,13 +52,12 @@ void require_ending(const fs::path& file, std::span<const std::string> endings) 
   const std::string ending = lower_case(file.extension().string());
   if (std::ranges::find(endings, ending) != endings.end()) return;
   std::string possible;
-  for (std::size_t i = 0; i < endings.size(); ++i)
-    possible += (i == 0                   ? ""
-                 : i + 1 < endings.size() ? ", "
-                                          : " or ") +
-                (endings[i].empty() ? "have no ending (a folder)" : "end with " + endings[i]);
-  throw Error(ErrorKind::usage,
-              file.string() + ": its name must " + possible + ", as that is what is written");
+  for (std::size_t i = 0; i < endings.size(); ++i) {
+    possible += i == 0 ? "" : i + 1 < endings.size() ? ", " : " or ";
+    possible += endings[i].empty() ? "have no ending (a folder)" : endings[i];
+  }
+  throw Error(ErrorKind::usage, file.string() + ": its name must end with " + possible +
+                                    ", as that is what is written");
 }
 
 void require_ending(const fs::path& file, const std::string& ending) {
