@@ -149,7 +149,11 @@ class CityAddition(ProgramTest):
             write_cloud(cloud, moved(self.new_points, **shift))
             self.run_bad(65, *self.addition(new=cloud), says=["first", "--most-shift", "0.1 m"])
             self.assertFalse(self.both.exists())
-            shutil.rmtree(self.unfinished)
+            self.assertFalse(self.unfinished.exists())
+        # The same command takes what was mended, and not what it read before.
+        write_cloud(self.folder / "aside.ply", self.new_points)
+        self.run_good(*self.addition(new=self.folder / "aside.ply"))
+        shutil.rmtree(self.both)
         high = self.folder / "high.ply"
         report = self.report(*self.addition("--most-shift", "0.5", new=high))
         self.assertAlmostEqual(report["fit"]["shift_m"][2], -0.3, delta=0.01)

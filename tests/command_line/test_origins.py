@@ -101,6 +101,7 @@ class WrongOrigins(ProgramTest):
         self.run_bad(65, "model", self.mirrored, *self.QUIET, "--tile", "64", "-o", city,
                      says=["sensor positions are not those of the points", "--trust-origins"])
         self.assertFalse(city.exists())
+        self.assertFalse((self.folder / ".city.unfinished").exists())
         report = self.report("model", self.right, *self.QUIET, "--tile", "64", "-o",
                              self.folder / "right")
         self.assertGreater(report["origin_check"]["contradicted"], 1500)

@@ -278,7 +278,7 @@ class ModelCommand final : public Command {
     const PointFit& fit = *result.fit;
     std::string text = grouped(result.tiles_kept) + " tiles as they were in " +
                        job_.add_to.string() + ", the others modelled again; ";
-    if (result.alignment)
+    if (result.alignment && result.alignment->aligned > 0)
       text += grouped(result.alignment->aligned) + " of " + grouped(result.alignment->groups) +
               " groups of ten scans laid on it, shifted by " +
               centimetres(result.alignment->median_shift_m) + " in the median, " +

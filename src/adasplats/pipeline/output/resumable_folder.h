@@ -45,6 +45,8 @@ class ResumableFolder {
   /// Records a file that a task made (FolderTask::record); false where none did, or it is not as
   /// the task noted.
   bool take(const std::string& file);
+  /// Leaves nothing for another process: what was made is of no use.
+  void discard() { recorded_.clear(); }
   /// SHA-256 of what was recorded, by name.
   const std::map<std::string, std::string>& recorded() const { return recorded_; }
 

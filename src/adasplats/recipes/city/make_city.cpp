@@ -80,6 +80,17 @@ class CityMaker {
     result_.steps.push_back({name, watch.seconds()});
   }
 
+  /// Points that are refused are not kept for the next run: it is to read those that were mended.
+  template <class Judge>
+  void judge(const Judge& judge_points) {
+    try {
+      judge_points();
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::data) folder_.discard();
+      throw;
+    }
+  }
+
   /// All that comes before the tiles.
   void prepare() {
     LayerWork reading(work_.job, work_.session, folder_.path(), before_ ? before_->layers() : 0);
@@ -90,10 +101,12 @@ class CityMaker {
     result_.points_read = reading.layer.facts.points_read;
     result_.segmented = reading.segmented;
     work_.add(std::move(reading.layer));
-    if (before_) step("fit", [&] { result_.fit = require_fit(*before_, work_, folder_); });
+    if (before_)
+      step("fit", [&] { judge([&] { result_.fit = require_fit(*before_, work_, folder_); }); });
     step("rays", [&] { hand_out(); });
     step("spacing", [&] { survey_spacing(work_, folder_); });
-    step("origin_check", [&] { result_.origins = check_city_origins(work_, folder_); });
+    step("origin_check",
+         [&] { judge([&] { result_.origins = check_city_origins(work_, folder_); }); });
     result_.city.tiles = tiles_to_model(work_);
   }
 
