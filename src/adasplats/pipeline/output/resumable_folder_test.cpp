@@ -70,6 +70,20 @@ TEST(ResumableFolder, GoesOnWhereItStopped) {
 }
 
 // Oracle: what is recorded by reading the file.
+TEST(ResumableFolder, WhatIsDiscardedIsMadeAnew) {
+  const TemporaryFolder folder;
+  const fs::path output = folder.path() / "out";
+  attempt(output, 2);
+  {
+    ResumableFolder again(output, false, "test", kContent);
+    EXPECT_TRUE(again.has("part/1"));
+    again.discard();
+    EXPECT_FALSE(again.has("part/1"));
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+  EXPECT_EQ(attempt(output, 9).size(), 4U);
+}
+
 TEST(ResumableFolder, KnownDigestsAreRecordedAsTheyAre) {
   const TemporaryFolder folder;
   {
