@@ -22,8 +22,8 @@
 #include "adasplats/core/maths/random.h"
 #include "adasplats/evaluate/cloud_metrics.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/neighbors/hilbert.h"
-#include "adasplats/pipeline/provenance/provenance.h"
 
 namespace {
 

@@ -20,11 +20,11 @@
 #include "adasplats/core/memory.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/sha256.h"
-#include "adasplats/pipeline/provenance/provenance.h"
-#include "adasplats/pipeline/scene/city_scene.h"
-#include "adasplats/pipeline/scene/drive.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/scene/scan_simulator.h"
+#include "adasplats/jobs/provenance/provenance.h"
+#include "adasplats/jobs/scene/city_scene.h"
+#include "adasplats/jobs/scene/drive.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/scene/scan_simulator.h"
 
 namespace {
 

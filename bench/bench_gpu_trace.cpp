@@ -18,7 +18,7 @@
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/gpu/simulate/gpu_scene.h"
-#include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/simulate/scan/scan.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/trace/tracer.h"

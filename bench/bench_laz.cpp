@@ -34,7 +34,7 @@
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/io/las/laz_layout.h"
 #include "adasplats/io/laz/packed_chunk.h"
-#include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/jobs/provenance/provenance.h"
 
 namespace adasplats {
 namespace {

@@ -28,7 +28,7 @@
 #include "adasplats/core/memory.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/jobs/provenance/provenance.h"
 
 namespace adasplats {
 

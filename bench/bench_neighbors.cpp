@@ -14,8 +14,8 @@
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/neighbors/point_index.h"
-#include "adasplats/pipeline/provenance/provenance.h"
 
 namespace {
 

@@ -17,9 +17,9 @@
 #include "adasplats/core/maths/median.h"
 #include "adasplats/gpu/simulate/gpu_scene.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/provenance/provenance.h"
-#include "adasplats/pipeline/session/device_choice.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/provenance/provenance.h"
+#include "adasplats/jobs/session/device_choice.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "adasplats/splats/model/splat_model.h"
 
 namespace adasplats {

@@ -22,10 +22,10 @@
 
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/pipeline/provenance/provenance.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/scene/scan_simulator.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/provenance/provenance.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/scene/scan_simulator.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace {
 

@@ -17,9 +17,9 @@
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/scene/scan_simulator.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/scene/scan_simulator.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

@@ -23,7 +23,7 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/trace/embree.h"

@@ -21,8 +21,8 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/core/maths/random.h"
 #include "adasplats/io/base/atomic_file.h"
+#include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/levels/level_tree.h"
-#include "adasplats/pipeline/provenance/provenance.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/view/scan_packet.h"
 

@@ -18,7 +18,7 @@
 
 #include "adasplats/core/maths/random.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/simulate/world/world.h"
 
 namespace adasplats {

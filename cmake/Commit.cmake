@@ -5,7 +5,7 @@
 # the programs are linked again, only where the answer changed. Outside of a clone the environment
 # variable or cache entry ADASPLATS_COMMIT tells the commit, or a file COMMIT beside the sources.
 #
-# Included by the project it adds the source to the stage "pipeline"; as a script (cmake -D... -P) it
+# Included by the project it adds the source to the stage "jobs"; as a script (cmake -D... -P) it
 # writes the source.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
   set(ADASPLATS_COMMIT "" CACHE STRING "The commit, where the sources are no clone")
@@ -19,8 +19,8 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
             ${CMAKE_CURRENT_LIST_DIR}/Commit.cmake
     BYPRODUCTS ${commit_source}
     COMMENT "Looking up the commit" VERBATIM)
-  target_sources(adasplats_pipeline PRIVATE ${commit_source})
-  add_dependencies(adasplats_pipeline adasplats_commit)
+  target_sources(adasplats_jobs PRIVATE ${commit_source})
+  add_dependencies(adasplats_jobs adasplats_commit)
   return()
 endif()
 
@@ -64,7 +64,7 @@ if(NOT commit MATCHES "^[0-9A-Za-z._-]+$")
   message(FATAL_ERROR "ADASPLATS_COMMIT: '${commit}' is no commit: letters, digits, '.', '_', '-'")
 endif()
 set(text "// Written by cmake/Commit.cmake.
-#include \"adasplats/pipeline/provenance/build_commit.h\"
+#include \"adasplats/jobs/provenance/build_commit.h\"
 
 const char* const adasplats::kBuildCommit = \"${commit}\";
 const char* const adasplats::kBuildState = \"${state}\";

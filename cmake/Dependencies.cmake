@@ -34,7 +34,7 @@ foreach(library ZSTD LZ4 BZip2 SQLite3)
   endif()
 endforeach()
 
-# Films (stage recipes).
+# Films (stage jobs).
 find_package(WebP QUIET MODULE)
 set(missing "")
 if(WebP_FOUND)

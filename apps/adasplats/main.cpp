@@ -13,7 +13,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/setting.h"
-#include "adasplats/pipeline/output/output_folder.h"
+#include "adasplats/jobs/output/output_folder.h"
 #include "cli/commands.h"
 #include "cli/help_text.h"
 #include "cli/interrupt.h"

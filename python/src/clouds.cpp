@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "adasplats/pipeline/output/output_check.h"
+#include "adasplats/jobs/output/output_check.h"
 #include "bindings.h"
 #include "crs.h"
 #include "pickles.h"

@@ -8,7 +8,7 @@
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/cloud/points/point_cloud.h"
-#include "adasplats/pipeline/session/scan_range.h"
+#include "adasplats/jobs/session/scan_range.h"
 #include "arrays.h"
 #include "keywords.h"
 

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "adasplats/pipeline/output/output_check.h"
+#include "adasplats/jobs/output/output_check.h"
 #include "adasplats/scene/mesh_model.h"
 #include "bindings.h"
 #include "clouds.h"

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/city/city_manifest.h"
-#include "adasplats/pipeline/model/make_model.h"
-#include "adasplats/pipeline/model/unused_settings.h"
-#include "adasplats/pipeline/output/output_check.h"
+#include "adasplats/jobs/model/make_model.h"
+#include "adasplats/jobs/model/unused_settings.h"
+#include "adasplats/jobs/output/output_check.h"
 #include "clouds.h"
 #include "crs.h"
 #include "json.h"

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/scene/placed_poses.h"
+#include "adasplats/jobs/scene/placed_poses.h"
 
 #include <cmath>
 
-#include "adasplats/pipeline/scene/drive.h"
+#include "adasplats/jobs/scene/drive.h"
 #include "scenes.h"
 #include "trajectories.h"
 

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
-#include "adasplats/recipes/calibrate_drive.h"
-#include "adasplats/recipes/compare/compare.h"
-#include "adasplats/recipes/export.h"
-#include "adasplats/recipes/make_mesh.h"
-#include "adasplats/recipes/simkitti32.h"
-#include "adasplats/recipes/unit_files.h"
+#include "adasplats/jobs/calibrate_drive.h"
+#include "adasplats/jobs/compare/compare.h"
+#include "adasplats/jobs/export.h"
+#include "adasplats/jobs/make_mesh.h"
+#include "adasplats/jobs/simkitti32.h"
+#include "adasplats/jobs/unit_files.h"
 #include "bindings.h"
 #include "clouds.h"
 #include "json.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/scene/view_choice.h"
+#include "adasplats/jobs/scene/view_choice.h"
 #include "clouds.h"
 #include "scenes.h"
 

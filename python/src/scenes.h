@@ -9,8 +9,8 @@
 #include <mutex>
 
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/scene/scan_simulator.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/scene/scan_simulator.h"
 #include "bindings.h"
 #include "work.h"
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "adasplats/recipes/synth_street.h"
+#include "adasplats/jobs/synth_street.h"
 #include "bindings.h"
 #include "clouds.h"
 #include "json.h"

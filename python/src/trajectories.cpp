@@ -4,8 +4,8 @@
 
 #include <pybind11/stl.h>
 
-#include "adasplats/pipeline/output/output_check.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/output/output_check.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "bindings.h"
 #include "clouds.h"
 #include "pickles.h"

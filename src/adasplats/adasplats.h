@@ -8,7 +8,7 @@
 /// ScanSimulator, write_scan_ply() and make_scan_writer(), evaluate_clouds() and its like, and an
 /// OwnSession to do it with. The command line and Python are made of the same functions. To be
 /// included by name: meshes of other methods (baselines/), whole pieces of work with files in and
-/// files out (recipes/), the viewer's server (view/). The library itself includes what it needs.
+/// files out (jobs/), the viewer's server (view/). The library itself includes what it needs.
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/cloud/points/point_cloud.h"
@@ -16,17 +16,17 @@
 #include "adasplats/core/error.h"
 #include "adasplats/dataset/scan_files.h"
 #include "adasplats/dataset/scan_writer.h"
-#include "adasplats/pipeline/evaluate/evaluate_clouds.h"
-#include "adasplats/pipeline/evaluate/evaluate_echoes.h"
-#include "adasplats/pipeline/evaluate/evaluate_labels.h"
-#include "adasplats/pipeline/evaluate/evaluate_presence.h"
-#include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
-#include "adasplats/pipeline/evaluate/evaluate_segmentation.h"
-#include "adasplats/pipeline/evaluate/evaluate_truth.h"
-#include "adasplats/pipeline/model/make_model.h"
-#include "adasplats/pipeline/scene/drive.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/scene/scan_simulator.h"
-#include "adasplats/pipeline/session/own_session.h"
+#include "adasplats/jobs/evaluate/evaluate_clouds.h"
+#include "adasplats/jobs/evaluate/evaluate_echoes.h"
+#include "adasplats/jobs/evaluate/evaluate_labels.h"
+#include "adasplats/jobs/evaluate/evaluate_presence.h"
+#include "adasplats/jobs/evaluate/evaluate_resimulation.h"
+#include "adasplats/jobs/evaluate/evaluate_segmentation.h"
+#include "adasplats/jobs/evaluate/evaluate_truth.h"
+#include "adasplats/jobs/model/make_model.h"
+#include "adasplats/jobs/scene/drive.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/scene/scan_simulator.h"
+#include "adasplats/jobs/session/own_session.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/splats/model/splat_model.h"

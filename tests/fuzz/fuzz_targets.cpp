@@ -94,7 +94,7 @@ constexpr FuzzTarget kTargets[] = {
      &read_lidar_file},
     {"ray-drop", "a.toml", "sensors/ray_drop_file.cpp", &read_ray_drop},
     {"labels", "a.toml", "cloud/labels/label_scheme_file.cpp", &read_labels},
-    {"class-map", "a.txt", "recipes/segment/output_classes.cpp", &read_classes_of_network},
+    {"class-map", "a.txt", "jobs/segment/output_classes.cpp", &read_classes_of_network},
     // The server
     {"http", "", "serve", &answer_http},
     {"websocket", "", "serve/websocket_connection.cpp", &answer_websocket},

@@ -6,7 +6,7 @@
 
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/core/maths/vec3.h"
-#include "adasplats/recipes/segment/output_classes.h"
+#include "adasplats/jobs/segment/output_classes.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/sensors/ray_drop_model.h"
 #include "fuzz_readers.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/output/output_check.h"
+#include "adasplats/jobs/output/output_check.h"
 #include "cli/option_traits.h"
 
 namespace adasplats::app {

@@ -7,8 +7,8 @@
 
 #include "adasplats/core/memory.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/provenance/machine.h"
-#include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/jobs/provenance/machine.h"
+#include "adasplats/jobs/provenance/provenance.h"
 
 namespace adasplats::app {
 namespace {

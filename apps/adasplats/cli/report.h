@@ -7,7 +7,7 @@
 namespace adasplats::app {
 
 /// Writes the --report of a command that has run: program, version, command, provenance (see
-/// pipeline/provenance/provenance.h), parameters, what the command itself reported, warnings,
+/// jobs/provenance/provenance.h), parameters, what the command itself reported, warnings,
 /// threads and peak memory. Atomic.
 void write_report(Command& command, const Session& session);
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/session.h"
 #include "cli/progress_bar.h"
 
 namespace adasplats::app {

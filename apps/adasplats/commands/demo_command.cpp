@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/recipes/demo.h"
-#include "adasplats/recipes/demo_page.h"
+#include "adasplats/jobs/demo.h"
+#include "adasplats/jobs/demo_page.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/terminal.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
-#include "adasplats/recipes/export.h"
+#include "adasplats/jobs/export.h"
 #include "cli/commands.h"
 #include "cli/options/load_options.h"
 #include "cli/options/option_types.h"

@@ -4,8 +4,8 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/pipeline/evaluate/evaluate_echoes.h"
-#include "adasplats/pipeline/output/output_folder.h"
+#include "adasplats/jobs/evaluate/evaluate_echoes.h"
+#include "adasplats/jobs/output/output_folder.h"
 #include "cli/commands.h"
 #include "cli/options/echo_options.h"
 #include "cli/options/option_types.h"

@@ -4,7 +4,7 @@
 
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/point_format.h"
-#include "adasplats/recipes/make_mesh.h"
+#include "adasplats/jobs/make_mesh.h"
 #include "cli/commands.h"
 #include "cli/options/build_options.h"
 #include "cli/options/load_options.h"

@@ -4,7 +4,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/packets/capture_sender.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/terminal.h"

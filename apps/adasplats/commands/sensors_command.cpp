@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "adasplats/io/arrays/png.h"
-#include "adasplats/pipeline/output/output_folder.h"
+#include "adasplats/jobs/output/output_folder.h"
 #include "adasplats/sensors/lidar_library.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"

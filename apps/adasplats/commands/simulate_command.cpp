@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "adasplats/pipeline/provenance/provenance.h"
-#include "adasplats/pipeline/session/scan_range.h"
-#include "adasplats/recipes/simulate_scans.h"
+#include "adasplats/jobs/provenance/provenance.h"
+#include "adasplats/jobs/session/scan_range.h"
+#include "adasplats/jobs/simulate_scans.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/options/setting_options.h"

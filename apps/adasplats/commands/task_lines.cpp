@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/jobs/provenance/provenance.h"
 
 namespace adasplats::app {
 namespace {

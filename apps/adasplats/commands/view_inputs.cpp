@@ -18,9 +18,9 @@
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/error_points.h"
 #include "adasplats/evaluate/splat_errors.h"
+#include "adasplats/jobs/scene/view_choice.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "adasplats/levels/level_file.h"
-#include "adasplats/pipeline/scene/view_choice.h"
-#include "adasplats/pipeline/session/inputs.h"
 #include "adasplats/view/error_layers.h"
 
 namespace adasplats::app {

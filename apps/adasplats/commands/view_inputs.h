@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "adasplats/pipeline/scene/city_scene.h"
-#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/jobs/scene/city_scene.h"
+#include "adasplats/jobs/scene/model_scene.h"
 #include "adasplats/view/city_picker.h"
 #include "adasplats/view/view_scene.h"
 #include "commands/view_job.h"

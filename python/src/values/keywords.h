@@ -19,7 +19,7 @@
 #include "adasplats/core/maths/extent.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/setting.h"
-#include "adasplats/pipeline/model/unused_settings.h"
+#include "adasplats/jobs/model/unused_settings.h"
 #include "adasplats/splats/paper/paper_options.h"
 
 namespace adasplats::python {

@@ -13,7 +13,7 @@
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress_meter.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/session.h"
 #include "keywords.h"
 
 namespace adasplats::python {

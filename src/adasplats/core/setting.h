@@ -25,7 +25,7 @@ namespace adasplats {
 ///     }
 ///
 /// and everything that takes, reports or checks settings walks it: cli/options/setting_options,
-/// pipeline/session/settings_json, python/src/values/keywords, check_settings(). A new setting is
+/// jobs/session/settings_json, python/src/values/keywords, check_settings(). A new setting is
 /// one entry. Members are truth values, numbers, vectors, either of them optional, texts, paths,
 /// enumerations that have words (words_of(), found beside the enumeration) and GroupScale.
 struct Setting {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/calibrate_drive.h"
+#include "adasplats/jobs/calibrate_drive.h"
 
 #include <algorithm>
 #include <array>
@@ -19,13 +19,13 @@
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/number_text.h"
-#include "adasplats/pipeline/model/calibrate_on_device.h"
-#include "adasplats/pipeline/model/calibration_json.h"
-#include "adasplats/pipeline/output/output_check.h"
-#include "adasplats/pipeline/output/output_folder.h"
-#include "adasplats/pipeline/session/inputs.h"
-#include "adasplats/pipeline/session/settings_json.h"
-#include "adasplats/recipes/drive_pieces.h"
+#include "adasplats/jobs/drive_pieces.h"
+#include "adasplats/jobs/model/calibrate_on_device.h"
+#include "adasplats/jobs/model/calibration_json.h"
+#include "adasplats/jobs/output/output_check.h"
+#include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/jobs/session/inputs.h"
+#include "adasplats/jobs/session/settings_json.h"
 #include "adasplats/report/calibration_page.h"
 #include "adasplats/sensors/unit_sensor.h"
 

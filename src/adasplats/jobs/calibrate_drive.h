@@ -10,7 +10,7 @@
 #include "adasplats/calibrate/calibrate.h"
 #include "adasplats/calibrate/windows.h"
 #include "adasplats/cloud/load/load_cloud.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/calibrate_drive.h"
+#include "adasplats/jobs/calibrate_drive.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/class_counts.h"
+#include "adasplats/jobs/class_counts.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/demo.h"
+#include "adasplats/jobs/demo.h"
 
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,14 +9,14 @@
 #include "adasplats/evaluate/error_points.h"
 #include "adasplats/io/arrays/png.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
-#include "adasplats/pipeline/output/output_folder.h"
-#include "adasplats/pipeline/provenance/metrics_json.h"
-#include "adasplats/recipes/demo_page.h"
-#include "adasplats/recipes/pictures/mosaic.h"
-#include "adasplats/recipes/pictures/panel.h"
-#include "adasplats/recipes/pictures/render.h"
-#include "adasplats/recipes/synth_street.h"
+#include "adasplats/jobs/demo_page.h"
+#include "adasplats/jobs/evaluate/evaluate_resimulation.h"
+#include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/jobs/pictures/mosaic.h"
+#include "adasplats/jobs/pictures/panel.h"
+#include "adasplats/jobs/pictures/render.h"
+#include "adasplats/jobs/provenance/metrics_json.h"
+#include "adasplats/jobs/synth_street.h"
 
 namespace adasplats {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "adasplats/evaluate/resimulate.h"
-#include "adasplats/pipeline/evaluate/evaluate_clouds.h"
-#include "adasplats/pipeline/session/session.h"
-#include "adasplats/recipes/model_file.h"
-#include "adasplats/recipes/simulate_scans.h"
+#include "adasplats/jobs/evaluate/evaluate_clouds.h"
+#include "adasplats/jobs/model_file.h"
+#include "adasplats/jobs/session/session.h"
+#include "adasplats/jobs/simulate_scans.h"
 #include "adasplats/synth/street.h"
 
 namespace adasplats {

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/demo_page.h"
+#include "adasplats/jobs/demo_page.h"
 
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/jobs/provenance/provenance.h"
 #include "adasplats/report/document.h"
 #include "adasplats/report/html_page.h"
 #include "adasplats/report/text_format.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "adasplats/recipes/demo.h"
+#include "adasplats/jobs/demo.h"
 
 namespace adasplats {
 

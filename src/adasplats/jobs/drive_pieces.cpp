@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/drive_pieces.h"
+#include "adasplats/jobs/drive_pieces.h"
 
 #include <algorithm>
 #include <utility>

@@ -9,8 +9,8 @@
 
 #include "adasplats/calibrate/windows.h"
 #include "adasplats/cloud/load/open_inputs.h"
-#include "adasplats/pipeline/session/repeated_warnings.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/repeated_warnings.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

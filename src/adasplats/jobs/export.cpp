@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/export.h"
+#include "adasplats/jobs/export.h"
 
 #include <algorithm>
 #include <array>
@@ -16,10 +16,10 @@
 #include "adasplats/core/error.h"
 #include "adasplats/dataset/mcap_writer.h"
 #include "adasplats/io/base/number_text.h"
-#include "adasplats/pipeline/output/output_check.h"
-#include "adasplats/pipeline/output/output_folder.h"
-#include "adasplats/pipeline/session/inputs.h"
-#include "adasplats/pipeline/session/scan_range.h"
+#include "adasplats/jobs/output/output_check.h"
+#include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/jobs/session/inputs.h"
+#include "adasplats/jobs/session/scan_range.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/simulate/image/point_colors.h"
 #include "adasplats/splats/model/gaussian_ply.h"

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "adasplats/cloud/load/load_cloud.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/make_mesh.h"
+#include "adasplats/jobs/make_mesh.h"
 
 #include <array>
 #include <nlohmann/json.hpp>
@@ -12,9 +12,9 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/pipeline/model/label_use.h"
-#include "adasplats/pipeline/output/output_folder.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/model/label_use.h"
+#include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/splats/model/canonical_order.h"
 

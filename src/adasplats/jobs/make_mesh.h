@@ -15,8 +15,8 @@
 #include "adasplats/baselines/poisson.h"
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/setting.h"
-#include "adasplats/pipeline/model/unused_settings.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/model/unused_settings.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/splats/build_model.h"
 

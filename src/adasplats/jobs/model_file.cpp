@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/model_file.h"
+#include "adasplats/jobs/model_file.h"
 
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/pipeline/output/output_folder.h"
+#include "adasplats/jobs/output/output_folder.h"
 
 namespace adasplats {
 

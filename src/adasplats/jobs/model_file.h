@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "adasplats/pipeline/model/make_model.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/model/make_model.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/no_returns.h"
+#include "adasplats/jobs/no_returns.h"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "adasplats/pipeline/scene/scan_place.h"
+#include "adasplats/jobs/scene/scan_place.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/simulate/scan/scan_motion.h"
 

@@ -9,7 +9,7 @@
 
 #include "adasplats/dataset/parallel_scan_writer.h"
 #include "adasplats/dataset/scan_writer.h"
-#include "adasplats/pipeline/output/resumable_folder.h"
+#include "adasplats/jobs/output/resumable_folder.h"
 #include "adasplats/simulate/scan/scan_motion.h"
 
 namespace adasplats {

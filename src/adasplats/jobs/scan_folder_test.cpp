@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/scan_folder.h"
+#include "adasplats/jobs/scan_folder.h"
 
 #include <gtest/gtest.h>
 

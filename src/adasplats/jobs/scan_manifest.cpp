@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/scan_manifest.h"
+#include "adasplats/jobs/scan_manifest.h"
 
 #include <array>
 #include <nlohmann/json.hpp>
@@ -8,9 +8,9 @@
 #include "adasplats/core/words.h"
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/base/sha256.h"
-#include "adasplats/pipeline/scene/scene_files.h"
-#include "adasplats/pipeline/session/inputs.h"
-#include "adasplats/pipeline/session/settings_json.h"
+#include "adasplats/jobs/scene/scene_files.h"
+#include "adasplats/jobs/session/inputs.h"
+#include "adasplats/jobs/session/settings_json.h"
 
 namespace adasplats {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 
-#include "adasplats/pipeline/scene/scan_place.h"
-#include "adasplats/pipeline/scene/scan_simulator.h"
-#include "adasplats/recipes/simulate_scans.h"
+#include "adasplats/jobs/scene/scan_place.h"
+#include "adasplats/jobs/scene/scan_simulator.h"
+#include "adasplats/jobs/simulate_scans.h"
 
 namespace adasplats {
 

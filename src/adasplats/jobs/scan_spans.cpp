@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/scan_spans.h"
+#include "adasplats/jobs/scan_spans.h"
 
 #include <algorithm>
 #include <optional>
@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/output/unfinished_folder.h"
+#include "adasplats/jobs/output/unfinished_folder.h"
 
 namespace adasplats {
 namespace {

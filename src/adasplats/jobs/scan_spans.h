@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adasplats/io/base/sha256.h"
-#include "adasplats/pipeline/output/resumable_folder.h"
+#include "adasplats/jobs/output/resumable_folder.h"
 
 namespace adasplats {
 

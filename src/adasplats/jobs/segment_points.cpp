@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/segment_points.h"
+#include "adasplats/jobs/segment_points.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -14,12 +14,12 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/number_text.h"
-#include "adasplats/pipeline/output/output_check.h"
-#include "adasplats/pipeline/output/output_folder.h"
-#include "adasplats/pipeline/segment/segment_on_device.h"
-#include "adasplats/pipeline/session/inputs.h"
-#include "adasplats/recipes/segment/labelled_points.h"
-#include "adasplats/recipes/segment/output_classes.h"
+#include "adasplats/jobs/output/output_check.h"
+#include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/jobs/segment/labelled_points.h"
+#include "adasplats/jobs/segment/output_classes.h"
+#include "adasplats/jobs/segment/segment_on_device.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "adasplats/segment/network/matrix_product.h"
 #include "adasplats/segment/network/network.h"
 

@@ -11,9 +11,9 @@
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/setting.h"
-#include "adasplats/pipeline/session/scan_range.h"
-#include "adasplats/pipeline/session/session.h"
-#include "adasplats/recipes/segment/scan_windows.h"
+#include "adasplats/jobs/segment/scan_windows.h"
+#include "adasplats/jobs/session/scan_range.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/segment/segment_cloud.h"
 
 namespace adasplats {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/simkitti32.h"
+#include "adasplats/jobs/simkitti32.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,17 +19,17 @@
 #include "adasplats/dataset/scan_values.h"
 #include "adasplats/dataset/scan_writer.h"
 #include "adasplats/io/base/sha256.h"
-#include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
-#include "adasplats/pipeline/evaluate/fit_sensor.h"
-#include "adasplats/pipeline/output/output_check.h"
-#include "adasplats/pipeline/output/output_folder.h"
-#include "adasplats/pipeline/output/resumable_folder.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/scene/scan_simulator.h"
-#include "adasplats/pipeline/session/inputs.h"
-#include "adasplats/pipeline/session/settings_json.h"
-#include "adasplats/recipes/no_returns.h"
-#include "adasplats/recipes/scan_manifest.h"
+#include "adasplats/jobs/evaluate/evaluate_resimulation.h"
+#include "adasplats/jobs/evaluate/fit_sensor.h"
+#include "adasplats/jobs/no_returns.h"
+#include "adasplats/jobs/output/output_check.h"
+#include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/jobs/output/resumable_folder.h"
+#include "adasplats/jobs/scan_manifest.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/scene/scan_simulator.h"
+#include "adasplats/jobs/session/inputs.h"
+#include "adasplats/jobs/session/settings_json.h"
 #include "adasplats/simulate/world/moving_points.h"
 #include "adasplats/simulate/world/world.h"
 

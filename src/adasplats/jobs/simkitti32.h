@@ -12,11 +12,11 @@
 
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/setting.h"
-#include "adasplats/pipeline/model/unused_settings.h"
-#include "adasplats/pipeline/session/scan_range.h"
-#include "adasplats/pipeline/session/session.h"
-#include "adasplats/recipes/class_counts.h"
-#include "adasplats/recipes/model_file.h"
+#include "adasplats/jobs/class_counts.h"
+#include "adasplats/jobs/model/unused_settings.h"
+#include "adasplats/jobs/model_file.h"
+#include "adasplats/jobs/session/scan_range.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/simulate/scan/returns.h"
 #include "adasplats/simulate/scan/weather.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/simulate_scans.h"
+#include "adasplats/jobs/simulate_scans.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,16 +18,16 @@
 #include "adasplats/dataset/packet_writer.h"
 #include "adasplats/dataset/parallel_scan_writer.h"
 #include "adasplats/io/base/sha256.h"
-#include "adasplats/pipeline/output/folder_task.h"
-#include "adasplats/pipeline/output/output_folder.h"
-#include "adasplats/pipeline/output/resumable_folder.h"
-#include "adasplats/pipeline/scene/city_scene.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/session/inputs.h"
-#include "adasplats/recipes/no_returns.h"
-#include "adasplats/recipes/scan_folder.h"
-#include "adasplats/recipes/scan_manifest.h"
-#include "adasplats/recipes/scan_spans.h"
+#include "adasplats/jobs/no_returns.h"
+#include "adasplats/jobs/output/folder_task.h"
+#include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/jobs/output/resumable_folder.h"
+#include "adasplats/jobs/scan_folder.h"
+#include "adasplats/jobs/scan_manifest.h"
+#include "adasplats/jobs/scan_spans.h"
+#include "adasplats/jobs/scene/city_scene.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

@@ -11,10 +11,10 @@
 
 #include "adasplats/city/tile_stream.h"
 #include "adasplats/dataset/scan_writer.h"
-#include "adasplats/pipeline/scene/drive.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/scene/scan_simulator.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/scene/drive.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/scene/scan_simulator.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/synth_city.h"
+#include "adasplats/jobs/synth_city.h"
 
 #include <nlohmann/json.hpp>
 
-#include "adasplats/pipeline/output/output_folder.h"
-#include "adasplats/pipeline/session/settings_json.h"
+#include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/jobs/session/settings_json.h"
 
 namespace adasplats {
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/synth_street.h"
+#include "adasplats/jobs/synth_street.h"
 
 #include <nlohmann/json.hpp>
 
-#include "adasplats/pipeline/output/output_folder.h"
+#include "adasplats/jobs/output/output_folder.h"
 
 namespace adasplats {
 

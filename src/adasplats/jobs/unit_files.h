@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "adasplats/pipeline/evaluate/fit_sensor.h"
+#include "adasplats/jobs/evaluate/fit_sensor.h"
 
 namespace adasplats {
 

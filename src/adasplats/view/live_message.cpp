@@ -10,7 +10,7 @@
 #include <span>
 
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/session/settings_json.h"
+#include "adasplats/jobs/session/settings_json.h"
 #include "adasplats/sensors/sensor_overrides.h"
 
 namespace adasplats {

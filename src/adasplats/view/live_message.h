@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "adasplats/pipeline/scene/scan_simulator.h"
+#include "adasplats/jobs/scene/scan_simulator.h"
 #include "adasplats/simulate/scan/scan_motion.h"
 
 namespace adasplats {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "adasplats/pipeline/session/device_choice.h"
+#include "adasplats/jobs/session/device_choice.h"
 #include "cli/options/option_set.h"
 
 namespace adasplats::app {

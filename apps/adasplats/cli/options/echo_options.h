@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "adasplats/pipeline/evaluate/evaluate_echoes.h"
+#include "adasplats/jobs/evaluate/evaluate_echoes.h"
 #include "cli/options/option_set.h"
 #include "cli/text_table.h"
 

@@ -15,8 +15,8 @@
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/setting.h"
 #include "adasplats/core/words.h"
-#include "adasplats/pipeline/scene/placed_poses.h"
-#include "adasplats/pipeline/session/scan_range.h"
+#include "adasplats/jobs/scene/placed_poses.h"
+#include "adasplats/jobs/session/scan_range.h"
 #include "adasplats/splats/build_model.h"
 #include "cli/options/option_set.h"
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/output/output_folder.h"
+#include "adasplats/jobs/output/output_folder.h"
 #include "cli/commands.h"
 #include "cli/manual/completion.h"
 #include "cli/options/option_types.h"

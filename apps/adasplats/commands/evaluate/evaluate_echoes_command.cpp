@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/pipeline/evaluate/evaluate_echoes.h"
+#include "adasplats/jobs/evaluate/evaluate_echoes.h"
 #include "cli/commands.h"
 #include "cli/options/echo_options.h"
 #include "cli/options/option_types.h"

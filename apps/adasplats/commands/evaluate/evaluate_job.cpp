@@ -6,8 +6,8 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/error_points.h"
-#include "adasplats/pipeline/output/output_folder.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "commands/evaluate/evaluate_pictures.h"
 
 namespace adasplats::app {

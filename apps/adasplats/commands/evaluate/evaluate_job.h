@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string>
 
-#include "adasplats/pipeline/evaluate/evaluate_clouds.h"
-#include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
-#include "adasplats/pipeline/scene/view_choice.h"
+#include "adasplats/jobs/evaluate/evaluate_clouds.h"
+#include "adasplats/jobs/evaluate/evaluate_resimulation.h"
+#include "adasplats/jobs/scene/view_choice.h"
 #include "cli/session.h"
 
 namespace adasplats::app {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "adasplats/core/stopwatch.h"
-#include "adasplats/pipeline/evaluate/evaluate_labels.h"
-#include "adasplats/pipeline/provenance/metrics_json.h"
+#include "adasplats/jobs/evaluate/evaluate_labels.h"
+#include "adasplats/jobs/provenance/metrics_json.h"
 #include "cli/commands.h"
 #include "cli/options/option_types.h"
 #include "cli/terminal.h"

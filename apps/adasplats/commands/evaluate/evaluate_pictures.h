@@ -6,7 +6,7 @@
 
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/evaluate/resimulate.h"
-#include "adasplats/pipeline/scene/view_choice.h"
+#include "adasplats/jobs/scene/view_choice.h"
 #include "cli/session.h"
 
 namespace adasplats::app {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/city_addition.h"
+#include "adasplats/jobs/city/city_addition.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -11,9 +11,9 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/sha256.h"
-#include "adasplats/pipeline/output/output_folder.h"
-#include "adasplats/pipeline/output/unfinished_folder.h"
-#include "adasplats/pipeline/session/settings_json.h"
+#include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/jobs/output/unfinished_folder.h"
+#include "adasplats/jobs/session/settings_json.h"
 
 namespace adasplats {
 namespace {

@@ -11,10 +11,10 @@
 #include <string>
 
 #include "adasplats/city/city_manifest.h"
-#include "adasplats/pipeline/output/resumable_folder.h"
-#include "adasplats/recipes/city/city_job.h"
-#include "adasplats/recipes/city/city_work.h"
-#include "adasplats/recipes/city/point_layer.h"
+#include "adasplats/jobs/city/city_job.h"
+#include "adasplats/jobs/city/city_work.h"
+#include "adasplats/jobs/city/point_layer.h"
+#include "adasplats/jobs/output/resumable_folder.h"
 
 namespace adasplats {
 

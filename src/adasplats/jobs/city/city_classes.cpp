@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/city_classes.h"
+#include "adasplats/jobs/city/city_classes.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -19,10 +19,10 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/sha256.h"
-#include "adasplats/pipeline/session/repeated_warnings.h"
-#include "adasplats/recipes/city/city_points.h"
-#include "adasplats/recipes/city/city_squares.h"
-#include "adasplats/recipes/city/tile_workers.h"
+#include "adasplats/jobs/city/city_points.h"
+#include "adasplats/jobs/city/city_squares.h"
+#include "adasplats/jobs/city/tile_workers.h"
+#include "adasplats/jobs/session/repeated_warnings.h"
 #include "adasplats/segment/full_intensity.h"
 
 namespace adasplats {

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "adasplats/pipeline/output/resumable_folder.h"
-#include "adasplats/pipeline/segment/point_classes.h"
-#include "adasplats/recipes/city/point_layer.h"
+#include "adasplats/jobs/city/point_layer.h"
+#include "adasplats/jobs/output/resumable_folder.h"
+#include "adasplats/jobs/segment/point_classes.h"
 
 namespace adasplats {
 

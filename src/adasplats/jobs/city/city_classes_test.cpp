@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/city_classes.h"
+#include "adasplats/jobs/city/city_classes.h"
 
 #include <gtest/gtest.h>
 
@@ -18,9 +18,9 @@
 #include "adasplats/core/maths/random.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/recipes/city/city_points.h"
-#include "adasplats/recipes/city/city_squares.h"
-#include "adasplats/recipes/city/city_work.h"
+#include "adasplats/jobs/city/city_points.h"
+#include "adasplats/jobs/city/city_squares.h"
+#include "adasplats/jobs/city/city_work.h"
 #include "adasplats/segment/network/network_text_test.h"
 
 namespace adasplats::city_classes {

@@ -5,9 +5,9 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "adasplats/evaluate/point_fit.h"
-#include "adasplats/pipeline/output/resumable_folder.h"
-#include "adasplats/recipes/city/city_addition.h"
-#include "adasplats/recipes/city/city_work.h"
+#include "adasplats/jobs/city/city_addition.h"
+#include "adasplats/jobs/city/city_work.h"
+#include "adasplats/jobs/output/resumable_folder.h"
 
 namespace adasplats {
 

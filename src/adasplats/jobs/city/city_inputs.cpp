@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/city_inputs.h"
+#include "adasplats/jobs/city/city_inputs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +17,9 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/number_text.h"
-#include "adasplats/pipeline/model/calibrate_on_device.h"
-#include "adasplats/pipeline/session/repeated_warnings.h"
-#include "adasplats/recipes/drive_pieces.h"
+#include "adasplats/jobs/drive_pieces.h"
+#include "adasplats/jobs/model/calibrate_on_device.h"
+#include "adasplats/jobs/session/repeated_warnings.h"
 
 namespace adasplats {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "adasplats/calibrate/calibration.h"
 #include "adasplats/cloud/points/point_cloud.h"
-#include "adasplats/pipeline/model/make_model.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/model/make_model.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/city_inputs.h"
+#include "adasplats/jobs/city/city_inputs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/city_job.h"
+#include "adasplats/jobs/city/city_job.h"
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,7 +10,7 @@
 #include <variant>
 
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/session/settings_json.h"
+#include "adasplats/jobs/session/settings_json.h"
 
 namespace adasplats {
 namespace {

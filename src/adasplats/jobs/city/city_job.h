@@ -6,7 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "adasplats/core/setting.h"
-#include "adasplats/pipeline/model/make_model.h"
+#include "adasplats/jobs/model/make_model.h"
 #include "adasplats/splats/consistent/consistent_model.h"
 
 namespace adasplats {

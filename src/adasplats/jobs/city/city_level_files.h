@@ -3,8 +3,8 @@
 #pragma once
 
 #include "adasplats/city/city_manifest.h"
-#include "adasplats/pipeline/output/resumable_folder.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/output/resumable_folder.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "adasplats/pipeline/output/resumable_folder.h"
-#include "adasplats/recipes/city/city_work.h"
+#include "adasplats/jobs/city/city_work.h"
+#include "adasplats/jobs/output/resumable_folder.h"
 #include "adasplats/splats/consistent/origin_check.h"
 
 namespace adasplats {

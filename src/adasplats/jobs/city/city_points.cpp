@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/city_points.h"
+#include "adasplats/jobs/city/city_points.h"
 
 #include <optional>
 #include <string>
@@ -13,10 +13,10 @@
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/sha256.h"
-#include "adasplats/pipeline/model/label_use.h"
-#include "adasplats/pipeline/session/inputs.h"
-#include "adasplats/recipes/city/city_alignment.h"
-#include "adasplats/recipes/city/city_inputs.h"
+#include "adasplats/jobs/city/city_alignment.h"
+#include "adasplats/jobs/city/city_inputs.h"
+#include "adasplats/jobs/model/label_use.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "adasplats/splats/rays/measured_rays.h"
 
 namespace adasplats {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "adasplats/pipeline/output/resumable_folder.h"
-#include "adasplats/recipes/city/city_work.h"
+#include "adasplats/jobs/city/city_work.h"
+#include "adasplats/jobs/output/resumable_folder.h"
 
 namespace adasplats {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "adasplats/city/square_classes.h"
-#include "adasplats/pipeline/segment/point_classes.h"
-#include "adasplats/recipes/city/point_layer.h"
+#include "adasplats/jobs/city/point_layer.h"
+#include "adasplats/jobs/segment/point_classes.h"
 
 namespace adasplats {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/city_survey.h"
+#include "adasplats/jobs/city/city_survey.h"
 
 #include <algorithm>
 #include <memory>
@@ -10,9 +10,9 @@
 #include "adasplats/cloud/labels/dynamic_removal.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/model/make_model.h"
-#include "adasplats/pipeline/session/repeated_warnings.h"
-#include "adasplats/recipes/city/tile_workers.h"
+#include "adasplats/jobs/city/tile_workers.h"
+#include "adasplats/jobs/model/make_model.h"
+#include "adasplats/jobs/session/repeated_warnings.h"
 #include "adasplats/splats/model_engine.h"
 
 namespace adasplats {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/city_task.h"
+#include "adasplats/jobs/city/city_task.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/output/folder_task.h"
-#include "adasplats/recipes/city/city_classes.h"
-#include "adasplats/recipes/city/city_points.h"
-#include "adasplats/recipes/city/city_survey.h"
-#include "adasplats/recipes/city/city_tiles.h"
+#include "adasplats/jobs/city/city_classes.h"
+#include "adasplats/jobs/city/city_points.h"
+#include "adasplats/jobs/city/city_survey.h"
+#include "adasplats/jobs/city/city_tiles.h"
+#include "adasplats/jobs/output/folder_task.h"
 
 namespace adasplats {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "adasplats/city/tile_grid.h"
-#include "adasplats/pipeline/session/session.h"
-#include "adasplats/recipes/city/city_job.h"
+#include "adasplats/jobs/city/city_job.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/city_tiles.h"
+#include "adasplats/jobs/city/city_tiles.h"
 
 #include <set>
 
-#include "adasplats/pipeline/model/make_model.h"
+#include "adasplats/jobs/model/make_model.h"
 
 namespace adasplats {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "adasplats/city/passing_rays.h"
 #include "adasplats/core/progress.h"
-#include "adasplats/recipes/city/city_work.h"
+#include "adasplats/jobs/city/city_work.h"
 
 namespace adasplats {
 

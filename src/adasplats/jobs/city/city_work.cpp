@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/city_work.h"
+#include "adasplats/jobs/city/city_work.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -9,8 +9,8 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/recipes/city/city_classes.h"
-#include "adasplats/recipes/city/city_points.h"
+#include "adasplats/jobs/city/city_classes.h"
+#include "adasplats/jobs/city/city_points.h"
 
 namespace adasplats {
 

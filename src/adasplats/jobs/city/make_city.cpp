@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/make_city.h"
+#include "adasplats/jobs/city/make_city.h"
 
 #include <algorithm>
 #include <memory>
@@ -13,20 +13,20 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/output/resumable_folder.h"
-#include "adasplats/pipeline/session/inputs.h"
-#include "adasplats/pipeline/session/repeated_warnings.h"
-#include "adasplats/recipes/city/city_addition.h"
-#include "adasplats/recipes/city/city_alignment.h"
-#include "adasplats/recipes/city/city_classes.h"
-#include "adasplats/recipes/city/city_fit.h"
-#include "adasplats/recipes/city/city_level_files.h"
-#include "adasplats/recipes/city/city_origins.h"
-#include "adasplats/recipes/city/city_points.h"
-#include "adasplats/recipes/city/city_rays.h"
-#include "adasplats/recipes/city/city_survey.h"
-#include "adasplats/recipes/city/city_tiles.h"
-#include "adasplats/recipes/city/tile_workers.h"
+#include "adasplats/jobs/city/city_addition.h"
+#include "adasplats/jobs/city/city_alignment.h"
+#include "adasplats/jobs/city/city_classes.h"
+#include "adasplats/jobs/city/city_fit.h"
+#include "adasplats/jobs/city/city_level_files.h"
+#include "adasplats/jobs/city/city_origins.h"
+#include "adasplats/jobs/city/city_points.h"
+#include "adasplats/jobs/city/city_rays.h"
+#include "adasplats/jobs/city/city_survey.h"
+#include "adasplats/jobs/city/city_tiles.h"
+#include "adasplats/jobs/city/tile_workers.h"
+#include "adasplats/jobs/output/resumable_folder.h"
+#include "adasplats/jobs/session/inputs.h"
+#include "adasplats/jobs/session/repeated_warnings.h"
 
 namespace adasplats {
 namespace {

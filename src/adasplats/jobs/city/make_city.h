@@ -9,9 +9,9 @@
 
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/evaluate/point_fit.h"
-#include "adasplats/pipeline/session/session.h"
-#include "adasplats/recipes/city/city_alignment.h"
-#include "adasplats/recipes/city/city_job.h"
+#include "adasplats/jobs/city/city_alignment.h"
+#include "adasplats/jobs/city/city_job.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/splats/build_model.h"
 
 namespace adasplats {

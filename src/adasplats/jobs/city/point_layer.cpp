@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/point_layer.h"
+#include "adasplats/jobs/city/point_layer.h"
 
 #include <cstdint>
 #include <utility>
@@ -8,7 +8,7 @@
 
 #include "adasplats/cloud/labels/dynamic_removal.h"
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace fs = std::filesystem;

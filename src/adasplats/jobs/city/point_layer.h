@@ -12,9 +12,9 @@
 #include "adasplats/city/passing_rays.h"
 #include "adasplats/city/tile_points.h"
 #include "adasplats/cloud/labels/label_scheme.h"
-#include "adasplats/pipeline/model/make_model.h"
-#include "adasplats/pipeline/session/session.h"
-#include "adasplats/recipes/city/city_job.h"
+#include "adasplats/jobs/city/city_job.h"
+#include "adasplats/jobs/model/make_model.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/splats/model/splat_model.h"
 
 namespace adasplats {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/tile_choice.h"
+#include "adasplats/jobs/city/tile_choice.h"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,8 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
-#include "adasplats/pipeline/provenance/machine.h"
-#include "adasplats/recipes/city/tile_workers.h"
+#include "adasplats/jobs/city/tile_workers.h"
+#include "adasplats/jobs/provenance/machine.h"
 
 namespace adasplats {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "adasplats/city/tile_grid.h"
 #include "adasplats/cloud/load/open_inputs.h"
-#include "adasplats/pipeline/session/session.h"
-#include "adasplats/recipes/city/city_job.h"
+#include "adasplats/jobs/city/city_job.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/city/tile_choice.h"
+#include "adasplats/jobs/city/tile_choice.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <span>
 
 #include "adasplats/city/city_manifest.h"
-#include "adasplats/recipes/city/city_tiles.h"
-#include "adasplats/recipes/city/city_work.h"
+#include "adasplats/jobs/city/city_tiles.h"
+#include "adasplats/jobs/city/city_work.h"
 
 namespace adasplats {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/compare/compare.h"
+#include "adasplats/jobs/compare/compare.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -10,14 +10,14 @@
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/provenance/machine.h"
-#include "adasplats/pipeline/provenance/provenance.h"
-#include "adasplats/pipeline/segment/point_classes.h"
-#include "adasplats/pipeline/session/inputs.h"
-#include "adasplats/recipes/compare/competitors.h"
-#include "adasplats/recipes/compare/paper_figures.h"
-#include "adasplats/recipes/compare/steps.h"
-#include "adasplats/recipes/compare/work_folder.h"
+#include "adasplats/jobs/compare/competitors.h"
+#include "adasplats/jobs/compare/paper_figures.h"
+#include "adasplats/jobs/compare/steps.h"
+#include "adasplats/jobs/compare/work_folder.h"
+#include "adasplats/jobs/provenance/machine.h"
+#include "adasplats/jobs/provenance/provenance.h"
+#include "adasplats/jobs/segment/point_classes.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "adasplats/report/report_page.h"
 #include "adasplats/sensors/lidar_model.h"
 

@@ -13,8 +13,8 @@
 
 #include "adasplats/core/child_process.h"
 #include "adasplats/core/setting.h"
-#include "adasplats/pipeline/model/unused_settings.h"
-#include "adasplats/recipes/compare/comparison_data.h"
+#include "adasplats/jobs/compare/comparison_data.h"
+#include "adasplats/jobs/model/unused_settings.h"
 #include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/compare/comparison_data.h"
+#include "adasplats/jobs/compare/comparison_data.h"
 
 #include <algorithm>
 #include <array>
@@ -11,9 +11,9 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
-#include "adasplats/pipeline/model/label_use.h"
-#include "adasplats/pipeline/session/inputs.h"
-#include "adasplats/recipes/compare/work_folder.h"
+#include "adasplats/jobs/compare/work_folder.h"
+#include "adasplats/jobs/model/label_use.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

@@ -16,8 +16,8 @@
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/core/words.h"
-#include "adasplats/pipeline/session/scan_range.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/scan_range.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/compare/competitors.h"
+#include "adasplats/jobs/compare/competitors.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

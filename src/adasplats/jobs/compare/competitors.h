@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/recipes/compare/compare.h"
-#include "adasplats/recipes/compare/steps.h"
+#include "adasplats/jobs/compare/compare.h"
+#include "adasplats/jobs/compare/steps.h"
 
 namespace adasplats {
 

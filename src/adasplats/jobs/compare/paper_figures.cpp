@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/compare/paper_figures.h"
+#include "adasplats/jobs/compare/paper_figures.h"
 
 #include <nlohmann/json.hpp>
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "adasplats/recipes/compare/comparison_data.h"
+#include "adasplats/jobs/compare/comparison_data.h"
 
 namespace adasplats {
 

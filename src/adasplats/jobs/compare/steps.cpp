@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/compare/steps.h"
+#include "adasplats/jobs/compare/steps.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/jobs/provenance/provenance.h"
 
 namespace adasplats {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/compare/work_folder.h"
+#include "adasplats/jobs/compare/work_folder.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -15,7 +15,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/output/output_folder.h"
+#include "adasplats/jobs/output/output_folder.h"
 
 namespace adasplats {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/evaluate_clouds.h"
+#include "adasplats/jobs/evaluate/evaluate_clouds.h"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,8 @@
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/cloud/load/one_crs.h"
 #include "adasplats/core/progress_meter.h"
-#include "adasplats/pipeline/provenance/metrics_json.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/provenance/metrics_json.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

@@ -12,7 +12,7 @@
 #include "adasplats/cloud/labels/label_scheme.h"
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/evaluate/cloud_metrics.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

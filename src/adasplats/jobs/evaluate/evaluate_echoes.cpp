@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/evaluate_echoes.h"
+#include "adasplats/jobs/evaluate/evaluate_echoes.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -8,9 +8,9 @@
 
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/evaluate/evaluate_resimulation.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/evaluate_labels.h"
+#include "adasplats/jobs/evaluate/evaluate_labels.h"
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "adasplats/evaluate/labels/label_agreement.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/evaluate_presence.h"
+#include "adasplats/jobs/evaluate/evaluate_presence.h"
 
 #include <span>
 
 #include "adasplats/cloud/load/one_crs.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/progress_meter.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 

@@ -7,7 +7,7 @@
 
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/evaluate/presence.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

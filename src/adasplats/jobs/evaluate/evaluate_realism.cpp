@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/evaluate_realism.h"
+#include "adasplats/jobs/evaluate/evaluate_realism.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/realism/scan_residuals.h"
-#include "adasplats/pipeline/evaluate/ring_scans.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/evaluate/ring_scans.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
+#include "adasplats/jobs/evaluate/evaluate_resimulation.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -11,8 +11,8 @@
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/register_scans.h"
 #include "adasplats/io/packets/capture_reader.h"
-#include "adasplats/pipeline/provenance/metrics_json.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/provenance/metrics_json.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

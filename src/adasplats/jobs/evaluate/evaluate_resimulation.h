@@ -17,10 +17,10 @@
 #include "adasplats/evaluate/beam_returns.h"
 #include "adasplats/evaluate/empty_beams_cast.h"
 #include "adasplats/evaluate/resimulate.h"
-#include "adasplats/pipeline/evaluate/held_out_protocol.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/session/scan_range.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/evaluate/held_out_protocol.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/session/scan_range.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

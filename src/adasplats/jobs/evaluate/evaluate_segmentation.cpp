@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/evaluate_segmentation.h"
+#include "adasplats/jobs/evaluate/evaluate_segmentation.h"
 
 #include <utility>
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/evaluate/label_files.h"
+#include "adasplats/jobs/evaluate/label_files.h"
 
 namespace adasplats {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "adasplats/evaluate/labels/segmentation.h"
-#include "adasplats/pipeline/session/scan_range.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/scan_range.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

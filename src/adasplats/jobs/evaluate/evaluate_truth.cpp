@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/evaluate_truth.h"
+#include "adasplats/jobs/evaluate/evaluate_truth.h"
 
 #include <optional>
 
 #include "adasplats/cloud/load/one_crs.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "adasplats/evaluate/truth.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/evaluate_unit.h"
+#include "adasplats/jobs/evaluate/evaluate_unit.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "adasplats/evaluate/unit/unit_accuracy.h"
-#include "adasplats/pipeline/evaluate/measured_unit.h"
+#include "adasplats/jobs/evaluate/measured_unit.h"
 
 namespace adasplats {
 

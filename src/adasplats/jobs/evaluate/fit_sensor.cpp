@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/fit_sensor.h"
+#include "adasplats/jobs/evaluate/fit_sensor.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "adasplats/evaluate/unit/fit_unit.h"
-#include "adasplats/pipeline/evaluate/measured_unit.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/evaluate/measured_unit.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

@@ -12,8 +12,8 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/words.h"
 #include "adasplats/evaluate/panoramas/lidar4d_protocol.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

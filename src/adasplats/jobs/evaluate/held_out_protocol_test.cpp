@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/held_out_protocol.h"
+#include "adasplats/jobs/evaluate/held_out_protocol.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "adasplats/pipeline/session/own_session.h"
+#include "adasplats/jobs/session/own_session.h"
 
 namespace adasplats {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/label_files.h"
+#include "adasplats/jobs/evaluate/label_files.h"
 
 #include <iterator>
 #include <map>
@@ -13,7 +13,7 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

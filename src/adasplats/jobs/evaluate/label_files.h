@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "adasplats/pipeline/session/scan_range.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/scan_range.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

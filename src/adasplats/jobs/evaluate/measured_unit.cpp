@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/measured_unit.h"
+#include "adasplats/jobs/evaluate/measured_unit.h"
 
 #include <cmath>
 
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/share.h"
-#include "adasplats/pipeline/evaluate/evaluate_resimulation.h"
-#include "adasplats/pipeline/evaluate/ring_scans.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/evaluate/evaluate_resimulation.h"
+#include "adasplats/jobs/evaluate/ring_scans.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/evaluate/unit/unit_beams.h"
-#include "adasplats/pipeline/session/scan_range.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/scan_range.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/evaluate/ring_scans.h"
+#include "adasplats/jobs/evaluate/ring_scans.h"
 
 #include <algorithm>
 #include <utility>
@@ -10,7 +10,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/realism/features.h"
 #include "adasplats/evaluate/realism/ring_scan.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

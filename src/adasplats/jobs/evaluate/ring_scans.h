@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "adasplats/cloud/sequence/kitti_sequence.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/sensors/lidar_model.h"
 
 namespace adasplats {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "adasplats/calibrate/windows.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

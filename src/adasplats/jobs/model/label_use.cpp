@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/model/label_use.h"
+#include "adasplats/jobs/model/label_use.h"
 
 #include "adasplats/core/error.h"
 

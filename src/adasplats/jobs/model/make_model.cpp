@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/model/make_model.h"
+#include "adasplats/jobs/model/make_model.h"
 
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -11,10 +11,10 @@
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/gpu/gpu_model.h"
-#include "adasplats/pipeline/model/calibrate_on_device.h"
-#include "adasplats/pipeline/model/calibration_json.h"
-#include "adasplats/pipeline/model/label_use.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/model/calibrate_on_device.h"
+#include "adasplats/jobs/model/calibration_json.h"
+#include "adasplats/jobs/model/label_use.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

@@ -13,9 +13,9 @@
 #include "adasplats/calibrate/calibrate.h"
 #include "adasplats/calibrate/windows.h"
 #include "adasplats/cloud/load/load_cloud.h"
-#include "adasplats/pipeline/model/unused_settings.h"
-#include "adasplats/pipeline/segment/point_classes.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/model/unused_settings.h"
+#include "adasplats/jobs/segment/point_classes.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/splats/build_model.h"
 #include "adasplats/splats/model_engine.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/model/unused_settings.h"
+#include "adasplats/jobs/model/unused_settings.h"
 
 #include <algorithm>
 #include <initializer_list>

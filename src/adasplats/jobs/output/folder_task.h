@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "adasplats/pipeline/output/unfinished_folder.h"
+#include "adasplats/jobs/output/unfinished_folder.h"
 
 namespace adasplats {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/output/folder_task.h"
+#include "adasplats/jobs/output/folder_task.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
 #include "adasplats/io/base/sha256.h"
-#include "adasplats/pipeline/output/resumable_folder.h"
+#include "adasplats/jobs/output/resumable_folder.h"
 
 namespace adasplats {
 namespace {

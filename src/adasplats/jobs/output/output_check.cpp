@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/output/output_check.h"
+#include "adasplats/jobs/output/output_check.h"
 
 #include <algorithm>
 

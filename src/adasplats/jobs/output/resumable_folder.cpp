@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/output/resumable_folder.h"
+#include "adasplats/jobs/output/resumable_folder.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -15,8 +15,8 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/output/output_folder.h"
-#include "adasplats/pipeline/output/unfinished_folder.h"
+#include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/jobs/output/unfinished_folder.h"
 
 namespace adasplats {
 namespace {

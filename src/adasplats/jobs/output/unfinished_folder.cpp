@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/output/unfinished_folder.h"
+#include "adasplats/jobs/output/unfinished_folder.h"
 
 #include <cstddef>
 #include <nlohmann/json.hpp>

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/pictures/camera_paths.h"
+#include "adasplats/jobs/pictures/camera_paths.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "adasplats/cloud/poses/trajectory.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "adasplats/pipeline/scene/view_choice.h"
+#include "adasplats/jobs/scene/view_choice.h"
 
 namespace adasplats {
 

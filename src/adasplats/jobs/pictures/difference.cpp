@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/pictures/difference.h"
+#include "adasplats/jobs/pictures/difference.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/jobs/scene/model_scene.h"
 #include "adasplats/simulate/image/image.h"
 
 namespace adasplats {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/pictures/film_writer.h"
+#include "adasplats/jobs/pictures/film_writer.h"
 
 #include <unistd.h>
 
@@ -13,7 +13,7 @@
 #include "adasplats/core/child_process.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/arrays/png.h"
-#include "adasplats/recipes/pictures/webp_film.h"
+#include "adasplats/jobs/pictures/webp_film.h"
 
 namespace adasplats {
 namespace {

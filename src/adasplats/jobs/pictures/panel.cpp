@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/pictures/panel.h"
+#include "adasplats/jobs/pictures/panel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include "adasplats/cloud/load/load_cloud.h"
 #include "adasplats/core/error.h"
 #include "adasplats/evaluate/splat_errors.h"
-#include "adasplats/pipeline/session/inputs.h"
-#include "adasplats/recipes/pictures/panel_legend.h"
+#include "adasplats/jobs/pictures/panel_legend.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "adasplats/report/text_format.h"
 #include "adasplats/simulate/captions/captions.h"
 #include "adasplats/simulate/captions/color_bar.h"

@@ -12,8 +12,8 @@
 
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/evaluate/error_points.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/simulate/image/image.h"
 
 namespace adasplats {

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/pictures/panel.h"
+#include "adasplats/jobs/pictures/panel.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
 #include "adasplats/core/temporary_folder_test.h"
-#include "adasplats/pipeline/session/own_session.h"
-#include "adasplats/recipes/pictures/panel_legend.h"
+#include "adasplats/jobs/pictures/panel_legend.h"
+#include "adasplats/jobs/session/own_session.h"
 
 namespace adasplats {
 namespace {

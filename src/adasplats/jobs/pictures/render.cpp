@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/pictures/render.h"
+#include "adasplats/jobs/pictures/render.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,13 +16,13 @@
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/arrays/png.h"
 #include "adasplats/io/base/number_text.h"
-#include "adasplats/pipeline/output/output_folder.h"
-#include "adasplats/pipeline/session/inputs.h"
-#include "adasplats/recipes/pictures/camera_paths.h"
-#include "adasplats/recipes/pictures/difference.h"
-#include "adasplats/recipes/pictures/film_writer.h"
-#include "adasplats/recipes/pictures/mosaic.h"
-#include "adasplats/recipes/pictures/panel.h"
+#include "adasplats/jobs/output/output_folder.h"
+#include "adasplats/jobs/pictures/camera_paths.h"
+#include "adasplats/jobs/pictures/difference.h"
+#include "adasplats/jobs/pictures/film_writer.h"
+#include "adasplats/jobs/pictures/mosaic.h"
+#include "adasplats/jobs/pictures/panel.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "adasplats/core/setting.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/scene/view_choice.h"
-#include "adasplats/pipeline/session/session.h"
-#include "adasplats/recipes/pictures/panel.h"
+#include "adasplats/jobs/pictures/panel.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/scene/view_choice.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

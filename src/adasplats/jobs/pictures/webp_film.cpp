@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/pictures/webp_film.h"
+#include "adasplats/jobs/pictures/webp_film.h"
 
 #include <cmath>
 #include <stdexcept>

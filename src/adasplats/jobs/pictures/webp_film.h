@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "adasplats/recipes/pictures/film_writer.h"
+#include "adasplats/jobs/pictures/film_writer.h"
 
 namespace adasplats {
 

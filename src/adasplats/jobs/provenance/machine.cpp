@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/provenance/machine.h"
+#include "adasplats/jobs/provenance/machine.h"
 
 #include <unistd.h>
 

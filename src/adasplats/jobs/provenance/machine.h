@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 
-#include "adasplats/pipeline/session/device_choice.h"
+#include "adasplats/jobs/session/device_choice.h"
 
 namespace adasplats {
 

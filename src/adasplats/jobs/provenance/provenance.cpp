@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/jobs/provenance/provenance.h"
 
 #include <array>
 #include <ctime>
@@ -10,8 +10,8 @@
 #include <string_view>
 #include <system_error>
 
-#include "adasplats/pipeline/provenance/build_commit.h"
-#include "adasplats/pipeline/provenance/machine.h"
+#include "adasplats/jobs/provenance/build_commit.h"
+#include "adasplats/jobs/provenance/machine.h"
 
 namespace adasplats {
 namespace {

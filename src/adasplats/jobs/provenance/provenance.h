@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/pipeline/session/device_choice.h"
+#include "adasplats/jobs/session/device_choice.h"
 
 namespace adasplats {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/provenance/provenance.h"
+#include "adasplats/jobs/provenance/provenance.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <regex>
 #include <string>
 
-#include "adasplats/pipeline/provenance/machine.h"
+#include "adasplats/jobs/provenance/machine.h"
 
 namespace adasplats {
 namespace {
@@ -27,7 +27,7 @@ TEST(Provenance, TellsWhatAFigureComesFrom) {
   EXPECT_EQ(json["machine"]["cores"], 3);
   EXPECT_GT(json["machine"]["memory_bytes"], 0);
   EXPECT_EQ(json["device"]["kind"], "cpu");
-  EXPECT_TRUE(json["command"].get<std::string>().starts_with("adasplats_pipeline_test"));
+  EXPECT_TRUE(json["command"].get<std::string>().starts_with("adasplats_jobs_test"));
 }
 
 TEST(Provenance, QuotesWordsForAShell) {

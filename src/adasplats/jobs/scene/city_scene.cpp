@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/scene/city_scene.h"
+#include "adasplats/jobs/scene/city_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/sparse_array.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "adasplats/simulate/world/world_file.h"
 #include "adasplats/trace/tiled_tracer.h"
 

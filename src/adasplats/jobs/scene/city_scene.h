@@ -9,8 +9,8 @@
 
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/city/tile_stream.h"
-#include "adasplats/pipeline/scene/scan_place.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/scene/scan_place.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

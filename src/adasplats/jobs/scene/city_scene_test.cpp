@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/scene/city_scene.h"
+#include "adasplats/jobs/scene/city_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/pipeline/scene/model_scene.h"
-#include "adasplats/pipeline/scene/scan_simulator.h"
+#include "adasplats/jobs/scene/model_scene.h"
+#include "adasplats/jobs/scene/scan_simulator.h"
 
 namespace adasplats::streamed {
 namespace {

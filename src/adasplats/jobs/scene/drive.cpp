@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/scene/drive.h"
+#include "adasplats/jobs/scene/drive.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -10,7 +10,7 @@
 #include "adasplats/cloud/load/recorded_trajectory.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/recording.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

@@ -11,7 +11,7 @@
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/progress.h"
 #include "adasplats/core/setting.h"
-#include "adasplats/pipeline/scene/placed_poses.h"
+#include "adasplats/jobs/scene/placed_poses.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/simulate/scan/scan_motion.h"
 

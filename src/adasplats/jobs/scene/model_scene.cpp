@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/jobs/scene/model_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "adasplats/simulate/image/class_colors.h"
 
 namespace adasplats {

@@ -13,9 +13,9 @@
 
 #include "adasplats/core/function_ref.h"
 #include "adasplats/gpu/simulate/gpu_scene.h"
-#include "adasplats/pipeline/scene/scan_place.h"
-#include "adasplats/pipeline/scene/shown_part.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/scene/scan_place.h"
+#include "adasplats/jobs/scene/shown_part.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/simulate/image/image.h"
 #include "adasplats/simulate/scan/scan_caster.h"
 #include "adasplats/simulate/scan/scan_rules.h"

@@ -7,7 +7,7 @@
 
 #include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/core/executor.h"
-#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/jobs/scene/model_scene.h"
 
 namespace adasplats {
 

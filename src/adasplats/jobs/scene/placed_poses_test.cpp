@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/scene/placed_poses.h"
+#include "adasplats/jobs/scene/placed_poses.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "adasplats/core/temporary_folder_test.h"
-#include "adasplats/pipeline/scene/drive.h"
-#include "adasplats/pipeline/session/own_session.h"
+#include "adasplats/jobs/scene/drive.h"
+#include "adasplats/jobs/session/own_session.h"
 
 namespace adasplats {
 namespace {

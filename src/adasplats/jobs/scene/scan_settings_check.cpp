@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/scene/scan_simulator.h"
+#include "adasplats/jobs/scene/scan_simulator.h"
 #include "adasplats/sensors/sensor_overrides.h"
 
 namespace adasplats {

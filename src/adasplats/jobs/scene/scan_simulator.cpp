@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/scene/scan_simulator.h"
+#include "adasplats/jobs/scene/scan_simulator.h"
 
 #include <algorithm>
 #include <memory>

@@ -12,7 +12,7 @@
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/function_ref.h"
-#include "adasplats/pipeline/scene/scan_place.h"
+#include "adasplats/jobs/scene/scan_place.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/sensors/sensor_overrides.h"
 #include "adasplats/simulate/scan/ray_drop.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/scene/scan_simulator.h"
+#include "adasplats/jobs/scene/scan_simulator.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/core/recorded_progress_test.h"
 #include "adasplats/core/temporary_folder_test.h"
-#include "adasplats/pipeline/scene/model_scene.h"
+#include "adasplats/jobs/scene/model_scene.h"
 
 namespace adasplats {
 namespace {

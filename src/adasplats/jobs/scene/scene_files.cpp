@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/scene/scene_files.h"
+#include "adasplats/jobs/scene/scene_files.h"
 
 #include <algorithm>
 
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/cloud/poses/trajectory.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/session/inputs.h"
 #include "adasplats/scene/gltf.h"
 #include "adasplats/simulate/world/world_file.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/scene/scene_files.h"
+#include "adasplats/jobs/scene/scene_files.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/scene/shown_part.h"
+#include "adasplats/jobs/scene/shown_part.h"
 
 #include <algorithm>
 #include <cmath>

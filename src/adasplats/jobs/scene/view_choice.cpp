@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/scene/view_choice.h"
+#include "adasplats/jobs/scene/view_choice.h"
 
 #include <string>
 
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/session/inputs.h"
 
 namespace adasplats {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "adasplats/pipeline/scene/shown_part.h"
+#include "adasplats/jobs/scene/shown_part.h"
 #include "adasplats/sensors/camera.h"
 
 namespace adasplats {

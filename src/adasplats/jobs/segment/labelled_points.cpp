@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/segment/labelled_points.h"
+#include "adasplats/jobs/segment/labelled_points.h"
 
 #include <string>
 

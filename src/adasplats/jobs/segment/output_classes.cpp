@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/segment/output_classes.h"
+#include "adasplats/jobs/segment/output_classes.h"
 
 #include <algorithm>
 #include <map>

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/segment/point_classes.h"
+#include "adasplats/jobs/segment/point_classes.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "adasplats/core/error.h"
-#include "adasplats/pipeline/segment/segment_on_device.h"
+#include "adasplats/jobs/segment/segment_on_device.h"
 #include "adasplats/segment/network/matrix_product.h"
 
 namespace adasplats {

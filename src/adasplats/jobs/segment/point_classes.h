@@ -11,7 +11,7 @@
 
 #include "adasplats/cloud/labels/dynamic_removal.h"
 #include "adasplats/cloud/points/point_cloud.h"
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/segment/network/network.h"
 #include "adasplats/segment/segment_cloud.h"
 

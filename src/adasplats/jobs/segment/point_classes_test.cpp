@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/segment/point_classes.h"
+#include "adasplats/jobs/segment/point_classes.h"
 
 #include <gtest/gtest.h>
 

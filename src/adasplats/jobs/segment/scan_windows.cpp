@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/recipes/segment/scan_windows.h"
+#include "adasplats/jobs/segment/scan_windows.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/segment/segment_on_device.h"
+#include "adasplats/jobs/segment/segment_on_device.h"
 
 #include "adasplats/gpu/segment/gpu_segment.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/session.h"
 #include "adasplats/segment/segment_cloud.h"
 
 namespace adasplats {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/session/device_choice.h"
+#include "adasplats/jobs/session/device_choice.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/session/inputs.h"
+#include "adasplats/jobs/session/inputs.h"
 
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/cloud/load/cloud_inputs.h"

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "adasplats/pipeline/session/session.h"
+#include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/pipeline/session/scan_range.h"
+#include "adasplats/jobs/session/scan_range.h"
 
 #include "adasplats/core/error.h"
 

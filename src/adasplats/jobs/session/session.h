@@ -6,7 +6,7 @@
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
-#include "adasplats/pipeline/session/device_choice.h"
+#include "adasplats/jobs/session/device_choice.h"
 
 namespace adasplats {
 
