@@ -25,7 +25,7 @@ namespace {
 
 using namespace adasplats;
 
-constexpr double kLeastRange_m = 2.5, kMostRange_m = 50;
+constexpr double kMinRange_m = 2.5, kMaxRange_m = 50;
 constexpr std::uint16_t kFirstMoving = 252;  // SemanticKITTI
 constexpr std::size_t kParts = 5;
 
@@ -95,7 +95,7 @@ void add_scan(const KittiSequence& sequence, std::size_t scan_index, const Point
   std::vector<float> ranges_m;
   for (std::size_t i = 0; i < scan.positions.size(); ++i) {
     const Vec3d point = vec_cast<double>(scan.positions[i]);
-    if (!(length(point) >= kLeastRange_m && length(point) <= kMostRange_m)) continue;
+    if (!(length(point) >= kMinRange_m && length(point) <= kMaxRange_m)) continue;
     if (!scan.classes.empty() && scan.classes[i] >= kFirstMoving) continue;
     const Vec3f along = vec_cast<float>(pose * point) - place;
     ranges_m.push_back(length(along));

@@ -112,12 +112,12 @@ Json streamed(const Arguments& arguments, const ScanSettings& settings,
           {"traced_per_s", static_cast<double>(scans.size()) / times.traced_s},
           {"returns", returns},
           {"tiles_loaded", counts.loaded},
-          {"tiles_most_bytes", counts.most_bytes},
+          {"tiles_most_bytes", counts.max_bytes},
           {"waited_s", counts.waited_s},
           {"peak_memory_bytes", peak_memory_bytes()}};
 }
 
-std::string digest_in(const ScanPlace& scene, const ScanSettings& settings,
+std::string digest_in(const ScanScene& scene, const ScanSettings& settings,
                       std::span<const ScanMotion> scans, const Executor& executor) {
   ScanSimulator simulator(scene, settings, executor);
   Sha256 hash;

@@ -17,7 +17,7 @@ using namespace adasplats;
 
 int run(int argc, char** argv) {
   BuildOptions options;
-  RecipeChoice choice;
+  MethodChoice choice;
   choice.method = value_of(argv[2], kSplatMethods);
   choice.paper.resample = argc <= 3 || std::strcmp(argv[3], "no-resample") != 0;
   options.recipe = choice.recipe();

@@ -95,7 +95,7 @@ int run(int argc, char** argv) {
   ProgressSink quiet;
   const PointCloud cloud = input_cloud(argv[1], executor, quiet);
   BuildOptions options;
-  RecipeChoice choice;
+  MethodChoice choice;
   choice.method = value_of(argument(2, "semantic"), kSplatMethods);
   choice.paper.resample = argument(3, "resample") != "no-resample";
   options.recipe = choice.recipe();

@@ -59,8 +59,8 @@ Results cast_on_device(const std::shared_ptr<SceneObject>& object, py::handle se
   DeviceArguments arguments;
   arguments.take(keywords);
   keywords.finish();
-  if (arguments.depth < 1 || arguments.depth > kMostDepth)
-    throw py::value_error("depth must be 1 to " + std::to_string(kMostDepth));
+  if (arguments.depth < 1 || arguments.depth > kMaxDepth)
+    throw py::value_error("depth must be 1 to " + std::to_string(kMaxDepth));
   const GpuScene* const gpu = object->scene->gpu();
   if (gpu == nullptr)
     throw Error(ErrorKind::unavailable,

@@ -297,7 +297,7 @@ struct SegmentationArguments {
   void take(Keywords& keywords) {
     take_scan_range(keywords, job.scans);
     keywords.take("labels", job.labels);
-    keywords.take("least_share", job.options.least_share);
+    keywords.take("least_share", job.options.min_share);
     work.take(keywords);
   }
 

@@ -125,8 +125,8 @@ std::shared_ptr<Hits> cast(const std::shared_ptr<SceneObject>& object, py::handl
   CastArguments arguments;
   arguments.take(keywords);
   keywords.finish();
-  if (arguments.depth < 1 || arguments.depth > kMostDepth)
-    throw py::value_error("depth must be 1 to " + std::to_string(kMostDepth));
+  if (arguments.depth < 1 || arguments.depth > kMaxDepth)
+    throw py::value_error("depth must be 1 to " + std::to_string(kMaxDepth));
   const RayBlocks blocks(origins, directions, arguments, object->scene->origin());
   auto hits = std::make_shared<Hits>();
   hits->scene = object;

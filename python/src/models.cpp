@@ -97,7 +97,7 @@ constexpr const char* kModelsClassDoc =
     "and radii are strided). Raises TypeError, ValueError.";
 
 /// Loading has words of its own; `load` is for paths alone.
-void take_model(Keywords& keywords, ModelJob& job, RecipeChoice& recipe, WorkOptions& work) {
+void take_model(Keywords& keywords, ModelJob& job, MethodChoice& recipe, WorkOptions& work) {
   keywords.take("labels", job.labels);
   take_settings(keywords, job.segment);
   take_settings(keywords, recipe);
@@ -120,7 +120,7 @@ std::shared_ptr<ModelObject> model(py::handle points, const py::kwargs& kwargs) 
   Keywords keywords("model", kwargs);
   ModelJob job;
   WorkOptions options;
-  RecipeChoice recipe;
+  MethodChoice recipe;
   take_model(keywords, job, recipe, options);
   keywords.finish();
   refuse_unused(unused_settings(recipe), kwargs);
@@ -328,7 +328,7 @@ void bind_models(py::module_& module) {
       [](Keywords& keywords) {
         ModelJob job;
         WorkOptions work;
-        RecipeChoice recipe;
+        MethodChoice recipe;
         take_model(keywords, job, recipe, work);
       },
       kModelDoc);

@@ -33,7 +33,7 @@ struct SceneArguments {
 
 std::unique_ptr<ModelScene> scene_of(py::handle model, const std::string& labels,
                                      SceneObject& object, PythonProgress& progress) {
-  std::optional<Place> place;
+  std::optional<AnyModel> place;
   std::filesystem::path file;
   if (py::isinstance<ModelObject>(model)) {
     place = model.cast<const ModelObject&>().model;

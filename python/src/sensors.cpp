@@ -65,7 +65,7 @@ void fields(Archive& archive, LidarModel& model) {
   archive("range_resolution_m", model.range_resolution_m);
   archive("divergence_rad", model.divergence_rad);
   archive("divergence_kind", model.divergence_kind);
-  archive("most_returns", model.most_returns);
+  archive("most_returns", model.max_returns);
   archive("clockwise", model.clockwise);
   archive("free_pattern", model.free_pattern);
   archive("rosette", model.rosette);
@@ -136,7 +136,7 @@ void take_common(Keywords& keywords, LidarModel& model) {
   keywords.take("angular_noise_rad", model.angular_noise_rad);
   keywords.take("range_resolution_m", model.range_resolution_m);
   take_divergence(keywords, model);
-  keywords.take("most_returns", model.most_returns);
+  keywords.take("most_returns", model.max_returns);
 }
 
 void require(bool holds, const char* message) {
@@ -322,7 +322,7 @@ void add_attributes(SensorClass& type) {
       .def_readonly("angular_noise_rad", &LidarModel::angular_noise_rad, "Standard deviation, rad.")
       .def_readonly("range_resolution_m", &LidarModel::range_resolution_m,
                     "Ranges are multiples of it, m; 0: any.")
-      .def_readonly("most_returns", &LidarModel::most_returns, "Echoes a firing.")
+      .def_readonly("most_returns", &LidarModel::max_returns, "Echoes a firing.")
       .def_property_readonly("rings", &LidarModel::rings, "How many beams.")
       .def_property_readonly("rays_per_scan", &LidarModel::rays_per_scan, "Firings of one scan.")
       .def_property_readonly(

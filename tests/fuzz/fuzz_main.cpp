@@ -127,7 +127,7 @@ const FuzzTarget* target_named(std::string_view name) {
 
 void list_targets() {
   for (const FuzzTarget& target : fuzz_targets())
-    std::cout << target.name << '\t' << target.sources << '\t' << target.most_bytes << '\t'
+    std::cout << target.name << '\t' << target.sources << '\t' << target.max_bytes << '\t'
               << target.allocation_mb << '\n';
 }
 

@@ -30,7 +30,7 @@ struct FuzzTarget {
   std::string_view sources;
   /// Reads it. adasplats::Error may come out, nothing else.
   void (*read)(const Input&);
-  std::size_t most_bytes = 4096;  ///< of an input
+  std::size_t max_bytes = 4096;  ///< of an input
   /// The most that one allocation may take. The readers say what memory they need in multiples of
   /// the input.
   std::size_t allocation_mb = 64;

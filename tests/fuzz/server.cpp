@@ -41,13 +41,13 @@ class CountingHandler final : public WebSocketHandler {
  public:
   void opened(const std::shared_ptr<WebSocketPeer>&) override { ++opened_; }
   void received(const std::shared_ptr<WebSocketPeer>& peer, std::string_view text) override {
-    require(text.size() <= kMostMessage, "no message beyond the limit");
+    require(text.size() <= kMaxMessage, "no message beyond the limit");
     peer->send_text(std::to_string(text.size()));
   }
   void closed(const std::shared_ptr<WebSocketPeer>&) override { ++closed_; }
   bool is_balanced() const { return opened_ == closed_; }
 
-  static constexpr std::size_t kMostMessage = 1000;
+  static constexpr std::size_t kMaxMessage = 1000;
 
  private:
   int opened_ = 0, closed_ = 0;
@@ -69,7 +69,7 @@ std::shared_ptr<ServerCore> make_core(CountingHandler& handler) {
   };
   std::shared_ptr<ServerCore> core(new ServerCore{{}, get, handler});
   core->options.token = "t";
-  core->options.message_bytes_limit = CountingHandler::kMostMessage;
+  core->options.message_bytes_limit = CountingHandler::kMaxMessage;
   core->port = 8123;
   return core;
 }

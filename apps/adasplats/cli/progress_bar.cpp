@@ -16,7 +16,7 @@ namespace adasplats::app {
 namespace {
 
 constexpr int kBarWidth = 30;
-constexpr auto kLeastInterval = std::chrono::milliseconds(100);
+constexpr auto kMinInterval = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -34,7 +34,7 @@ void ProgressBar::begin_step(std::string_view name, std::uint64_t total) {
 
 void ProgressBar::advance(std::uint64_t done) {
   throw_if_interrupted();
-  if (visible_ && std::chrono::steady_clock::now() - last_drawn_ >= kLeastInterval) draw(done);
+  if (visible_ && std::chrono::steady_clock::now() - last_drawn_ >= kMinInterval) draw(done);
 }
 
 void ProgressBar::end_step() {

@@ -292,7 +292,7 @@ class ModelCommand final : public Command {
   }
 
   CityJob job_;
-  RecipeChoice recipe_;
+  MethodChoice recipe_;
   bool plan_ = false;
   std::optional<TileKey> only_tile_;
 };

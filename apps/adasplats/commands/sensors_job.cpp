@@ -43,7 +43,7 @@ nlohmann::ordered_json sensor_json(const LidarModel& sensor, const SensorFacts& 
           {"min_range_m", sensor.min_range_m},
           {"max_range_m", sensor.max_range_m},
           {"range_noise_m", sensor.range_noise_m},
-          {"most_returns", sensor.most_returns},
+          {"most_returns", sensor.max_returns},
           {"clockwise", sensor.clockwise},
           {"repeats", repeats(sensor)},
           {"source", sensor.source}};
@@ -268,7 +268,7 @@ std::string library_table(Session& session) {
          fixed(facts.rotation_hz, facts.rotation_hz == std::floor(facts.rotation_hz) ? 0 : 2),
          signed_degrees(facts.bottom_deg) + " .. " + signed_degrees(facts.top_deg),
          fixed(sensor.min_range_m, 2) + " .. " + fixed(sensor.max_range_m, 0),
-         fixed(1e3 * sensor.range_noise_m, 0), std::to_string(sensor.most_returns)});
+         fixed(1e3 * sensor.range_noise_m, 0), std::to_string(sensor.max_returns)});
     sources.push_back(sensor.source);
     session.report["sensors"].push_back(sensor_json(sensor, facts));
   }
@@ -296,7 +296,7 @@ std::string describe(const LidarModel& sensor, Session& session) {
       {"range noise", fixed(1e3 * sensor.range_noise_m, 1) + " mm"},
       {"range resolution", fixed(1e3 * sensor.range_resolution_m, 1) + " mm"},
       {"divergence", divergence_text(sensor)},
-      {"returns", std::to_string(sensor.most_returns)},
+      {"returns", std::to_string(sensor.max_returns)},
       {"repeats", repeats(sensor) ? "yes" : "no"},
       {"source", sensor.source}};
   std::string text = sensor.name + "\n";

@@ -68,16 +68,16 @@ class SimulateCommand final : public Command {
                 .help = "Of a city's tiles that are kept at a time along a trajectory, GB, or with "
                         "a unit: 500M; without it 1, on a GPU 6",
                 .value = "GB",
-                .least = 0,
-                .above_least = true},
+                .min = 0,
+                .exclusive_min = true},
                job_.tile_memory_gb);
     app.add_flag("--overwrite", job_.overwrite, "Replace an earlier output folder");
-    constexpr int kMostScans = 1'000'000'000;
+    constexpr int kMaxScans = 1'000'000'000;
     app.add_option(
            "--plan", scans_a_task_,
            "Simulate nothing, but print commands that simulate so many scans each, a line a "
            "command, for many processes or machines; the same command without it finishes")
-        ->range(1, kMostScans)
+        ->range(1, kMaxScans)
         ->type_name("N");
     app.add_option_function<std::string>(
            "--only-scans",

@@ -51,7 +51,7 @@ class SynthCityCommand final : public Command {
     table.add_row({"scans", grouped(report.scans)});
     table.add_row({"points", grouped(report.points)});
     table.add_row({"pieces", grouped(report.pieces)});
-    table.add_row({"most pieces in memory", grouped(report.most_pieces)});
+    table.add_row({"most pieces in memory", grouped(report.max_pieces)});
     table.add_row({"triangles", grouped(report.mesh_triangles)});
     table.add_row({"points a second", grouped(static_cast<std::size_t>(points_per_s))});
     table.add_row({"seconds", fixed(seconds, 1)});

@@ -45,7 +45,7 @@ class SynthStreetCommand final : public Command {
     app.add_option("--driving-spacing", job_.scan.driving_spacing_m,
                    "Between the scans of the driving sequence, m; 0: no sequence")
         ->capture_default_str();
-    app.add_option("--most-driving-scans", job_.scan.most_driving_scans,
+    app.add_option("--most-driving-scans", job_.scan.max_driving_scans,
                    "Scans of the driving sequence at most")
         ->capture_default_str();
   }

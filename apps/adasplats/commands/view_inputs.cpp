@@ -201,7 +201,7 @@ class Loading {
   }
 
   void add_place(const fs::path& path) {
-    const Place place = load_place_or_city(path);
+    const AnyModel place = load_any_model_or_city(path);
     if (view_of(place).primitive_count() == 0)
       throw Error(ErrorKind::data, path.string() + ": nothing in it");
     crs_.add(path, crs_of(place));

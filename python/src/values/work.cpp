@@ -9,14 +9,14 @@
 namespace adasplats::python {
 namespace {
 
-constexpr auto kLeastInterval = std::chrono::milliseconds(50);
+constexpr auto kMinInterval = std::chrono::milliseconds(50);
 
 }  // namespace
 
 void SignalCheck::operator()() const {
   const Clock::rep now = Clock::now().time_since_epoch().count();
   Clock::rep last = last_->load();
-  if (now - last < Clock::duration(kLeastInterval).count()) return;
+  if (now - last < Clock::duration(kMinInterval).count()) return;
   if (!last_->compare_exchange_strong(last, now)) return;  // another thread does it
   const py::gil_scoped_acquire acquired;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -39,7 +39,7 @@ void PythonProgress::begin_step(std::string_view name, std::uint64_t total) {
 }
 
 void PythonProgress::advance(std::uint64_t done) {
-  if (std::chrono::steady_clock::now() - told_ >= kLeastInterval) tell(done);
+  if (std::chrono::steady_clock::now() - told_ >= kMinInterval) tell(done);
 }
 
 void PythonProgress::end_step() { tell(total_); }

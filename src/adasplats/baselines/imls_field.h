@@ -28,23 +28,23 @@ void visit_settings(ImlsOptions& imls, Visit&& visit) {
                 .help = "Side of a voxel, m",
                 .key = "voxel_m",
                 .group = kGroup,
-                .least = 0,
-                .above_least = true},
+                .min = 0,
+                .exclusive_min = true},
         imls.voxel_m);
   visit(Setting{.name = "sigma",
                 .help = "Of the Gaussian weight, voxels",
                 .key = "sigma_voxels",
                 .group = kGroup,
-                .least = 0,
-                .most = 1000,
-                .above_least = true},
+                .min = 0,
+                .max = 1000,
+                .exclusive_min = true},
         imls.sigma_voxels);
   visit(Setting{.name = "truncation",
                 .help = "Values only in voxels this near to a point, voxels",
                 .key = "truncation_voxels",
                 .group = kGroup,
-                .least = 1,
-                .most = 8},
+                .min = 1,
+                .max = 8},
         imls.truncation_voxels);
 }
 

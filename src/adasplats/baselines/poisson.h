@@ -52,16 +52,16 @@ void visit_settings(PoissonOptions& poisson, Visit&& visit) {
   visit(Setting{.name = "depth",
                 .help = "Depth of the octree, at most",
                 .group = kGroup,
-                .least = 1,
-                .most = 16},
+                .min = 1,
+                .max = 16},
         poisson.depth);
   visit(Setting{.name = "samples_per_node",
                 .help = "Least number of points in a node; without it 2, or 1.5 of Open3D, which "
                         "has no other",
                 .group = kGroup,
-                .least = 0,
-                .most = 1000,
-                .above_least = true},
+                .min = 0,
+                .max = 1000,
+                .exclusive_min = true},
         poisson.samples_per_node);
   visit(Setting{.name = "trim",
                 .help = "Cut away what was measured at a lesser depth; the default is the depth "

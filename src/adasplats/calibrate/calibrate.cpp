@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kLeftOut = 8;         // every so many-th point
 constexpr double kFlatnessOfJudging = 0.1;  // m
-constexpr double kMostDistance_m = 0.25;    // that counts where mounts are compared
+constexpr double kMaxDistance_m = 0.25;     // that counts where mounts are compared
 
 double between(double first, double last, int round, int rounds) {
   const double share = rounds > 1 ? static_cast<double>(round) / (rounds - 1) : 1;
@@ -82,7 +82,7 @@ class Calibrator {
     if (report.objection.empty()) {
       align_to_mounted();
       judge(report.calibrated_m, report.calibrated);
-      if (!(report.calibrated_m < options_.least_gain * before_m))
+      if (!(report.calibrated_m < options_.min_gain * before_m))
         report.objection = "points that took no part lie no better on the planes of the others";
     }
     if (report.objection.empty()) return {calibration(), report};
@@ -104,8 +104,8 @@ class Calibrator {
     report.weakest_share = weakest_share(planes, report.weakest);
     report.objection = objection_to(report);
     if (!report.objection.empty()) return;
-    RowOptions rows{options_.most_points,
-                    options_.most_weight,
+    RowOptions rows{options_.max_points,
+                    options_.max_weight,
                     between(options_.first_width_m, options_.last_width_m, round, options_.rounds),
                     options_.poses,
                     options_.ranges,
@@ -192,7 +192,7 @@ class Calibrator {
     // Odd: points of a laser may lie a power of two apart.
     const std::size_t stride = std::max<std::size_t>(1, all_.indices.size() / wanted) | 1;
     MountReport report;
-    if (places_.size() < mount.least_scans) {
+    if (places_.size() < mount.min_scans) {
       report.objection = "too few scans (" + std::to_string(places_.size()) + ")";
       return report;
     }
@@ -203,7 +203,7 @@ class Calibrator {
     report.objection = objection_to(report.found);
     if (!report.objection.empty()) return report;
     judge_mount(report);
-    if (report.mounted_m < mount.least_gain * report.given_m) return report;
+    if (report.mounted_m < mount.min_gain * report.given_m) return report;
     report.objection =
         "points that took no part lie not clearly better on the planes of the others";
     set_mount({});
@@ -235,7 +235,7 @@ class Calibrator {
   /// Of points that were left out from planes through the others of the same cells.
   void add_left_out(DistanceSum& sum) {
     for (const DistanceSum& of_plane :
-         steps_.left_out_distances(kMostDistance_m, options_.most_weight)) {
+         steps_.left_out_distances(kMaxDistance_m, options_.max_weight)) {
       sum.distance_m += of_plane.distance_m;
       sum.weight += of_plane.weight;
     }
@@ -243,12 +243,12 @@ class Calibrator {
 
   std::string objection_to(const MountEstimate& found) const {
     const MountOptions& mount = options_.mount;
-    if (found.planes < mount.least_planes)
+    if (found.planes < mount.min_planes)
       return "too few planes that several scans saw (" + std::to_string(found.planes) + ")";
-    if (length(found.mount.rotation_rad) < mount.least_rotation_rad &&
-        length(found.mount.shift_m) < mount.least_shift_m)
+    if (length(found.mount.rotation_rad) < mount.min_rotation_rad &&
+        length(found.mount.shift_m) < mount.min_shift_m)
       return "what is wrong with it is no more than corrections of single poses make up for";
-    if (!(found.deviations >= mount.least_deviations)) return "it is not clear from the data";
+    if (!(found.deviations >= mount.min_deviations)) return "it is not clear from the data";
     return {};
   }
 
@@ -302,7 +302,7 @@ class Calibrator {
     const bool has_lasers = !blocks.lasers.empty();
     PlaneSystem system(std::move(blocks));
     add_priors(system, has_lasers);
-    apply(system.solve(options_.tolerance, options_.most_iterations,
+    apply(system.solve(options_.tolerance, options_.max_iterations,
                        [&](const PlaneStep& x) { return steps_.coupled(x); }));
   }
 
@@ -323,7 +323,7 @@ class Calibrator {
     SymmetricMat3d normals;
     double total = 0;
     for (const ScanPlane& plane : planes) {
-      const double weight = std::min(options_.most_weight, double(plane.end - plane.begin));
+      const double weight = std::min(options_.max_weight, double(plane.end - plane.begin));
       const Vec3d n = plane.normal;
       total += weight;
       normals.xx += weight * n.x * n.x;
@@ -339,9 +339,9 @@ class Calibrator {
   }
 
   std::string objection_to(const CalibrationReport& report) const {
-    if (report.planes < options_.least_planes)
+    if (report.planes < options_.min_planes)
       return "too few planes that several scans saw (" + std::to_string(report.planes) + ")";
-    if (report.weakest_share < options_.least_share) {
+    if (report.weakest_share < options_.min_share) {
       std::array<char, 128> text{};
       std::snprintf(text.data(), text.size(),
                     "no planes hold the poses along (%.2f, %.2f, %.2f), as in a straight tunnel",

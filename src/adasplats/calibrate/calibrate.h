@@ -30,13 +30,13 @@ struct CalibrateOptions {
   /// count.
   double first_flatness_m = 0.25, last_flatness_m = 0.05;
   double first_width_m = 0.15, last_width_m = 0.03;
-  double most_weight = 200;       ///< of a plane, in points: near ground must not outweigh facades
-  std::size_t most_points = 400;  ///< of a plane that are looked at
+  double max_weight = 200;       ///< of a plane, in points: near ground must not outweigh facades
+  std::size_t max_points = 400;  ///< of a plane that are looked at
   std::size_t points_a_scan = 40'000;  ///< that are looked at, in the mean, in...
   int fine_rounds = 2;                 ///< ...the last rounds; in the others, every so many-th:
   std::size_t coarse_stride = 5;       ///< odd, as points of a laser may lie a power of two apart
   double tolerance = 1e-3;             ///< of a step's conjugate gradients, and...
-  int most_iterations = 200;           ///< ...their most
+  int max_iterations = 200;            ///< ...their most
   /// How far the given values are believed: standard deviations of weak priors, beside residuals of
   /// `residual_sigma_m`. They hold what the planes do not.
   double residual_sigma_m = 0.02;
@@ -45,8 +45,8 @@ struct CalibrateOptions {
   double range_share = 0, elevation_share = 0.05;
   /// Nothing is applied where planes are fewer, hold the poses along some direction by less than
   /// this share of their weight, or bring the residual of points left out not below this share.
-  std::size_t least_planes = 100;
-  double least_share = 0.002, least_gain = 0.98;
+  std::size_t min_planes = 100;
+  double min_share = 0.002, min_gain = 0.98;
   ScanPlaneOptions planes;  ///< but for the flatness
   MountOptions mount;
 };

@@ -16,7 +16,7 @@ namespace {
 
 /// How far from the way between two given positions a third one of the same drive may be: what a
 /// vehicle that brakes or turns does to the straight line, and the noise of poses.
-constexpr double kShareOfWay = 0.25, kLeastAside_m = 0.5;
+constexpr double kShareOfWay = 0.25, kMinAside_m = 0.5;
 
 /// Scans [begin, end) of one drive.
 struct DriveSpan {
@@ -80,7 +80,7 @@ PoseCorrection between(const std::vector<PoseCorrection>& poses, std::size_t fir
 bool leads_past(const PoseCorrection& a, const PoseCorrection& b, double share, Vec3d position) {
   const Vec3d way = b.position - a.position;
   const double aside_m = length(position - (a.position + share * way));
-  return aside_m <= kLeastAside_m + kShareOfWay * length(way) * std::max(1.0, std::fabs(share));
+  return aside_m <= kMinAside_m + kShareOfWay * length(way) * std::max(1.0, std::fabs(share));
 }
 
 /// Of scans that follow one another in a drive; 0: none do.

@@ -35,8 +35,8 @@ struct ScanCorrections {
 
 /// How the distances of points from planes become sums.
 struct RowOptions {
-  std::size_t most_points = 400;                        ///< of a plane that are looked at
-  double most_weight = 200;                             ///< of a plane, in points
+  std::size_t max_points = 400;                         ///< of a plane that are looked at
+  double max_weight = 200;                              ///< of a plane, in points
   double width_m = 0;                                   ///< of the residuals that count
   bool poses = true, ranges = true, elevations = true;  ///< what is unknown
 };
@@ -66,8 +66,8 @@ class CalibrationSteps {
   /// Distances of the points that were left out from planes through the others.
   virtual std::vector<double> left_out_residuals() = 0;
   /// The same as sums, one a plane, with the planes' directions as the points are now. Distances
-  /// count as at most `most_m`, planes as at most `most_weight` points.
-  virtual std::vector<DistanceSum> left_out_distances(double most_m, double most_weight) = 0;
+  /// count as at most `max_m`, planes as at most `max_weight` points.
+  virtual std::vector<DistanceSum> left_out_distances(double max_m, double max_weight) = 0;
   /// Chooses the points that sum_rows() looks at.
   virtual void choose_rows(const RowOptions& options) = 0;
   /// What they say of poses and lasers near these corrections.

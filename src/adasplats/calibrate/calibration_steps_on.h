@@ -15,9 +15,9 @@
 
 namespace adasplats {
 
-/// The steps of calibrate(), once for all devices. `Place` is CpuArrays or gpu::GpuPlace; what one
-/// element does is in cell_steps.h, row_steps.h and sum_steps.h.
-template <class Place>
+/// The steps of calibrate(), once for all devices. `Backend` is CpuArrays or gpu::GpuBackend; what
+/// one element does is in cell_steps.h, row_steps.h and sum_steps.h.
+template <class Backend>
 class CalibrationStepsOn final : public CalibrationSteps {
  public:
   template <class Where>
@@ -70,12 +70,12 @@ class CalibrationStepsOn final : public CalibrationSteps {
     return place_.on_host(std::move(residuals_m));
   }
 
-  std::vector<DistanceSum> left_out_distances(double most_m, double most_weight) override {
+  std::vector<DistanceSum> left_out_distances(double max_m, double max_weight) override {
     [[maybe_unused]] const auto entered = place_.enter();
     Array<DistanceSum> sums = place_.template array<DistanceSum>(search_.planes().size());
-    place_.for_each(sums.size(), "judge planes",
-                    SumLeftOut{members(), set_of(searched_).corrected.data(), most_m, most_weight,
-                               sums.data()});
+    place_.for_each(
+        sums.size(), "judge planes",
+        SumLeftOut{members(), set_of(searched_).corrected.data(), max_m, max_weight, sums.data()});
     return place_.on_host(std::move(sums));
   }
 
@@ -101,9 +101,9 @@ class CalibrationStepsOn final : public CalibrationSteps {
 
  private:
   template <class T>
-  using Array = typename Place::template Array<T>;
+  using Array = typename Backend::template Array<T>;
   template <class T>
-  using Lent = typename Place::template Lent<T>;
+  using Lent = typename Backend::template Lent<T>;
 
   struct Set {
     Lent<std::uint32_t> indices, scans;
@@ -136,9 +136,9 @@ class CalibrationStepsOn final : public CalibrationSteps {
     return {search_.planes().data(), search_.order().data(), set_of(searched_).left_out_every};
   }
 
-  Place place_;
-  PlaneSearchOn<Place> search_;
-  PlaneSumsOn<Place> sums_;
+  Backend place_;
+  PlaneSearchOn<Backend> search_;
+  PlaneSumsOn<Backend> sums_;
   Lent<Vec3f> positions_, sensors_;
   Lent<std::uint32_t> scan_indices_;
   Lent<std::uint16_t> lasers_;

@@ -17,7 +17,7 @@ namespace adasplats {
 // what belongs to element `i`, so a loop on any device runs it (for_each of a place).
 
 inline constexpr int kCellBitsOfAxis = 21;
-inline constexpr double kMostCellsOfAxis = double{1 << kCellBitsOfAxis} - 1;
+inline constexpr double kMaxCellsOfAxis = double{1 << kCellBitsOfAxis} - 1;
 
 /// Spreads 21 bits to every third bit.
 ADASPLATS_HD inline std::uint64_t every_third_bit(std::uint64_t v) {
@@ -57,7 +57,7 @@ struct MakeCellKey {
     std::uint64_t key = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const double cell = std::floor((positions[i][axis] - low[axis]) / cell_m);
-      const double held = cell > 0 ? (cell < kMostCellsOfAxis ? cell : kMostCellsOfAxis) : 0;
+      const double held = cell > 0 ? (cell < kMaxCellsOfAxis ? cell : kMaxCellsOfAxis) : 0;
       key |= every_third_bit(static_cast<std::uint64_t>(held)) << axis;
     }
     keys[i] = key;
@@ -122,11 +122,11 @@ struct DivideCell {
 
 struct FlagLargeRun {
   const CellRun* runs;
-  std::uint32_t least_points;
+  std::uint32_t min_points;
   std::uint8_t* flags;
 
   ADASPLATS_HD void operator()(std::size_t r) const {
-    flags[r] = runs[r].end - runs[r].begin >= least_points ? 1 : 0;
+    flags[r] = runs[r].end - runs[r].begin >= min_points ? 1 : 0;
   }
 };
 

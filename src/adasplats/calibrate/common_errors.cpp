@@ -19,7 +19,7 @@ constexpr int kPoolingIterations = 5;
 /// In median distances from the median: where a window counts a quarter. 1.48 are a standard
 /// deviation of normal ones, so this is three of them.
 constexpr double kWidthOfPooling = 4.5;
-constexpr double kLeastWidthOfPooling = 1e-5;  // m and rad: windows agree no better
+constexpr double kMinWidthOfPooling = 1e-5;  // m and rad: windows agree no better
 
 struct Weighted {
   double value = 0, weight = 0;
@@ -43,7 +43,7 @@ double robust_mean(const std::vector<Weighted>& values) {
   apart.reserve(values.size());
   for (const Weighted& each : values) apart.push_back({std::fabs(each.value - mean), each.weight});
   const double width =
-      std::max(kLeastWidthOfPooling, kWidthOfPooling * weighted_median(std::move(apart)));
+      std::max(kMinWidthOfPooling, kWidthOfPooling * weighted_median(std::move(apart)));
   for (int iteration = 0; iteration < kPoolingIterations; ++iteration) {
     double sum = 0, total = 0;
     for (const Weighted& each : values) {
@@ -116,14 +116,14 @@ ChainSystem::Block information_of(const MountEstimate& found, double range_m) {
       for (std::size_t c = 0; c < kCount; ++c) seen[r][c] -= axis[r] * axis[c];
   }
   // Where an axis is hardly observed its deviation is nearly 0, and says nothing of the rest.
-  constexpr double kLeastShare = 0.1, kLeastSd_m = 1e-4;
+  constexpr double kMinShare = 0.1, kMinSd_m = 1e-4;
   const MountColumn sd = mount_column(found.rotation_sd_rad, found.shift_sd_m, range_m);
-  const double least_m = std::max(kLeastSd_m, kLeastShare * *std::ranges::max_element(sd));
+  const double min_m = std::max(kMinSd_m, kMinShare * *std::ranges::max_element(sd));
   ChainSystem::Block information{};
   for (std::size_t r = 0; r < kCount; ++r)
     for (std::size_t c = 0; c < kCount; ++c)
       for (std::size_t k = 0; k < kCount; ++k)
-        information[r][c] += seen[r][k] * seen[k][c] / std::pow(std::max(least_m, sd[k]), 2);
+        information[r][c] += seen[r][k] * seen[k][c] / std::pow(std::max(min_m, sd[k]), 2);
   return information;
 }
 
@@ -200,7 +200,7 @@ void pool_mount(std::span<const WindowFinding> findings, const MountOptions& opt
     const MountReport& report = *finding.mount;
     if (report.objection.empty()) accepted.push_back(&report);
     if (!report.objection.empty() && objection.empty()) objection = report.objection;
-    if (report.found.planes >= options.least_planes) told.push_back(&report);
+    if (report.found.planes >= options.min_planes) told.push_back(&report);
   }
   if (findings.empty() || !findings.front().mount) return;
   if (accepted.empty() || 2 * accepted.size() <= told.size()) {

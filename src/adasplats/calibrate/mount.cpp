@@ -145,7 +145,7 @@ class MountSearch {
       const double weight = std::max(eigen.values[k], 0.0);
       const double share = weight / std::max(form_of(direction, sums_.full, direction), 1e-12);
       const double sd_m = std::sqrt(form_of(direction, scatter, direction)) / weight;
-      if (share >= options_.least_share && sd_m <= options_.most_sd_m) continue;
+      if (share >= options_.min_share && sd_m <= options_.max_sd_m) continue;
       unobserved.push_back(direction);
     }
     left_out_.insert(left_out_.end(), unobserved.begin(), unobserved.end());
@@ -338,14 +338,14 @@ class MountSearch {
                     std::vector<MountResidual>& residuals) const {
     residuals.clear();
     const auto members = planes.points_of(plane);
-    const std::size_t stride = (members.size() + options_.most_points - 1) / options_.most_points;
+    const std::size_t stride = (members.size() + options_.max_points - 1) / options_.max_points;
     double total = 0;
     for (std::size_t k = 0; k < members.size(); k += stride) {
       residuals.push_back(residual_of(members[k], plane));
       residuals.back().weight = robust_weight(residuals.back().residual_m, width_m);
       total += residuals.back().weight;
     }
-    const double scale = total > options_.most_weight ? options_.most_weight / total : 1;
+    const double scale = total > options_.max_weight ? options_.max_weight / total : 1;
     for (MountResidual& residual : residuals) residual.weight *= scale;
   }
 

@@ -27,19 +27,19 @@ struct MountOptions {
   int refining_rounds = 4;
   double first_flatness_m = 0.25, last_flatness_m = 0.05;
   double first_width_m = 0.15, last_width_m = 0.03;
-  double most_weight = 200;       ///< of a plane, in points
-  std::size_t most_points = 400;  ///< of a plane that are looked at
+  double max_weight = 200;       ///< of a plane, in points
+  std::size_t max_points = 400;  ///< of a plane that are looked at
   /// What the planes hold by less than this share of their weight, or to no better than this
   /// standard deviation, is not observed.
-  double least_share = 0.002, most_sd_m = 0.02;
+  double min_share = 0.002, max_sd_m = 0.02;
   /// With fewer scans nothing is estimated: deviations of six unknowns are told by the disagreement
   /// of twice as many parts or more.
-  std::size_t least_planes = 100, least_scans = 12;
+  std::size_t min_planes = 100, min_scans = 12;
   /// What the poses of single scans make up for: half of what they are found from. And how often
   /// its standard deviation a correction has to be.
-  double least_rotation_rad = 0.0044, least_shift_m = 0.1, least_deviations = 5;
+  double min_rotation_rad = 0.0044, min_shift_m = 0.1, min_deviations = 5;
   /// Share of the residual of points left out that has to be left at most.
-  double least_gain = 0.9;
+  double min_gain = 0.9;
 };
 
 /// A direction in which a mount can be wrong: what it moves at MountOptions::range_m by turning and

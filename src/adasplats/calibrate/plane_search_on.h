@@ -12,15 +12,15 @@
 
 namespace adasplats {
 
-/// find_scan_planes(), once for all devices; what one element does is in cell_steps.h. `Place` is
-/// CpuArrays or gpu::GpuPlace. Memory stays for the next search.
-template <class Place>
+/// find_scan_planes(), once for all devices; what one element does is in cell_steps.h. `Backend` is
+/// CpuArrays or gpu::GpuBackend. Memory stays for the next search.
+template <class Backend>
 class PlaneSearchOn {
  public:
   template <class T>
-  using Array = typename Place::template Array<T>;
+  using Array = typename Backend::template Array<T>;
 
-  explicit PlaneSearchOn(const Place& place) : place_(place) {}
+  explicit PlaneSearchOn(const Backend& place) : place_(place) {}
 
   /// Of `count` points; 2^31 at most.
   void run(const Vec3d* positions, const std::uint32_t* scans, std::size_t count,
@@ -75,7 +75,7 @@ class PlaneSearchOn {
                              std::vector<Array<ScanPlane>>& found) const {
     Array<std::uint8_t> is_large = place_.template array<std::uint8_t>(runs.size());
     place_.for_each(runs.size(), "find cells",
-                    FlagLargeRun{runs.data(), options.least_points, is_large.data()});
+                    FlagLargeRun{runs.data(), options.min_points, is_large.data()});
     const Array<std::uint32_t> large = place_.flagged(is_large);
     Array<ScanPlane> planes = place_.template array<ScanPlane>(large.size());
     Array<std::uint8_t> is_plane = place_.template array<std::uint8_t>(large.size());
@@ -110,7 +110,7 @@ class PlaneSearchOn {
     return result;
   }
 
-  const Place& place_;
+  const Backend& place_;
   Array<std::uint64_t> keys_;  ///< of the points, sorted
   Array<std::uint32_t> order_;
   Array<std::uint8_t> flags_;

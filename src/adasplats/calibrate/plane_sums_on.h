@@ -15,10 +15,10 @@
 namespace adasplats {
 
 /// Entries of planes and scans or lasers, and how the sums over those of one are cut.
-template <class Place>
+template <class Backend>
 struct EntriesOn {
   template <class T>
-  using Array = typename Place::template Array<T>;
+  using Array = typename Backend::template Array<T>;
 
   int bits = 0;
   Array<std::uint64_t> keys;
@@ -33,16 +33,16 @@ struct EntriesOn {
 };
 
 /// What rows on planes say of poses and lasers, once for all devices; what one element does is in
-/// row_steps.h and sum_steps.h. `Place` is CpuArrays or gpu::GpuPlace. Every sum has the order that
-/// the rows decide: those of a plane by scan, then as the plane has them; those of a scan or a
+/// row_steps.h and sum_steps.h. `Backend` is CpuArrays or gpu::GpuBackend. Every sum has the order
+/// that the rows decide: those of a plane by scan, then as the plane has them; those of a scan or a
 /// laser by plane, in chunks.
-template <class Place>
+template <class Backend>
 class PlaneSumsOn {
  public:
   template <class T>
-  using Array = typename Place::template Array<T>;
+  using Array = typename Backend::template Array<T>;
 
-  explicit PlaneSumsOn(const Place& place) : place_(place) {}
+  explicit PlaneSumsOn(const Backend& place) : place_(place) {}
 
   /// Points of the set that are rows, and which entries they are of. `lasers`: of the cloud, null
   /// where `laser_count` is 0.
@@ -99,7 +99,7 @@ class PlaneSumsOn {
                  const std::uint32_t* scans) {
     Array<std::uint32_t> counts = place_.template array<std::uint32_t>(plane_count_);
     place_.for_each(plane_count_, "count points",
-                    CountRows{members, options.most_points, counts.data()});
+                    CountRows{members, options.max_points, counts.data()});
     const auto begins = place_.running_sums(counts);
     const std::vector<std::uint64_t>& begins_here = place_.on_host(begins);
     const std::size_t rows = begins_here.back();
@@ -107,7 +107,7 @@ class PlaneSumsOn {
     place_.resize(keys_, rows);
     poses_.bits = bits_for(scan_count_);
     place_.for_each(plane_count_, "list points",
-                    ListRows{members, options.most_points, begins.data(), scans, poses_.bits,
+                    ListRows{members, options.max_points, begins.data(), scans, poses_.bits,
                              listed.data(), keys_.data()});
     place_.sort(keys_, order_);
     place_.resize(points_, rows);
@@ -117,7 +117,7 @@ class PlaneSumsOn {
 
   /// Of rows by their sorted keys.
   void make_entries(const Array<std::uint64_t>& keys, std::size_t unknowns,
-                    EntriesOn<Place>& entries) const {
+                    EntriesOn<Backend>& entries) const {
     Array<std::uint8_t> flags = place_.template array<std::uint8_t>(keys.size());
     place_.for_each(keys.size(), "find entries", FlagRunBegin{keys.data(), 0, flags.data()});
     entries.begins = place_.flagged(flags);
@@ -140,7 +140,7 @@ class PlaneSumsOn {
     cut(place_.on_host(begins), entries);
   }
 
-  void cut(const std::vector<std::uint32_t>& begins, EntriesOn<Place>& entries) const {
+  void cut(const std::vector<std::uint32_t>& begins, EntriesOn<Backend>& entries) const {
     std::vector<EntryChunk> chunks;
     std::vector<std::uint32_t> chunk_begins;
     for (std::uint32_t u = 0; u + 1 < begins.size(); ++u) {
@@ -179,7 +179,7 @@ class PlaneSumsOn {
                     SumPoseEntry{poses_.view(), rows_.data(), points_.size(), moments_.data()});
     place_.for_each(
         plane_count_, "add up planes",
-        FactorPlane{poses_.view(), moments_.data(), options.most_weight, factors_.data()});
+        FactorPlane{poses_.view(), moments_.data(), options.max_weight, factors_.data()});
     place_.for_each(poses_.size(), "add up scans",
                     WhitenPoseEntry{poses_.view(), factors_.data(), options.poses, moments_.data(),
                                     couplings_.data()});
@@ -215,7 +215,7 @@ class PlaneSumsOn {
   }
 
   template <class Block>
-  std::vector<Block> blocks_of(const Array<Block>& parts, const EntriesOn<Place>& entries,
+  std::vector<Block> blocks_of(const Array<Block>& parts, const EntriesOn<Backend>& entries,
                                std::size_t unknowns) const {
     constexpr std::size_t kWidth = sizeof(Block) / sizeof(double);
     Array<double> sums = place_.template array<double>(unknowns * kWidth);
@@ -260,7 +260,7 @@ class PlaneSumsOn {
     return place_.on_host(of_lasers_);
   }
 
-  const Place& place_;
+  const Backend& place_;
   const ScanPlane* planes_ = nullptr;
   const std::uint32_t* indices_ = nullptr;
   const Vec3d* pivots_ = nullptr;
@@ -270,7 +270,7 @@ class PlaneSumsOn {
   Array<std::uint64_t> keys_;
   Array<std::uint32_t> order_, points_;
   Array<PlaneRow> rows_;
-  EntriesOn<Place> poses_, lasers_;
+  EntriesOn<Backend> poses_, lasers_;
   Array<std::uint32_t> by_plane_and_laser_, by_scan_and_laser_, crossing_begins_;
 
   Array<PoseMoments> moments_;

@@ -80,7 +80,7 @@ class DenseSystem {
     };
     std::vector<Row> rows;
     double total = 0;
-    const std::size_t stride = (members.size() + options_.most_points - 1) / options_.most_points;
+    const std::size_t stride = (members.size() + options_.max_points - 1) / options_.max_points;
     for (std::size_t k = 0; k < members.size(); k += stride) {
       if (drive_.all.is_left_out(members[k])) continue;
       const Vec3d d = drive_.corrected(members[k]) - plane.center;
@@ -95,7 +95,7 @@ class DenseSystem {
     std::array<double, 9> own{};
     std::vector<std::array<double, 3>> beside(n + 1);
     for (Row& row : rows) {
-      row.weight *= std::min(1.0, options_.most_weight / total);
+      row.weight *= std::min(1.0, options_.max_weight / total);
       for (std::size_t a = 0; a < 3; ++a) {
         for (std::size_t b = 0; b < 3; ++b)
           own[a * 3 + b] += row.weight * row.by_plane[a] * row.by_plane[b];
@@ -191,8 +191,8 @@ TEST(PlaneSums, AreThoseOfTheDenseNormalEquations) {
   steps->correct(PointSet::all, drive.corrections);
   const std::vector<ScanPlane> planes = steps->find_planes(PointSet::all, {});
   RowOptions options;
-  options.most_points = 50;
-  options.most_weight = 20;
+  options.max_points = 50;
+  options.max_weight = 20;
   options.width_m = 0.1;
   steps->choose_rows(options);
   PlaneBlocks blocks = steps->sum_rows(drive.corrections, options);

@@ -93,7 +93,7 @@ void PlaneSystem::add_laser_prior(std::size_t laser, std::size_t unknown, double
   add_prior(block, unknown, weight + share * block.full[unknown * 3], value);
 }
 
-PlaneStep PlaneSystem::solve(double tolerance, int most_iterations, PlaneProduct coupled) const {
+PlaneStep PlaneSystem::solve(double tolerance, int max_iterations, PlaneProduct coupled) const {
   const Preconditioner<6> of_poses(blocks_.poses);
   const Preconditioner<2> of_lasers(blocks_.lasers);
   const auto preconditioned = [&](const PlaneStep& r) {
@@ -105,7 +105,7 @@ PlaneStep PlaneSystem::solve(double tolerance, int most_iterations, PlaneProduct
   PlaneStep z = preconditioned(residual), direction = z;
   double energy = dot_of(residual, z);
   const double enough = tolerance * tolerance * energy;
-  for (int k = 0; k < most_iterations && energy > enough; ++k) {
+  for (int k = 0; k < max_iterations && energy > enough; ++k) {
     PlaneStep product = coupled(direction);
     add_full(blocks_.poses, direction.poses, product.poses);
     add_full(blocks_.lasers, direction.lasers, product.lasers);

@@ -50,8 +50,8 @@ class PlaneSystem {
   void add_laser_prior(std::size_t laser, std::size_t unknown, double weight, double share,
                        double value);
 
-  /// Until the residual has fallen to `tolerance` of the right side, or `most_iterations`.
-  PlaneStep solve(double tolerance, int most_iterations, PlaneProduct coupled) const;
+  /// Until the residual has fallen to `tolerance` of the right side, or `max_iterations`.
+  PlaneStep solve(double tolerance, int max_iterations, PlaneProduct coupled) const;
 
  private:
   PlaneBlocks blocks_;

@@ -63,11 +63,11 @@ struct PlaneMembers {
   ADASPLATS_HD bool is_left_out(std::uint32_t k) const {
     return left_out_every != 0 && k % left_out_every == 0;
   }
-  /// Calls take(k) for the points that take part, `most_points` or a few less.
+  /// Calls take(k) for the points that take part, `max_points` or a few less.
   template <class Take>
-  ADASPLATS_HD void for_some(std::size_t plane, std::size_t most_points, Take&& take) const {
+  ADASPLATS_HD void for_some(std::size_t plane, std::size_t max_points, Take&& take) const {
     const std::size_t begin = planes[plane].begin, end = planes[plane].end;
-    const std::size_t stride = (end - begin + most_points - 1) / most_points;
+    const std::size_t stride = (end - begin + max_points - 1) / max_points;
     for (std::size_t at = begin; at < end; at += stride)
       if (!is_left_out(order[at])) take(order[at]);
   }
@@ -77,12 +77,12 @@ struct CountRows {
   static constexpr std::size_t kGrain = 64;
 
   PlaneMembers members;
-  std::size_t most_points;
+  std::size_t max_points;
   std::uint32_t* counts;
 
   ADASPLATS_HD void operator()(std::size_t plane) const {
     std::uint32_t count = 0;
-    members.for_some(plane, most_points, [&](std::uint32_t) { ++count; });
+    members.for_some(plane, max_points, [&](std::uint32_t) { ++count; });
     counts[plane] = count;
   }
 };
@@ -92,7 +92,7 @@ struct ListRows {
   static constexpr std::size_t kGrain = 64;
 
   PlaneMembers members;
-  std::size_t most_points;
+  std::size_t max_points;
   const std::uint64_t* begins;
   const std::uint32_t* scans;
   int scan_bits;
@@ -101,7 +101,7 @@ struct ListRows {
 
   ADASPLATS_HD void operator()(std::size_t plane) const {
     std::uint64_t row = begins[plane];
-    members.for_some(plane, most_points, [&](std::uint32_t k) {
+    members.for_some(plane, max_points, [&](std::uint32_t k) {
       points[row] = k;
       keys[row] = std::uint64_t{plane} << scan_bits | scans[k];
       ++row;
@@ -216,7 +216,7 @@ struct SumLeftOut {
 
   PlaneMembers members;
   const Vec3d* positions;
-  double most_m, most_weight;
+  double max_m, max_weight;
   DistanceSum* sums;
 
   ADASPLATS_HD void operator()(std::size_t plane) const {
@@ -229,10 +229,10 @@ struct SumLeftOut {
       const std::uint32_t k = members.order[at];
       if (!members.is_left_out(k)) continue;
       const double away_m = std::fabs(dot(normal, positions[k] - kept.mean));
-      distance_m += away_m < most_m ? away_m : most_m;
+      distance_m += away_m < max_m ? away_m : max_m;
       ++weight;
     }
-    const double scale = most_weight < kept.count ? most_weight / kept.count : 1;
+    const double scale = max_weight < kept.count ? max_weight / kept.count : 1;
     sums[plane] = {scale * distance_m, scale * weight};
   }
 

@@ -32,7 +32,7 @@ struct ScanPlaneOptions {
   double largest_cell_m = 1.6;  ///< halved where the points are not flat, three times at most
   double flatness_m = 0.25;     ///< most standard deviation across a plane
   double shape = 0.25;          ///< and most of the second largest along it, so that it is a plane
-  std::uint32_t least_points = 12;  ///< of two scans or more
+  std::uint32_t min_points = 12;  ///< of two scans or more
 };
 
 /// Finds planes in cells of a grid. `scans`: of the points. The result depends on the points alone.

@@ -128,7 +128,7 @@ struct FactorPlane {
 
   EntriesView entries;
   const PoseMoments* moments;
-  double most_weight;
+  double max_weight;
   PlaneFactor* factors;
 
   ADASPLATS_HD void operator()(std::size_t plane) const {
@@ -138,7 +138,7 @@ struct FactorPlane {
       for (int k = 0; k < 3; ++k) sum.right[k] += moments[e].right[k];
     }
     PlaneFactor factor{};
-    factor.scale = sum.matrix[0] > most_weight ? most_weight / sum.matrix[0] : 1;
+    factor.scale = sum.matrix[0] > max_weight ? max_weight / sum.matrix[0] : 1;
     double own[6];
     for (int k = 0; k < 6; ++k) own[k] = factor.scale * sum.matrix[k];
     // What holds a plane whose points are all in one place or on one line.

@@ -20,7 +20,7 @@ constexpr double kArmOfSettling_m =
     10;  // a rotation counts as what it moves there, as in best_smoothing()
 constexpr int kSettlingIterations = 5;  // of weights and of the motions' small non-linearity
 constexpr double kWidthOfOverlaps = 3;  // in medians: disagreements of which a quarter counts
-constexpr double kLeastApart_m = 1e-4;  // an overlap agrees no better: floats of points
+constexpr double kMinApart_m = 1e-4;    // an overlap agrees no better: floats of points
 
 using MotionBlock = ChainSystem::Block;
 using MotionColumn = ChainSystem::Column;
@@ -170,7 +170,7 @@ class Settling {
       apart_m.push_back(disagreement_m(k, scan));
     std::vector<double> sorted = apart_m;
     std::ranges::sort(sorted);
-    const double median_m = std::max(kLeastApart_m, sorted[sorted.size() / 2]);
+    const double median_m = std::max(kMinApart_m, sorted[sorted.size() / 2]);
     double total = 0, sum = 0;
     for (std::size_t scan = overlap.begin; scan < overlap.end; ++scan) {
       const double in = faded_in(overlap, scan);
@@ -181,7 +181,7 @@ class Settling {
       sum += weight * apart * apart;
     }
     for (double& weight : weights) weight /= total;
-    return std::max(kLeastApart_m * kLeastApart_m, sum / total / kMotionUnknowns);
+    return std::max(kMinApart_m * kMinApart_m, sum / total / kMotionUnknowns);
   }
 
   const PoseCorrection& pose_of(std::size_t k, std::size_t scan) const {

@@ -162,13 +162,13 @@ class WindowedCalibrator {
                      const Executor& executor, ProgressSink& progress)
       : drives_(drives),
         options_(options),
-        most_scans_(windows.window_scans),
+        max_scans_(windows.window_scans),
         calibrate_cloud_(calibrate_cloud),
         executor_(executor),
         progress_(progress) {
-    report_.window_scans = most_scans_;
+    report_.window_scans = max_scans_;
     for (std::size_t drive = 0; drive < drives.size(); ++drive)
-      for (const ScanSpan& span : cut_windows(drives[drive].scans, most_scans_)) {
+      for (const ScanSpan& span : cut_windows(drives[drive].scans, max_scans_)) {
         WindowReport window;
         window.drive = drive;
         window.begin = span.begin;
@@ -217,9 +217,9 @@ class WindowedCalibrator {
   }
 
   WindowFinding finding_of(WindowReport& window) const {
-    const std::vector<ScanSpan> spans = cut_windows(drives_[window.drive].scans, most_scans_);
+    const std::vector<ScanSpan> spans = cut_windows(drives_[window.drive].scans, max_scans_);
     const auto at = std::ranges::find(spans, window.begin, &ScanSpan::begin);
-    WindowReader reader(drives_[window.drive], most_scans_, options_.points_a_scan);
+    WindowReader reader(drives_[window.drive], max_scans_, options_.points_a_scan);
     const PointCloud cloud = reader.read(static_cast<std::size_t>(at - spans.begin()));
     auto [calibration, report] = calibrate_cloud_(cloud, options_);
     WindowFinding finding;
@@ -242,8 +242,8 @@ class WindowedCalibrator {
   }
 
   void add_drive(std::size_t drive, std::size_t& number, WindowedCalibration& result) {
-    const std::vector<ScanSpan> spans = cut_windows(drives_[drive].scans, most_scans_);
-    WindowReader reader(drives_[drive], most_scans_, options_.points_a_scan);
+    const std::vector<ScanSpan> spans = cut_windows(drives_[drive].scans, max_scans_);
+    WindowReader reader(drives_[drive], max_scans_, options_.points_a_scan);
     std::vector<WindowPoses> windows;
     Trajectory given;
     const std::size_t first = number;
@@ -348,7 +348,7 @@ class WindowedCalibrator {
 
   std::span<const DriveSource> drives_;
   const CalibrateOptions& options_;
-  std::size_t most_scans_;
+  std::size_t max_scans_;
   const CalibrateCloud& calibrate_cloud_;
   const Executor& executor_;
   ProgressSink& progress_;

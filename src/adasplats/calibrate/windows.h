@@ -29,8 +29,8 @@ void visit_settings(CalibrateWindowOptions& windows, Visit&& visit) {
                 .help = "Scans that are solved at once: longer drives are cut into windows that "
                         "overlap by half",
                 .value = "N",
-                .least = 8,  // four scans are what a window shares with the next
-                .most = 1e6},
+                .min = 8,  // four scans are what a window shares with the next
+                .max = 1e6},
         windows.window_scans);
 }
 

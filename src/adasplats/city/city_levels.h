@@ -61,7 +61,7 @@ class CityLevels {
   void verify() const;
 
  private:
-  struct Place {
+  struct AnyModel {
     std::uint32_t part;  ///< of the table; their number: in the top file itself
     std::uint64_t offset;
   };
@@ -72,7 +72,7 @@ class CityLevels {
   std::filesystem::path folder_;
   LevelTable table_;
   std::uint64_t top_bytes_ = 0;
-  std::vector<Place> places_;  ///< of the elements of each node
+  std::vector<AnyModel> places_;  ///< of the elements of each node
 };
 
 }  // namespace adasplats

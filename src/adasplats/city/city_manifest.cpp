@@ -189,8 +189,8 @@ SplatModel load_splats(const fs::path& path) {
   return is_city(path) ? load_city(path) : load_model(path);
 }
 
-Place load_place_or_city(const fs::path& path) {
-  return is_city(path) ? Place(load_city(path)) : load_place(path);
+AnyModel load_any_model_or_city(const fs::path& path) {
+  return is_city(path) ? AnyModel(load_city(path)) : load_any_model(path);
 }
 
 void verify_city(const fs::path& folder, const CityManifest& city) {

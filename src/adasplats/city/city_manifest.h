@@ -10,7 +10,7 @@
 
 #include "adasplats/city/tile_grid.h"
 #include "adasplats/core/maths/vec3.h"
-#include "adasplats/splats/model/place.h"
+#include "adasplats/splats/model/any_model.h"
 #include "adasplats/splats/model/splat_model.h"
 
 namespace adasplats {
@@ -69,7 +69,7 @@ SplatModel load_city(const std::filesystem::path& folder);
 
 /// A model, of one file or the folder of a city; a mesh, too.
 SplatModel load_splats(const std::filesystem::path& path);
-Place load_place_or_city(const std::filesystem::path& path);
+AnyModel load_any_model_or_city(const std::filesystem::path& path);
 
 /// Throws data where a tile's file is not the one that was written.
 void verify_city(const std::filesystem::path& folder, const CityManifest& city);

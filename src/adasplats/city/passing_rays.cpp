@@ -64,12 +64,12 @@ std::set<TileKey> TileSet::crossed(Vec3d from, Vec3d to) const {
   return found;
 }
 
-RaysByTile passing_rays(const PointCloud& cloud, const TileSet& tiles, double least_range_m,
+RaysByTile passing_rays(const PointCloud& cloud, const TileSet& tiles, double min_range_m,
                         const Executor& executor) {
   if (!cloud.has_beams()) return {};
   return by_tile(cloud.size(), executor, [&](RaysByTile& rays, std::size_t i) {
     const Vec3f end = cloud.positions[i], sensor = cloud.sensor_positions[i];
-    if (!is_beam(cloud.origin_kind(i)) || !has_measured_ray(sensor, end, least_range_m)) return;
+    if (!is_beam(cloud.origin_kind(i)) || !has_measured_ray(sensor, end, min_range_m)) return;
     const Vec3d from = cloud.origin + vec_cast<double>(sensor), to = cloud.world(i);
     for (const TileKey tile : tiles.crossed(from, to))
       if (!tiles.reach_of(tile).contains(to)) add(rays[tile], sensor, end);

@@ -34,7 +34,7 @@ struct TileSet {
 
 /// The measured rays of points with a beam, by the tiles whose reach they cross and in whose reach
 /// they do not end: to these they say what is free. `cloud.empty_beams` are left alone.
-RaysByTile passing_rays(const PointCloud& cloud, const TileSet& tiles, double least_range_m,
+RaysByTile passing_rays(const PointCloud& cloud, const TileSet& tiles, double min_range_m,
                         const Executor& executor);
 /// Rays that end nowhere, as ends_of() makes them, by all tiles whose reach they cross.
 RaysByTile crossing_rays(const PointCloud& ends, const TileSet& tiles, const Executor& executor);

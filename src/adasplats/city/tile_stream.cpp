@@ -82,7 +82,7 @@ struct TileStream::Impl {
       queue.pop_front();
       states[tile] = State::loading;
       bytes += bytes_of(tile);
-      counts.most_bytes = std::max(counts.most_bytes, bytes);
+      counts.max_bytes = std::max(counts.max_bytes, bytes);
       lock.unlock();
       std::exception_ptr failed;
       try {
@@ -152,7 +152,7 @@ struct TileStream::Impl {
     }
   }
 
-  std::size_t make_ready(std::span<const SeenFrom> scans) {
+  std::size_t prefetch(std::span<const SeenFrom> scans) {
     const Needs needs = needs_of(scans);
     std::unique_lock lock(mutex);
     queue.clear();
@@ -199,9 +199,9 @@ TileStream::TileStream(std::filesystem::path folder, const CityManifest& city, T
 
 TileStream::~TileStream() = default;
 
-std::size_t TileStream::make_ready(std::span<const SeenFrom> scans) {
+std::size_t TileStream::prefetch(std::span<const SeenFrom> scans) {
   if (scans.empty()) return 0;
-  const std::size_t ready = impl_->make_ready(scans);
+  const std::size_t ready = impl_->prefetch(scans);
   if (ready == 0) throw std::logic_error("TileStream: what was waited for is not shown");
   return ready;
 }

@@ -41,9 +41,9 @@ class TileHolder {
 
 /// What was done so far.
 struct TileStreamCounts {
-  std::size_t loaded = 0;      ///< tiles, each as often as it was
-  std::size_t most_bytes = 0;  ///< that tiles took at the same time, as bytes_a_splat() says
-  double waited_s = 0;         ///< for tiles
+  std::size_t loaded = 0;     ///< tiles, each as often as it was
+  std::size_t max_bytes = 0;  ///< that tiles took at the same time, as bytes_a_splat() says
+  double waited_s = 0;        ///< for tiles
 };
 
 /// Tiles of a city that come and go ahead of a sensor. A thread of its own loads them in the order
@@ -64,7 +64,7 @@ class TileStream {
   /// Shows all that the first of some scans need, which are those of a drive from now on, and gives
   /// how many (at least one of them). Tiles of the next ones are loaded meanwhile. Nothing is cast
   /// while it is called. Errors: those of load_city_tile().
-  std::size_t make_ready(std::span<const SeenFrom> scans);
+  std::size_t prefetch(std::span<const SeenFrom> scans);
   TileStreamCounts counts() const;
 
  private:

@@ -90,7 +90,7 @@ std::size_t drive_through(TileStream& stream, const CityManifest& city, NotingHo
   const std::vector<SeenFrom> scans = drive();
   std::size_t spans = 0;
   for (std::size_t first = 0; first < scans.size(); ++spans) {
-    const std::size_t ready = stream.make_ready(std::span(scans).subspan(first));
+    const std::size_t ready = stream.prefetch(std::span(scans).subspan(first));
     EXPECT_GT(ready, 0U);
     for (std::size_t i = first; i < first + ready; ++i)
       for (std::size_t tile = 0; tile < kTiles; ++tile) {
@@ -107,11 +107,11 @@ TEST(TileStream, ShowsWhatScansReachWithinItsBudget) {
   const CityManifest city = write_row(folder.path());
   NotingHolder holder;
   TileStream stream(folder.path(), city, holder, 9 * kSplats * kBytesASplat, 2);
-  EXPECT_EQ(stream.make_ready({}), 0U);
+  EXPECT_EQ(stream.prefetch({}), 0U);
   const std::size_t spans = drive_through(stream, city, holder);
   EXPECT_LT(spans, 200U);  // of 4,000 scans
   EXPECT_LE(holder.most, 9U);
-  EXPECT_LE(stream.counts().most_bytes, 9 * kSplats * kBytesASplat);
+  EXPECT_LE(stream.counts().max_bytes, 9 * kSplats * kBytesASplat);
   // Each is loaded once on each way, but for those around the turn and what little is kept.
   EXPECT_GE(stream.counts().loaded, kTiles);
   EXPECT_LE(stream.counts().loaded, 2 * kTiles);

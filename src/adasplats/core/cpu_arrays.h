@@ -15,7 +15,7 @@
 namespace adasplats {
 
 /// Where steps over elements run and what they keep is: the threads and the memory of the CPU.
-/// gpu::GpuPlace is its twin; steps are written once, as templates on the place.
+/// gpu::GpuBackend is its twin; steps are written once, as templates on the place.
 class CpuArrays {
  public:
   template <class T>

@@ -67,14 +67,14 @@ std::string bare(const std::string& word) {
 
 std::vector<std::string> words_containing(const std::string& word,
                                           const std::vector<std::string>& candidates) {
-  constexpr std::size_t kLeastLetters = 2;
-  constexpr std::size_t kMostWords = 6;  // of a line that a person reads
+  constexpr std::size_t kMinLetters = 2;
+  constexpr std::size_t kMaxWords = 6;  // of a line that a person reads
   const std::string part = bare(word);
   std::vector<std::string> found;
-  if (part.size() < kLeastLetters) return found;
+  if (part.size() < kMinLetters) return found;
   for (const std::string& candidate : candidates)
     if (bare(candidate).find(part) != std::string::npos) found.push_back(candidate);
-  if (found.size() > kMostWords) found.clear();
+  if (found.size() > kMaxWords) found.clear();
   std::ranges::stable_sort(found, {}, &std::string::size);
   return found;
 }

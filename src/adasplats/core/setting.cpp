@@ -58,17 +58,17 @@ std::string with_settings_as_options(std::string_view message) {
 }
 
 bool is_in_range(const Setting& setting, double value) {
-  return (setting.above_least ? value > setting.least : value >= setting.least) &&
-         value <= setting.most;
+  return (setting.exclusive_min ? value > setting.min : value >= setting.min) &&
+         value <= setting.max;
 }
 
 std::string range_text(const Setting& setting) {
-  const bool has_least = setting.least > -kFinite;
-  const bool has_most = setting.most < kFinite;
-  const std::string least = shortest(setting.least);
-  const std::string most = shortest(setting.most);
+  const bool has_least = setting.min > -kFinite;
+  const bool has_most = setting.max < kFinite;
+  const std::string least = shortest(setting.min);
+  const std::string most = shortest(setting.max);
   if (!has_least) return has_most ? "at most " + most : "a finite number";
-  if (setting.above_least) return "more than " + least + (has_most ? ", at most " + most : "");
+  if (setting.exclusive_min) return "more than " + least + (has_most ? ", at most " + most : "");
   return has_most ? least + " to " + most : least + " or more";
 }
 

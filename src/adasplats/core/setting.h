@@ -20,7 +20,7 @@ namespace adasplats {
 ///     template <class Visit>
 ///     void visit_settings(BeamOptions& beam, Visit&& visit) {
 ///       visit(Setting{.name = "sub_rays", .help = "Rays over the cross-section of a beam",
-///                     .value = "N", .least = 1, .most = 64},
+///                     .value = "N", .min = 1, .max = 64},
 ///             beam.sub_rays);
 ///     }
 ///
@@ -35,9 +35,9 @@ struct Setting {
   const char* key = name;     ///< in JSON, with the unit: "separation_m"
   const char* opposite = "";  ///< of a truth value: options that turn it off; "": "no-NAME"
   const char* group = "";     ///< heading in help
-  double least = -std::numeric_limits<double>::max();
-  double most = std::numeric_limits<double>::max();
-  bool above_least = false;  ///< the least is out of range itself
+  double min = -std::numeric_limits<double>::max();
+  double max = std::numeric_limits<double>::max();
+  bool exclusive_min = false;  ///< the least is out of range itself
 };
 
 /// "--sub-rays".

@@ -28,12 +28,12 @@ struct Oven {
 
 template <class Visit>
 void visit_settings(Oven& oven, Visit&& visit) {
-  visit(Setting{.name = "rounds", .help = "h", .least = 1, .most = 64}, oven.rounds);
-  visit(Setting{.name = "top_heat", .help = "h", .key = "top_heat_c", .least = 0}, oven.heat);
-  visit(Setting{.name = "hours", .help = "h", .least = 0, .most = 1, .above_least = true},
+  visit(Setting{.name = "rounds", .help = "h", .min = 1, .max = 64}, oven.rounds);
+  visit(Setting{.name = "top_heat", .help = "h", .key = "top_heat_c", .min = 0}, oven.heat);
+  visit(Setting{.name = "hours", .help = "h", .min = 0, .max = 1, .exclusive_min = true},
         oven.hours);
   visit(Setting{.name = "fan", .help = "h"}, oven.fan);
-  visit(Setting{.name = "triple", .help = "h", .least = 0, .above_least = true}, oven.triple);
+  visit(Setting{.name = "triple", .help = "h", .min = 0, .exclusive_min = true}, oven.triple);
 }
 
 std::string refusal(const Oven& oven) {
@@ -58,9 +58,9 @@ TEST(Setting, RangesAreCheckedByName) {
 }
 
 TEST(Setting, NumbersAreWrittenPlainly) {
-  EXPECT_EQ(range_text({.name = "n", .help = "", .least = 3, .most = 1e5}), "3 to 100000");
-  EXPECT_EQ(range_text({.name = "n", .help = "", .least = 0.001, .most = 1e4}), "0.001 to 10000");
-  EXPECT_EQ(range_text({.name = "n", .help = "", .most = 0.25}), "at most 0.25");
+  EXPECT_EQ(range_text({.name = "n", .help = "", .min = 3, .max = 1e5}), "3 to 100000");
+  EXPECT_EQ(range_text({.name = "n", .help = "", .min = 0.001, .max = 1e4}), "0.001 to 10000");
+  EXPECT_EQ(range_text({.name = "n", .help = "", .max = 0.25}), "at most 0.25");
   EXPECT_EQ(range_text({.name = "n", .help = ""}), "a finite number");
 }
 

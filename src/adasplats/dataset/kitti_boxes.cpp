@@ -100,10 +100,10 @@ std::vector<SensedBox> sensed_boxes(std::span<const ObjectBox> boxes, const Scan
 
 std::vector<EncodedFile> encode_kitti_boxes(const std::string& folder, std::size_t index,
                                             std::span<const SensedBox> boxes,
-                                            std::size_t least_points) {
+                                            std::size_t min_points) {
   std::string camera, velodyne;
   for (const SensedBox& box : boxes) {
-    if (box.points < least_points) continue;
+    if (box.points < min_points) continue;
     camera += camera_line(box);
     velodyne += velodyne_line(box);
   }
@@ -114,8 +114,8 @@ std::vector<EncodedFile> encode_kitti_boxes(const std::string& folder, std::size
 }
 
 void write_kitti_boxes(const std::filesystem::path& folder, std::size_t index,
-                       std::span<const SensedBox> boxes, std::size_t least_points) {
-  write_encoded(folder, encode_kitti_boxes("", index, boxes, least_points), FileWrites::atomic);
+                       std::span<const SensedBox> boxes, std::size_t min_points) {
+  write_encoded(folder, encode_kitti_boxes("", index, boxes, min_points), FileWrites::atomic);
 }
 
 }  // namespace adasplats

@@ -36,7 +36,7 @@ std::string_view kitti_type(std::string_view class_name);
 std::vector<SensedBox> sensed_boxes(std::span<const ObjectBox> boxes, const ScanView& scan,
                                     const LabelScheme* labels);
 
-/// Writes two files for scan `index`, a line a box that has at least `least_points` points:
+/// Writes two files for scan `index`, a line a box that has at least `min_points` points:
 /// - label_2/NNNNNN.txt, the format of KITTI's object benchmark: type, truncated -1, occluded 3
 ///   (unknown), alpha -10, 2D box -1 -1 -1 -1 (there is no image), height width length, the middle
 ///   of the box's bottom x y z and rotation_y in the camera frame. That frame is the LiDAR's with
@@ -45,11 +45,11 @@ std::vector<SensedBox> sensed_boxes(std::span<const ObjectBox> boxes, const Scan
 ///   width height, yaw, number of points.
 /// Metres, radians. The folders are created. Errors: cannot_create, io.
 void write_kitti_boxes(const std::filesystem::path& folder, std::size_t index,
-                       std::span<const SensedBox> boxes, std::size_t least_points = 1);
+                       std::span<const SensedBox> boxes, std::size_t min_points = 1);
 
 /// The same as bytes; `folder` stands before the names.
 std::vector<EncodedFile> encode_kitti_boxes(const std::string& folder, std::size_t index,
                                             std::span<const SensedBox> boxes,
-                                            std::size_t least_points = 1);
+                                            std::size_t min_points = 1);
 
 }  // namespace adasplats

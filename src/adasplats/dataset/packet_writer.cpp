@@ -22,7 +22,7 @@ namespace {
 constexpr double kNanosecondsInSecond = 1e9;
 constexpr std::uint64_t kNanosecondsInMicrosecond = 1000;
 constexpr double kSecondsInHour = 3600;
-constexpr double kMostOverlap = 0.05;  // of a revolution: recorded poses are not quite regular
+constexpr double kMaxOverlap = 0.05;  // of a revolution: recorded poses are not quite regular
 
 /// As sensors leave the factory; locally administered hardware addresses.
 UdpEnd sensor_end(std::uint16_t port) { return {{2, 0, 0, 0, 0, 1}, {192, 168, 1, 201}, port}; }
@@ -109,7 +109,7 @@ class PacketWriter final : public WriterWithPoses {
     const std::string scan =
         "scan " + std::to_string(index) + " begins at " + std::to_string(begin_s) + " s";
     if (begin_s < 0) throw Error(ErrorKind::data, scan + ", before 1970, which packets cannot say");
-    if (end_s_ && *end_s_ - begin_s > kMostOverlap * turn_s_)
+    if (end_s_ && *end_s_ - begin_s > kMaxOverlap * turn_s_)
       throw Error(ErrorKind::data,
                   scan + ", before the last one ended at " + std::to_string(*end_s_) +
                       " s: one sensor cannot send both; take fewer poses, or a faster rotation");
@@ -171,9 +171,9 @@ void require_packets(const LidarModel& model, const PacketOptions& options) {
         "do not hold the angles of beams, so their noise would be lost; --no-noise, or a sensor "
         "without");
   if (!options.is_raw) refuse("are as measured, with the motion in them; --points raw");
-  const double most_m = sensor.facts.most * sensor.facts.quantum_m;
-  if (model.max_range_m > most_m)
-    refuse("hold ranges up to " + std::to_string(most_m) + " m, and the sensor measures up to " +
+  const double max_m = sensor.facts.most * sensor.facts.quantum_m;
+  if (model.max_range_m > max_m)
+    refuse("hold ranges up to " + std::to_string(max_m) + " m, and the sensor measures up to " +
            std::to_string(model.max_range_m) + " m; --max-range");
   if (!is_ouster(sensor.format)) return;
   const std::string mode =

@@ -39,9 +39,9 @@ class PandaSetWriter final : public WriterWithPoses {
  public:
   PandaSetWriter(const std::filesystem::path& folder, const ScanWriterOptions& options)
       : WriterWithPoses(folder), options_(options) {
-    constexpr std::size_t kLeastDigits = 2;
+    constexpr std::size_t kMinDigits = 2;
     const std::size_t last = std::max<std::size_t>(options.drive.scans, 1) - 1;
-    digits_ = std::max(kLeastDigits, std::to_string(last).size());
+    digits_ = std::max(kMinDigits, std::to_string(last).size());
   }
 
   EncodedScan encode(std::size_t index, const ScanView& scan) const override {

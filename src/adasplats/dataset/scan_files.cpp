@@ -46,7 +46,7 @@ std::string array_name(std::string_view column) {
   return std::string(column) + "s";
 }
 
-constexpr std::uint16_t kMostLasClass = 255;
+constexpr std::uint16_t kMaxLasClass = 255;
 
 /// What LAS has fields of its own for.
 struct LasFields {
@@ -63,7 +63,7 @@ struct LasFields {
     }
     // Never classified is the truth of a field that cannot hold the class; `label` can.
     for (const std::uint16_t id : scan.classes)
-      classes.push_back(id > kMostLasClass ? std::uint8_t{0} : static_cast<std::uint8_t>(id));
+      classes.push_back(id > kMaxLasClass ? std::uint8_t{0} : static_cast<std::uint8_t>(id));
     for (std::size_t i = 0; i < scan.size(); ++i) {
       const int number = scan.return_indices.empty() ? 1 : scan.return_indices[i] + 1;
       return_numbers.push_back(static_cast<std::uint8_t>(number));

@@ -53,10 +53,10 @@ constexpr bool is_tree(ScanFormat format) {
 
 /// Bytes that scans become, but for headers and what all have in common.
 struct ScanBytes {
-  double least_a_return;  ///< positions and what every scan has
-  double most_a_return;   ///< with everything that a scan can have
-  double least_a_ray;     ///< whether it returns or not
-  double most_a_ray;      ///< likewise, before compression
+  double min_a_return;  ///< positions and what every scan has
+  double max_a_return;  ///< with everything that a scan can have
+  double min_a_ray;     ///< whether it returns or not
+  double max_a_ray;     ///< likewise, before compression
 };
 ScanBytes scan_bytes(ScanFormat format);
 

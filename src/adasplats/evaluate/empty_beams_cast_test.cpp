@@ -71,7 +71,7 @@ TEST(EmptyBeamsCast, GhostsAreBeamsWithoutReturnThatHitTheModel) {
   const EmptyBeamHits hits = cast_empty_beams(*tracer, {}, drive.sequence, executor);
   double empty = 0, ghosts = 0;
   for (const TestBeam& beam : drive.beams) {
-    if (beam.returned() || beam.direction.z <= EmptyBeamOptions{}.least_up) continue;
+    if (beam.returned() || beam.direction.z <= EmptyBeamOptions{}.min_up) continue;
     ++empty;
     const double t = (18 - beam.origin.y) / beam.direction.y;
     const Vec3d at = beam.origin + t * beam.direction;

@@ -23,7 +23,7 @@ constexpr double kFirstFitWidth_m = 0.5, kLastFitWidth_m = 0.03;
 constexpr double kFitReach_m = 1;
 /// A direction is seen where so many rays, and this share of all, meet what looks that way by less
 /// than 60 degrees. Choices: disks of flat ground lean by noise, but not so far.
-constexpr std::size_t kLeastSeeing = 30;
+constexpr std::size_t kMinSeeing = 30;
 constexpr double kSeeingShare = 0.005;
 constexpr double kSeeingCosine = 0.5;
 /// Holds what is not seen, in units of all rays; and a little of each step.
@@ -104,7 +104,7 @@ class Unseen {
       const auto seeing = static_cast<std::size_t>(std::ranges::count_if(
           normals_, [&](Vec3d n) { return std::fabs(dot(n, axis)) > kSeeingCosine; }));
       const double share = static_cast<double>(seeing) / static_cast<double>(normals_.size());
-      (seeing >= kLeastSeeing && share >= kSeeingShare ? seen : shifts_).push_back(axis);
+      (seeing >= kMinSeeing && share >= kSeeingShare ? seen : shifts_).push_back(axis);
     }
     // Parallel planes say nothing of turns about their normal.
     if (seen.size() == 1) turns_ = seen;

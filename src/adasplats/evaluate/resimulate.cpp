@@ -19,7 +19,7 @@ namespace {
 constexpr std::array<double, 7> kRangeEdges_m = {10, 20, 30, 40, 50, 75, 100};
 constexpr std::array<double, 6> kIncidenceEdges_deg = {0, 30, 60, 75, 85, 90};
 constexpr double kDegreesPerRadian = 57.29577951308232;
-constexpr float kLeastUp = static_cast<float>(EmptyBeamOptions{}.least_up);
+constexpr float kMinUp = static_cast<float>(EmptyBeamOptions{}.min_up);
 
 /// What is kept of a beam until the end.
 struct Beam {
@@ -156,7 +156,7 @@ CastScan cast_scan(const CastPlace& setting, const KittiSequence& sequence, std:
     beam.range_bin = setting.ranges.bin_of(length(vec_cast<double>(result.measured.positions[k])));
     beam.elevation_deg =
         static_cast<std::int8_t>(std::floor(cast[k].elevation_rad * kDegreesPerRadian));
-    beam.upward = rays[k].direction.z > kLeastUp;
+    beam.upward = rays[k].direction.z > kMinUp;
     if (!scan.classes.empty()) beam.class_id = scan.classes[selected[k]];
     if (!hits[k].valid()) continue;
     const double predicted_m = static_cast<double>(hits[k].t);

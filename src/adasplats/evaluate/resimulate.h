@@ -53,7 +53,7 @@ enum class KeepBeams : std::uint8_t { no, yes };
 struct ResimulateResult {
   BeamAccuracy all;
   /// Of the beams that go as far up in the world as those that are known to have returned nothing
-  /// (EmptyBeamOptions::least_up).
+  /// (EmptyBeamOptions::min_up).
   BeamAccuracy upward;
   std::string beams;  ///< where they started (ScanBeams::description)
   /// Predicted against measured points of each scan, the mean over scans (as lidar-nerf and LiDAR4D

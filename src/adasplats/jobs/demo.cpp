@@ -99,7 +99,7 @@ DemoMethod run_method(const std::string& name, SplatMethod method, const Drive& 
   model.inputs = {drive.mapping()};
   model.output = drive.folder / (name + ".ply");
   model.labels = kDemoLabels;
-  model.build.recipe = RecipeChoice{.method = method}.recipe();
+  model.build.recipe = MethodChoice{.method = method}.recipe();
   row.model = run_model(model, session);
   result.scene = std::make_shared<const ModelScene>(model.output, "", session);
 

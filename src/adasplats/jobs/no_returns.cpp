@@ -21,7 +21,7 @@ std::string decimetres(double metres) {
 
 }  // namespace
 
-void throw_no_returns(std::size_t rays, const ScanPlace& scene, std::span<const ScanMotion> scans,
+void throw_no_returns(std::size_t rays, const ScanScene& scene, std::span<const ScanMotion> scans,
                       const LidarModel& sensor, const std::string& question) {
   const auto [low, high] = scene.middle_box();
   double nearest_m = std::numeric_limits<double>::infinity();

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "adasplats/jobs/scene/scan_place.h"
+#include "adasplats/jobs/scene/scan_scene.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/simulate/scan/scan_motion.h"
 
@@ -14,7 +14,7 @@ namespace adasplats {
 
 /// Throws data: none of the rays in these scans met the model; with how far from it the sensor was.
 /// `question`: what may be wrong.
-[[noreturn]] void throw_no_returns(std::size_t rays, const ScanPlace& scene,
+[[noreturn]] void throw_no_returns(std::size_t rays, const ScanScene& scene,
                                    std::span<const ScanMotion> scans, const LidarModel& sensor,
                                    const std::string& question);
 

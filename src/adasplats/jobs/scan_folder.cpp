@@ -18,7 +18,7 @@ namespace adasplats {
 namespace {
 
 /// Of the rays that a scan has; with fewer returns a place is hardly worth a drive.
-constexpr double kLeastShareOfReturns = 0.1;
+constexpr double kMinShareOfReturns = 0.1;
 
 /// The number that a file's name begins with, which is that of its scan, however many digits the
 /// data set gives it; nothing for others.
@@ -63,19 +63,19 @@ void ScanJournal::note(std::size_t points, std::span<const FileDigest> files) {
   if (!files.empty()) folder_.record(files);
 }
 
-void require_room(const std::filesystem::path& folder, ScanFormat format, std::size_t scans,
-                  std::size_t rays_per_scan, int returns_per_ray) {
+void require_disk_space(const std::filesystem::path& folder, ScanFormat format, std::size_t scans,
+                        std::size_t rays_per_scan, int returns_per_ray) {
   std::error_code problem;
   const std::filesystem::space_info space = std::filesystem::space(folder, problem);
   if (problem) throw system_error(ErrorKind::io, folder, "cannot be looked at", problem.value());
   const ScanBytes bytes = scan_bytes(format);
   const double rays = static_cast<double>(scans) * static_cast<double>(rays_per_scan);
-  const double least = rays * (kLeastShareOfReturns * bytes.least_a_return + bytes.least_a_ray);
-  const double most = rays * (returns_per_ray * bytes.most_a_return + bytes.most_a_ray);
+  const double least = rays * (kMinShareOfReturns * bytes.min_a_return + bytes.min_a_ray);
+  const double most = rays * (returns_per_ray * bytes.max_a_return + bytes.max_a_ray);
   if (least <= static_cast<double>(space.available)) return;
   throw Error(ErrorKind::io, folder.string() + ": no room: " + std::to_string(scans) +
                                  " scans need " + size_text(least) + " if " +
-                                 std::to_string(static_cast<int>(100 * kLeastShareOfReturns)) +
+                                 std::to_string(static_cast<int>(100 * kMinShareOfReturns)) +
                                  " % of the rays return, and up to " + size_text(most) + "; " +
                                  size_text(static_cast<double>(space.available)) + " are free");
 }

@@ -34,8 +34,8 @@ class ScanJournal {
 
 /// Throws io where the disk of `folder` has no room for the scans even if few of their rays return,
 /// with what they need at least and at most.
-void require_room(const std::filesystem::path& folder, ScanFormat format, std::size_t scans,
-                  std::size_t rays_per_scan, int returns_per_ray);
+void require_disk_space(const std::filesystem::path& folder, ScanFormat format, std::size_t scans,
+                        std::size_t rays_per_scan, int returns_per_ray);
 
 /// The error of a run that ended early, which says of an error of writing what is kept of it.
 [[noreturn]] void rethrow_with_what_is_kept(const ResumableFolder& folder);

@@ -67,14 +67,16 @@ TEST(ScanFolder, EmptyScansAreNotedWithTheFirstReturn) {
 TEST(ScanFolder, RoomForTheLeast) {
   const TemporaryFolder folder;
   constexpr std::size_t kScans = 10'000'000, kRays = 1'000'000;
-  expect_error(ErrorKind::io, {"16000.00 GB if 10 %", "400000.00 GB", "are free"},
-               [&] { require_room(folder.path(), ScanFormat::semantickitti, kScans, kRays, 2); });
-  expect_error(ErrorKind::io, {"40000.00 GB if 10 %", "130000.00 GB"},
-               [&] { require_room(folder.path(), ScanFormat::range_image, kScans, kRays, 2); });
-  require_room(folder.path(), ScanFormat::las, 1, 10, 1);
-  require_room(folder.path(), ScanFormat::las, 0, kRays, 1);
+  expect_error(ErrorKind::io, {"16000.00 GB if 10 %", "400000.00 GB", "are free"}, [&] {
+    require_disk_space(folder.path(), ScanFormat::semantickitti, kScans, kRays, 2);
+  });
+  expect_error(ErrorKind::io, {"40000.00 GB if 10 %", "130000.00 GB"}, [&] {
+    require_disk_space(folder.path(), ScanFormat::range_image, kScans, kRays, 2);
+  });
+  require_disk_space(folder.path(), ScanFormat::las, 1, 10, 1);
+  require_disk_space(folder.path(), ScanFormat::las, 0, kRays, 1);
   expect_error(ErrorKind::io, {"missing"},
-               [&] { require_room(folder.path() / "missing", ScanFormat::ply, 1, 1, 1); });
+               [&] { require_disk_space(folder.path() / "missing", ScanFormat::ply, 1, 1, 1); });
 }
 
 }  // namespace

@@ -151,7 +151,7 @@ Json sensor_content(const LidarModel& sensor) {
 }
 
 Json simulate_content(const SimulateJob& job, const ScanSettings& settings,
-                      const ScanPlace& scene) {
+                      const ScanScene& scene) {
   Json model = Json::array();
   for (const std::filesystem::path& file : files_of_scene(job.model))
     model.push_back(file_content(file));

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 
-#include "adasplats/jobs/scene/scan_place.h"
+#include "adasplats/jobs/scene/scan_scene.h"
 #include "adasplats/jobs/scene/scan_simulator.h"
 #include "adasplats/jobs/simulate_scans.h"
 
@@ -18,6 +18,6 @@ nlohmann::ordered_json sensor_content(const LidarModel& sensor);
 /// What the folder of a simulation says of itself (docs/formats.md): everything that decides the
 /// scans, and nothing that differs between two runs of the same. Files go by name and SHA-256.
 nlohmann::ordered_json simulate_content(const SimulateJob& job, const ScanSettings& settings,
-                                        const ScanPlace& scene);
+                                        const ScanScene& scene);
 
 }  // namespace adasplats

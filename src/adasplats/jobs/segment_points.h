@@ -36,15 +36,15 @@ void visit_settings(SegmentOptions& segment, Visit&& visit) {
                 .help = "Side of the squares that are looked at one after the other, m",
                 .value = "M",
                 .key = "tile_m",
-                .least = 1,
-                .most = 1000},
+                .min = 1,
+                .max = 1000},
         segment.tile_m);
   visit(Setting{.name = "margin",
                 .help = "How much around each square is looked at, too, m",
                 .value = "M",
                 .key = "margin_m",
-                .least = 0,
-                .most = 100},
+                .min = 0,
+                .max = 100},
         segment.margin_m);
   visit(Setting{.name = "intensity", .help = "Use the points' intensities, where they have some"},
         segment.intensity);

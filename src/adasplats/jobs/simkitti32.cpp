@@ -187,7 +187,7 @@ Json model_content(const SimKitti32Job& job, const Source& source) {
             {"poses", word_of(source.poses_are, kHeldOutPoses)}};
   const SplatMethod method = job.method;
   Json json = {{"method", word_of(method, kSplatMethods)}};
-  const ModelRecipe recipe = RecipeChoice{.method = method}.recipe();
+  const MethodOptions recipe = MethodChoice{.method = method}.recipe();
   std::visit([&json](const auto& settings) { put_settings(settings, json); }, recipe);
   return json;
 }
@@ -295,7 +295,7 @@ class Simulation {
     model.load.scan_count = (source_.numbers.size() + job_.model_every - 1) / job_.model_every;
     model.load.scan_stride = job_.scans.stride * job_.model_every;
     model.load.driven_path_m = 0;  // labels tell what moved
-    model.build.recipe = RecipeChoice{.method = job_.method}.recipe();
+    model.build.recipe = MethodChoice{.method = job_.method}.recipe();
     model.build.remove = DynamicRemoval::moving;
     model.calibration.on = false;  // scans stand at the sequence's own poses, as its other data do
     result.model = run_model(model, session_);

@@ -55,19 +55,19 @@ void visit_settings(SimKitti32Job& job, Visit&& visit) {
   visit(Setting{.name = "noise",
                 .help = "Standard deviation of the range, m",
                 .key = "noise_m",
-                .least = 0},
+                .min = 0},
         job.noise_m);
   visit(Setting{.name = "depth",
                 .help = "D, hits of a ray that are averaged",
-                .least = 1,
-                .most = kMostDepth},
+                .min = 1,
+                .max = kMaxDepth},
         job.depth);
   visit(Setting{.name = "moving", .help = "Simulate what moves, too"}, job.moving);
   visit(Setting{.name = "moving_radius",
                 .help = "Of the splats of what moves, m",
                 .key = "moving_radius_m",
-                .least = 0,
-                .above_least = true},
+                .min = 0,
+                .exclusive_min = true},
         job.moving_radius_m);
   visit(Setting{.name = "method",
                 .help = "How it is made; consistent agrees with the measured rays, semantic is the "
@@ -78,8 +78,8 @@ void visit_settings(SimKitti32Job& job, Visit&& visit) {
                 .help = "Take every n-th of the scans for it, for less memory",
                 .value = "N",
                 .group = kModel,
-                .least = 1,
-                .most = 1e6},
+                .min = 1,
+                .max = 1e6},
         job.model_every);
   visit(
       Setting{

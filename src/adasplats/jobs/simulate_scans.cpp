@@ -35,13 +35,13 @@ namespace {
 constexpr const char* kCommand = "simulate";
 
 /// Boxes around the objects that a scan sees.
-std::vector<EncodedFile> boxes_of(const ScanPlace& scene, std::size_t index, const ScanView& scan) {
+std::vector<EncodedFile> boxes_of(const ScanScene& scene, std::size_t index, const ScanView& scan) {
   const std::vector<ObjectBox> boxes = scene.world()->boxes(index, scan.time_s);
   return encode_kitti_boxes("boxes", index, sensed_boxes(boxes, scan, scene.labels()));
 }
 
 /// Throws data where no ray met anything.
-void require_returns(const SimulateResult& result, const ScanPlace& scene,
+void require_returns(const SimulateResult& result, const ScanScene& scene,
                      std::span<const ScanMotion> scans, const LidarModel& sensor) {
   if (result.hits != 0 || result.scans_resumed != 0) return;
   throw_no_returns(result.rays, scene, scans, sensor,
@@ -49,7 +49,7 @@ void require_returns(const SimulateResult& result, const ScanPlace& scene,
 }
 
 /// The least usual scale of intensities that none of the place exceeds.
-double scale_of_intensities(const ScanPlace& scene) {
+double scale_of_intensities(const ScanScene& scene) {
   const auto highest = static_cast<double>(scene.highest_intensity());
   for (const double scale : {1.0, 255.0})
     if (highest <= scale) return scale;
@@ -101,15 +101,15 @@ void remove_poses(const std::filesystem::path& folder) {
 ReportTimes write_scans(ScanSimulator& simulator, std::span<const ScanMotion> scans,
                         const SimulateJob& job, ResumableFolder& folder, Session& session,
                         SimulateResult& result) {
-  const ScanPlace& scene = simulator.scene();
+  const ScanScene& scene = simulator.scene();
   remove_poses(folder.path());
   const ScanWriterOptions writing = writing_options(simulator, job, scans);
   tell_of_delay(job, writing.drive, session.progress);
   const auto writer = make_scan_writer(folder.path(), job.format, writing);
   const std::size_t first = keep_written_scans(*writer, folder, scans);
   const LidarModel& sensor = simulator.settings().sensor;
-  require_room(folder.path(), job.format, scans.size() - first, sensor.rays_per_scan(),
-               simulator.settings().beam.returns);
+  require_disk_space(folder.path(), job.format, scans.size() - first, sensor.rays_per_scan(),
+                     simulator.settings().beam.returns);
   result.scans = scans.size();
   result.scans_resumed = first;
   ScanJournal journal(folder);
@@ -179,7 +179,7 @@ class OpenPlace {
                                         static_cast<std::size_t>(memory_gb * 1e9));
   }
 
-  const ScanPlace& operator*() const {
+  const ScanScene& operator*() const {
     if (city_) return *city_;
     return *model_;
   }
@@ -200,7 +200,7 @@ void find_scans(Plan& plan, const SimulateJob& job, const ModelScene* scene, Ses
         scans_along(job.drive, plan.settings.sensor, *scene, session.executor, session.progress);
 }
 
-SimulateResult simulate_in(const ScanPlace& scene, const Plan& plan, const SimulateJob& job,
+SimulateResult simulate_in(const ScanScene& scene, const Plan& plan, const SimulateJob& job,
                            Session& session) {
   ResumableFolder folder(job.output, job.overwrite, kCommand,
                          simulate_content(job, plan.settings, scene));
@@ -244,7 +244,7 @@ void require_files_of_scans(ScanFormat format) {
 /// Casts and writes a span; each file appears whole or not at all.
 SpanResult write_span(ScanSimulator& simulator, std::span<const ScanMotion> scans, ScanTask span,
                       const ScanWriter& writer, const FolderTask& task, Session& session) {
-  const ScanPlace& scene = simulator.scene();
+  const ScanScene& scene = simulator.scene();
   SpanResult result;
   std::vector<FileDigest> digests;
   const auto take_scan = [&](std::size_t i, HeldScan&& held) {
@@ -272,7 +272,7 @@ std::vector<ScanTask> plan_simulation(const SimulateJob& job, std::size_t count,
   require_files_of_scans(job.format);
   Plan plan = plan_of(job, session);
   const OpenPlace place(job, session);
-  const ScanPlace& scene = *place;
+  const ScanScene& scene = *place;
   find_scans(plan, job, place.model(), session);
   ResumableFolder folder(job.output, job.overwrite, kCommand,
                          simulate_content(job, plan.settings, scene));
@@ -290,7 +290,7 @@ SpanResult simulate_span(const SimulateJob& job, ScanTask span, Session& session
   require_files_of_scans(job.format);
   Plan plan = plan_of(job, session);
   const OpenPlace place(job, session);
-  const ScanPlace& scene = *place;
+  const ScanScene& scene = *place;
   find_scans(plan, job, place.model(), session);
   const std::size_t scans = plan.scans.size();
   if (span.count == 0 || span.first >= scans || span.count > scans - span.first)
@@ -347,7 +347,7 @@ nlohmann::ordered_json to_json(const SimulateResult& result) {
                      {"written", result.seconds_written}};
   if (result.tiles)
     json["tiles"] = {{"loaded", result.tiles->loaded},
-                     {"most_bytes", result.tiles->most_bytes},
+                     {"most_bytes", result.tiles->max_bytes},
                      {"waited_s", result.tiles->waited_s}};
   return json;
 }

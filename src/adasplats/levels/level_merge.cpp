@@ -10,7 +10,7 @@ namespace adasplats {
 namespace {
 
 constexpr float kSameFacing = 0.70710678F;  ///< cosine of 45 degrees
-constexpr double kLeastShare = 0.1;         ///< of a second facing
+constexpr double kMinShare = 0.1;           ///< of a second facing
 constexpr int kRounds = 2;                  ///< of moving facings to the mean of their disks
 
 /// Over pi.
@@ -59,7 +59,7 @@ void CellMerger::find_facings(std::span<const Disk> disks) {
     apart += area_of(disk);
     if (largest_apart == nullptr || larger(*largest_apart, disk)) largest_apart = &disk;
   }
-  facing_count_ = largest_apart != nullptr && apart >= kLeastShare * area ? 2 : 1;
+  facing_count_ = largest_apart != nullptr && apart >= kMinShare * area ? 2 : 1;
   if (facing_count_ == 2) facings_[1].direction = largest_apart->normal;
 }
 

@@ -12,8 +12,8 @@ namespace adasplats {
 namespace {
 
 /// Of a box that has cells: below, their number a metre is no float.
-constexpr float kLeastSide_m = 1e-25F;
-constexpr std::size_t kMostChildren = 8;
+constexpr float kMinSide_m = 1e-25F;
+constexpr std::size_t kMaxChildren = 8;
 
 struct Extent {
   Vec3f low{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
@@ -40,7 +40,7 @@ HilbertGrid grid_over(std::size_t count, const PositionOf& position_of, const Ex
         return part;
       });
   const Vec3f size = extent.high - extent.low;
-  const bool has_cells = is_finite(size) && std::max({size.x, size.y, size.z}) > kLeastSide_m;
+  const bool has_cells = is_finite(size) && std::max({size.x, size.y, size.z}) > kMinSide_m;
   return has_cells ? HilbertGrid(extent.low, extent.high) : HilbertGrid({}, {});
 }
 
@@ -152,9 +152,9 @@ std::vector<LevelBlock> LevelOrder::split(const LevelBlock& block, std::size_t m
     parts.push_back({begin, end, block.grid, block.level});
   };
   if (block.level >= kHilbertBits) {
-    for (std::size_t k = 0; k < kMostChildren; ++k) {
-      const std::size_t begin = block.begin + block.size() * k / kMostChildren;
-      const std::size_t end = block.begin + block.size() * (k + 1) / kMostChildren;
+    for (std::size_t k = 0; k < kMaxChildren; ++k) {
+      const std::size_t begin = block.begin + block.size() * k / kMaxChildren;
+      const std::size_t end = block.begin + block.size() * (k + 1) / kMaxChildren;
       if (begin < end) add(begin, end);
     }
     return parts;

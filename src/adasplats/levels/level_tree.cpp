@@ -19,9 +19,9 @@ namespace {
 /// Nodes whose elements are made at the same time.
 constexpr std::size_t kBatch = 64;
 /// A node is to have at most this share of the elements that it stands for.
-constexpr std::size_t kLeastReduction = 2;
-constexpr float kLeastErrorRange_m = 1e-3F;
-constexpr float kMostSignedErrorRange_m = 0.5F;
+constexpr std::size_t kMinReduction = 2;
+constexpr float kMinErrorRange_m = 1e-3F;
+constexpr float kMaxSignedErrorRange_m = 0.5F;
 /// Leaves are not wider, so that 16 bits hold their positions to 2 mm.
 constexpr float kWidestLeaf_m = 256;
 
@@ -54,9 +54,9 @@ float percentile(std::vector<float>& values, std::size_t percent) {
 ByteRange range_of_errors(std::span<const float> errors_m) {
   std::vector<float> values = finite_values(errors_m, true);
   const float most =
-      values.empty() ? kLeastErrorRange_m : std::max(kLeastErrorRange_m, percentile(values, 98));
+      values.empty() ? kMinErrorRange_m : std::max(kMinErrorRange_m, percentile(values, 98));
   if (std::ranges::none_of(errors_m, [](float error_m) { return error_m < 0; })) return {0, most};
-  const float reach = std::min(most, kMostSignedErrorRange_m);
+  const float reach = std::min(most, kMaxSignedErrorRange_m);
   return {-reach, reach};
 }
 
@@ -100,7 +100,7 @@ class NodeMaker {
   /// How many halvings make a cell: the finest of the options that merges enough.
   int cell_level(const LevelBlock& block) const {
     const std::vector<std::size_t> cells = order_.occupied(block, executor_);
-    const std::size_t most = std::min(options_.leaf_size, block.size() / kLeastReduction);
+    const std::size_t most = std::min(options_.leaf_size, block.size() / kMinReduction);
     const int finest = std::bit_width(static_cast<unsigned>(options_.cells_per_side)) - 1;
     int level = std::min(block.level + finest, kHilbertBits);
     while (level > block.level + 1 && cells[static_cast<std::size_t>(level)] > most) --level;

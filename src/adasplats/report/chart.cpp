@@ -12,7 +12,7 @@
 namespace adasplats::page {
 namespace {
 
-constexpr double kMostForLinear = 50;  // ratio of the highest to the lowest value
+constexpr double kMaxForLinear = 50;  // ratio of the highest to the lowest value
 
 std::string bar(const Key& key, double x0, double x1, double y, double height,
                 const std::string& tooltip) {
@@ -56,7 +56,7 @@ Scale scale_of(const Chart& chart, double length, bool may_be_log) {
       if (value > 0) lowest = std::min(lowest, value);
     }
   }
-  Scale scale{length, may_be_log && highest > kMostForLinear * lowest, nice_ticks(highest)};
+  Scale scale{length, may_be_log && highest > kMaxForLinear * lowest, nice_ticks(highest)};
   if (!scale.is_log) return scale;
   const double last = std::ceil(std::log10(highest));
   // Seven decades show enough; what is smaller lies at the beginning.

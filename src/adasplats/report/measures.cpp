@@ -10,7 +10,7 @@ namespace adasplats::page {
 namespace {
 
 // A chart of more classes than this is not read any more; the table behind it has them all.
-constexpr std::size_t kMostGroupsInChart = 14;
+constexpr std::size_t kMaxGroupsInChart = 14;
 
 Cell cell_of(const std::optional<double>& value, NumberText text) {
   return value ? Cell{text(*value), value, "", false} : Cell{kMissing, std::nullopt, "", false};
@@ -134,7 +134,7 @@ Table table_of(const Breakdown& breakdown, const std::vector<Competitor>& compet
     }
     if (has_value(row)) table.rows.push_back(std::move(row));
   }
-  std::vector<std::size_t> charted(std::min(names.size(), kMostGroupsInChart));
+  std::vector<std::size_t> charted(std::min(names.size(), kMaxGroupsInChart));
   std::iota(charted.begin(), charted.end(), std::size_t{0});
   std::string chart_title = breakdown.title;
   if (charted.size() < names.size()) {

@@ -81,8 +81,8 @@ std::string grid_of(const Plot& plot, const PlotAxis& x, const PlotAxis& y) {
 
 std::vector<double> ticks_around(double lowest, double highest) {
   if (!(highest > lowest)) return {0, 1};
-  constexpr double kMostSteps = 7;
-  const double rough = (highest - lowest) / kMostSteps;
+  constexpr double kMaxSteps = 7;
+  const double rough = (highest - lowest) / kMaxSteps;
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
   double step = 10 * power;
   for (const double factor : {5.0, 2.0, 1.0})

@@ -27,8 +27,8 @@ namespace {
 using Json = nlohmann::json;
 
 /// Instances of one mesh may multiply a small file; no object of a scene needs more.
-constexpr std::size_t kMostVertices = 50'000'000;
-constexpr std::size_t kMostTriangles = 100'000'000;
+constexpr std::size_t kMaxVertices = 50'000'000;
+constexpr std::size_t kMaxTriangles = 100'000'000;
 
 /// Any affine map, as nodes have it.
 struct AffineMap {
@@ -429,8 +429,8 @@ void GltfReader::add_mesh(const Member& mesh, const AffineMap& world_from_mesh) 
     const Elements positions =
         elements(accessors_[position->index_below(accessors_.size())], "VEC3", 3);
     const std::size_t first_vertex = coordinates_[0].size();
-    if (positions.count > kMostVertices - first_vertex)
-      throw primitive.error("the scene has more than " + std::to_string(kMostVertices) +
+    if (positions.count > kMaxVertices - first_vertex)
+      throw primitive.error("the scene has more than " + std::to_string(kMaxVertices) +
                             " vertices");
     add_vertices(positions, world_from_mesh);
     add_triangles(primitive, first_vertex, positions.count);
@@ -465,8 +465,8 @@ void GltfReader::add_triangles(const Member& primitive, std::size_t first_vertex
   const std::size_t step = mode == 4 ? 3 : 1;
   if (mode == 4 && corner_count % 3 != 0)
     throw primitive.error(std::to_string(corner_count) + " corners are not whole triangles");
-  if (corner_count / step > kMostTriangles - triangles_.size() / 3)
-    throw primitive.error("the scene has more than " + std::to_string(kMostTriangles) +
+  if (corner_count / step > kMaxTriangles - triangles_.size() / 3)
+    throw primitive.error("the scene has more than " + std::to_string(kMaxTriangles) +
                           " triangles");
   for (std::size_t i = 0; i + 2 < corner_count; i += step) {
     const std::size_t first = mode == 6 ? 0 : i;

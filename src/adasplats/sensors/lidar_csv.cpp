@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 4> kFields = {"azimuth_deg", "elevation_d
 /// Longer than any scan of a standing scanner takes, and far from where a float has no more
 /// seconds.
 constexpr double kLongestScan_s = 86'400;
-constexpr double kMostScans_hz = 1e6;  // as in files of sensors
+constexpr double kMaxScans_hz = 1e6;  // as in files of sensors
 
 std::uint16_t parse_ring(std::string_view text, const FilePlace& place) {
   const std::optional<std::uint16_t> ring = parse_number<std::uint16_t>(text);
@@ -134,7 +134,7 @@ LidarFile read_lidar_csv(std::string_view text, const std::filesystem::path& pat
   }
   if (firings.empty()) throw data_error({path, {}, {}}, "a pattern with no rays");
   file.model.rotation_hz = rotation_hz_of(firings);
-  if (file.model.rotation_hz > kMostScans_hz)
+  if (file.model.rotation_hz > kMaxScans_hz)
     throw data_error({path, {}, {}},
                      "its times are those of " + exact_text(file.model.rotation_hz) +
                          " scans a second, expected at most a million: time_s is in seconds");

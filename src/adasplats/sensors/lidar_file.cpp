@@ -21,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMostRays = 1U << 28;
-constexpr std::uint64_t kMostListedRays = 4'000'000;  // 40 bytes each
+constexpr std::uint64_t kMaxRays = 1U << 28;
+constexpr std::uint64_t kMaxListedRays = 4'000'000;  // 40 bytes each
 
 template <class T>
 void reorder(std::vector<T>& values, const std::vector<std::size_t>& order) {
@@ -71,7 +71,7 @@ void check_size(const LidarFile& file) {
   const LidarModel& model = file.model;
   const bool skips =
       std::ranges::any_of(file.column_steps, [](std::uint32_t step) { return step != 1; });
-  const std::uint64_t most = skips ? kMostListedRays : kMostRays;
+  const std::uint64_t most = skips ? kMaxListedRays : kMaxRays;
   const std::uint64_t rays = model.rosette
                                  ? rosette_rays_per_scan(model)
                                  : std::uint64_t{model.elevations_rad.size()} * model.columns;

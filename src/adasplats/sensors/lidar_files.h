@@ -46,8 +46,8 @@ LidarFile read_velodyne_yaml(std::string_view text, const std::filesystem::path&
 LidarFile read_velodyne_xml(std::string_view text, const std::filesystem::path& path);
 
 /// A ring is a number of 16 bits.
-constexpr std::size_t kMostBeams = 65536;
-constexpr std::uint32_t kMostColumns = 1U << 24;
+constexpr std::size_t kMaxBeams = 65536;
+constexpr std::uint32_t kMaxColumns = 1U << 24;
 
 /// Lengths of a sensor, and ranges, are below this, which a float holds as well.
 constexpr double kFar_m = 1e6;

@@ -28,7 +28,7 @@ struct Channel {
 
 int channel_number(std::string_view text, const FilePlace& place) {
   const std::optional<int> number = parse_number<int>(text);
-  if (!number || *number < 1 || *number > static_cast<int>(kMostBeams))
+  if (!number || *number < 1 || *number > static_cast<int>(kMaxBeams))
     throw data_error(place, "channel is " + shown(text) + ", not a whole number from 1 to 65536");
   return *number;
 }

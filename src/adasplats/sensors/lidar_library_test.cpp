@@ -26,7 +26,7 @@ TEST_P(EveryLidar, IsSane) {
   EXPECT_FALSE(model.source.empty());
   EXPECT_TRUE(std::ranges::is_sorted(model.elevations_rad, std::greater<>()));
   EXPECT_LT(model.min_range_m, model.max_range_m);
-  EXPECT_GE(model.most_returns, 1);
+  EXPECT_GE(model.max_returns, 1);
   const auto firings = firings_of(model);
   ASSERT_EQ(firings.size(), model.rays_per_scan());
   ASSERT_GT(firings.size(), 9'000U);

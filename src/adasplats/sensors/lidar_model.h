@@ -77,7 +77,7 @@ struct LidarModel {
   /// not known. Whatever the source states was converted by full_e2_angle_rad().
   double divergence_rad[2] = {0, 0};
   DivergenceKind divergence_kind = DivergenceKind::unknown;  ///< what the source states
-  int most_returns = 1;                   ///< echoes that the sensor reports of a firing
+  int max_returns = 1;                    ///< echoes that the sensor reports of a firing
   bool clockwise = false;                 ///< seen from above
   std::vector<Firing> free_pattern;       ///< used instead of beams x columns where not empty
   std::optional<RosettePattern> rosette;  ///< used instead of both where it is there

@@ -257,7 +257,7 @@ TEST_F(LidarFiles, EveryNewKeyOfATomlFileIsRead) {
   EXPECT_DOUBLE_EQ(model.divergence_rad[0], 0.2 * kDegree);
   EXPECT_DOUBLE_EQ(model.divergence_rad[1], 0.1 * kDegree);
   EXPECT_EQ(model.divergence_kind, DivergenceKind::full_e2);
-  EXPECT_EQ(model.most_returns, 3);
+  EXPECT_EQ(model.max_returns, 3);
   EXPECT_EQ(model.source, "a book");
 }
 

@@ -85,7 +85,7 @@ std::vector<double> beam_angles_rad(const Metadata& metadata, const char* key, d
   if (angles.empty())
     throw metadata.fault(std::string("no ") + key +
                          ": expected the metadata that an Ouster sensor tells");
-  if (angles.size() > kMostBeams)
+  if (angles.size() > kMaxBeams)
     throw metadata.fault(std::string(key) + " has more than 65536 beams");
   for (double& angle : angles) {
     if (!(std::fabs(angle) <= limit_deg))
@@ -106,7 +106,7 @@ void read_mode(const Metadata& metadata, LidarModel& model) {
     columns = parse_number<std::uint32_t>(std::string_view(mode).substr(0, cross));
     rotation_hz = parse_number<double>(std::string_view(mode).substr(cross + 1));
   }
-  if (!columns || *columns < 1 || *columns > kMostColumns || !rotation_hz ||
+  if (!columns || *columns < 1 || *columns > kMaxColumns || !rotation_hz ||
       !(*rotation_hz > 0 && *rotation_hz <= 1e6))
     throw metadata.fault("lidar_mode is " + shown(mode) + ", expected columns x Hz as '1024x10'");
   model.columns = *columns;
@@ -201,7 +201,7 @@ LidarFile read_ouster_json(std::string_view text, const std::filesystem::path& p
   model.elevations_rad = std::move(elevations_rad);
   for (const double azimuth_rad : azimuths_rad) model.azimuth_offsets_rad.push_back(-azimuth_rad);
   model.clockwise = true;
-  if (metadata.text("udp_profile_lidar").ends_with("_DUAL")) model.most_returns = 2;
+  if (metadata.text("udp_profile_lidar").ends_with("_DUAL")) model.max_returns = 2;
   read_mode(metadata, model);
   read_frames(metadata, model);
   model.packets = packets_of(metadata, model);

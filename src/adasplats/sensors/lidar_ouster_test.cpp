@@ -75,10 +75,10 @@ TEST_F(OusterJson, GroupedKeysAreTheSame) {
           "lidar_intrinsics": {"lidar_to_sensor_transform":
              [-1,0,0,0, 0,-1,0,0, 0,0,1,36, 0,0,0,1]},
           "sensor_info": {"prod_line": "OS-0-128"}})");
-  EXPECT_EQ(grouped.most_returns, 2);
+  EXPECT_EQ(grouped.max_returns, 2);
   ASSERT_TRUE(grouped.packets.has_value());
   EXPECT_EQ(grouped.packets->format, PacketFormat::ouster_dual);
-  EXPECT_EQ(flat.most_returns, 1);
+  EXPECT_EQ(flat.max_returns, 1);
   EXPECT_EQ(grouped.first_azimuth_rad, flat.first_azimuth_rad);
   EXPECT_EQ(grouped.elevations_rad, flat.elevations_rad);
   EXPECT_EQ(grouped.azimuth_offsets_rad, flat.azimuth_offsets_rad);

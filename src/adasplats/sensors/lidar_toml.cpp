@@ -97,9 +97,9 @@ Error config_error(const std::filesystem::path& path, std::uint64_t line,
 toml::table parse_table(std::string_view text, const std::filesystem::path& path) {
   // toml++ bounds the depth of brackets but not of dotted keys, and frees nested tables by
   // recursion. No sensor has this many numbers, let alone keys.
-  constexpr std::ptrdiff_t kMostDots = 8192;
-  if (std::ranges::count(text, '.') > kMostDots)
-    throw Error(ErrorKind::config, path.string() + ": more than " + std::to_string(kMostDots) +
+  constexpr std::ptrdiff_t kMaxDots = 8192;
+  if (std::ranges::count(text, '.') > kMaxDots)
+    throw Error(ErrorKind::config, path.string() + ": more than " + std::to_string(kMaxDots) +
                                        " full stops: not a sensor");
   try {
     return toml::parse(text);
@@ -192,7 +192,7 @@ class SensorTable {
     std::vector<std::uint32_t> numbers;
     for (const toml::node* element : elements(key))
       numbers.push_back(
-          static_cast<std::uint32_t>(whole_number_of(*element, key, low, kMostColumns)));
+          static_cast<std::uint32_t>(whole_number_of(*element, key, low, kMaxColumns)));
     return numbers;
   }
 
@@ -294,7 +294,7 @@ std::vector<double> read_elevations_rad(const SensorTable& table) {
     throw table.error("elevations_deg", "is missing (or beams and elevation_*_deg, or like)");
   for (const char* key : {"beams", "elevation_top_deg", "elevation_bottom_deg"})
     if (!table.has(key)) throw table.error(key, "is missing");
-  const auto beams = static_cast<int>(table.whole_number("beams", 1, kMostBeams));
+  const auto beams = static_cast<int>(table.whole_number("beams", 1, kMaxBeams));
   return even_fan_rad(beams, table.number("elevation_top_deg", 0, -90, 90),
                       table.number("elevation_bottom_deg", 0, -90, 90));
 }
@@ -353,12 +353,12 @@ UnitIntensity read_intensity(const SensorTable& sensor, std::size_t rings) {
 }
 
 UnitFields read_fields(const SensorTable& sensor, std::size_t rings) {
-  constexpr std::int64_t kMostTurns = 64, kMostFieldColumns = 1 << 16;
+  constexpr std::int64_t kMaxTurns = 64, kMaxFieldColumns = 1 << 16;
   const SensorTable table = sensor.table("fields", field_keys());
   UnitFields fields;
   fields.rings = static_cast<std::uint32_t>(rings);
-  fields.turns = static_cast<std::uint32_t>(table.whole_number("turns", 1, kMostTurns));
-  fields.columns = static_cast<std::uint32_t>(table.whole_number("columns", 1, kMostFieldColumns));
+  fields.turns = static_cast<std::uint32_t>(table.whole_number("turns", 1, kMaxTurns));
+  fields.columns = static_cast<std::uint32_t>(table.whole_number("columns", 1, kMaxFieldColumns));
   const std::optional<std::string> bytes = from_base64(table.text("bytes", ""));
   if (!bytes) throw table.error("bytes", "is not base64");
   const std::size_t expected = std::size_t{fields.turns} * rings * fields.columns * kUnitFields;
@@ -370,7 +370,7 @@ UnitFields read_fields(const SensorTable& sensor, std::size_t rings) {
 }
 
 VehicleBody read_body(const SensorTable& sensor, std::size_t rings) {
-  constexpr std::size_t kMostCells = 65534;  // cells are numbered by 16 bits
+  constexpr std::size_t kMaxCells = 65534;  // cells are numbered by 16 bits
   constexpr double kFarthest_mm = 1e5;
   const SensorTable table = sensor.table("body", body_keys());
   std::size_t columns = 5;
@@ -395,7 +395,7 @@ VehicleBody read_body(const SensorTable& sensor, std::size_t rings) {
   std::ranges::sort(body.cells, {}, by_place);
   if (std::ranges::adjacent_find(body.cells, {}, by_place) != body.cells.end())
     throw table.error("cells", "has two rows of one ring and azimuth");
-  if (body.cells.size() > kMostCells) throw table.error("cells", "has more than 65534 rows");
+  if (body.cells.size() > kMaxCells) throw table.error("cells", "has more than 65534 rows");
   return body;
 }
 
@@ -426,7 +426,7 @@ void read_beams(const SensorTable& table, LidarFile& file) {
     model.elevations_rad = read_elevations_rad(table);
   }
   const std::size_t beams = model.elevations_rad.size();
-  if (beams > kMostBeams) throw table.error("elevations_deg", "has more than 65536 beams");
+  if (beams > kMaxBeams) throw table.error("elevations_deg", "has more than 65536 beams");
   read_one_a_beam(table, "azimuth_offsets_deg", beams,
                   table.angles_rad("azimuth_offsets_deg", -360, 360), model.azimuth_offsets_rad);
   read_one_a_beam(table, "beam_origins_m", beams, table.points("beam_origins_m", beams),
@@ -456,7 +456,7 @@ void read_beams(const SensorTable& table, LidarFile& file) {
 
 void read_turning(const SensorTable& table, LidarModel& model) {
   if (table.has("columns") || model.columns == 0)
-    model.columns = static_cast<std::uint32_t>(table.whole_number("columns", 1, kMostColumns));
+    model.columns = static_cast<std::uint32_t>(table.whole_number("columns", 1, kMaxColumns));
   if (table.has("first_azimuth_deg"))
     model.first_azimuth_rad = radians(table.number("first_azimuth_deg", 0, -360, 360));
   model.clockwise = table.flag("clockwise", model.clockwise);
@@ -482,7 +482,7 @@ void read_rosette(const SensorTable& sensor, LidarFile& file) {
   }
   rosette.points_per_s = table.number("points_per_s", 0, 1, 1e9);
   rosette.laser_tilts_rad = table.angles_rad("laser_tilts_deg", -90, 90);
-  if (rosette.laser_tilts_rad.size() > kMostBeams)
+  if (rosette.laser_tilts_rad.size() > kMaxBeams)
     throw table.error("laser_tilts_deg", "has more than 65536 lasers");
   file.model.rosette = std::move(rosette);
 }
@@ -500,7 +500,7 @@ void read_measuring(const SensorTable& table, LidarModel& model) {
   if (table.has("angular_noise_deg"))
     model.angular_noise_rad = radians(table.number("angular_noise_deg", 0, 0, 90));
   if (table.has("most_returns"))
-    model.most_returns = static_cast<int>(table.whole_number("most_returns", 1, 255));
+    model.max_returns = static_cast<int>(table.whole_number("most_returns", 1, 255));
 }
 
 /// "'fwhm', '1/e2', ...": what divergence_kind may say.
@@ -556,8 +556,8 @@ void check_untouched(const SensorTable& table, const LidarModel& model) {
 /// What the table says that it is like: a name of the library, or a file, looked for beside `path`.
 LidarFile read_base(const SensorTable& table, const std::filesystem::path& path, int nesting) {
   if (!table.has("like")) return {};
-  constexpr int kMostNesting = 8;
-  if (nesting >= kMostNesting) throw table.error("like", "leads through more than 8 files");
+  constexpr int kMaxNesting = 8;
+  if (nesting >= kMaxNesting) throw table.error("like", "leads through more than 8 files");
   const std::string base = table.text("like", "");
   if (base.empty()) throw table.error("like", "is neither a sensor nor a file");
   if (auto known = read_library_lidar(base)) return std::move(*known);

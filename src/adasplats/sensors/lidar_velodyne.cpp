@@ -94,7 +94,7 @@ class CalibrationReader {
       in_laser_ = false;
     } else if (line.starts_with('-') && list_seen_) {
       if (in_braces_) throw data_error(lines_.place(), "a laser begins before the '}' of the last");
-      if (calibration_.lasers.size() >= kMostBeams)
+      if (calibration_.lasers.size() >= kMaxBeams)
         throw data_error(lines_.place(), "more than 65536 lasers");
       calibration_.lasers.push_back({{}, lines_.place()});
       in_laser_ = true;
@@ -287,7 +287,7 @@ Calibration xml_calibration(std::string text, const std::filesystem::path& path)
                    laser.values);
     put_xml_number(values, "horizOffsetCorrection_", kCentimetre_m, "horiz_offset_correction",
                    place, laser.values);
-    if (calibration.lasers.size() >= kMostBeams) throw data_error(place, "more than 65536 lasers");
+    if (calibration.lasers.size() >= kMaxBeams) throw data_error(place, "more than 65536 lasers");
     calibration.lasers.push_back(std::move(laser));
   }
   return calibration;

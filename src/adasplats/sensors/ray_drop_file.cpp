@@ -133,10 +133,9 @@ class DropTable {
       shares.push_back(number_of(element, "edge_runs", 0, 1));
       sum += shares.back();
     }
-    if (shares.size() > kMostEdgeRun)
+    if (shares.size() > kMaxEdgeRun)
       throw error_at(node.source(), "edge_runs has " + std::to_string(shares.size()) +
-                                        " shares, expected at most " +
-                                        std::to_string(kMostEdgeRun));
+                                        " shares, expected at most " + std::to_string(kMaxEdgeRun));
     if (sum > 1) throw error_at(node.source(), "edge_runs has shares of more than 1 together");
     return shares;
   }
@@ -200,8 +199,8 @@ void save_ray_drop(const std::filesystem::path& path, const RayDropModel& model)
 RayDropModel load_ray_drop(const std::filesystem::path& path) {
   const std::string text = read_file(path);
   // toml++ frees nested tables by recursion and does not bound the depth of dotted keys.
-  constexpr std::ptrdiff_t kMostDots = 8192;
-  if (std::ranges::count(text, '.') > kMostDots)
+  constexpr std::ptrdiff_t kMaxDots = 8192;
+  if (std::ranges::count(text, '.') > kMaxDots)
     throw Error(ErrorKind::config, path.string() + ": too large for a ray drop");
   try {
     return ray_drop_of_table(toml::parse(text), path);

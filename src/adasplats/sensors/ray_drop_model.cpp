@@ -14,7 +14,7 @@ namespace adasplats {
 bool RayDropModel::blocks(Vec3f direction) const {
   if (blocked.empty() || direction == Vec3f{}) return false;
   constexpr auto kHalfTurn = static_cast<float>(std::numbers::pi);
-  constexpr double kMostApart_rad = 0.3 * kDegree;  // beams of an HDL-64E are farther apart
+  constexpr double kMaxApart_rad = 0.3 * kDegree;  // beams of an HDL-64E are farther apart
   const auto elevation = static_cast<float>(
       std::atan2(static_cast<double>(direction.z),
                  std::hypot(static_cast<double>(direction.x), static_cast<double>(direction.y))));
@@ -28,7 +28,7 @@ bool RayDropModel::blocks(Vec3f direction) const {
     first = std::lower_bound(blocked.begin(), first, std::prev(first)->elevation_rad, below);
   }
   const float nearest = first->elevation_rad;
-  if (std::fabs(static_cast<double>(nearest - elevation)) > kMostApart_rad) return false;
+  if (std::fabs(static_cast<double>(nearest - elevation)) > kMaxApart_rad) return false;
   const auto azimuth = static_cast<float>(
       std::atan2(static_cast<double>(direction.y), static_cast<double>(direction.x)));
   for (; first != blocked.end() && first->elevation_rad == nearest; ++first) {

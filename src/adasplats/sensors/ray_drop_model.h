@@ -15,7 +15,7 @@ namespace adasplats {
 
 inline constexpr int kDropFeatures = 8;
 /// Beams lost at one range edge, at most.
-inline constexpr std::uint32_t kMostEdgeRun = 6;
+inline constexpr std::uint32_t kMaxEdgeRun = 6;
 
 /// Directions in which the sensor's own carrier is in the way: nothing comes back, or from too
 /// near to be reported. No model of a place knows it.

@@ -24,11 +24,11 @@ struct UnitFields {
   /// kUnitFields on.
   /// - drop: (b + 0.5)^2 / 2^16 of all echoes as likely to be lost are lost earlier than this
   /// - intensity: (b + 0.5) / 256 of all intensities of such surfaces that are not zero are lower
-  /// - noise: (b - 128) |b - 128| / 127^2 of kMostFieldNoise_m, on the range
+  /// - noise: (b - 128) |b - 128| / 127^2 of kMaxFieldNoise_m, on the range
   /// - zero: (b + 0.5)^2 / 2^16 of all returns as likely to report zero report it earlier
   std::vector<std::uint8_t> bytes;
 };
 
-inline constexpr double kMostFieldNoise_m = 0.3;
+inline constexpr double kMaxFieldNoise_m = 0.3;
 
 }  // namespace adasplats

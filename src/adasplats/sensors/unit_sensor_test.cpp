@@ -32,7 +32,7 @@ TEST(UnitSensor, IsTheSensorOfTheLibraryWithItsOffsets) {
     const auto file = folder.write("unit.toml", unit_sensor_toml(name, {ranges_m, elevations_rad}));
     const LidarModel unit = load_lidar_model(file.string());
     EXPECT_EQ(unit.name, name + "-unit");
-    EXPECT_EQ(unit.most_returns, known.most_returns) << name;
+    EXPECT_EQ(unit.max_returns, known.max_returns) << name;
     EXPECT_EQ(unit.range_noise_m, known.range_noise_m) << name;
     EXPECT_EQ(unit.divergence_rad[1], known.divergence_rad[1]) << name;
     const auto firings = firings_of(unit), expected = firings_of(known);

@@ -188,13 +188,13 @@ std::size_t remove_beyond(double reach_m, PointCloud& cloud, const Executor& exe
 
 /// Says what was removed; throws data where that is no single fault, but a second place.
 void report_beyond(std::size_t removed, std::size_t all, double reach_m, ProgressSink& progress) {
-  constexpr double kMostRemoved = 0.01;  // as LoadOptions::max_dropped
+  constexpr double kMaxRemoved = 0.01;  // as LoadOptions::max_dropped
   if (removed == 0) return;
   const std::string what =
       std::to_string(removed) + (removed == 1 ? " point lies" : " points lie") + " more than " +
       std::to_string(std::lround(reach_m / 1000)) +
       " km from the middle of the cloud, farther than cells reach (larger ones reach farther)";
-  if (static_cast<double>(removed) > kMostRemoved * static_cast<double>(all))
+  if (static_cast<double>(removed) > kMaxRemoved * static_cast<double>(all))
     throw Error(ErrorKind::data, "of " + std::to_string(all) + " points " + what);
   progress.warn(what + ": left out");
 }
@@ -275,7 +275,7 @@ std::pair<SplatModel, BuildReport> build_model(PointCloud cloud, const LabelSche
   const std::string warning = origin_warning(ours != nullptr, report.origins);
   if (!warning.empty()) progress.warn(warning);
   if (ours != nullptr) {
-    const double reach_m = kMostFusionCells * ours->smallest_cell_m();
+    const double reach_m = kMaxFusionCells * ours->smallest_cell_m();
     report.points_noise = remove_beyond(reach_m, cloud, executor);
     report_beyond(report.points_noise, report.points_in, reach_m, progress);
   }

@@ -13,14 +13,14 @@
 #include "adasplats/cloud/points/point_cloud.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
-#include "adasplats/splats/consistent/whole_place.h"
+#include "adasplats/splats/consistent/global_context.h"
+#include "adasplats/splats/method_options.h"
 #include "adasplats/splats/model/splat_model.h"
-#include "adasplats/splats/recipe.h"
 
 namespace adasplats {
 
 struct BuildOptions {
-  ModelRecipe recipe;  ///< ours without options, else a method of the paper
+  MethodOptions recipe;  ///< ours without options, else a method of the paper
   DynamicRemoval remove = DynamicRemoval::movable;
   /// Intensities become reflectances with the sensor's response, where points have known beams and
   /// intensities (ReflectancesOn); else they stay as measured.
@@ -29,7 +29,7 @@ struct BuildOptions {
   bool trust_origins = false;
   /// The cloud is a piece of this place (method consistent alone), whose origins were checked;
   /// nullptr: it is all there is.
-  const WholePlace* whole = nullptr;
+  const GlobalContext* whole = nullptr;
 };
 
 /// One step of the work and what it took.

@@ -24,7 +24,7 @@ class CpuModelEngine final : public ModelEngine {
                                     const PointCloud& cloud) const override {
     const RaysOnCpu place(executor_);
     if (!cloud.has_beams() || cloud.intensities.empty()) return {fallback, {}};
-    const MeasuredRays rays(cloud, kLeastReflectanceRange_m, executor_);
+    const MeasuredRays rays(cloud, kMinReflectanceRange_m, executor_);
     const RaysWithIntensities<RaysOnCpu> measured = {&rays, &cloud.intensities};
     return ReflectancesOn<RaysOnCpu>(place, disks, fallback).run({&measured, 1});
   }

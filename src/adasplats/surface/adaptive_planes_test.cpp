@@ -18,10 +18,10 @@ constexpr double kCell_m = 0.05;
 AdaptivePlaneOptions tested_options() {
   AdaptivePlaneOptions options;
   options.scales = {10, 20, 40, 80, 160};
-  options.most_sigma_m = 0.025;
+  options.max_sigma_m = 0.025;
   options.trim_sigmas = 2.5;
-  options.least_sigma_m = 0.01;
-  options.most_shift_m = 0.1;
+  options.min_sigma_m = 0.01;
+  options.max_shift_m = 0.1;
   return options;
 }
 
@@ -160,7 +160,7 @@ TEST(AdaptivePlanes, PlaneThroughCellsIsThePlaneThroughTheirPoints) {
   }
   AdaptivePlaneOptions options = tested_options();
   options.trim_sigmas = 1e6;
-  options.most_shift_m = 1e6;
+  options.max_shift_m = 1e6;
   const Fitted fitted = fit(points, options);
   ASSERT_EQ(fitted.planes.size(), 9U);
   for (std::size_t i = 0; i < 9; ++i) {

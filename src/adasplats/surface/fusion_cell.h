@@ -13,11 +13,11 @@
 namespace adasplats {
 
 /// Cells of a grid on either side of zero: 21 bits an axis. Points beyond share the last ones.
-inline constexpr double kMostFusionCells = 1048575;
+inline constexpr double kMaxFusionCells = 1048575;
 
 /// Which cell of a grid of side `cell_m` a coordinate lies in.
 ADASPLATS_HD inline std::uint64_t fusion_axis_key(float value, double cell_m) {
-  constexpr double kMost = kMostFusionCells;
+  constexpr double kMost = kMaxFusionCells;
   const double cell = std::floor(static_cast<double>(value) / cell_m);
   return static_cast<std::uint64_t>(std::clamp(cell, -kMost, kMost) + kMost);
 }

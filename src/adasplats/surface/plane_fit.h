@@ -16,10 +16,10 @@ struct AdaptivePlaneOptions {  // docs/fidelity.md has where each number comes f
   /// Neighbourhood sizes that are tried, ascending; the largest that is still a plane is taken.
   /// Large ones average noise and registration errors out and are never one scan ring alone.
   std::array<std::uint32_t, 5> scales = {10, 20, 40, 80, 160};
-  double most_sigma_m = 0.025;  ///< standard deviation across a plane that noise explains
-  double trim_sigmas = 2.5;     ///< points farther from the plane are left out of the last fits
-  double least_sigma_m = 0.01;  ///< for the trimming
-  double most_shift_m = 0.1;    ///< a cell's mean moves to its plane by at most this
+  double max_sigma_m = 0.025;  ///< standard deviation across a plane that noise explains
+  double trim_sigmas = 2.5;    ///< points farther from the plane are left out of the last fits
+  double min_sigma_m = 0.01;   ///< for the trimming
+  double max_shift_m = 0.1;    ///< a cell's mean moves to its plane by at most this
 };
 
 /// The surface at a fused cell.
@@ -75,7 +75,7 @@ ADASPLATS_HD ScaledFit fit_at_best_scale(const Neighborhood& neighborhood,
       add_weighted(moments, neighborhood.offset(added), neighborhood.weight(added));
     }
     const PlaneFit fit = plane_fit(moments);
-    const bool planar = std::sqrt(fit.shape.lambda[2]) <= options.most_sigma_m;
+    const bool planar = std::sqrt(fit.shape.lambda[2]) <= options.max_sigma_m;
     if (scale > 0 && !planar) break;
     best = {fit, wanted, static_cast<std::uint8_t>(scale)};
   }
@@ -87,11 +87,11 @@ template <class Neighborhood>
 ADASPLATS_HD PlaneFit trimmed_fit(const Neighborhood& neighborhood, const ScaledFit& start,
                                   const AdaptivePlaneOptions& options) {
   constexpr int kTrimRounds = 2;
-  constexpr int kLeastTrimmed = 6;  // cells that a trimmed fit must keep
+  constexpr int kMinTrimmed = 6;  // cells that a trimmed fit must keep
   PlaneFit fit = start.fit;
   for (int round = 0; round < kTrimRounds; ++round) {
     const double bound_m =
-        options.trim_sigmas * std::max(options.least_sigma_m, std::sqrt(fit.shape.lambda[2]));
+        options.trim_sigmas * std::max(options.min_sigma_m, std::sqrt(fit.shape.lambda[2]));
     const Vec3d normal = vec_cast<double>(fit.shape.normal);
     Moments moments;
     int kept = 0;  // moments.count holds their points
@@ -101,7 +101,7 @@ ADASPLATS_HD PlaneFit trimmed_fit(const Neighborhood& neighborhood, const Scaled
       add_weighted(moments, offset, neighborhood.weight(k));
       ++kept;
     }
-    if (kept < kLeastTrimmed) break;
+    if (kept < kMinTrimmed) break;
     fit = plane_fit(moments);
   }
   return fit;
@@ -115,7 +115,7 @@ ADASPLATS_HD LocalPlane local_plane(Vec3f position, const Neighborhood& neighbor
   const ScaledFit scaled = fit_at_best_scale(neighborhood, options);
   const PlaneFit fit = trimmed_fit(neighborhood, scaled, options);
   const double shift_m = std::clamp(dot(vec_cast<double>(fit.shape.normal), fit.mean),
-                                    -options.most_shift_m, options.most_shift_m);
+                                    -options.max_shift_m, options.max_shift_m);
   LocalPlane plane;
   plane.normal = fit.shape.normal;
   plane.center = position + static_cast<float>(shift_m) * plane.normal;

@@ -152,11 +152,11 @@ void drive_driving(const Street& street, const StreetScanOptions& options,
                    const StreetCaster& caster, StreetRecording& recording,
                    const std::function<void(std::size_t, const Scan&)>& on_driving_scan,
                    ProgressSink& progress) {
-  if (options.driving_spacing_m <= 0 || options.most_driving_scans == 0) return;
+  if (options.driving_spacing_m <= 0 || options.max_driving_scans == 0) return;
   const double fit =
       std::max(1.0, std::floor(drive_length(street, options) / options.driving_spacing_m));
   const std::size_t count =
-      static_cast<std::size_t>(std::min(fit, static_cast<double>(options.most_driving_scans)));
+      static_cast<std::size_t>(std::min(fit, static_cast<double>(options.max_driving_scans)));
   const LidarModel sensor = hdl_64_paper();
   const std::vector<Firing> firings = firings_of(sensor);
   const std::vector<RecordedPose> poses =

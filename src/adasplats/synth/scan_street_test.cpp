@@ -290,7 +290,7 @@ TEST(ScanStreet, MostDrivingScansLimitsTheirNumber) {
   const Street street = make_street(kShortStreet);
   StreetScanOptions options = exact_scan(2'000);
   options.driving_spacing_m = 1;
-  options.most_driving_scans = 3;
+  options.max_driving_scans = 3;
   EXPECT_EQ(scan(street, options).driving_trajectory.size(), 3U);
   options.driving_spacing_m = 0;
   EXPECT_TRUE(scan(street, options).driving_trajectory.empty());

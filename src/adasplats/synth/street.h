@@ -72,7 +72,7 @@ struct StreetScanOptions {
   bool turns = false;
   double speed_m_per_s = 8;
   double driving_spacing_m = 2;  ///< between the driving scans, all on the last pass; 0: none
-  std::size_t most_driving_scans = 150;  ///< a longer street has them further apart
+  std::size_t max_driving_scans = 150;  ///< a longer street has them further apart
 };
 
 /// The recordings of one street. Recorded poses and points hold the error of their pass; the true

@@ -60,7 +60,7 @@ StreetReport write_street(const std::filesystem::path& folder, StreetOptions str
 
   // First, as it refuses a folder that holds another street.
   std::optional<SemanticKittiWriter> sequence;
-  if (scan.driving_spacing_m > 0 && scan.most_driving_scans > 0)
+  if (scan.driving_spacing_m > 0 && scan.max_driving_scans > 0)
     sequence.emplace(folder / "sequences" / "00");
   save_street_mesh(folder / "mesh.ply", street);
   const StreetRecording recording = scan_street(

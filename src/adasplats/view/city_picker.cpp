@@ -72,7 +72,7 @@ std::vector<CityPicker::Crossing> CityPicker::crossed(const Ray& ray) const {
       crossings.push_back({*range_m, k});
   }
   std::ranges::sort(crossings, {}, &Crossing::range_m);
-  crossings.resize(std::min(crossings.size(), kMostTiles));
+  crossings.resize(std::min(crossings.size(), kMaxTiles));
   return crossings;
 }
 

@@ -29,7 +29,7 @@ struct CityHit {
 class CityPicker {
  public:
   /// A ray that met nothing in so many tiles goes no further.
-  static constexpr std::size_t kMostTiles = 8;
+  static constexpr std::size_t kMaxTiles = 8;
   /// Tiles stay in memory while they have no more together (about 100 MB); the last one does in any
   /// case.
   static constexpr std::size_t kKeptSplats = 2'000'000;

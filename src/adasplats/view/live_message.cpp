@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 /// Positions and speeds beyond it are nobody's.
 constexpr double kFarthest_m = 1e7;
 /// Of one scan with its sub-rays: one page must not keep the others waiting.
-constexpr std::size_t kMostRays = 4'000'000;
+constexpr std::size_t kMaxRays = 4'000'000;
 /// A rotation whose quaternion is of this much other length is a mistake.
 constexpr double kNormTolerance = 1e-2;
 
@@ -186,9 +186,9 @@ LiveSensor parse_sensor(const Json& json) {
   check(sensor.settings);
   const std::size_t firings = sensor.settings.sensor.rays_per_scan();
   const std::size_t hits = sensor.settings.beam.hits_per_firing();
-  if (firings > kMostRays / hits)
+  if (firings > kMaxRays / hits)
     refuse(std::to_string(firings) + " firings of " + std::to_string(hits) +
-           " rays a scan, expected at most " + std::to_string(kMostRays) + " rays");
+           " rays a scan, expected at most " + std::to_string(kMaxRays) + " rays");
   return sensor;
 }
 

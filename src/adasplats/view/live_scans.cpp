@@ -29,13 +29,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Scans that may be under way to a page that has not yet said that it drew them.
-constexpr int kMostUnderWay = 2;
+constexpr int kMaxUnderWay = 2;
 /// Questions that a page may have open.
-constexpr std::size_t kMostPicks = 32;
+constexpr std::size_t kMaxPicks = 32;
 /// A page has nothing of more, and other pages wait.
-constexpr Clock::duration kLeastInterval = std::chrono::milliseconds(33);
+constexpr Clock::duration kMinInterval = std::chrono::milliseconds(33);
 /// Sensors whose rays are kept, over all pages.
-constexpr std::size_t kMostSimulators = 8;
+constexpr std::size_t kMaxSimulators = 8;
 
 struct Client {
   std::shared_ptr<WebSocketPeer> peer;
@@ -50,7 +50,7 @@ struct Client {
   std::map<std::size_t, RigidTransform> placed;  ///< objects that the page took elsewhere
 
   bool wants_scan(Clock::time_point now) const {
-    return running && under_way < kMostUnderWay && next_scan <= now;
+    return running && under_way < kMaxUnderWay && next_scan <= now;
   }
   bool has_work(Clock::time_point now) const {
     return sensor_is_new || !picks.empty() || wants_scan(now);
@@ -78,7 +78,7 @@ struct Simulator {
 /// Rays of the sensors that were used last.
 class Simulators {
  public:
-  Simulators(const ScanPlace& scene, const Executor& executor)
+  Simulators(const ScanScene& scene, const Executor& executor)
       : scene_(scene), executor_(executor) {}
 
   Simulator& of(const LiveSensor& sensor) {
@@ -91,12 +91,12 @@ class Simulators {
     }
     auto scans = std::make_unique<ScanSimulator>(scene_, sensor.settings, executor_);
     const ImageSize size = image_size_of(scans->firings());
-    if (kept_.size() == kMostSimulators) kept_.pop_back();
+    if (kept_.size() == kMaxSimulators) kept_.pop_back();
     return *kept_.insert(kept_.begin(), {std::move(key), std::move(scans), size});
   }
 
  private:
-  const ScanPlace& scene_;
+  const ScanScene& scene_;
   const Executor& executor_;
   std::vector<Simulator> kept_;  ///< last used first
 };
@@ -200,8 +200,8 @@ class LiveScans::Implementation {
       client.placed.erase(object.id);
   }
   static void take(Client& client, const PickMessage& pick) {
-    if (client.picks.size() >= kMostPicks)
-      throw Error(ErrorKind::usage, "more than " + std::to_string(kMostPicks) + " open questions");
+    if (client.picks.size() >= kMaxPicks)
+      throw Error(ErrorKind::usage, "more than " + std::to_string(kMaxPicks) + " open questions");
     client.picks.push_back(pick);
   }
 
@@ -234,7 +234,7 @@ class LiveScans::Implementation {
     if (!work.scan) return work;
     work.placed = client.placed;
     work.number = client.next_number++;
-    client.next_scan = now + kLeastInterval;
+    client.next_scan = now + kMinInterval;
     ++client.under_way;
     return work;
   }
@@ -243,7 +243,7 @@ class LiveScans::Implementation {
   Clock::time_point wake_time(Clock::time_point now) const {
     Clock::time_point time = now + std::chrono::seconds(1);
     for (const Client& client : clients_)
-      if (client.running && client.under_way < kMostUnderWay)
+      if (client.running && client.under_way < kMaxUnderWay)
         time = std::min(time, client.next_scan);
     return time;
   }

@@ -16,12 +16,12 @@ namespace {
 
 constexpr float kCell_m = 1;
 /// Cells a side at most: of larger places the part around the middle counts.
-constexpr int kMostCells = 2000;
+constexpr int kMaxCells = 2000;
 /// The ground is as thick as this, with its noise and slope.
 constexpr float kGround_m = 0.35F;
 /// What stands higher is passed below.
 constexpr float kPassage_m = 2.2F;
-constexpr std::uint32_t kLeastPoints = 3;
+constexpr std::uint32_t kMinPoints = 3;
 constexpr int kOpenReach = 3;    ///< cells around that should be open, too
 constexpr int kDenseReach = 20;  ///< cells around whose points count
 constexpr int kHeadings = 36;
@@ -63,7 +63,7 @@ class Ground {
   bool is_open(int x, int y) const {
     if (!is_inside(x, y)) return false;
     const Cell& c = cell(x, y);
-    return c.points >= kLeastPoints && 20 * c.in_the_way < c.points;
+    return c.points >= kMinPoints && 20 * c.in_the_way < c.points;
   }
   Vec3d middle_of(int x, int y) const {
     return {static_cast<double>(low_.x) + (x + 0.5) * static_cast<double>(kCell_m),
@@ -83,12 +83,12 @@ class Ground {
         high = std::max(high, values[i]);
       }
       std::nth_element(values.begin(), middle, values.end());
-      constexpr float kReach_m = 0.5F * kMostCells * kCell_m;
+      constexpr float kReach_m = 0.5F * kMaxCells * kCell_m;
       low = std::max(low, *middle - kReach_m);
       high = std::min(high, *middle + kReach_m);
       low_[axis] = low;
       (axis == 0 ? width_ : height_) =
-          std::clamp(static_cast<int>((high - low) / kCell_m) + 1, 1, kMostCells);
+          std::clamp(static_cast<int>((high - low) / kCell_m) + 1, 1, kMaxCells);
     }
   }
 

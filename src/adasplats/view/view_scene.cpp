@@ -20,7 +20,7 @@ std::span<const Vec3f> relative_to_origin(std::span<const Vec3f> positions, Vec3
 }
 
 /// Samples of a scene's layers that are enough to find a street by.
-constexpr std::size_t kMostSamples = 400'000;
+constexpr std::size_t kMaxSamples = 400'000;
 
 /// Classes that are all 0 and intensities that are all the same tell nothing.
 template <class T>
@@ -37,7 +37,7 @@ bool tells_intensities(std::span<const float> intensities) {
 
 /// Corners of triangles, every so many.
 std::vector<Vec3f> samples_of(const MeshTree& tree) {
-  const std::size_t step = 1 + tree.input_size() / kMostSamples;
+  const std::size_t step = 1 + tree.input_size() / kMaxSamples;
   std::vector<Vec3f> samples;
   for (std::size_t n = 0; n < tree.nodes().size(); ++n)
     for (std::size_t i = 0; i < tree.elements(n).size(); i += step)
@@ -47,10 +47,10 @@ std::vector<Vec3f> samples_of(const MeshTree& tree) {
 
 /// Of the leaves, every so many, as the page gets them.
 std::vector<Vec3f> samples_of(const ViewLayer& layer) {
-  if (layer.city) return layer.city->samples(kMostSamples);
+  if (layer.city) return layer.city->samples(kMaxSamples);
   if (layer.mesh) return samples_of(*layer.mesh);
   const LevelTree& tree = layer.tree;
-  const std::size_t step = 1 + tree.input_size() / kMostSamples;
+  const std::size_t step = 1 + tree.input_size() / kMaxSamples;
   std::vector<Vec3f> samples;
   std::size_t number = 0;
   for (std::size_t n = 0; n < tree.nodes().size(); ++n) {
@@ -141,7 +141,7 @@ ViewLayer mesh_layer(std::string name, const MeshModel& model, std::span<const f
           {}};
 }
 
-ViewLayer place_layer(std::string name, const Place& place, Vec3d origin,
+ViewLayer place_layer(std::string name, const AnyModel& place, Vec3d origin,
                       const Executor& executor) {
   if (const auto* const splats = std::get_if<SplatModel>(&place))
     return splat_layer(std::move(name), *splats, {}, origin, executor);
@@ -176,7 +176,7 @@ void add_world(ViewScene& scene, const Executor& executor) {
     if (object.only_scan) continue;
     std::size_t& number = number_of[object.geometry];
     if (number == world->geometry_count()) {
-      const Place& place = world->geometry(object.geometry);
+      const AnyModel& place = world->geometry(object.geometry);
       number = scene.geometries.size();
       scene.geometries.push_back(place_layer(object.name, place, {}, executor));
     }

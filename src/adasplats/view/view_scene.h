@@ -17,11 +17,11 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/jobs/scene/model_scene.h"
-#include "adasplats/jobs/scene/scan_place.h"
+#include "adasplats/jobs/scene/scan_scene.h"
 #include "adasplats/levels/level_tree.h"
 #include "adasplats/scene/mesh_model.h"
 #include "adasplats/sensors/lidar_model.h"
-#include "adasplats/splats/model/place.h"
+#include "adasplats/splats/model/any_model.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/view/city_picker.h"
 #include "adasplats/view/mesh_tree.h"
@@ -55,7 +55,8 @@ ViewLayer city_layer(std::string name, std::shared_ptr<const CityLevels> levels)
 ViewLayer mesh_layer(std::string name, const MeshModel& model, std::span<const float> intensities,
                      Vec3d origin);
 /// Splats or triangles.
-ViewLayer place_layer(std::string name, const Place& place, Vec3d origin, const Executor& executor);
+ViewLayer place_layer(std::string name, const AnyModel& place, Vec3d origin,
+                      const Executor& executor);
 
 /// `errors_m`: empty, or one a splat.
 ViewLayer splat_layer(std::string name, const SplatModel& model, std::span<const float> errors_m,
@@ -87,7 +88,7 @@ struct ViewScene {
   std::optional<LabelScheme> labels;
   std::pair<Vec3d, Vec3d> middle_box;  ///< world coordinates: where to look first
   /// That scans are simulated in; null: none.
-  const ScanPlace* place = nullptr;
+  const ScanScene* place = nullptr;
   /// The same where it is in memory, whose objects a page may move; null: it is not.
   ModelScene* model = nullptr;
   /// What rays of a page meet where the place is a city on disk; used by the simulating thread

@@ -8,12 +8,12 @@ namespace adasplats::app {
 
 void add_common_options(OptionSet& app, CommonOptions& options) {
   constexpr const char* kGroup = "Common options";
-  constexpr int kMostThreads = 4096;
+  constexpr int kMaxThreads = 4096;
   app.add_version_flag("--version", std::string("adasplats ") + ADASPLATS_VERSION,
                        "Print the version and exit")
       ->group(kGroup);
   app.add_option("--threads", options.threads, "Threads; 0: all that the process may use")
-      ->range(0, kMostThreads)
+      ->range(0, kMaxThreads)
       ->capture_default_str()
       ->type_name("N")
       ->group(kGroup);

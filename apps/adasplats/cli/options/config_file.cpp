@@ -18,7 +18,7 @@
 namespace adasplats::app {
 namespace {
 
-constexpr std::ptrdiff_t kMostDotsInLine = 1000;
+constexpr std::ptrdiff_t kMaxDotsInLine = 1000;
 
 /// One file while it is applied.
 struct Source {
@@ -41,7 +41,7 @@ void refuse_deep_keys(const std::filesystem::path& file, const std::string& text
   while (begin <= text.size()) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const std::string_view line = std::string_view(text).substr(begin, end - begin);
-    if (std::count(line.begin(), line.end(), '.') > kMostDotsInLine) {
+    if (std::count(line.begin(), line.end(), '.') > kMaxDotsInLine) {
       throw config_error(file, line_number, "the key is nested too deeply");
     }
     begin = end + 1;

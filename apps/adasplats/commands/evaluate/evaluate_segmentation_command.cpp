@@ -27,13 +27,13 @@ std::string classes_table(const SegmentationResult& result) {
   TextTable table({"class", "IoU", "precision", "recall", "share"});
   for (std::size_t c = 0; c < confusion.classes(); ++c) {
     if (confusion.of_truth(c) == 0) continue;
-    const bool is_rare = confusion.is_rare(c, result.options.least_share);
+    const bool is_rare = confusion.is_rare(c, result.options.min_share);
     table.add_row({result.classes.classes()[c].name + (is_rare ? " (rare)" : ""),
                    percent(confusion.iou(c)), percent(confusion.precision(c)),
                    percent(confusion.recall(c)), percent(confusion.share(c))});
   }
   table.add_row({});
-  table.add_row({"mean, but rare ones", percent(confusion.mean_iou(result.options.least_share))});
+  table.add_row({"mean, but rare ones", percent(confusion.mean_iou(result.options.min_share))});
   return table.text();
 }
 
@@ -67,7 +67,7 @@ class EvaluateSegmentationCommand final : public Command {
         ->capture_default_str()
         ->type_name("SCHEME");
     add_scan_range(app, "--scans", job_.scans, "Which scans of each true sequence");
-    app.add_option("--least-share", job_.options.least_share,
+    app.add_option("--least-share", job_.options.min_share,
                    "Classes with a smaller share of the true points are left out of the mean")
         ->capture_default_str();
   }

@@ -25,7 +25,7 @@ constexpr double kOneBeam_rad = 1e-4;
 constexpr std::size_t kViewBins = 360;
 /// Columns of a turn. Coarser and finer sensors that spin are not sold.
 constexpr std::size_t kFewestColumns = 180;
-constexpr std::size_t kMostColumns = 16'384;
+constexpr std::size_t kMaxColumns = 16'384;
 /// Steps around a firing within which a point is its return.
 constexpr double kReturnSteps = 0.75;
 
@@ -69,10 +69,10 @@ std::size_t columns_of(const std::vector<std::vector<AzimuthPoint>>& rings,
   const auto regular = std::ranges::count_if(gaps_rad, [&](double gap_rad) {
     return gap_rad > 0.7 * step_rad && gap_rad < 1.4 * step_rad;
   });
-  if (static_cast<double>(regular) < options.least_regular * static_cast<double>(gaps_rad.size()))
+  if (static_cast<double>(regular) < options.min_regular * static_cast<double>(gaps_rad.size()))
     return 0;
   const auto columns = static_cast<std::size_t>(std::lround(kTurn_rad / step_rad));
-  return columns < kFewestColumns || columns > kMostColumns ? 0 : columns;
+  return columns < kFewestColumns || columns > kMaxColumns ? 0 : columns;
 }
 
 /// Mean phase of a ring's azimuths among the columns.
@@ -88,7 +88,7 @@ std::vector<double> elevations_of(const ScanRings& scan, const RecordingRings& r
                                   const EmptyBeamOptions& options) {
   std::vector<double> elevations_rad = recording.elevations_rad;
   for (std::size_t ring = 0; ring < elevations_rad.size(); ++ring)
-    if (scan.sums[ring].points >= std::max<std::size_t>(1, options.least_ring_points))
+    if (scan.sums[ring].points >= std::max<std::size_t>(1, options.min_ring_points))
       elevations_rad[ring] = scan.sums[ring].mean_rad();
   return elevations_rad;
 }
@@ -100,9 +100,9 @@ bool may_be_empty(double elevation_rad, const Mat3d& world_from_sensor,
                   const EmptyBeamOptions& options) {
   constexpr double kRounding = 1e-9;
   const Vec3d up = world_from_sensor.rows[2];
-  const double most_up =
+  const double max_up =
       std::cos(elevation_rad) * std::hypot(up.x, up.y) + std::sin(elevation_rad) * up.z;
-  return most_up > options.least_up - kRounding;
+  return max_up > options.min_up - kRounding;
 }
 
 bool may_have_empty(std::span<const double> elevations_rad, const ScanRings& scan,
@@ -246,7 +246,7 @@ std::vector<std::uint8_t> empty_cells(const BeamImage& image, const FieldOfView&
     for (const std::size_t ring : rings) {
       const std::size_t cell = ring * image.columns() + column;
       if (image.returned(cell)) continue;
-      empty[cell] = image.direction(cell).z > options.least_up ? 1 : 0;
+      empty[cell] = image.direction(cell).z > options.min_up ? 1 : 0;
     }
   }
   return empty;
@@ -313,9 +313,9 @@ class SweepOrigins {
   /// from one side to the other, as at the seam of a sweep. Nothing where neither tells.
   std::optional<Vec3f> find(std::size_t ring, double azimuth_rad) const {
     const Nearest of_ring = nearest_in(sweep_.points[ring], azimuth_rad);
-    if (of_ring.is_near && of_ring.moved_m < options_.most_moved_m) return of_ring.origin;
+    if (of_ring.is_near && of_ring.moved_m < options_.max_moved_m) return of_ring.origin;
     const Nearest of_any = nearest_in(all_, azimuth_rad);
-    if (of_any.is_near || of_any.moved_m < options_.most_moved_m) return of_any.origin;
+    if (of_any.is_near || of_any.moved_m < options_.max_moved_m) return of_any.origin;
     return std::nullopt;
   }
 
@@ -336,8 +336,7 @@ class SweepOrigins {
     const double down_rad = wrapped_rad(azimuth_rad - last.azimuth_rad);
     const Vec3f after = cloud_.sensor_positions[next.point];
     const Vec3f before = cloud_.sensor_positions[last.point];
-    return {up_rad < down_rad ? after : before,
-            std::min(up_rad, down_rad) <= options_.most_away_rad,
+    return {up_rad < down_rad ? after : before, std::min(up_rad, down_rad) <= options_.max_away_rad,
             static_cast<double>(length(after - before))};
   }
 

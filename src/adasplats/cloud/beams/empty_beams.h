@@ -20,14 +20,14 @@ struct EmptyBeamOptions {
   /// was thinned or put together from several. Of points that were kept at random with probability
   /// p, that is p at most: where it passes, 3 x 3 cells are empty by chance once in 50,000. KITTI's
   /// HDL-64E has 0.83, PandaSet's Pandar64 0.95.
-  double least_regular = 0.7;
-  std::size_t least_ring_points = 20;  ///< of a ring in a scan that tell its elevation there
+  double min_regular = 0.7;
+  std::size_t min_ring_points = 20;  ///< of a ring in a scan that tell its elevation there
   /// Azimuth to the point that tells a beam's origin, and how far the sensor may have moved between
   /// the points on both sides: either must hold, of points of its own ring both.
-  double most_away_rad = 10 * kDegree;
-  double most_moved_m = 0.1;
+  double max_away_rad = 10 * kDegree;
+  double max_moved_m = 0.1;
   /// z of the direction: lower beams may have met wet road, black paint or what is too far away.
-  double least_up = 0.05;
+  double min_up = 0.05;
 };
 
 /// Finds the beams of a spinning sensor that returned nothing; files leave them out. Each is

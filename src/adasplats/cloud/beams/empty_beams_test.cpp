@@ -40,7 +40,7 @@ double recall(const std::vector<EmptyBeam>& found, const std::vector<TestBeam>& 
               const SpinningSensor& sensor) {
   double all = 0, known = 0;
   for (const TestBeam& beam : beams) {
-    if (beam.returned() || beam.direction.z <= EmptyBeamOptions{}.least_up) continue;
+    if (beam.returned() || beam.direction.z <= EmptyBeamOptions{}.min_up) continue;
     all += 1;
     for (const EmptyBeam& e : found) {
       if (e.scan != beam.scan || distance_between(e, beam) > 0.5 * sensor.step_rad()) continue;
@@ -67,7 +67,7 @@ void expect_true(const std::vector<EmptyBeam>& found, const std::vector<TestBeam
     ASSERT_NE(nearest, nullptr);
     returned += nearest->returned() ? 1 : 0;
     unlike += best > 0.5 * sensor.step_rad() ? 1 : 0;
-    // Ten degrees of a sweep or `most_moved_m`.
+    // Ten degrees of a sweep or `max_moved_m`.
     elsewhere += length(vec_cast<double>(e.origin) - nearest->origin) > 0.1 ? 1 : 0;
   }
   EXPECT_EQ(returned, 0U);

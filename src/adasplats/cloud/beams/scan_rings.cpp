@@ -54,7 +54,7 @@ void add_square(SymmetricMat3d& sum, double weight, Vec3d v) {
   sum.zz += weight * v.z * v.z;
 }
 
-Vec3d least_eigenvector(const SymmetricMat3d& m) { return symmetric_eigen(m).vectors[2]; }
+Vec3d min_eigenvector(const SymmetricMat3d& m) { return symmetric_eigen(m).vectors[2]; }
 
 Vec3d turned_up(Vec3d axis) { return axis.z < 0 ? -axis : axis; }
 
@@ -109,7 +109,7 @@ Vec3d axis_across(std::span<const Vec3d> ways) {
       const double off = dot(axis, way);
       add_square(sum, 1 / (kTight * kTight + off * off), way);
     }
-    axis = least_eigenvector(sum);
+    axis = min_eigenvector(sum);
   }
   return turned_up(axis);
 }
@@ -194,7 +194,7 @@ Vec3d axis_of_planes(std::span<const Vec3d> directions, std::span<const double> 
   }
   for (std::size_t ring = 0; ring < sums.size(); ++ring)
     if (counts[ring] > 0) add_square(sum, -1 / counts[ring], sums[ring]);
-  return turned_up(least_eigenvector(sum));
+  return turned_up(min_eigenvector(sum));
 }
 
 struct ScanAxis {
@@ -209,7 +209,7 @@ ScanAxis refined_axis(Vec3d axis, std::span<const Vec3d> directions,
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<double> elevations_rad = elevations_about(axis, directions);
     const std::vector<double> rings_rad = peaks_of(elevations_rad);
-    if (rings_rad.size() < options.least_rings) break;
+    if (rings_rad.size() < options.min_rings) break;
     const double near = share_near(elevations_rad, rings_rad);
     if (near >= best.near) best = {axis, near};
     axis = axis_of_planes(directions, elevations_rad, rings_rad);
@@ -226,7 +226,7 @@ ScanAxis find_axis(std::span<const Vec3d> all, const std::optional<Vec3d>& pose_
   ScanAxis best = refined_axis(axis_across(ways.along), directions, options);
   for (const Vec3d guess :
        {axis_across(ways.across), pose_axis.value_or(Vec3d{0, 0, 1}), Vec3d{0, 0, 1}}) {
-    if (best.near >= options.least_near) break;
+    if (best.near >= options.min_near) break;
     const ScanAxis other = refined_axis(guess, directions, options);
     if (other.near > best.near) best = other;
   }
@@ -256,7 +256,7 @@ std::vector<ScanRings> points_by_scan(const PointCloud& cloud, const ScanRingOpt
     });
   });
   std::erase_if(scans,
-                [&](const ScanRings& scan) { return scan.points.size() < options.least_points; });
+                [&](const ScanRings& scan) { return scan.points.size() < options.min_points; });
   return scans;
 }
 
@@ -351,7 +351,7 @@ RecordingRings rings_of_lasers(const PointCloud& cloud, std::vector<ScanRings> s
   });
   const auto has_points = [](double elevation_rad) { return elevation_rad == elevation_rad; };
   const auto known = std::ranges::count_if(recording.elevations_rad, has_points);
-  if (static_cast<std::size_t>(known) < options.least_rings) return {};
+  if (static_cast<std::size_t>(known) < options.min_rings) return {};
   return recording;
 }
 
@@ -372,7 +372,7 @@ std::vector<double> find_axes(const PointCloud& cloud, std::vector<ScanRings>& s
     std::optional<Vec3d> pose_axis;
     if (rotation != nullptr) pose_axis = rotation->transposed().rows[2];
     const ScanAxis found = find_axis(directions, pose_axis, options);
-    if (found.near < options.least_near) {
+    if (found.near < options.min_near) {
       scans[s].points.clear();
       return;
     }
@@ -381,7 +381,7 @@ std::vector<double> find_axes(const PointCloud& cloud, std::vector<ScanRings>& s
   });
   const std::size_t all = scans.size();
   std::erase_if(scans, [](const ScanRings& scan) { return scan.points.empty(); });
-  if (static_cast<double>(scans.size()) < options.least_scans * static_cast<double>(all)) return {};
+  if (static_cast<double>(scans.size()) < options.min_scans * static_cast<double>(all)) return {};
   std::vector<double> elevations_rad;
   for (const auto& part : pooled)
     elevations_rad.insert(elevations_rad.end(), part.begin(), part.end());
@@ -392,7 +392,7 @@ RecordingRings rings_of_directions(const PointCloud& cloud, std::vector<ScanRing
                                    const ScanRingOptions& options, const Executor& executor) {
   const std::size_t all = scans.size();
   const std::vector<double> rings_rad = find_axes(cloud, scans, options, executor);
-  if (rings_rad.size() < std::max<std::size_t>(2, options.least_rings)) return {};
+  if (rings_rad.size() < std::max<std::size_t>(2, options.min_rings)) return {};
   executor.for_chunks(scans.size(), 1, [&](std::size_t s, std::size_t) {
     ScanRings& scan = scans[s];
     const Vec3d axis = scan.world_from_sensor.transposed().rows[2];
@@ -403,11 +403,11 @@ RecordingRings rings_of_directions(const PointCloud& cloud, std::vector<ScanRing
       scan.rings.push_back(static_cast<std::uint16_t>(place.ring));
       near += place.near ? 1 : 0;
     }
-    if (static_cast<double>(near) < options.least_near * static_cast<double>(scan.points.size()))
+    if (static_cast<double>(near) < options.min_near * static_cast<double>(scan.points.size()))
       scan.points.clear();
   });
   std::erase_if(scans, [](const ScanRings& scan) { return scan.points.empty(); });
-  if (static_cast<double>(scans.size()) < options.least_scans * static_cast<double>(all)) return {};
+  if (static_cast<double>(scans.size()) < options.min_scans * static_cast<double>(all)) return {};
   std::vector<double> means_rad = mean_elevations(cloud, scans, rings_rad.size(), executor);
   return {std::move(means_rad), std::move(scans)};
 }

@@ -14,12 +14,12 @@ namespace adasplats {
 
 /// When the points of a scan are taken for the rings of a sensor that turns.
 struct ScanRingOptions {
-  std::size_t least_points = 2000;  ///< of a scan; fewer say too little
-  std::size_t least_rings = 8;      ///< of the sensor; fewer fit too much
+  std::size_t min_points = 2000;  ///< of a scan; fewer say too little
+  std::size_t min_rings = 8;      ///< of the sensor; fewer fit too much
   /// Of a scan's points those nearer to a ring than an eighth of the gap to the next one, where
   /// rings are found from directions alone; 0.25 by chance.
-  double least_near = 0.8;
-  double least_scans = 0.5;   ///< of the recording, on the rings; else there are none
+  double min_near = 0.8;
+  double min_scans = 0.5;     ///< of the recording, on the rings; else there are none
   double most_unknown = 0.2;  ///< of a scan's points, without a laser though others have one
 };
 

@@ -107,7 +107,7 @@ TEST(ScanRings, NothingWithoutPointsScansOrOrigins) {
   without.positions = without.sensor_positions;
   EXPECT_TRUE(find_scan_rings(without, {}, Executor(1)).scans.empty());
   ScanRingOptions options;
-  options.least_points = cloud.size() + 1;
+  options.min_points = cloud.size() + 1;
   EXPECT_TRUE(find_scan_rings(cloud, options, Executor(1)).scans.empty());
 }
 

@@ -83,12 +83,12 @@ class SchemeFile {
 
 /// The parser recurses over dotted keys without a limit of its own (over brackets it has one).
 void refuse_deep_keys(const SchemeFile& file, std::string_view text) {
-  constexpr int kMostDots = 64;
+  constexpr int kMaxDots = 64;
   std::uint64_t line = 1;
   int dots = 0;
   for (const char c : text) {
-    if (c == '.' && ++dots > kMostDots)
-      throw file.error(line, "more than " + std::to_string(kMostDots) + " dots in a line");
+    if (c == '.' && ++dots > kMaxDots)
+      throw file.error(line, "more than " + std::to_string(kMaxDots) + " dots in a line");
     if (c == '\n') {
       ++line;
       dots = 0;

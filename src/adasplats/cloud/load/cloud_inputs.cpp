@@ -60,12 +60,12 @@ Folder look_into(const fs::path& path) {
 
 /// "a.ply, b.ply and 7 more": names relative to the folder.
 std::string names_of(const Folder& folder, const std::vector<fs::path>& paths) {
-  constexpr std::size_t kMostNames = 3;
+  constexpr std::size_t kMaxNames = 3;
   std::string names;
-  for (std::size_t i = 0; i < std::min(kMostNames, paths.size()); ++i)
+  for (std::size_t i = 0; i < std::min(kMaxNames, paths.size()); ++i)
     names += (i == 0 ? "" : ", ") + paths[i].lexically_relative(folder.path).string();
-  if (paths.size() > kMostNames)
-    names += " and " + std::to_string(paths.size() - kMostNames) + " more";
+  if (paths.size() > kMaxNames)
+    names += " and " + std::to_string(paths.size() - kMaxNames) + " more";
   return names;
 }
 

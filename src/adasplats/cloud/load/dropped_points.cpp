@@ -64,10 +64,10 @@ void report_own_body(const std::string& input, const LoadReport& report, const L
 
 void require_metres(const std::string& input, Vec3d low, Vec3d high, const Crs& crs,
                     ProgressSink& progress) {
-  constexpr double kMostLongitude = 180, kMostLatitude = 90;
+  constexpr double kMaxLongitude = 180, kMaxLatitude = 90;
   constexpr double kCertainSteepness = 1000, kDoubtfulSteepness = 10, kDoubtfulWidth = 1;
-  const bool in_range = low.x >= -kMostLongitude && high.x <= kMostLongitude &&
-                        low.y >= -kMostLatitude && high.y <= kMostLatitude;
+  const bool in_range = low.x >= -kMaxLongitude && high.x <= kMaxLongitude &&
+                        low.y >= -kMaxLatitude && high.y <= kMaxLatitude;
   const bool holds_zero = low.x <= 0 && high.x >= 0 && low.y <= 0 && high.y >= 0;
   const double width = std::max(high.x - low.x, high.y - low.y), height = high.z - low.z;
   if (!in_range || holds_zero || !(width > 0)) return;

@@ -22,7 +22,7 @@ namespace adasplats {
 
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 16;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 16;
 constexpr double kTolerance = 1e-3;  // of rotations, as read_trajectory has it
 
 constexpr std::array<std::string_view, 3> kMeshes = {".obj", ".gltf", ".glb"};
@@ -38,12 +38,12 @@ std::optional<std::vector<std::string>> first_lines(const std::filesystem::path&
   try {
     InputFile file(path);
     const auto size =
-        static_cast<std::size_t>(std::min<std::uint64_t>(kMostBytes, file.size_bytes()));
+        static_cast<std::size_t>(std::min<std::uint64_t>(kMaxBytes, file.size_bytes()));
     std::string_view text(reinterpret_cast<const char*>(file.peek(size).data()), size);
     if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     while (!text.empty()) {
       const std::size_t end = text.find_first_of("\r\n");
-      if (end == std::string_view::npos && size == kMostBytes) break;  // cut
+      if (end == std::string_view::npos && size == kMaxBytes) break;  // cut
       std::string_view line = text.substr(0, end);
       text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
       while (line.ends_with(' ')) line.remove_suffix(1);
@@ -136,7 +136,7 @@ bool has_pose_names(const std::vector<std::string>& lines) {
 }
 
 FileKind kind_of_text(const std::vector<std::string>& lines) {
-  constexpr std::size_t kLeastTimedPoses = 3;
+  constexpr std::size_t kMinTimedPoses = 3;
   if (!has_a_point(lines)) return FileKind::other;
   if (has_pose_names(lines)) return FileKind::trajectory;
   std::size_t poses = 0, matrices = 0, others = 0;
@@ -154,7 +154,7 @@ FileKind kind_of_text(const std::vector<std::string>& lines) {
     }
   }
   if (others != 0) return FileKind::points;
-  return matrices != 0 || poses >= kLeastTimedPoses ? FileKind::trajectory : FileKind::points;
+  return matrices != 0 || poses >= kMinTimedPoses ? FileKind::trajectory : FileKind::points;
 }
 
 }  // namespace

@@ -55,11 +55,11 @@ class ScansOfFile {
   }
 
   /// Pieces of whole scans, each with the path beyond.
-  std::vector<InputPiece> pieces(std::size_t input, std::uint64_t most_records) const {
+  std::vector<InputPiece> pieces(std::size_t input, std::uint64_t max_records) const {
     std::vector<InputPiece> pieces;
     for (std::size_t scan = 0; scan < scans_.size();) {
       const std::size_t first = scan++;
-      while (scan < scans_.size() && end_of(scan) - scans_[first].begin <= most_records) ++scan;
+      while (scan < scans_.size() && end_of(scan) - scans_[first].begin <= max_records) ++scan;
       InputPiece piece = {
           input, scans_[first].begin, end_of(scan - 1) - scans_[first].begin, true, {}};
       add_places(0, first, piece.beyond.before);

@@ -72,10 +72,10 @@ PointTimes meaning_of_times(TimeSpan first, TimeSpan last, const TimeSpan* track
   times.fits = false;
   for (const double unit_s : kTimeUnits_s) {
     if (!(is_sweep(unit_s) || (length == 0 && !begin_alike))) continue;
-    const double least_s = unit_s * std::min(first.first, last.first) + time_offset_s;
-    const double most_s = unit_s * std::max(first.last, last.last) + time_offset_s;
-    const bool covered = track_s == nullptr || (least_s >= track_s->first - kLongestSweep_s &&
-                                                most_s <= track_s->last + kLongestSweep_s);
+    const double min_s = unit_s * std::min(first.first, last.first) + time_offset_s;
+    const double max_s = unit_s * std::max(first.last, last.last) + time_offset_s;
+    const bool covered = track_s == nullptr || (min_s >= track_s->first - kLongestSweep_s &&
+                                                max_s <= track_s->last + kLongestSweep_s);
     if (!begin_alike && !covered) continue;
     times.unit_s = unit_s;
     times.fits = true;

@@ -32,7 +32,7 @@ std::string with_figures(const char* format, double a, double b, double c) {
 struct Looks {
   std::vector<Vec3d> as_given, from_poses;
   double given_m = 0, posed_m = 0;  ///< of the middles of scans, from the origin and from the poses
-  double least_pose_m = 0;          ///< from the origin
+  double min_pose_m = 0;            ///< from the origin
 };
 
 Looks look_at(const SensorFrames& frames) {
@@ -67,7 +67,7 @@ Looks look_at(const SensorFrames& frames) {
   if (given_m.empty()) return looks;
   looks.given_m = upper_median_of(given_m);
   looks.posed_m = upper_median_of(posed_m);
-  looks.least_pose_m = *std::ranges::min_element(poses_m);
+  looks.min_pose_m = *std::ranges::min_element(poses_m);
   return looks;
 }
 
@@ -117,9 +117,9 @@ FrameVerdict by_middles(const Looks& looks) {
   const std::string figures = with_figures(
       "the middles of the scans are %.1f m from the origin, %.1f m from the poses, "
       "these %.1f m or more from the origin",
-      looks.given_m, looks.posed_m, looks.least_pose_m);
+      looks.given_m, looks.posed_m, looks.min_pose_m);
   if (looks.given_m > kFarthestOriginM) return {PointsIn::world, figures};
-  if (looks.least_pose_m < kFarPose_m) return {PointsIn::found, figures};
+  if (looks.min_pose_m < kFarPose_m) return {PointsIn::found, figures};
   if (kFewerTimes * looks.given_m < looks.posed_m) return {PointsIn::sensor, figures};
   if (kFewerTimes * looks.posed_m < looks.given_m) return {PointsIn::world, figures};
   return {PointsIn::found, figures};

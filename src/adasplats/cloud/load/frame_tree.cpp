@@ -14,7 +14,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kMostFrames = 100;  // of a chain, and in a message; robots have ten
+constexpr std::size_t kMaxFrames = 100;  // of a chain, and in a message; robots have ten
 
 std::string quoted_frame(const std::string& frame) { return "'" + frame + "'"; }
 
@@ -72,7 +72,7 @@ std::string FrameTree::frame_names() const {
   std::string text;
   std::size_t count = 0;
   for (const std::string& name : names) {
-    if (++count > kMostFrames) return text + " and more";
+    if (++count > kMaxFrames) return text + " and more";
     text += (text.empty() ? "" : ", ") + quoted_frame(name);
   }
   return text.empty() ? "none" : text;
@@ -83,9 +83,9 @@ std::vector<const FrameEdge*> FrameTree::way_up(const std::string& frame) const 
   for (auto edge = edges_.find(frame); edge != edges_.end();
        edge = edges_.find(edge->second.parent)) {
     way.push_back(&edge->second);
-    if (way.size() > kMostFrames && edges_.size() > kMostFrames)
+    if (way.size() > kMaxFrames && edges_.size() > kMaxFrames)
       throw Error(ErrorKind::data, "frame " + quoted_frame(frame) + " is more than " +
-                                       std::to_string(kMostFrames) + " transforms below its root");
+                                       std::to_string(kMaxFrames) + " transforms below its root");
     if (way.size() > edges_.size())
       throw Error(ErrorKind::data, "the transforms of frame " + quoted_frame(frame) +
                                        " go round in a ring (frames: " + frame_names() + ")");

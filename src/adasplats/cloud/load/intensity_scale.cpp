@@ -12,12 +12,11 @@
 namespace adasplats {
 namespace {
 
-constexpr float kMostOfByte = 255;
+constexpr float kMaxOfByte = 255;
 
 /// One that is not finite is not known, and says nothing.
 bool can_be_byte(float value) {
-  return !std::isfinite(value) ||
-         (value >= 0 && value <= kMostOfByte && value == std::trunc(value));
+  return !std::isfinite(value) || (value >= 0 && value <= kMaxOfByte && value == std::trunc(value));
 }
 
 bool is_above_share(float value) { return std::isfinite(value) && value > 1; }
@@ -45,7 +44,7 @@ std::vector<float> IntensityScale::scaled(std::vector<float> intensities,
   if (is_bytes_) {
     const auto wrong = std::ranges::find_if_not(intensities, can_be_byte);
     if (wrong != intensities.end()) throw other_scale(file, *wrong, "whole numbers from 0 to 255");
-    for (float& value : intensities) value /= kMostOfByte;
+    for (float& value : intensities) value /= kMaxOfByte;
   } else if (are_shares_) {
     const auto wrong = std::ranges::find_if(intensities, is_above_share);
     if (wrong != intensities.end()) throw other_scale(file, *wrong, "at most 1");

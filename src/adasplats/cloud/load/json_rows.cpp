@@ -15,9 +15,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostValuesOfRow = 100'000;
+constexpr std::size_t kMaxValuesOfRow = 100'000;
 constexpr int kDeepest = 32;
-constexpr std::size_t kMostTextsBytes = std::size_t{1} << 24;
+constexpr std::size_t kMaxTextsBytes = std::size_t{1} << 24;
 
 /// What ended the parsing. A number beyond the range of a double (1e999) is no parse_error.
 Error no_json(const std::filesystem::path& file, const json::exception& problem) {
@@ -118,7 +118,7 @@ void for_each_json_row(const std::filesystem::path& file,
     using Event = json::parse_event_t;
     if (depth == 0 && event != Event::array_start && event != Event::array_end)
       throw Error(ErrorKind::data, file.string() + ": expected an array");
-    if (depth > kDeepest || ++values > kMostValuesOfRow)
+    if (depth > kDeepest || ++values > kMaxValuesOfRow)
       throw Error(ErrorKind::data, file.string() + ": element " + std::to_string(rows) +
                                        " (from 0) is larger than any of such a table");
     if (depth != 1 || event == Event::object_start || event == Event::array_start) return true;
@@ -138,7 +138,7 @@ void for_each_json_row(const std::filesystem::path& file,
 void for_each_json_text(const std::filesystem::path& file,
                         const std::function<void(const std::string&, const std::string&)>& visit) {
   std::error_code ignored;
-  if (std::filesystem::file_size(file, ignored) > kMostTextsBytes && !ignored)
+  if (std::filesystem::file_size(file, ignored) > kMaxTextsBytes && !ignored)
     throw Error(ErrorKind::data, file.string() + ": is larger than any table of names");
   json texts;
   try {

@@ -74,17 +74,17 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .help = "Points farther than this from the median of all are dropped, m",
                 .key = "max_distance_m",
                 .group = group,
-                .least = 0,
-                .most = std::numeric_limits<double>::infinity(),
-                .above_least = true},
+                .min = 0,
+                .max = std::numeric_limits<double>::infinity(),
+                .exclusive_min = true},
         load.max_distance_m);
   visit(Setting{.name = "max_dropped",
                 .help = "Share of the points that may be dropped as far or not finite before it is "
                         "an error",
                 .value = "SHARE",
                 .group = group,
-                .least = 0,
-                .most = 1},
+                .min = 0,
+                .max = 1},
         load.max_dropped);
   visit(Setting{.name = "own_body",
                 .help = "Points nearer than this to their sensor are the recording vehicle itself "
@@ -93,7 +93,7 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .value = "M",
                 .key = "own_body_m",
                 .group = group,
-                .least = 0},
+                .min = 0},
         load.own_body_m);
   visit(Setting{.name = "driven_path",
                 .help = "Points in the volume that the vehicle passed through, so far to each side "
@@ -101,8 +101,8 @@ void visit_drop_settings(LoadOptions& load, const char* group, Visit&& visit) {
                 .value = "M",
                 .key = "driven_path_m",
                 .group = group,
-                .least = 0,
-                .most = 1},
+                .min = 0,
+                .max = 1},
         load.driven_path_m);
   visit(Setting{.name = "trust_origins",
                 .help = "Take sensor positions though points lie behind others as seen from there, "
@@ -150,8 +150,8 @@ void visit_settings(LoadOptions& load, Visit&& visit) {
                 .help = "Of files with levels of detail (COPC) those from the coarsest, 0, to this",
                 .value = "N",
                 .group = kGroup,
-                .least = 0,
-                .most = 30},
+                .min = 0,
+                .max = 30},
         load.selection.level);
   visit(
       Setting{.name = "resolution",
@@ -160,8 +160,8 @@ void visit_settings(LoadOptions& load, Visit&& visit) {
               .value = "M",
               .key = "resolution_m",
               .group = kGroup,
-              .least = 0,
-              .above_least = true},
+              .min = 0,
+              .exclusive_min = true},
       load.selection.resolution_m);
   visit(Setting{.name = "boxes",
                 .help = "Boxes of objects by time (CSV: time,id,stationary,x,y,z,size_x,size_y,"

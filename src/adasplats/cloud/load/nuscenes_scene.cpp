@@ -37,17 +37,17 @@ std::vector<SceneRow> scenes_of(const fs::path& root) {
 }
 
 std::string list_of_scenes(const std::vector<SceneRow>& scenes) {
-  constexpr std::size_t kMostListed = 20;
+  constexpr std::size_t kMaxListed = 20;
   std::set<std::string> names;
   for (const SceneRow& scene : scenes) names.insert(scene.name);
   std::string list;
   std::size_t listed = 0;
   for (const std::string& name : names) {
-    if (++listed > kMostListed) break;
+    if (++listed > kMaxListed) break;
     list += (list.empty() ? "" : ", ") + name;
   }
-  if (names.size() > kMostListed)
-    list += ", ... (" + std::to_string(names.size() - kMostListed) + " more)";
+  if (names.size() > kMaxListed)
+    list += ", ... (" + std::to_string(names.size() - kMaxListed) + " more)";
   return list;
 }
 

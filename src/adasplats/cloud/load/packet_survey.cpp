@@ -16,7 +16,7 @@ namespace {
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kHour_ns = 3600 * kSecond_ns;
 constexpr std::int64_t kOwnClock_ns = 60 * kSecond_ns;  // what PTP and UTC differ by is less
-constexpr std::size_t kMostSources = 256;
+constexpr std::size_t kMaxSources = 256;
 
 /// The multiple of an hour that is nearest.
 std::int64_t whole_hours_ns(std::int64_t time_ns) {
@@ -149,9 +149,9 @@ PacketSurvey survey_packets(const std::filesystem::path& path,
     progress.advance(reader.counts().datagrams);
     const std::string name = address_text(datagram->from) + ":" + std::to_string(datagram->to_port);
     PacketSource& source = survey.sources[name];
-    if (survey.sources.size() > kMostSources)
+    if (survey.sources.size() > kMaxSources)
       throw Error(ErrorKind::data, path.string() + ": datagrams from more than " +
-                                       std::to_string(kMostSources) +
+                                       std::to_string(kMaxSources) +
                                        " sources, which is no capture of a sensor's");
     ++source.datagrams;
     if (!survey.decoder || !survey.decoder->has_size(datagram->payload)) continue;

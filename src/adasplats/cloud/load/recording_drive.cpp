@@ -55,7 +55,7 @@ struct TimedScan {
   double stamp_s = 0;
 };
 
-constexpr double kMostFromStamp_s = 1;  // a sweep is at most that long
+constexpr double kMaxFromStamp_s = 1;  // a sweep is at most that long
 
 /// What the times of points are, by two scans: offsets from the stamp, or near it in its clock, in
 /// the one unit in which a sweep takes 5 ms to a second. Errors: data where they are neither.
@@ -71,8 +71,8 @@ PointTimes meaning_by_stamps(const TimedScan& first, const TimedScan& last, doub
     times.unit_s = unit_s;
     const auto near_to = [&](const auto& target_of) {
       return std::ranges::all_of(std::array{first, last}, [&](const TimedScan& scan) {
-        return std::fabs(unit_s * scan.times.first - target_of(scan)) <= kMostFromStamp_s &&
-               std::fabs(unit_s * scan.times.last - target_of(scan)) <= kMostFromStamp_s;
+        return std::fabs(unit_s * scan.times.first - target_of(scan)) <= kMaxFromStamp_s &&
+               std::fabs(unit_s * scan.times.last - target_of(scan)) <= kMaxFromStamp_s;
       });
     };
     if (near_to([](const TimedScan&) { return 0.0; })) {

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 // Scans of sensors that turn 200 times a second, and what is left of a drive of which every
 // hundredth scan was kept.
-constexpr double kLeastStep_s = 0.005, kMostStep_s = 10;
+constexpr double kMinStep_s = 0.005, kMaxStep_s = 10;
 constexpr std::array kStampUnits_s = {1.0, 1e-3, 1e-6, 1e-9};
 constexpr std::size_t kStampDigits = 9;  // seconds since 1973
 
@@ -212,7 +212,7 @@ std::vector<double> stamps_in_names(const std::vector<fs::path>& files) {
   if (stamps.size() < 2 || !ascend(stamps)) return {};
   for (const double unit_s : kStampUnits_s) {
     const double step_s = unit_s * median_step(stamps);
-    if (step_s < kLeastStep_s || step_s > kMostStep_s) continue;
+    if (step_s < kMinStep_s || step_s > kMaxStep_s) continue;
     for (double& stamp : stamps) stamp *= unit_s;
     return stamps;
   }
@@ -233,7 +233,7 @@ std::vector<double> read_scan_times(const fs::path& file, std::size_t count) {
     throw Error(ErrorKind::data, file.string() + ": " + std::to_string(times_s.size()) +
                                      " times, " + std::to_string(count) + " scans");
   const double step_s = median_step(times_s);
-  if (ascend(times_s) && (count < 2 || (step_s >= kLeastStep_s && step_s <= kMostStep_s)))
+  if (ascend(times_s) && (count < 2 || (step_s >= kMinStep_s && step_s <= kMaxStep_s)))
     return times_s;
   throw Error(ErrorKind::data, file.string() + ": its times do not ascend as those of scans in " +
                                    "seconds do: their median distance is " + exact_text(step_s) +

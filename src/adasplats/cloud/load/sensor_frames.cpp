@@ -210,7 +210,7 @@ class Sample {
 
   /// How far the frame moves within one of the scans, at most.
   double moved_m() const {
-    double most_m = 0;
+    double max_m = 0;
     for (std::size_t k = 0; k < scans_.size(); ++k) {
       const TimeSpan span = scans_[k].time_span();
       const double scan_s = frames_.poses.of_scans[indices_[k]].time_s;
@@ -218,10 +218,10 @@ class Sample {
         return interpolate(frames_.poses.track, frames_.times.time_s(time, scan_s));
       };
       const RigidTransform way = at(span.first).inverse() * at(span.last);
-      most_m = std::max(most_m,
-                        length(way.translation) + kSeenAt_m * angle_between(way.rotation, Mat3d{}));
+      max_m = std::max(max_m,
+                       length(way.translation) + kSeenAt_m * angle_between(way.rotation, Mat3d{}));
     }
-    return most_m;
+    return max_m;
   }
 
  private:

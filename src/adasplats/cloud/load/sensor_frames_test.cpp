@@ -107,7 +107,7 @@ class Court {
       const auto truck_m = range_to(kTruck, pose.translation, way);
       if (words_.has_truck && truck_m) {
         range_m = std::min(*truck_m, range_m.value_or(*truck_m));
-        if (way.z > EmptyBeamOptions{}.least_up) ++steep_on_truck;
+        if (way.z > EmptyBeamOptions{}.min_up) ++steep_on_truck;
       }
       if (!range_m) continue;
       world.push_back(pose.translation + *range_m * way);
@@ -141,7 +141,7 @@ class Court {
 };
 
 /// Oracle: what the beams were cast from, and where they ended.
-void expect_as_cast(const Court& court, const PointCloud& cloud, double most_m) {
+void expect_as_cast(const Court& court, const PointCloud& cloud, double max_m) {
   ASSERT_EQ(cloud.size(), court.world.size());
   ASSERT_EQ(cloud.sensor_positions.size(), cloud.size());
   double point_m = 0, origin_m = 0;
@@ -150,7 +150,7 @@ void expect_as_cast(const Court& court, const PointCloud& cloud, double most_m) 
     const Vec3d origin = cloud.origin + vec_cast<double>(cloud.sensor_positions[i]);
     origin_m = std::max(origin_m, length(origin - court.origins[i]));
   }
-  EXPECT_LT(point_m, most_m);
+  EXPECT_LT(point_m, max_m);
   EXPECT_LT(origin_m, 0.002);  // the recognised mount, or half a step at 11.6 m/s
 }
 

@@ -16,7 +16,7 @@ namespace adasplats {
 namespace {
 
 constexpr double kScan_s = 0.1;
-constexpr std::size_t kMostScans = 10'000;  // poses of their own that a calibration can hold
+constexpr std::size_t kMaxScans = 10'000;  // poses of their own that a calibration can hold
 
 bool has_own_times(const CloudPart& part) {
   return !part.is_sequence && part.size() > 0 && part.times_s.size() == part.size() &&
@@ -29,9 +29,9 @@ bool has_own_times(const CloudPart& part) {
 class ScanCut {
  public:
   explicit ScanCut(TimeSpan times_s) : begin_s_(times_s.first) {
-    constexpr double kMostBins = 4e7;
+    constexpr double kMaxBins = 4e7;
     const double length_s = times_s.last - times_s.first;
-    bin_s_ = std::max(kScan_s / 100, length_s / kMostBins);
+    bin_s_ = std::max(kScan_s / 100, length_s / kMaxBins);
     is_used_.resize(static_cast<std::size_t>(length_s / bin_s_) + 1);
   }
   void add(double time_s) { is_used_[bin_of(time_s)] = 1; }
@@ -53,7 +53,7 @@ class ScanCut {
       --bin;
     }
     is_used_ = {};
-    scan_s_ = std::max(kScan_s, measured_s / static_cast<double>(kMostScans));
+    scan_s_ = std::max(kScan_s, measured_s / static_cast<double>(kMaxScans));
     for (const TimeSpan run : runs) {
       const double length_s = run.last - run.first;
       const auto pieces = static_cast<std::size_t>(std::max(1.0, std::round(length_s / scan_s_)));

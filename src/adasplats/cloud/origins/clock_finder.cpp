@@ -15,7 +15,7 @@
 namespace adasplats {
 namespace {
 
-constexpr double kMostFar = 0.5;  // of the points
+constexpr double kMaxFar = 0.5;  // of the points
 constexpr const char* kStateIt = "state it with `time_offset`, seconds to add to the points' times";
 constexpr const char* kTrust = "; `trust_origins` takes it nevertheless";
 
@@ -142,7 +142,7 @@ ClockPair ClockFinder::clearest(const std::vector<ClockPair>& covering) {
   bool has_evidence = true;
   for (const ClockPair& clock : covering) {
     const SweepView seen = view(clock);
-    has_evidence = has_evidence && seen.points >= kLeastEvidence;
+    has_evidence = has_evidence && seen.points >= kMinEvidence;
     by_cost.emplace_back(seen.cost(), &clock);
   }
   const auto [one_cost, one] = by_cost.front();
@@ -188,20 +188,20 @@ double ClockFinder::better_shift_s(const ClockPair& clock) {
 
 /// Whether all is far to one side, and poses amid the points would fit better by far.
 bool ClockFinder::is_aside(const ClockPair& clock, const SweepView& seen) {
-  constexpr double kLeastAside_m = 50, kByFar = 1;
+  constexpr double kMinAside_m = 50, kByFar = 1;
   const Vec3d aside = {seen.median_way_m.x, seen.median_way_m.y, 0};
-  if (length(aside) < kLeastAside_m) return false;
+  if (length(aside) < kMinAside_m) return false;
   const SweepView moved =
       view_along(sample(clock.points_unit_s), clock, shifted(track(clock).poses, aside), executor_);
   return moved.cost() + kByFar < seen.cost();
 }
 
 void ClockFinder::check(const ClockPair& clock, const SweepView& seen, ProgressSink& progress) {
-  if (seen.points < kLeastEvidence) return;
+  if (seen.points < kMinEvidence) return;
   const std::string named = points_.name() + ": the trajectory " + file_.string() +
                             " does not fit the points (" + clock.description() + "): ";
   const std::string median = "the median range is " + fixed(seen.median_range_m, 1) + " m";
-  if (seen.share_far > kMostFar || seen.median_range_m > kFarthestOriginM)
+  if (seen.share_far > kMaxFar || seen.median_range_m > kFarthestOriginM)
     throw Error(ErrorKind::data, named + median + ", and " + percent(seen.share_far) +
                                      " of the points are farther than " +
                                      fixed(kFarInStreets_m, 0) +
@@ -222,12 +222,12 @@ void ClockFinder::check(const ClockPair& clock, const SweepView& seen, ProgressS
     if (!stated_offset_s_) throw Error(ErrorKind::data, message + kTrust);
     progress.warn(message);
   }
-  if (seen.share_behind > seen.most_behind())
+  if (seen.share_behind > seen.max_behind())
     throw Error(ErrorKind::data,
                 named + percent(seen.share_behind) +
                     " of what was measured within 0.1 s lies behind other points as seen from "
                     "there, at most " +
-                    percent(seen.most_behind()) +
+                    percent(seen.max_behind()) +
                     " do; the sensor sits elsewhere (`mount`), or the trajectory is of another "
                     "place or clock; " +
                     median + kTrust);

@@ -149,9 +149,9 @@ void add_pair(std::vector<ClockPair>& pairs, ClockPair pair, TimeSpan points, Ti
 
 std::vector<ClockPair> pairs_of(TimeSpan points, SaidClock said, TimeSpan trajectory) {
   // Beyond it seconds are of no epoch; stamps of finer units are.
-  constexpr double kMostSeconds = 5e9;
+  constexpr double kMaxSeconds = 5e9;
   std::vector<ClockPair> pairs;
-  if (std::fabs(points.last) < kMostSeconds && std::fabs(trajectory.last) < kMostSeconds)
+  if (std::fabs(points.last) < kMaxSeconds && std::fabs(trajectory.last) < kMaxSeconds)
     add_pair(pairs, {"one clock", kTheSameClock, 1, 1, 0}, points, trajectory);
   // The span's end: its begin may be before an epoch by a rounding.
   for (const Reading& p : readings_of(points.last, said))

@@ -16,8 +16,8 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kPlaces = 16;
-constexpr std::size_t kMostLookedAt = std::size_t{1} << 20;
-constexpr std::size_t kLeastOfPlace = 100;
+constexpr std::size_t kMaxLookedAt = std::size_t{1} << 20;
+constexpr std::size_t kMinOfPlace = 100;
 constexpr float kNear_m = 0.5F;   // origins as good as at the place
 constexpr float kFar_m = 100;     // farther points hide nothing
 constexpr float kLeast_m = 0.5F;  // nearer ones have no direction to speak of
@@ -79,7 +79,7 @@ std::string whole_percent(double share) { return std::to_string(std::lround(100 
 
 PathView view_from_path(std::span<const Vec3f> positions, std::span<const Vec3f> origins,
                         const Executor& executor) {
-  const std::size_t stride = positions.size() / kMostLookedAt + 1;
+  const std::size_t stride = positions.size() / kMaxLookedAt + 1;
   std::array<PlaceView, kPlaces> views{};
   if (!positions.empty())
     executor.for_chunks(kPlaces, 1, [&](std::size_t k, std::size_t) {
@@ -88,7 +88,7 @@ PathView view_from_path(std::span<const Vec3f> positions, std::span<const Vec3f>
     });
   PathView path;
   for (const PlaceView& view : views) {
-    if (view.points < kLeastOfPlace) continue;
+    if (view.points < kMinOfPlace) continue;
     ++path.places;
     path.points += view.points;
     // A place where the sensor stood for long counts as much as any other.
@@ -99,11 +99,11 @@ PathView view_from_path(std::span<const Vec3f> positions, std::span<const Vec3f>
 }
 
 std::string path_objection(const PathView& view) {
-  if (view.points < kLeastView || !(view.share_behind > kMostBehindOfPath)) return {};
+  if (view.points < kMinView || !(view.share_behind > kMaxBehindOfPath)) return {};
   return whole_percent(view.share_behind) +
          " of the points lie behind others as seen from where they are said to have been measured; "
          "of what a moving sensor measured, at most " +
-         whole_percent(kMostBehindOfPath) + " do (but for later returns: `trust_origins`)";
+         whole_percent(kMaxBehindOfPath) + " do (but for later returns: `trust_origins`)";
 }
 
 }  // namespace adasplats

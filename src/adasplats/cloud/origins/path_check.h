@@ -30,7 +30,7 @@ PathView view_from_path(std::span<const Vec3f> positions, std::span<const Vec3f>
 /// twice as much. The street with its origins turned by 90 degrees has 0.3, a drive of 70 m 0.7, a
 /// drive shifted by 10 m 0.06 to 0.25: a wrong path only metres off, or a short one, can stay
 /// below.
-inline constexpr double kMostBehindOfPath = 0.15;
+inline constexpr double kMaxBehindOfPath = 0.15;
 
 /// What makes it impossible that all points were measured from there; empty: nothing.
 std::string path_objection(const PathView& view);

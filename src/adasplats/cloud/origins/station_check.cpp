@@ -12,7 +12,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kMostSampled = std::size_t{1} << 20;
+constexpr std::size_t kMaxSampled = std::size_t{1} << 20;
 constexpr double kPointsACell = 3;
 constexpr double kFinest_rad = 0.05 * std::numbers::pi / 180;
 constexpr double kCoarsest_rad = 3.2 * std::numbers::pi / 180;
@@ -22,7 +22,7 @@ struct Direction {
 };
 
 std::vector<Direction> directions_of(std::span<const Vec3f> points, const Executor& executor) {
-  const std::size_t stride = (points.size() + kMostSampled - 1) / kMostSampled;
+  const std::size_t stride = (points.size() + kMaxSampled - 1) / kMaxSampled;
   std::vector<Direction> directions(points.empty() ? 0 : (points.size() + stride - 1) / stride);
   executor.for_chunks(directions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -105,11 +105,11 @@ std::string station_objection(const StationView& view) {
     return "the nearest point is " + std::to_string(std::lround(view.nearest_m / 1000)) +
            " km away, farther than LiDARs measure";
   }
-  if (view.points >= kLeastView && view.share_behind > kMostBehind) {
+  if (view.points >= kMinView && view.share_behind > kMaxBehind) {
     return in_percent(view.share_behind) +
            " of the points lie behind others as seen from there; of what one station measured, at "
            "most " +
-           in_percent(kMostBehind) + " do (but for later returns: `trust_origins`)";
+           in_percent(kMaxBehind) + " do (but for later returns: `trust_origins`)";
   }
   return {};
 }

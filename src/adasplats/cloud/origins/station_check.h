@@ -35,9 +35,9 @@ StationView view_from_station(std::span<const Vec3f> from_station, const Executo
 /// HDL-64E have 0.025 to 0.056 (edges, leaves; nine places of KITTI and SemanticKITTI); this is
 /// twice as much. The same scans joined over 65 m of a drive have 0.27, and four stations of a
 /// terrestrial scanner 0.15 to 0.27 from most places. A wrong place only metres off can stay below.
-inline constexpr double kMostBehind = 0.1;
+inline constexpr double kMaxBehind = 0.1;
 /// Views of fewer points are too coarse to decide.
-inline constexpr std::size_t kLeastView = 1000;
+inline constexpr std::size_t kMinView = 1000;
 
 /// What makes it impossible that all points were measured from there; empty: nothing.
 std::string station_objection(const StationView& view);

@@ -39,7 +39,7 @@ struct SweepView {
   double share_behind = 0;       ///< StationView's, mean of the sweeps
   std::size_t sweep_points = 0;  ///< of a sweep in the mean; 0: none had enough
   /// The largest share_behind that can be.
-  double most_behind() const;
+  double max_behind() const;
 
   /// The less the better a trajectory and a clock fit. What a spinning sensor measured hides behind
   /// other points as seen from elsewhere; the profiles of a mobile scanner do not, but leave their
@@ -52,12 +52,12 @@ struct SweepView {
 /// A cost that is lower by less says nothing.
 inline constexpr double kClearlyLess = 0.3;
 /// Nor do fewer points say anything, nor sweeps of fewer.
-inline constexpr std::size_t kLeastEvidence = 1000, kLeastOfSweep = 5000;
+inline constexpr std::size_t kMinEvidence = 1000, kMinOfSweep = 5000;
 /// Largest share_behind of points that were measured from there, for sweeps with many points and
 /// for others, whose cells of directions are coarse. A Pandar64 has 0.03 with 100,000 points a
 /// sweep, thinned to 30,000 0.08, to 5000 0.14; taken to be at the vehicle's pose on the ground
 /// 0.22 to 0.30, at 1 m instead of 1.85 m above it 0.16.
-inline constexpr double kMostHidden = 0.1, kMostHiddenOfFew = 0.17;
+inline constexpr double kMaxHidden = 0.1, kMaxHiddenOfFew = 0.17;
 inline constexpr std::size_t kManyOfSweep = 20'000;
 /// Farther things are rarely measured from vehicles, m; sensors in the air look down steeply.
 inline constexpr double kFarInStreets_m = 300;

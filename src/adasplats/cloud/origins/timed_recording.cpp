@@ -11,7 +11,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kMostPoints = 200'000, kSweeps = 8, kMostOfSweep = 200'000;
+constexpr std::size_t kMaxPoints = 200'000, kSweeps = 8, kMostOfSweep = 200'000;
 constexpr double kSweep_s = 0.1;
 
 /// Times in the middles of eight parts with as many points each.
@@ -27,7 +27,7 @@ std::array<double, kSweeps> middles_of(const std::vector<TimedPoint>& points) {
 }
 
 void thin(std::vector<TimedPoint>& sweep) {
-  const std::size_t every = sweep.size() / kMostOfSweep + 1;
+  const std::size_t every = sweep.size() / kMaxOfSweep + 1;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < sweep.size(); i += every) sweep[kept++] = sweep[i];
   sweep.resize(kept);
@@ -71,7 +71,7 @@ SweepSample TimedRecording::sample(double unit_s) const {
   const auto is_sound = [](const File& file, std::size_t i) {
     return is_finite(file.positions[i]) && std::isfinite(file.times[i]);
   };
-  const std::size_t stride = size_ / kMostPoints + 1;
+  const std::size_t stride = size_ / kMaxPoints + 1;
   for (const File& file : files_)
     for (std::size_t i = 0; i < file.times.size(); i += stride)
       if (is_sound(file, i)) sample.points.push_back({file.positions[i], file.times[i]});

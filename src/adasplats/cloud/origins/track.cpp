@@ -10,7 +10,7 @@
 namespace adasplats {
 namespace {
 
-constexpr double kGapInPoses = 10, kLeastGap_s = 1;
+constexpr double kGapInPoses = 10, kMinGap_s = 1;
 
 /// Where the sensor is `ahead_s` behind the pose `at` (before it where that is negative), as fast
 /// as from its neighbour `from`; it turns on by as much as between them at most.
@@ -42,7 +42,7 @@ Track track_of(const Trajectory& given) {
   Track track;
   track.measured_s = {given.front().time_s, given.back().time_s};
   const double apart_s = pose_distance_s(given);
-  const double gap_s = std::max(kGapInPoses * apart_s, kLeastGap_s);
+  const double gap_s = std::max(kGapInPoses * apart_s, kMinGap_s);
   const auto is_gap = [&](std::size_t k) {  // behind pose k
     return k + 1 < given.size() && given[k + 1].time_s - given[k].time_s > gap_s;
   };

@@ -14,7 +14,7 @@ namespace adasplats {
 namespace {
 
 constexpr double kStep_m = 0.5;  // shorter ones are noise
-constexpr std::size_t kLeastSteps = 10;
+constexpr std::size_t kMinSteps = 10;
 constexpr double kBends = 0.9;    // below it the ways in the world point in several directions
 constexpr double kOneWay = 0.95;  // from it on those in the frame of what drives are one
 constexpr double kScattered = 0.9;
@@ -55,7 +55,7 @@ Mat3d frame_from_world(double w, double x, double y, double z) {
 
 std::string objection_to_quaternion_order(std::span<const PlacedQuaternion> poses) {
   const std::vector<PoseStep> steps = steps_of(poses);
-  if (steps.size() < kLeastSteps) return {};
+  if (steps.size() < kMinSteps) return {};
   if (evenness(steps, [](const Quaternion&) { return Mat3d{}; }) > kBends) return {};
   const double as_named =
       evenness(steps, [](const Quaternion& q) { return frame_from_world(q.w, q.x, q.y, q.z); });

@@ -43,7 +43,7 @@ Trajectory mounted(Trajectory trajectory, const RigidTransform& vehicle_from_sen
 
 namespace {
 
-constexpr double kMostPoses = 10e6;
+constexpr double kMaxPoses = 10e6;
 
 /// Poses at the times that `time_of(0)`, `time_of(1)`, ... say.
 template <class F>
@@ -61,7 +61,7 @@ Trajectory poses_at(const Trajectory& trajectory, std::size_t count, const F& ti
 std::size_t places_along(double length, double step, const char* what) {
   if (!(step > 0)) throw Error(ErrorKind::usage, std::string(what) + " must be above 0");
   const double steps = std::floor(length / step * (1 + 1e-12));
-  if (!(steps < kMostPoses))
+  if (!(steps < kMaxPoses))
     throw Error(ErrorKind::usage, std::string(what) + " gives more than 10 million poses");
   return static_cast<std::size_t>(steps) + 1;
 }

@@ -204,8 +204,8 @@ Heading heading_of(const std::filesystem::path& path, const std::vector<Numbered
 
 /// Seconds; no others have so many digits. Errors: data.
 void require_seconds(const FilePlace& place, double time_s, double unit_s) {
-  constexpr double kMostSeconds = 1e11;  // the year 5138
-  if (std::fabs(time_s) <= kMostSeconds) return;
+  constexpr double kMaxSeconds = 1e11;  // the year 5138
+  if (std::fabs(time_s) <= kMaxSeconds) return;
   throw data_error(place, "a time of " + short_text(time_s / unit_s) +
                               (unit_s == 1 ? " s is none since any epoch; a name says another unit "
                                              "(timestamp_ns, timestamp_us, timestamp_ms)"

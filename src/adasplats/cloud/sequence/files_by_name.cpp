@@ -27,8 +27,8 @@ std::vector<std::filesystem::path> files_by_name(const std::filesystem::path& fo
 
 std::optional<std::size_t> number_in_name(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
-  constexpr std::size_t kMostDigits = 18;  // fits 64 bits
-  if (stem.empty() || stem.size() > kMostDigits) return std::nullopt;
+  constexpr std::size_t kMaxDigits = 18;  // fits 64 bits
+  if (stem.empty() || stem.size() > kMaxDigits) return std::nullopt;
   std::size_t number = 0;
   for (const char c : stem) {
     if (c < '0' || c > '9') return std::nullopt;

@@ -109,7 +109,7 @@ double stamp_of(const fs::path& file, const std::vector<double>& times_s, const 
 /// velodyne_from_imu, from calib_imu_to_velo.txt.
 RigidTransform read_imu_to_velodyne(const fs::path& drive) {
   constexpr const char* kName = "calib_imu_to_velo.txt";
-  constexpr double kMostError = 1e-3;
+  constexpr double kMaxError = 1e-3;
   fs::path file = drive / kName;
   // A trailing slash makes the last part of a path empty.
   const fs::path above = fs::absolute(drive / ".").lexically_normal().parent_path().parent_path();
@@ -134,7 +134,7 @@ RigidTransform read_imu_to_velodyne(const fs::path& drive) {
       has_translation = true;
     }
   });
-  if (!has_rotation || !has_translation || !(orthonormality_error(transform.rotation) < kMostError))
+  if (!has_rotation || !has_translation || !(orthonormality_error(transform.rotation) < kMaxError))
     throw fault(file, "expected lines R: (a rotation by rows) and T:");
   transform.rotation = orthonormalized(transform.rotation);
   return transform;
@@ -158,8 +158,8 @@ void require_possible(const std::array<double, 6>& record, const fs::path& file)
   const auto [latitude, longitude, altitude, roll, pitch, yaw] = record;
   if (!(std::fabs(latitude) < 85) || !(std::fabs(longitude) <= 360))
     throw fault(file, "expected latitude, longitude, altitude, roll, pitch and yaw first");
-  constexpr double kTurn = 2 * std::numbers::pi, kMostTilt = std::numbers::pi / 2;
-  if (std::fabs(roll) > kMostTilt || std::fabs(pitch) > kMostTilt || std::fabs(yaw) > kTurn)
+  constexpr double kTurn = 2 * std::numbers::pi, kMaxTilt = std::numbers::pi / 2;
+  if (std::fabs(roll) > kMaxTilt || std::fabs(pitch) > kMaxTilt || std::fabs(yaw) > kTurn)
     throw fault(file, "roll, pitch and yaw are " + exact_text(roll) + ", " + exact_text(pitch) +
                           " and " + exact_text(yaw) +
                           ", beyond a quarter turn, a quarter turn and a turn; expected radians");
@@ -200,7 +200,7 @@ constexpr double kRecord_s = 0.1;
 
 /// Throws data where a scan was measured in a gap of the records or beyond them.
 void require_record_near(const Trajectory& records, double time_s, const fs::path& scan) {
-  constexpr double kMostApart = 3;  // of the usual distance of records
+  constexpr double kMaxApart = 3;  // of the usual distance of records
   std::vector<double> apart_s;
   for (std::size_t k = 1; k < records.size(); ++k)
     apart_s.push_back(records[k].time_s - records[k - 1].time_s);
@@ -208,8 +208,8 @@ void require_record_near(const Trajectory& records, double time_s, const fs::pat
   const auto behind = std::ranges::upper_bound(records, time_s, {}, &TimedPose::time_s);
   const bool is_between = behind != records.begin() && behind != records.end();
   // A clock's rounding apart.
-  const double most_s = std::max(kMostApart * usual_s, 1.001 * kRecord_s);
-  if (is_between && behind->time_s - std::prev(behind)->time_s <= most_s) return;
+  const double max_s = std::max(kMaxApart * usual_s, 1.001 * kRecord_s);
+  if (is_between && behind->time_s - std::prev(behind)->time_s <= max_s) return;
   throw fault(scan, "no record of oxts is near its time, " +
                         exact_text(std::round(1e3 * (time_s - records[1].time_s)) / 1e3) +
                         " s after the first record; leave it out: nothing is guessed there");

@@ -102,8 +102,8 @@ struct MountGrid {
 /// Steps of one and a half doubts: the next mount is within three quarters in each unknown.
 MountGrid grid_of(const MountDoubt& doubt) {
   return {steps_over(kLowest_m, kHighest_m, 1.5 * doubt.height_m),
-          steps_over(-kMostAside_m, kMostAside_m, 1.5 * doubt.aside_m),
-          steps_over(-kMostTilt_rad, kMostTilt_rad, 1.5 * doubt.tilt_rad)};
+          steps_over(-kMaxAside_m, kMaxAside_m, 1.5 * doubt.aside_m),
+          steps_over(-kMaxTilt_rad, kMaxTilt_rad, 1.5 * doubt.tilt_rad)};
 }
 
 /// What best_tilt() does for a grid, in additions; a point at a place costs about a hundred.
@@ -118,18 +118,18 @@ double cost_of(const MountGrid& grid) {
 /// sixteenth of the gaps. Where it allows not even a quarter (dense tables, narrow places) the
 /// search may fail.
 MountDoubt affordable(MountDoubt doubt) {
-  constexpr double kMostCost = 3e8;
+  constexpr double kMaxCost = 3e8;
   constexpr double kFiner = 0.95;
-  const double least_rad = doubt.tilt_rad / 4;
-  while (cost_of(grid_of(doubt)) > kMostCost) doubt = (1 / kFiner) * doubt;
-  while (doubt.tilt_rad > least_rad && cost_of(grid_of(kFiner * doubt)) < kMostCost)
+  const double min_rad = doubt.tilt_rad / 4;
+  while (cost_of(grid_of(doubt)) > kMaxCost) doubt = (1 / kFiner) * doubt;
+  while (doubt.tilt_rad > min_rad && cost_of(grid_of(kFiner * doubt)) < kMaxCost)
     doubt = kFiner * doubt;
   return doubt;
 }
 
 constexpr double kBin_rad = 0.03 * kDegree;
 constexpr std::size_t kChanges = 128;  // of an elevation, in bins, for all tilts of the grid
-static_assert(kChanges * kBin_rad > 2 * std::numbers::sqrt2 * kMostTilt_rad);
+static_assert(kChanges * kBin_rad > 2 * std::numbers::sqrt2 * kMaxTilt_rad);
 
 /// By range and elevation, the log of how much likelier an elevation is within `doubt` of the
 /// table's cones than anywhere in the gaps.

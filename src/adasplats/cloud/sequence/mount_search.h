@@ -10,10 +10,10 @@
 namespace adasplats {
 
 /// The mounts that are searched.
-inline constexpr double kMostAside_m = 2;
+inline constexpr double kMaxAside_m = 2;
 inline constexpr double kLowest_m = -0.5;
 inline constexpr double kHighest_m = 2.5;
-inline constexpr double kMostTilt_rad = 1.25 * kDegree;
+inline constexpr double kMaxTilt_rad = 1.25 * kDegree;
 
 /// The best mount of one sensor: a grid of places and tilts, judged by the points that lead
 /// farthest (far ones, sparse lasers), then Gauss-Newton from the best of them with more and more

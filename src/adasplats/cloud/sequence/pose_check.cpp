@@ -21,13 +21,13 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kPairs = 4;
-constexpr double kLeastApart_m = 3, kMostApart_m = 15;
-constexpr double kSourceReach_m = 20;                             // of the points that are moved
-constexpr double kTargetReach_m = kSourceReach_m + kMostApart_m;  // where they can come to
+constexpr double kMinApart_m = 3, kMaxApart_m = 15;
+constexpr double kSourceReach_m = 20;                            // of the points that are moved
+constexpr double kTargetReach_m = kSourceReach_m + kMaxApart_m;  // where they can come to
 constexpr double kColumn_m = 1, kUpright_m = 1;
 // Beams of 2 degrees are 0.7 m apart at 20 m: finer cells would show the pattern of the beams.
 constexpr double kVoxel_m = 0.5;
-constexpr std::size_t kMostPoints = 1000, kLeastPoints = 200;  // of a pair
+constexpr std::size_t kMaxPoints = 1000, kMinPoints = 200;  // of a pair
 
 constexpr std::size_t kWithoutMotion = 1;
 
@@ -47,7 +47,7 @@ constexpr std::array kFactors = {0.001, 0.01, 0.1, kFoot_m, 1 / kFoot_m, 10.0, 1
 // On sequences 00, 01, 02, 03 and 05 of SemanticKITTI the true motion has shares of 0.95 and more
 // and the best other way at most 0.66 of the given one's; where poses are wrong in one of these
 // ways, the best other way is the true one and has at least 1.36 of the given one's.
-constexpr double kLeastShare = 0.8, kLeastGain = 1.2;
+constexpr double kMinShare = 0.8, kMinGain = 1.2;
 
 /// A cube of cells around a point.
 class Grid {
@@ -91,7 +91,7 @@ NearPoints near_points(const KittiScan& scan, double reach_m) {
   return near;
 }
 
-/// Points of columns that something fills upright; at most kMostPoints, evenly taken.
+/// Points of columns that something fills upright; at most kMaxPoints, evenly taken.
 std::vector<Vec3d> upright_points(const NearPoints& near) {
   const Grid columns(near.middle, kSourceReach_m, kColumn_m);
   struct Heights {
@@ -111,10 +111,10 @@ std::vector<Vec3d> upright_points(const NearPoints& near) {
   std::vector<Vec3d> upright;
   for (const Vec3d p : near.points)
     if (heights_at(p).high - heights_at(p).low >= kUpright_m) upright.push_back(p);
-  if (upright.size() <= kMostPoints) return upright;
+  if (upright.size() <= kMaxPoints) return upright;
   std::vector<Vec3d> taken;
-  for (std::size_t k = 0; k < kMostPoints; ++k)
-    taken.push_back(upright[k * upright.size() / kMostPoints]);
+  for (std::size_t k = 0; k < kMaxPoints; ++k)
+    taken.push_back(upright[k * upright.size() / kMaxPoints]);
   return taken;
 }
 
@@ -178,7 +178,7 @@ class ScanPair {
       if (scan) near[k] = near_points(*scan, kReach_m[k]);
       if (k == 0 && near[k]) moved = upright_points(*near[k]);
     });
-    if (!near[0] || !near[1] || moved.size() < kLeastPoints) return std::nullopt;
+    if (!near[0] || !near[1] || moved.size() < kMinPoints) return std::nullopt;
     return ScanPair(near[0]->middle, std::move(moved), *near[1]);
   }
 
@@ -236,7 +236,7 @@ ScaleEvidence scale_evidence(const KittiSequence& sequence, ScanNumbers scans, d
   return evidence;
 }
 
-/// Up to kPairs pairs of scans that are kLeastApart_m to kMostApart_m apart, were the translations
+/// Up to kPairs pairs of scans that are kMinApart_m to kMaxApart_m apart, were the translations
 /// of the poses `factor` times what they are.
 std::vector<ScanNumbers> pairs_of(const Trajectory& trajectory, double factor) {
   std::vector<ScanNumbers> pairs;
@@ -246,8 +246,8 @@ std::vector<ScanNumbers> pairs_of(const Trajectory& trajectory, double factor) {
     if (!pairs.empty() && pairs.back().first == earlier) continue;
     for (std::size_t later = earlier + 1; later < trajectory.size(); ++later) {
       const double apart_m = factor * length(place(later) - place(earlier));
-      if (!(apart_m >= kLeastApart_m)) continue;
-      if (apart_m <= kMostApart_m) pairs.emplace_back(earlier, later);
+      if (!(apart_m >= kMinApart_m)) continue;
+      if (apart_m <= kMaxApart_m) pairs.emplace_back(earlier, later);
       break;
     }
   }
@@ -281,7 +281,7 @@ std::string factor_text(double factor) {
 /// other units than seconds and metres. A scan counts once for each number that its name is ahead.
 void require_times_of_scans(const KittiSequence& sequence) {
   constexpr double kLongStep_s = 20, kShortStep_s = 0.002;  // milliseconds of 50 Hz are 20
-  constexpr double kSlow_mps = 0.5, kFast_mps = 150, kLeastDriven_m = 3;
+  constexpr double kSlow_mps = 0.5, kFast_mps = 150, kMinDriven_m = 3;
   const Trajectory& poses = sequence.trajectory;
   if (poses.size() < 2) return;
   std::vector<double> steps_s;
@@ -297,7 +297,7 @@ void require_times_of_scans(const KittiSequence& sequence) {
   }
   const double step_s = upper_median_of(steps_s);
   const double speed_mps = driven_m / (poses.back().time_s - poses.front().time_s);
-  const bool is_long = step_s > kLongStep_s && speed_mps < kSlow_mps && driven_m > kLeastDriven_m;
+  const bool is_long = step_s > kLongStep_s && speed_mps < kSlow_mps && driven_m > kMinDriven_m;
   const bool is_short = step_s < kShortStep_s && speed_mps > kFast_mps;
   if (!is_long && !is_short) return;
   std::array<char, 300> text{};
@@ -316,11 +316,11 @@ std::string what_is_not_told(const KittiSequence& sequence, const PoseEvidence& 
                                        sequence.trajectory.front().world_from_sensor.translation));
   if (sequence.trajectory.size() < 2 || reach_m == 0) return {};
   std::array<char, 300> text{};
-  if (reach_m < kLeastApart_m)
+  if (reach_m < kMinApart_m)
     std::snprintf(text.data(), text.size(),
                   "the poses lead %.2f m away at most: that they are metres, and of the sensor, "
                   "could not be checked (scans %.0f m apart and more tell)",
-                  reach_m, kLeastApart_m);
+                  reach_m, kMinApart_m);
   else if (evidence.points == 0)
     std::snprintf(text.data(), text.size(),
                   "that the poses are metres, and of the sensor, could not be checked: no scans 3 "
@@ -348,21 +348,21 @@ std::size_t PoseEvidence::best_other() const {
 
 bool PoseEvidence::contradicts() const {
   const double other = share(best_other());
-  return other >= kLeastShare && other >= kLeastGain * share(0);
+  return other >= kMinShare && other >= kMinGain * share(0);
 }
 
 bool PoseEvidence::confirms() const {
   // Other ways than the given one say nothing against it: one of them may be the same.
-  return share(0) >= kLeastShare &&
-         static_cast<double>(met[0]) >= kLeastGain * static_cast<double>(met_turned);
+  return share(0) >= kMinShare &&
+         static_cast<double>(met[0]) >= kMinGain * static_cast<double>(met_turned);
 }
 
 bool ScaleEvidence::contradicts() const {
   // Without the gain on no translation at all, traffic at one's own speed would speak for factors
   // below 1, and a tunnel for all.
   const auto other = static_cast<double>(std::max(met_given, met_turned));
-  return points != 0 && static_cast<double>(met) >= kLeastShare * static_cast<double>(points) &&
-         static_cast<double>(met) >= kLeastGain * other;
+  return points != 0 && static_cast<double>(met) >= kMinShare * static_cast<double>(points) &&
+         static_cast<double>(met) >= kMinGain * other;
 }
 
 std::vector<ScanNumbers> scan_pairs(const Trajectory& trajectory) {

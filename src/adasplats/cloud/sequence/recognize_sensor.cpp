@@ -33,8 +33,8 @@ bool is_plausible(const ConeFit& fit) {
   const Vec3d origin = fit.mount.translation;
   const double aside_m = std::max(std::abs(origin.x), std::abs(origin.y));
   const double tilt_rad = std::acos(std::clamp(axis_of(fit.mount).z, -1.0, 1.0));
-  return aside_m < kMostAside_m + kBeyond_m && origin.z > kLowest_m - kBeyond_m &&
-         origin.z < kHighest_m + kBeyond_m && tilt_rad < kMostTilt_rad + kBeyond_rad &&
+  return aside_m < kMaxAside_m + kBeyond_m && origin.z > kLowest_m - kBeyond_m &&
+         origin.z < kHighest_m + kBeyond_m && tilt_rad < kMaxTilt_rad + kBeyond_rad &&
          fit.score.outside < 0.05 &&    // reflections and rain
          fit.score.empty < 0.15 &&      // lasers fail; of a sensor with half as many half are
          fit.score.filled > 1.0 / 3 &&  // the upper half may look at the sky

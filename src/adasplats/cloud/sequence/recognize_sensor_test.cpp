@@ -96,12 +96,12 @@ TEST(RecognizeSensor, NearestConeIsThatOfBruteForce) {
     const double flat_m = random.uniform(3, 60), azimuth_rad = random.uniform(-4, 4);
     const Vec3d p = {flat_m * std::cos(azimuth_rad), flat_m * std::sin(azimuth_rad),
                      flat_m * random.uniform(-0.6, 0.2)};
-    double least_rad = 10;
+    double min_rad = 10;
     for (const SensorCones::Cone& cone : cones.cones) {
       const double residual_rad = std::atan2(p.z - cone.height_m, flat_m) - cone.elevation_rad;
-      if (std::abs(residual_rad) < std::abs(least_rad)) least_rad = residual_rad;
+      if (std::abs(residual_rad) < std::abs(min_rad)) min_rad = residual_rad;
     }
-    EXPECT_NEAR(cones.nearest(p).second, least_rad, 1e-12);
+    EXPECT_NEAR(cones.nearest(p).second, min_rad, 1e-12);
   }
 }
 

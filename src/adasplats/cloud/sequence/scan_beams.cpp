@@ -101,10 +101,10 @@ std::pair<std::uint16_t, double> nearest_cone(Vec3d point) {
       std::ranges::partition_point(
           kCones, [&](const Cone& cone) { return above_cone(cone, point.z, rho_m) < 0; }) -
       kCones.begin());
-  constexpr double kLeastCosine = 0.9;
+  constexpr double kMinCosine = 0.9;
   std::size_t begin = below, end = below;
-  while (begin > 0 && kLeastCosine * look(begin - 1) <= nearest.second) --begin;
-  while (end < kCones.size() && kLeastCosine * look(end) <= nearest.second) ++end;
+  while (begin > 0 && kMinCosine * look(begin - 1) <= nearest.second) --begin;
+  while (end < kCones.size() && kMinCosine * look(end) <= nearest.second) ++end;
   return nearest;
 }
 
@@ -119,11 +119,11 @@ constexpr std::array kSweepFactors = {0.0, 1.0, 1e3, 1e6, 1e9};
 /// other way nearly as well.
 void require_times_in_seconds(const KittiSequence& sequence,
                               const std::array<double, kSweepFactors.size()>& median_m,
-                              double most_m) {
+                              double max_m) {
   constexpr double kClearly = 0.8;
   const double others_m = std::min(median_m[0], median_m[1]);
   for (std::size_t f = 2; f < kSweepFactors.size(); ++f) {
-    if (!(median_m[f] < most_m && median_m[f] < kClearly * others_m)) continue;
+    if (!(median_m[f] < max_m && median_m[f] < kClearly * others_m)) continue;
     std::array<char, 300> text{};
     std::snprintf(text.data(), text.size(),
                   ": the times of the poses (times.txt) are not seconds: by the motion during a "
@@ -195,10 +195,10 @@ namespace {
 
 /// Throws data where a pose is of a time when nothing is known of the motion.
 void require_motion_of(const Trajectory& poses, const Trajectory& motion) {
-  constexpr double kMostBeside_s = 1;
+  constexpr double kMaxBeside_s = 1;
   for (const TimedPose& pose : poses) {
-    if (pose.time_s > motion.front().time_s - kMostBeside_s &&
-        pose.time_s < motion.back().time_s + kMostBeside_s)
+    if (pose.time_s > motion.front().time_s - kMaxBeside_s &&
+        pose.time_s < motion.back().time_s + kMaxBeside_s)
       continue;
     throw Error(ErrorKind::data, "a scan of " + std::to_string(pose.time_s) +
                                      " s, but `motion` is of " +
@@ -229,14 +229,14 @@ using FanDistances = std::array<std::vector<double>, kSweepFactors.size()>;
 
 /// Of some points of a scan from the fan, by every factor of its sweep.
 FanDistances fan_distances(const KittiSequence& sequence, std::size_t index, Vec3d sweep_m) {
-  constexpr std::size_t kEvery = 11;                      // points
-  constexpr double kLeastRange_m = 8, kMostRange_m = 40;  // cones are apart there, beams accurate
+  constexpr std::size_t kEvery = 11;                   // points
+  constexpr double kMinRange_m = 8, kMaxRange_m = 40;  // cones are apart there, beams accurate
   FanDistances distances_m;
   const auto scan = try_kitti_points(sequence, index);
   for (std::size_t i = 0; scan && i < scan->positions.size(); i += kEvery) {
     const Vec3d point = vec_cast<double>(scan->positions[i]);
     const double range_m = length(point);
-    if (!(range_m >= kLeastRange_m && range_m <= kMostRange_m)) continue;
+    if (!(range_m >= kMinRange_m && range_m <= kMaxRange_m)) continue;
     const Vec3d moved_m = sweep_phase(point) * sweep_m;
     for (std::size_t f = 0; f < kSweepFactors.size(); ++f)
       distances_m[f].push_back(distance_from_fan(point - kSweepFactors[f] * moved_m));
@@ -246,12 +246,12 @@ FanDistances fan_distances(const KittiSequence& sequence, std::size_t index, Vec
 
 /// Whether poses are near enough in time to say how the sensor moved during a revolution.
 bool says_motion_of_sweeps(const Trajectory& poses) {
-  constexpr double kMostApart_s = 5 * kRevolution_s;
+  constexpr double kMaxApart_s = 5 * kRevolution_s;
   std::vector<double> apart_s;
   apart_s.reserve(poses.size());
   for (std::size_t k = 1; k < poses.size(); ++k)
     apart_s.push_back(poses[k].time_s - poses[k - 1].time_s);
-  return !apart_s.empty() && upper_median_of(std::move(apart_s)) <= kMostApart_s;
+  return !apart_s.empty() && upper_median_of(std::move(apart_s)) <= kMaxApart_s;
 }
 
 /// Of scans as they were measured: their motions by the poses, unless these are too far apart or
@@ -276,8 +276,8 @@ void find_raw_motions(const KittiSequence& sequence, const std::vector<Vec3d>& s
 
 ScanBeams recognize_beams(const KittiSequence& sequence, const Executor& executor) {
   constexpr std::size_t kScans = 5;
-  constexpr std::size_t kLeastPoints = 500;
-  constexpr double kMostDistance_m = 0.01;
+  constexpr std::size_t kMinPoints = 500;
+  constexpr double kMaxDistance_m = 0.01;
 
   ScanBeams moving;
   moving.from_hdl64 = true;
@@ -293,13 +293,13 @@ ScanBeams recognize_beams(const KittiSequence& sequence, const Executor& executo
   for (const FanDistances& part : of_scans)
     for (std::size_t f = 0; f < part.size(); ++f)
       distances_m[f].insert(distances_m[f].end(), part[f].begin(), part[f].end());
-  if (distances_m[0].size() < kLeastPoints) return {};
+  if (distances_m[0].size() < kMinPoints) return {};
   std::array<double, kSweepFactors.size()> median_m{};
   for (std::size_t f = 0; f < median_m.size(); ++f)
     median_m[f] = upper_median_of(std::move(distances_m[f]));
   const auto [as_measured, compensated] = std::pair(median_m[0], median_m[1]);
-  require_times_in_seconds(sequence, median_m, kMostDistance_m);
-  if (!(std::min(as_measured, compensated) < kMostDistance_m)) return {};
+  require_times_in_seconds(sequence, median_m, kMaxDistance_m);
+  if (!(std::min(as_measured, compensated) < kMaxDistance_m)) return {};
   if (compensated < as_measured) return moving;
   const std::vector<Vec3d> sweeps_m = std::exchange(moving.sweeps_m, {});
   constexpr double kClearly = 0.8;

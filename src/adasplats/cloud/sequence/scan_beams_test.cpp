@@ -28,12 +28,12 @@ struct Drive {
   std::size_t scans = 3;
   std::size_t firings = 400;  ///< of each of 16 beams, a scan
   double yaw_rad = 0;
-  Vec3d velocity_mps = {8, 0, 0};   ///< in the scans' frame, of scan 0
-  Vec3d acceleration_mps2 = {};     ///< in the scans' frame
-  double period_s = 0.1;            ///< from scan to scan
-  bool compensated = true;          ///< the points are those of the middle of the revolution
-  bool hdl64 = true;                ///< else all beams start at the frame's origin
-  double least_m = 9, most_m = 36;  ///< of the points, in the plane
+  Vec3d velocity_mps = {8, 0, 0};  ///< in the scans' frame, of scan 0
+  Vec3d acceleration_mps2 = {};    ///< in the scans' frame
+  double period_s = 0.1;           ///< from scan to scan
+  bool compensated = true;         ///< the points are those of the middle of the revolution
+  bool hdl64 = true;               ///< else all beams start at the frame's origin
+  double min_m = 9, max_m = 36;    ///< of the points, in the plane
 
   double time_s(std::size_t scan) const { return period_s * static_cast<double>(scan); }
   /// During the revolution of a scan.
@@ -62,7 +62,7 @@ std::vector<Beam> beams_of(const Drive& drive, std::size_t scan) {
     const double azimuth_rad = std::numbers::pi * (1 - 2 * share);
     for (std::size_t k = 0; k < kSomeElevations_deg.size(); ++k) {
       Random random(1, scan, firing * kSomeElevations_deg.size() + k);
-      const double range_m = random.uniform(drive.least_m, drive.most_m);
+      const double range_m = random.uniform(drive.min_m, drive.max_m);
       const double e_deg =
           drive.hdl64 ? kSomeElevations_deg[k] : 2 - 1.8 * static_cast<double>(k);  // even fan
       const double upper_m = 0.2065 + 0.00106 * e_deg, lower_m = 0.1309 + 0.00061 * e_deg;
@@ -208,11 +208,11 @@ TEST(RecognizeBeams, FewPointsOrNoneInTheRangesAreNotEnough) {
   drive.firings = 180;  // 524
   EXPECT_TRUE(recognized(drive).from_hdl64);
   drive.firings = 400;
-  drive.least_m = 2;
-  drive.most_m = 6;
+  drive.min_m = 2;
+  drive.max_m = 6;
   expect_frame_origin(recognized(drive));
-  drive.least_m = 42;
-  drive.most_m = 80;
+  drive.min_m = 42;
+  drive.max_m = 80;
   expect_frame_origin(recognized(drive));
 }
 

@@ -18,7 +18,7 @@ namespace adasplats {
 namespace {
 
 constexpr double kCell_m = 0.5, kFarthest_m = 30, kNearest_m = 3;
-constexpr std::size_t kLeastOnWalls = 500;  // for a median that tells a tenth apart
+constexpr std::size_t kMinOnWalls = 500;  // for a median that tells a tenth apart
 
 /// What points of a cell have in common.
 struct WallCell {
@@ -42,7 +42,7 @@ struct Wall {
 
 Wall wall_of(const WallCell& cell) {
   constexpr std::size_t kLeast = 8;
-  constexpr double kThick_m = 0.06, kWide_m = 0.05, kMostTilt = 0.3;
+  constexpr double kThick_m = 0.06, kWide_m = 0.05, kMaxTilt = 0.3;
   if (cell.count < kLeast) return {};
   const double n = static_cast<double>(cell.count);
   const Vec3d m = (1 / n) * cell.sum;
@@ -51,7 +51,7 @@ Wall wall_of(const WallCell& cell) {
                        cell.yy / n - m.y * m.y, cell.yz / n - m.y * m.z, cell.zz / n - m.z * m.z});
   const Vec3d normal = eigen.vectors[2];
   const bool flat = eigen.values[2] < kThick_m * kThick_m && eigen.values[1] > kWide_m * kWide_m;
-  return {flat && std::fabs(normal.z) < kMostTilt, m, normal};
+  return {flat && std::fabs(normal.z) < kMaxTilt, m, normal};
 }
 
 std::uint64_t cell_key(Vec3d p) {
@@ -108,11 +108,11 @@ constexpr double kClearlyNearer = 0.97;
 
 bool SweepEvidence::confirms() const {
   constexpr double kMost_m = 0.05;
-  return points >= kLeastOnWalls && moved_m < kClearlyNearer * still_m && moved_m < kMost_m;
+  return points >= kMinOnWalls && moved_m < kClearlyNearer * still_m && moved_m < kMost_m;
 }
 
 bool SweepEvidence::at_rest() const {
-  return points >= kLeastOnWalls && still_m < kClearlyNearer * std::min(moved_m, reversed_m);
+  return points >= kMinOnWalls && still_m < kClearlyNearer * std::min(moved_m, reversed_m);
 }
 
 SweepEvidence weigh_sweeps(const KittiSequence& sequence, const ScanBeams& beams,

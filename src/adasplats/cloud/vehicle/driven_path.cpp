@@ -59,15 +59,15 @@ bool is_within(Vec3d offset, double radius_m) {
 }
 
 /// Where the sensor was in a scan, relative to the cloud's origin.
-struct ScanPlace {
+struct ScanScene {
   Vec3d at;
   bool is_own = true;  ///< the scan is in the cloud
 };
 
 /// The places of a cloud's scans, between those beyond.
-std::vector<ScanPlace> places_of_path(const std::vector<Vec3d>& own, const PathBeyond& beyond,
+std::vector<ScanScene> places_of_path(const std::vector<Vec3d>& own, const PathBeyond& beyond,
                                       Vec3d origin) {
-  std::vector<ScanPlace> places;
+  std::vector<ScanScene> places;
   for (const Vec3d world : beyond.before) places.push_back({world - origin, false});
   for (const Vec3d at : own) places.push_back({at, true});
   for (const Vec3d world : beyond.after) places.push_back({world - origin, false});
@@ -78,7 +78,7 @@ std::vector<ScanPlace> places_of_path(const std::vector<Vec3d>& own, const PathB
 /// points.
 class Path {
  public:
-  Path(const std::vector<ScanPlace>& scans, const PointCloud& cloud,
+  Path(const std::vector<ScanScene>& scans, const PointCloud& cloud,
        const DrivenPathOptions& options) {
     for (const Vec3f point : cloud.positions) {
       low_ = min(low_, point);
@@ -88,7 +88,7 @@ class Path {
       const auto [at, is_own] = scans[k];
       const Vec3d last = scans[k == 0 ? 0 : k - 1].at;
       const double apart_m = length(at - last);
-      const bool joined = k > 0 && apart_m <= options.most_apart_m;
+      const bool joined = k > 0 && apart_m <= options.max_apart_m;
       const int steps = joined ? static_cast<int>(apart_m / options.step_m) : 0;
       if (joined) length_m_ += apart_m;
       for (int step = 1; step <= steps; ++step)
@@ -164,7 +164,7 @@ std::vector<double> heights_above_ground(const Looked& points, const Path& path,
                                          const DrivenPathOptions& options,
                                          const Executor& executor) {
   constexpr double kBin_m = 0.05, kGroundShare = 0.1;
-  const auto bins = static_cast<std::size_t>(std::ceil(options.most_height_m / kBin_m)) + 1;
+  const auto bins = static_cast<std::size_t>(std::ceil(options.max_height_m / kBin_m)) + 1;
   std::vector<std::uint32_t> counts(path.places().size() * bins);  // by depth below the sensor
   const std::vector<Vec3f>& positions = points.cloud.positions;
   executor.for_chunks(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -185,7 +185,7 @@ std::vector<double> heights_above_ground(const Looked& points, const Path& path,
     const auto first = counts.begin() + static_cast<std::ptrdiff_t>(place * bins);
     const std::size_t all =
         std::accumulate(first, first + static_cast<std::ptrdiff_t>(bins), std::size_t{0});
-    if (all < options.least_points) continue;
+    if (all < options.min_points) continue;
     std::size_t deeper = 0, bin = bins;
     while (static_cast<double>(deeper) < kGroundShare * static_cast<double>(all))
       deeper += counts[place * bins + --bin];
@@ -208,7 +208,7 @@ std::optional<double> usual_height(const std::vector<double>& all, const Path& p
   if (heights.empty() || 2 * heights.size() < places) return std::nullopt;
   std::ranges::sort(heights);
   const double low = heights[heights.size() / 10], high = heights[heights.size() * 9 / 10];
-  if (high - low > options.most_spread_m) return std::nullopt;
+  if (high - low > options.max_spread_m) return std::nullopt;
   return heights[heights.size() / 2];
 }
 
@@ -224,7 +224,7 @@ std::vector<std::uint8_t> find_in_driven_path(const PointCloud& cloud,
   const Looked points{cloud, left_out};
   const Path path(places_of_path(places_of_scans(points, executor), beyond, cloud.origin), cloud,
                   options);
-  if (path.length_m() < options.least_path_m) return {};
+  if (path.length_m() < options.min_path_m) return {};
   std::vector<double> heights = heights_above_ground(points, path, options, executor);
   const std::optional<double> usual = usual_height(heights, path, options);
   if (!usual) return {};

@@ -16,16 +16,16 @@ namespace adasplats {
 /// along its path. The numbers are set, not chosen by data: cars are 1.6 m wide and more, robots
 /// and people with a scanner half a metre; kerbs and humps are lower than 0.35 m.
 struct DrivenPathOptions {
-  double half_width_m = 0.6;      ///< of the volume; 0: none
-  double above_ground_m = 0.35;   ///< it begins
-  double above_sensor_m = 0.1;    ///< it ends
-  double step_m = 0.25;           ///< between places of the path
-  double most_apart_m = 5;        ///< scans farther apart than this are not joined
-  double least_path_m = 5;        ///< shorter ones are no drive
-  double ground_radius_m = 1;     ///< points that say where the ground is
-  double most_height_m = 3.5;     ///< of the sensor above ground: nothing carries it from there on
-  double most_spread_m = 0.5;     ///< of this height between most places, else it is no height
-  std::size_t least_points = 20;  ///< that say where the ground is at a place
+  double half_width_m = 0.6;     ///< of the volume; 0: none
+  double above_ground_m = 0.35;  ///< it begins
+  double above_sensor_m = 0.1;   ///< it ends
+  double step_m = 0.25;          ///< between places of the path
+  double max_apart_m = 5;        ///< scans farther apart than this are not joined
+  double min_path_m = 5;         ///< shorter ones are no drive
+  double ground_radius_m = 1;    ///< points that say where the ground is
+  double max_height_m = 3.5;     ///< of the sensor above ground: nothing carries it from there on
+  double max_spread_m = 0.5;     ///< of this height between most places, else it is no height
+  std::size_t min_points = 20;   ///< that say where the ground is at a place
 };
 
 /// Where the sensor was in scans that are not in a cloud which is a piece of a drive, in order,

@@ -199,8 +199,8 @@ class Search {
         stations_(points, options.station_m, executor) {}
 
   bool can_tell() const {
-    return stations_.size() >= options_.least_stations &&
-           path_m(points_, executor_) >= options_.least_path_m;
+    return stations_.size() >= options_.min_stations &&
+           path_m(points_, executor_) >= options_.min_path_m;
   }
 
   std::vector<std::uint8_t> run() const {
@@ -252,7 +252,7 @@ class Search {
       const std::vector<std::uint32_t>& near) const {
     std::vector<std::vector<std::uint32_t>> points(rings());
     for (const std::uint32_t i : near) points[ring_of(i)].push_back(i);
-    const double least = options_.least_share * static_cast<double>(stations_.size());
+    const double least = options_.min_share * static_cast<double>(stations_.size());
     executor_.for_chunks(points.size(), 1, [&](std::size_t ring, std::size_t) {
       std::vector<std::uint64_t> stations;
       for (const std::uint32_t i : points[ring]) stations.push_back(stations_.of(i));
@@ -294,7 +294,7 @@ class Search {
         const Vec3f to_point = cloud_.positions[i] - view.sensor();
         const auto distance_m = static_cast<double>(length(to_point));
         const float measured_m = view.range_m(to_point);
-        if (distance_m < options_.least_view_m || measured_m == kInfinity) continue;
+        if (distance_m < options_.min_view_m || measured_m == kInfinity) continue;
         const double behind_m = static_cast<double>(measured_m) - distance_m;
         if (behind_m < -options_.margin_m) continue;  // something is before it
         ++looked;
@@ -302,7 +302,7 @@ class Search {
       }
     }
     return looked > 0 &&
-           static_cast<double>(through) > options_.least_through * static_cast<double>(looked);
+           static_cast<double>(through) > options_.min_through * static_cast<double>(looked);
   }
 
   const PointCloud& cloud_;

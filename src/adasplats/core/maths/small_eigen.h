@@ -25,8 +25,8 @@ SmallEigen<N> small_eigen(std::array<double, N * N> a) {
     x = c * before - s * y;
     y = s * before + c * y;
   };
-  constexpr int kMostSweeps = 20;  // it converges quadratically: six or so are enough
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+  constexpr int kMaxSweeps = 20;  // it converges quadratically: six or so are enough
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     for (std::size_t p = 0; p < N; ++p) {
       for (std::size_t q = p + 1; q < N; ++q) {
         if (a[p * N + q] == 0) continue;

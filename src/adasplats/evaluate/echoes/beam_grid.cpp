@@ -21,17 +21,17 @@ constexpr int kSteps = 4000;  // of the encoder, 0.09 degrees each: HDL-64E S2 u
 constexpr double kStep_rad = 2 * std::numbers::pi / kSteps;
 /// Points lie on their cones to millimetres (cloud/sequence/scan_beams.cpp), and cones are farther
 /// apart than twice this from 9 m on. A choice: less loses points, more takes some of no ring.
-constexpr double kMostOffCone_m = 0.02;
-/// Of a ring. So many phases by chance have a mean of length 0.1, far from kLeastOrder.
-constexpr std::size_t kLeastPoints = 100;
+constexpr double kMaxOffCone_m = 0.02;
+/// Of a ring. So many phases by chance have a mean of length 0.1, far from kMinOrder.
+constexpr std::size_t kMinPoints = 100;
 /// A choice, an eighth of an HDL-64E: a few rings fit by chance, and all need not be there.
-constexpr std::size_t kLeastRings = 8;
+constexpr std::size_t kMinRings = 8;
 /// Length of the mean of unit vectors at the phases of a ring's azimuths: 1 on a lattice; KITTI's
 /// rings have 0.95 and more, compensated ones 0.6 and less.
-constexpr double kLeastOrder = 0.8;
+constexpr double kMinOrder = 0.8;
 /// Of a ring's points on the firings of the fullest ring; by chance it is half of them. A choice:
 /// halfway from there to all.
-constexpr double kLeastOnFirings = 0.75;
+constexpr double kMinOnFirings = 0.75;
 
 using Steps = std::bitset<kSteps>;
 
@@ -71,7 +71,7 @@ std::vector<Ring> rings_of(const KittiScan& scan, const LidarModel& sensor) {
   for (std::size_t i = 0; i < scan.positions.size(); ++i) {
     const Vec3d point = point_of(scan, static_cast<std::uint32_t>(i));
     if (!is_finite(point) || !(rho_m(point) > 0)) continue;
-    double nearest_m = kMostOffCone_m;
+    double nearest_m = kMaxOffCone_m;
     Ring* nearest = nullptr;
     for (Ring& ring : rings) {
       const double elevation_rad = sensor.elevations_rad[ring.beam];
@@ -84,13 +84,13 @@ std::vector<Ring> rings_of(const KittiScan& scan, const LidarModel& sensor) {
     }
     if (nearest != nullptr) nearest->points.push_back(static_cast<std::uint32_t>(i));
   }
-  std::erase_if(rings, [](const Ring& ring) { return ring.points.size() < kLeastPoints; });
+  std::erase_if(rings, [](const Ring& ring) { return ring.points.size() < kMinPoints; });
   return rings;
 }
 
 /// Mean of the phases of a ring's azimuths on the lattice, as unit vectors.
 std::complex<double> mean_phase(const KittiScan& scan, const Ring& ring, double beside_m) {
-  constexpr std::size_t kEnough = 400;  // points: the mean is good to 1/20, far from kLeastOrder
+  constexpr std::size_t kEnough = 400;  // points: the mean is good to 1/20, far from kMinOrder
   const std::size_t every = std::max<std::size_t>(1, ring.points.size() / kEnough);
   std::complex<double> sum = 0;
   double count = 0;
@@ -104,9 +104,9 @@ std::complex<double> mean_phase(const KittiScan& scan, const Ring& ring, double 
 
 /// Finds where a ring's lattice lies and its points' places on it. False: they are on none.
 bool fit_lattice(const KittiScan& scan, Ring& ring) {
-  constexpr int kMostBeside_mm = 60;  // about twice what sensors/velodyne-hdl-64e-*.toml have
+  constexpr int kMaxBeside_mm = 60;  // about twice what sensors/velodyne-hdl-64e-*.toml have
   double best = 0;
-  for (int distance_mm = 0; distance_mm <= kMostBeside_mm; ++distance_mm) {
+  for (int distance_mm = 0; distance_mm <= kMaxBeside_mm; ++distance_mm) {
     for (const int side : {1, -1}) {
       const double beside_m = 1e-3 * side * distance_mm;
       const std::complex<double> mean = mean_phase(scan, ring, beside_m);
@@ -116,7 +116,7 @@ bool fit_lattice(const KittiScan& scan, Ring& ring) {
       ring.phase_rad = std::arg(mean) / (2 * std::numbers::pi) * kStep_rad;
     }
   }
-  if (best < kLeastOrder) return false;
+  if (best < kMinOrder) return false;
   for (const std::uint32_t i : ring.points) {
     const double azimuth_rad = beam_azimuth_rad(point_of(scan, i), ring.beside_m);
     const int step = static_cast<int>(std::lround((azimuth_rad - ring.phase_rad) / kStep_rad));
@@ -134,9 +134,9 @@ Steps turned(const Steps& steps, int by) {
 
 /// Turns `ring` onto the firings of `fullest`. False: it does not fit.
 bool align(Ring& ring, const Ring& fullest) {
-  constexpr int kMostShift = 300;  // 27 degrees; 18.5 at most in sensors/velodyne-hdl-64e-*.toml
+  constexpr int kMaxShift = 300;  // 27 degrees; 18.5 at most in sensors/velodyne-hdl-64e-*.toml
   std::size_t best = 0;
-  for (int size = 0; size <= kMostShift; ++size) {
+  for (int size = 0; size <= kMaxShift; ++size) {
     for (const int shift : {size, -size}) {
       const std::size_t common = (ring.taken & turned(fullest.taken, shift)).count();
       if (common <= best) continue;
@@ -144,7 +144,7 @@ bool align(Ring& ring, const Ring& fullest) {
       ring.shift = shift;
     }
   }
-  return static_cast<double>(best) >= kLeastOnFirings * static_cast<double>(ring.taken.count());
+  return static_cast<double>(best) >= kMinOnFirings * static_cast<double>(ring.taken.count());
 }
 
 /// Steps of the fullest ring at which lasers fired: two rings at least have a point there.
@@ -227,11 +227,11 @@ BeamGrid find_beam_grid(const KittiScan& scan, const LidarModel& sensor) {
     const Ring fullest = *std::max_element(rings.begin(), rings.end(), fewer);
     std::erase_if(rings, [&](Ring& ring) { return !align(ring, fullest); });
   }
-  if (rings.size() < kLeastRings) {
+  if (rings.size() < kMinRings) {
     throw Error(ErrorKind::data,
                 std::string("the points lie on the firings of ") + std::to_string(rings.size()) +
                     " beams of sensor '" + sensor.name + "', expected at least " +
-                    std::to_string(kLeastRings) +
+                    std::to_string(kMinRings) +
                     ": beams without return can be told in scans of an HDL-64E that are not "
                     "motion-compensated");
   }

@@ -131,15 +131,15 @@ double SegmentationConfusion::iou(std::size_t c) const {
   return share_of(count(c, c), of_truth(c) + of_prediction(c) - count(c, c));
 }
 
-bool SegmentationConfusion::is_rare(std::size_t c, double least_share) const {
-  return of_truth(c) > 0 && share(c) < least_share;
+bool SegmentationConfusion::is_rare(std::size_t c, double min_share) const {
+  return of_truth(c) > 0 && share(c) < min_share;
 }
 
-double SegmentationConfusion::mean_iou(double least_share) const {
+double SegmentationConfusion::mean_iou(double min_share) const {
   double sum = 0;
   std::size_t averaged = 0;
   for (std::size_t c = 0; c < classes_; ++c) {
-    if (of_truth(c) == 0 || is_rare(c, least_share)) continue;
+    if (of_truth(c) == 0 || is_rare(c, min_share)) continue;
     sum += iou(c);
     ++averaged;
   }
@@ -168,9 +168,9 @@ SegmentationConfusion grouped(const SegmentationConfusion& confusion,
 }
 
 void check(const SegmentationOptions& options) {
-  if (options.least_share >= 0 && options.least_share <= 1) return;
+  if (options.min_share >= 0 && options.min_share <= 1) return;
   throw Error(ErrorKind::usage,
-              "`least_share` must be from 0 to 1, found " + std::to_string(options.least_share));
+              "`least_share` must be from 0 to 1, found " + std::to_string(options.min_share));
 }
 
 }  // namespace adasplats

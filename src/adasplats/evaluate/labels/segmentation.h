@@ -16,7 +16,7 @@ namespace adasplats {
 struct SegmentationOptions {
   /// Classes with a smaller share of the true points are left out of the mean: their IoU is that of
   /// a few objects.
-  double least_share = 0.0005;
+  double min_share = 0.0005;
 };
 
 /// Points by their true and their predicted class. Those that truly are of no class are counted and
@@ -54,9 +54,9 @@ class SegmentationConfusion {
   /// predicted to be.
   double iou(std::size_t c) const;
   /// Whether there are true points of a class, but with less than that share.
-  bool is_rare(std::size_t c, double least_share) const;
+  bool is_rare(std::size_t c, double min_share) const;
   /// Mean IoU of the classes that there are true points of, but for rare ones.
-  double mean_iou(double least_share = 0) const;
+  double mean_iou(double min_share = 0) const;
 
  private:
   std::size_t classes_;

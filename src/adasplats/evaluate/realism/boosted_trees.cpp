@@ -105,7 +105,7 @@ struct BoostedTrees::Growth {
       left.gradient += sums[bin].gradient;
       left.weight += sums[bin].weight;
       const Slopes right = {all.gradient - left.gradient, all.weight - left.weight};
-      if (left.weight < options.least_weight || right.weight < options.least_weight) continue;
+      if (left.weight < options.min_weight || right.weight < options.min_weight) continue;
       const double gain = gain_of(left, options.ridge) + gain_of(right, options.ridge) -
                           gain_of(all, options.ridge);
       if (gain > best.gain + 1e-12) best = {gain, feature, bin};

@@ -17,8 +17,8 @@ struct TreeOptions {
   std::size_t trees = 100;
   std::size_t depth = 4;
   double learning_rate = 0.1;
-  double least_weight = 5;  ///< least sum of p (1 - p) in a leaf
-  double ridge = 1;         ///< added to it
+  double min_weight = 5;  ///< least sum of p (1 - p) in a leaf
+  double ridge = 1;       ///< added to it
 };
 
 /// A sum of small trees that gives the log odds of the positive class: gradient boosting with

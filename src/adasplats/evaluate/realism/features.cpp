@@ -191,7 +191,7 @@ constexpr ScanStatistic kScanStatistics[] = {
 /// median, because some pieces are bent). A plane takes two of eight freedoms away across the
 /// rings: a laser's own share is larger.
 double laser_offsets(const std::vector<PlanePiece>& pieces, std::size_t rings) {
-  constexpr std::size_t kLeastPieces = 10;
+  constexpr std::size_t kMinPieces = 10;
   std::vector<std::vector<double>> errors_m(rings);
   for (const PlanePiece& piece : pieces)
     for (std::size_t k = 0; k < kPlaneRings; ++k)
@@ -199,7 +199,7 @@ double laser_offsets(const std::vector<PlanePiece>& pieces, std::size_t rings) {
         errors_m[piece.first_ring + k].push_back(piece.ring_m[k]);
   std::vector<double> medians_m;
   for (std::vector<double>& of_ring : errors_m)
-    if (of_ring.size() >= kLeastPieces) medians_m.push_back(median_of_known(std::move(of_ring)));
+    if (of_ring.size() >= kMinPieces) medians_m.push_back(median_of_known(std::move(of_ring)));
   constexpr double kFreedoms = static_cast<double>(kPlaneRings);
   return deviation_of(medians_m) * std::sqrt(kFreedoms / (kFreedoms - 2));
 }
@@ -220,7 +220,7 @@ std::vector<float> features_of_patches(const RingScan& scan, double step_rad) {
       const PartOfScan part = {ring, ring + kPatchRings, static_cast<double>(sector) * share,
                                static_cast<double>(sector + 1) * share};
       const PartCounts counts = count_part(scan, missing, part, step_rad);
-      if (counts.returns < kLeastInPatch) continue;
+      if (counts.returns < kMinInPatch) continue;
       for (const PatchFeature& feature : kPatchFeatures)
         values.push_back(static_cast<float>(feature.of(counts)));
     }

@@ -29,7 +29,7 @@ inline Words<FeatureGroup> words_of(FeatureGroup) { return kFeatureGroups; }
 inline constexpr std::size_t kPatchRings = 8;
 inline constexpr std::size_t kPatchColumns = 64;
 /// A patch with fewer returns, a quarter of its cells, is sky or void and tells nothing.
-inline constexpr std::size_t kLeastInPatch = kPatchRings * kPatchColumns / 4;
+inline constexpr std::size_t kMinInPatch = kPatchRings * kPatchColumns / 4;
 
 /// One number of a patch; NaN where the patch does not have it.
 struct PatchFeature {
@@ -45,7 +45,7 @@ std::span<const PatchFeature> patch_features();
 
 /// Features of all patches of a scan, patch by patch. Patches are 8 rings high, from the top, and
 /// cut the turn into equal sectors as near to 64 steps as it goes; those with fewer than
-/// kLeastInPatch returns are left out. Needs count_missing().
+/// kMinInPatch returns are left out. Needs count_missing().
 std::vector<float> features_of_patches(const RingScan& scan, double step_rad);
 
 /// What a scan as a whole says, beside the tests: the statistics that users see side by side.

@@ -11,7 +11,7 @@ namespace {
 /// As little as keeps separable classes finite: one hundredth of a sample's own information.
 constexpr double kRidge = 1;
 constexpr double kCutoff = 4;  // standard deviations: few samples shall not decide
-constexpr int kMostSteps = 25;
+constexpr int kMaxSteps = 25;
 
 /// Solves a x = b for a symmetric positive definite matrix by rows, by Cholesky's factors.
 std::vector<double> solved_symmetric(std::vector<double> a, std::vector<double> b) {
@@ -64,7 +64,7 @@ struct NewtonSums {
 std::vector<double> fit_logistic(const SampleTable& samples, double ridge) {
   const std::size_t n = samples.columns + 1;
   std::vector<double> weights(n, 0);
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     NewtonSums sums(n);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const double p = 1 / (1 + std::exp(-log_odds(samples.row(i), weights)));

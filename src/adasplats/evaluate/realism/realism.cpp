@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint64_t kPatchStream = 0x7061746368;  // "patch"
 /// That a classifier learns from, of both classes: more teach it little and take long. A choice.
-constexpr std::size_t kMostPatches = 24000;
+constexpr std::size_t kMaxPatches = 24000;
 constexpr std::size_t kTests = std::size(kRealismFeatures);
 constexpr std::size_t kOrders = 8;     // a power of two
 constexpr std::size_t kFewScans = 32;  // eight orders of them take as long as the test itself
@@ -84,7 +84,7 @@ SampleTable learned_from(std::span<const TestScan> scans, std::size_t left_out,
                          std::span<const std::size_t> columns, std::uint64_t seed) {
   std::size_t count = 0;
   for (const TestScan& one : scans) count += one.fold == left_out ? 0 : patches_of(*one.scan);
-  const double share = static_cast<double>(kMostPatches) / static_cast<double>(count);
+  const double share = static_cast<double>(kMaxPatches) / static_cast<double>(count);
   SampleTable table{columns.size(), {}, {}};
   for (std::size_t s = 0; s < scans.size(); ++s) {
     if (scans[s].fold == left_out) continue;
@@ -239,16 +239,16 @@ StatisticPair feature_pair(std::span<const RealismScan> simulated,
 }
 
 void require_scans(std::span<const RealismScan> scans, const std::string& side) {
-  if (scans.size() < kLeastRealismScans)
+  if (scans.size() < kMinRealismScans)
     throw Error(ErrorKind::data, side + " has " + std::to_string(scans.size()) +
                                      " scans, expected at least " +
-                                     std::to_string(kLeastRealismScans) +
+                                     std::to_string(kMinRealismScans) +
                                      ": two in each block of the cross-validation");
   const auto has_patches = [](const RealismScan& scan) { return patches_of(scan) > 0; };
   if (std::ranges::none_of(scans, has_patches))
     throw Error(ErrorKind::data, side + " has no patch of " + std::to_string(kPatchRings) + " x " +
                                      std::to_string(kPatchColumns) + " beams with " +
-                                     std::to_string(kLeastInPatch) + " returns");
+                                     std::to_string(kMinInPatch) + " returns");
 }
 
 }  // namespace

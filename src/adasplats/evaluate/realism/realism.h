@@ -21,7 +21,7 @@ namespace adasplats {
 /// Cross-validation takes this many blocks of consecutive scans; a class needs two scans in each,
 /// so that halves of the real ones have one.
 inline constexpr std::size_t kRealismFolds = 4;
-inline constexpr std::size_t kLeastRealismScans = 2 * kRealismFolds;
+inline constexpr std::size_t kMinRealismScans = 2 * kRealismFolds;
 
 /// What the test sees of one scan.
 struct RealismScan {
@@ -66,7 +66,7 @@ struct RealismResult {
 /// consecutive scans, the same share of both sides. Real scans against real ones, one of each two
 /// neighbours as if simulated, are split in the same way: what no simulation can be better than.
 /// `seed`: of the bootstrap, and of which patches are learned from where there are very many.
-/// Errors: data (fewer than kLeastRealismScans scans on a side, a side without patches).
+/// Errors: data (fewer than kMinRealismScans scans on a side, a side without patches).
 RealismResult compare_realism(std::span<const RealismScan> simulated,
                               std::span<const RealismScan> real, std::uint64_t seed,
                               const Executor& executor);

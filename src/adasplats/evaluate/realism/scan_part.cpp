@@ -16,13 +16,13 @@ namespace {
 constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();
 constexpr float kOneSurface_m = 0.3F;  // choices: ten times the noise of rotating LiDARs, and more
 constexpr float kEdge_m = 0.5F;
-constexpr std::size_t kLeastOfRing = 8;  // values that a ring's median is of
+constexpr std::size_t kMinOfRing = 8;  // values that a ring's median is of
 
 /// Of a piece that is fitted with a plane.
 constexpr std::size_t kPieceColumns = 8;
-constexpr std::size_t kLeastInPiece = 32;     // of 64
-constexpr std::size_t kLeastInPieceRing = 3;  // returns that a ring's mean is of
-constexpr double kMostOffPlane_m = 0.15;      // RMS; beyond, it is no plane: five times real noise
+constexpr std::size_t kMinInPiece = 32;     // of 64
+constexpr std::size_t kMinInPieceRing = 3;  // returns that a ring's mean is of
+constexpr double kMaxOffPlane_m = 0.15;     // RMS; beyond, it is no plane: five times real noise
 
 /// Returns [begin, end) of a ring.
 struct RingSpan {
@@ -117,7 +117,7 @@ class SecondDifferences {
   void end_ring() {
     counts_.second_m.insert(counts_.second_m.end(), own_m_.begin(), own_m_.end());
     std::ranges::sort(own_m_);
-    if (own_m_.size() >= kLeastOfRing)
+    if (own_m_.size() >= kMinOfRing)
       counts_.ring_second_m.push_back(mean_between(own_m_, 0.25, 0.75));
   }
 
@@ -141,7 +141,7 @@ double ring_median(const RingScan& scan, const RingSpan& span) {
   for (std::size_t i = span.begin; i < span.end; ++i)
     if (scan.intensities[i] == scan.intensities[i]) known.push_back(scan.intensities[i]);
   std::ranges::sort(known);
-  return known.size() < kLeastOfRing ? kUnknownValue : quantile_of(known, 0.5);
+  return known.size() < kMinOfRing ? kUnknownValue : quantile_of(known, 0.5);
 }
 
 void count_ring(const RingScan& scan, std::size_t ring, const RingSpan& span,
@@ -169,7 +169,7 @@ void count_ring(const RingScan& scan, std::size_t ring, const RingSpan& span,
   counts.nothing +=
       static_cast<std::size_t>(std::lround(nothing_in(scan, ring, span, part, step_rad)));
   const auto missing = static_cast<double>(counts.missing - missing_before);
-  if (span.size() >= kLeastOfRing)
+  if (span.size() >= kMinOfRing)
     counts.ring_missing.push_back(missing / (missing + static_cast<double>(span.size())));
 }
 
@@ -206,7 +206,7 @@ void add_plane(const RingScan& scan, std::size_t first_ring, std::span<const Rin
       }
     }
   }
-  if (count < kLeastInPiece) return;
+  if (count < kMinInPiece) return;
   factor<3>(matrix);
   const std::array<double, 3> plane = solved<3>(matrix, right);
   PlanePiece piece;
@@ -225,14 +225,14 @@ void add_plane(const RingScan& scan, std::size_t first_ring, std::span<const Rin
     }
     all += squares;
     const auto n = static_cast<double>(spans[k].size());
-    if (spans[k].size() < kLeastInPieceRing) continue;
+    if (spans[k].size() < kMinInPieceRing) continue;
     piece.ring_m[k] = sum / n;
     within += squares - sum * sum / n;
     within_count += n - 1;
     between += sum * sum / (n * n);
     ++rings;
   }
-  if (!(all < kMostOffPlane_m * kMostOffPlane_m * static_cast<double>(count)) || rings < 4) return;
+  if (!(all < kMaxOffPlane_m * kMaxOffPlane_m * static_cast<double>(count)) || rings < 4) return;
   piece.within_m = std::sqrt(within / within_count);
   piece.between_m = std::sqrt(between / rings);
   pieces.push_back(piece);

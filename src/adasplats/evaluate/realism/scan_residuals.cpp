@@ -24,13 +24,13 @@ constexpr float kNearestUsed_m = 4, kFarthestUsed_m = 30;
 constexpr float kVoxel_m = 0.2F;
 constexpr std::uint32_t kPlanePoints = 16;
 constexpr float kPlaneRadius_m = 1.5F;
-constexpr double kMostThickness_m = 0.05;  // RMS of a plane's points: twice real noise
-constexpr double kLeastRoundness = 0.1;    // of variances within the plane: no single ring
-constexpr std::size_t kMostMoved = 6000;   // points that are laid on planes
+constexpr double kMaxThickness_m = 0.05;  // RMS of a plane's points: twice real noise
+constexpr double kMinRoundness = 0.1;     // of variances within the plane: no single ring
+constexpr std::size_t kMaxMoved = 6000;   // points that are laid on planes
 constexpr int kSteps = 15;
 constexpr double kWidest_m = 0.5, kNarrowest_m = 0.05;
-constexpr double kMostApart_m = 0.3;  // of points that count in the end: the rest is occluded
-constexpr std::size_t kLeastOnPlanes = 100;
+constexpr double kMaxApart_m = 0.3;  // of points that count in the end: the rest is occluded
+constexpr std::size_t kMinOnPlanes = 100;
 
 struct PlaneAtPoint {
   Vec3f normal;
@@ -81,8 +81,8 @@ std::vector<PlaneAtPoint> planes_at(const PointIndex& index, std::span<const Vec
         for (std::uint32_t k = 0; k < neighbors.size; ++k)
           moments.add(points[near[k]] - points[own]);
         const LocalShape shape = local_shape(moments);
-        planes[own] = {shape.normal, std::sqrt(shape.lambda[2]) < kMostThickness_m &&
-                                         shape.lambda[1] > kLeastRoundness * shape.lambda[0]};
+        planes[own] = {shape.normal, std::sqrt(shape.lambda[2]) < kMaxThickness_m &&
+                                         shape.lambda[1] > kMinRoundness * shape.lambda[0]};
       });
   return planes;
 }
@@ -152,7 +152,7 @@ double scan_residual_m(std::span<const Vec3f> points, std::span<const Vec3f> pla
                        const RigidTransform& guess, const Executor& executor) {
   const std::vector<Vec3f> targets = one_a_voxel(used_points(planes_of), executor);
   std::vector<Vec3f> moved = one_a_voxel(used_points(points), executor);
-  const std::size_t every = std::max<std::size_t>(1, moved.size() / kMostMoved);
+  const std::size_t every = std::max<std::size_t>(1, moved.size() / kMaxMoved);
   for (std::size_t k = 0; k * every < moved.size(); ++k) moved[k] = moved[k * every];
   moved.resize((moved.size() + every - 1) / every);
   const PointIndex index(targets, executor);
@@ -166,9 +166,9 @@ double scan_residual_m(std::span<const Vec3f> points, std::span<const Vec3f> pla
   std::vector<double> distances_m;
   for (const PlanePair& pair : pairs_of(moved, index, targets, planes, pose, executor)) {
     const double away_m = std::fabs(distance_m(pair, pose));
-    if (away_m < kMostApart_m) distances_m.push_back(away_m);
+    if (away_m < kMaxApart_m) distances_m.push_back(away_m);
   }
-  if (distances_m.size() < kLeastOnPlanes) return std::numeric_limits<double>::quiet_NaN();
+  if (distances_m.size() < kMinOnPlanes) return std::numeric_limits<double>::quiet_NaN();
   return median_of_known(std::move(distances_m));
 }
 

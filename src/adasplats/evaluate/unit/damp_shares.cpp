@@ -12,7 +12,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kMostTriples = 400'000;
+constexpr std::size_t kMaxTriples = 400'000;
 
 /// Share of the middle one of three, drawn to their mean. `keeps`: what is left of its distance.
 float damped_share(float before, float share, float behind, double keeps) {
@@ -45,7 +45,7 @@ std::vector<SharedTriple> triples_of(std::span<const UnitBeam> beams,
         triples.push_back({i, other});
     }
   }
-  const std::size_t stride = triples.size() / kMostTriples + 1;
+  const std::size_t stride = triples.size() / kMaxTriples + 1;
   std::vector<SharedTriple> chosen;
   for (std::size_t k = 0; k < triples.size(); k += stride) chosen.push_back(triples[k]);
   return chosen;
@@ -57,11 +57,11 @@ float second_difference_of(float a, float b, float c) { return std::fabs(a - 2 *
 
 double damp_shares(std::span<const UnitBeam> beams, const UnitIntensity& unit,
                    std::vector<float>& shares) {
-  constexpr std::size_t kLeastTriples = 1000;
+  constexpr std::size_t kMinTriples = 1000;
   constexpr int kHalvings = 6;
   constexpr double kOfAStep = 0.25;
   const std::vector<SharedTriple> triples = triples_of(beams, shares);
-  if (triples.size() < kLeastTriples) return 1;
+  if (triples.size() < kMinTriples) return 1;
   std::vector<float> measured;
   for (const SharedTriple& triple : triples) {
     const UnitBeam* const three = &beams[triple.first];

@@ -38,7 +38,7 @@ struct CellBeams {
   }
   bool stands_still() {
     const std::size_t seen = places_with_returns.size();
-    if (seen < kLeastBlockedPlaces || 2 * seen < places.size()) return false;
+    if (seen < kMinBlockedPlaces || 2 * seen < places.size()) return false;
     std::ranges::sort(ranges_m);
     const auto at = [&](std::size_t tenths) {
       return ranges_m[(ranges_m.size() - 1) * tenths / 10];
@@ -58,7 +58,7 @@ std::optional<VehicleBody> fit_vehicle_body(std::span<const UnitBeam> beams) {
     places.insert(beam.place);
     if (is_in_the_way(beam)) cells[{beam.ring, body_column(beam.direction)}];
   }
-  if (places.size() < kLeastBlockedPlaces) return std::nullopt;
+  if (places.size() < kMinBlockedPlaces) return std::nullopt;
   for (const UnitBeam& beam : beams) {
     const auto cell = cells.find({beam.ring, body_column(beam.direction)});
     if (cell != cells.end()) cell->second.add(beam);

@@ -25,10 +25,10 @@ struct BeamEnds {
 };
 
 BeamEnds ends_of(std::span<const UnitBeam> beams) {
-  constexpr double kLeastEdges = 1000;
+  constexpr double kMinEdges = 1000;
   BeamEnds found;
   found.ends.assign(beams.size(), BeamEnd::returned);
-  std::vector<double> runs(kMostEdgeRun, 0);
+  std::vector<double> runs(kMaxEdgeRun, 0);
   double edges = 0;
   std::size_t last = beams.size();  // return before
   for (std::size_t i = 0; i < beams.size(); ++i) {
@@ -40,13 +40,13 @@ BeamEnds ends_of(std::span<const UnitBeam> beams) {
     const bool is_edge =
         !is_long && std::fabs(beams[i].range_m - beams[before].range_m) > kRangeEdge_m;
     edges += is_edge ? 1 : 0;
-    if (is_edge && run > 0) runs[std::min<std::size_t>(run, kMostEdgeRun) - 1] += 1;
+    if (is_edge && run > 0) runs[std::min<std::size_t>(run, kMaxEdgeRun) - 1] += 1;
     std::fill_n(found.ends.begin() + static_cast<std::ptrdiff_t>(before) + 1, run,
                 is_long   ? BeamEnd::lost_in_long_run
                 : is_edge ? BeamEnd::lost_at_edge
                           : BeamEnd::lost);
   }
-  if (edges < kLeastEdges) return found;
+  if (edges < kMinEdges) return found;
   for (double& share : runs) share = std::round(1e4 * share / edges) / 1e4;
   found.edge_runs = std::move(runs);
   return found;

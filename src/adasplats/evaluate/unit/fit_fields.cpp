@@ -15,7 +15,7 @@ namespace adasplats {
 namespace {
 
 constexpr float kUntold = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t kMostTurns = 2;  // 0.8 MB of an HDL-64E
+constexpr std::size_t kMaxTurns = 2;  // 0.8 MB of an HDL-64E
 
 /// [begin, end) of the beams of each scan.
 std::vector<std::pair<std::size_t, std::size_t>> spans_of_scans(std::span<const UnitBeam> beams) {
@@ -75,14 +75,14 @@ std::uint8_t coded(UnitField field, float value) {
   const auto v = static_cast<double>(value);
   if (field == UnitField::drop || field == UnitField::zero) return byte_of(256 * std::sqrt(v));
   if (field == UnitField::intensity) return byte_of(256 * v);
-  const double root = 127 * std::sqrt(std::fabs(v) / kMostFieldNoise_m);
+  const double root = 127 * std::sqrt(std::fabs(v) / kMaxFieldNoise_m);
   return byte_of(128.5 + (v < 0 ? -root : root));
 }
 
 /// What the range of a beam has beside the model's; not told where they mean other surfaces.
 float noise_m_of(const UnitBeam& beam) {
   const float noise_m = beam.range_m - beam.expected_m;
-  const bool told = beam.hit && std::fabs(noise_m) < static_cast<float>(kMostFieldNoise_m);
+  const bool told = beam.hit && std::fabs(noise_m) < static_cast<float>(kMaxFieldNoise_m);
   return told ? noise_m : kUntold;
 }
 
@@ -103,7 +103,7 @@ float number_of(UnitField field, const UnitBeam& beam, std::size_t i, const Beam
 UnitFields fit_unit_fields(std::span<const UnitBeam> beams, const UnitPattern& pattern,
                            std::span<const double> ring_noise_m, const BeamShares& shares) {
   const auto spans = spans_of_scans(beams);
-  const std::size_t turns = std::min(kMostTurns, spans.size());
+  const std::size_t turns = std::min(kMaxTurns, spans.size());
   const std::size_t rings = pattern.rings, columns = pattern.columns;
   UnitFields fields;
   fields.turns = static_cast<std::uint32_t>(turns);

@@ -20,9 +20,9 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kLeastReturns = 10'000;
-constexpr std::size_t kLeastOfLaser = 500;  // else it has the levels of all
-constexpr std::size_t kLeastOfLevel = 100;  // that do not report zero
+constexpr std::size_t kMinReturns = 10'000;
+constexpr std::size_t kMinOfLaser = 500;  // else it has the levels of all
+constexpr std::size_t kMinOfLevel = 100;  // that do not report zero
 /// Parts of the expected intensities of a laser, and of the levels of all: finer where it is dark,
 /// since zeros are there.
 constexpr double kLaserParts[] = {0, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.97, 1};
@@ -50,10 +50,10 @@ std::vector<KnownReturn> known_returns(std::span<const UnitBeam> beams, std::siz
 
 /// The step that all values are multiples of; 0: there is none.
 double step_of(std::vector<float> values) {
-  constexpr std::size_t kMostSteps = 4096;
+  constexpr std::size_t kMaxSteps = 4096;
   std::ranges::sort(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
-  if (values.size() < 2 || values.size() > kMostSteps) return 0;
+  if (values.size() < 2 || values.size() > kMaxSteps) return 0;
   double step = 1e9;
   for (std::size_t i = 1; i < values.size(); ++i)
     step = std::min(step, static_cast<double>(values[i]) - static_cast<double>(values[i - 1]));
@@ -106,7 +106,7 @@ void fit_lasers(std::span<const KnownReturn> known, std::size_t rings, UnitInten
   const PartMeans usual = means_of_parts(all);
   unit.ring_nodes = usual.expected.size();
   for (auto& pairs : of_ring) {
-    const PartMeans means = pairs.size() < kLeastOfLaser ? usual : means_of_parts(pairs);
+    const PartMeans means = pairs.size() < kMinOfLaser ? usual : means_of_parts(pairs);
     unit.ring_expected.insert(unit.ring_expected.end(), means.expected.begin(),
                               means.expected.end());
     unit.ring_level.insert(unit.ring_level.end(), means.measured.begin(), means.measured.end());
@@ -173,7 +173,7 @@ void fit_reported(std::span<const KnownReturn> known, const LevelParts& parts,
   for (std::size_t k = 0; k < parts.size(); ++k) {
     std::vector<double> values = reported_values(known, parts.part(k));
     // A level with too few has what the one before it has.
-    if (values.size() < kLeastOfLevel && k > 0) {
+    if (values.size() < kMinOfLevel && k > 0) {
       for (std::size_t n = 0; n < kTextureNodes; ++n)
         unit.reported.push_back(unit.reported[unit.reported.size() - kTextureNodes]);
       continue;
@@ -227,7 +227,7 @@ std::vector<float> zero_shares(std::span<const UnitBeam> beams, std::span<const 
 
 std::optional<IntensityFit> fit_unit_intensity(std::span<const UnitBeam> beams, std::size_t rings) {
   const std::vector<KnownReturn> known = known_returns(beams, rings);
-  if (known.size() < kLeastReturns) return std::nullopt;
+  if (known.size() < kMinReturns) return std::nullopt;
   std::vector<float> measured;
   measured.reserve(known.size());
   for (const KnownReturn& one : known) measured.push_back(one.measured);

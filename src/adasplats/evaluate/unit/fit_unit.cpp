@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kOneSurface_m = 0.3F;  // as on_one_surface()
 constexpr float kSmooth_m = 0.02F;     // second difference of the model: no edge, no bend
-constexpr std::size_t kLeastOfRing = 300;
+constexpr std::size_t kMinOfRing = 300;
 /// The middle half of second differences of white noise has this mean (see features.cpp).
 constexpr double kMiddleHalf = 0.6933 * 2.449489742783178;
 
@@ -59,7 +59,7 @@ std::vector<double> fit_ring_noise_m(std::span<const UnitBeam> beams, std::size_
   std::vector<double> noise_m(rings, kNaN);
   std::vector<double> known;
   for (std::size_t ring = 0; ring < rings; ++ring) {
-    if (measured[ring].size() < kLeastOfRing) continue;
+    if (measured[ring].size() < kMinOfRing) continue;
     const double all_m = noise_of_second_differences(measured[ring]);
     const double of_model_m = noise_of_second_differences(modelled[ring]);
     noise_m[ring] =
@@ -74,13 +74,13 @@ std::vector<double> fit_ring_noise_m(std::span<const UnitBeam> beams, std::size_
 }
 
 std::optional<double> fit_max_range_m(std::span<const UnitBeam> beams) {
-  constexpr std::size_t kLeastBeyond = 200;
+  constexpr std::size_t kMinBeyond = 200;
   float farthest_m = 0;
   for (const UnitBeam& beam : beams)
     if (beam.returned()) farthest_m = std::max(farthest_m, beam.range_m);
   const auto beyond = static_cast<std::size_t>(std::ranges::count_if(
       beams, [&](const UnitBeam& beam) { return beam.hit && beam.expected_m > farthest_m + 1; }));
-  if (beyond < kLeastBeyond) return std::nullopt;
+  if (beyond < kMinBeyond) return std::nullopt;
   return std::ceil(static_cast<double>(farthest_m) * 10 - 1e-6) / 10;
 }
 
@@ -99,7 +99,7 @@ UnitFit fit_unit(std::span<const UnitBeam> beams, const UnitPattern& pattern) {
         "intensities: fewer than 10,000 returns with an intensity meet the model where it has "
         "one, or all are alike");
   std::optional<DropFit> drop = fit_unit_drop(beams, fit.max_range_m.value_or(pattern.max_range_m));
-  if (places_of(beams) < kLeastBlockedPlaces)
+  if (places_of(beams) < kMinBlockedPlaces)
     fit.not_told.emplace_back(
         "the vehicle's body, and directions that it blocks: the scans are from fewer than three "
         "places 2 m apart");

@@ -75,7 +75,7 @@ UnitFields fit_unit_fields(std::span<const UnitBeam> beams, const UnitPattern& p
 
 /// What is in the beams' way in the sensor's own frame: half degrees of a ring in which beams
 /// return from within 4 m, half a metre and more before the model or where it has nothing, from at
-/// least kLeastBlockedPlaces places, half of those that fired there, and from one range to 0.2 m.
+/// least kMinBlockedPlaces places, half of those that fired there, and from one range to 0.2 m.
 /// None where the beams are from fewer places.
 std::optional<VehicleBody> fit_vehicle_body(std::span<const UnitBeam> beams);
 

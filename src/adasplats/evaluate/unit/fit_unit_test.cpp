@@ -178,7 +178,7 @@ TEST_F(FitUnit, FindsWhereBeamsAreLost) {
   const auto drop = fit_unit_drop(beams_, 50);
   ASSERT_TRUE(drop.has_value());
   // A tenth of the edges has lost its neighbours anyhow, and runs are longer there.
-  ASSERT_EQ(drop->model.edge_runs.size(), kMostEdgeRun);
+  ASSERT_EQ(drop->model.edge_runs.size(), kMaxEdgeRun);
   EXPECT_NEAR(drop->model.edge_runs[0], kLostAtEdge * (1 - 2 * kLostShare), 0.04);
   EXPECT_NEAR(drop_probability(drop->model, {20, 1, 0.5F, {}}), kLostShare, 0.03);
   for (std::size_t i = 0; i < beams_.size(); ++i) {

@@ -40,9 +40,9 @@ DeviceBuffer<std::uint32_t> extent_of(const Vec3f* points, std::size_t count, cu
       6, stream, "find the extent of points",
       [none, any, to = extent.data()] __device__(std::uint64_t i) { to[i] = i < 3 ? none : any; });
   if (count == 0) return extent;
-  constexpr std::uint64_t kMostBlocks = 1024;
+  constexpr std::uint64_t kMaxBlocks = 1024;
   const std::uint64_t blocks = (count + kBlockThreads - 1) / kBlockThreads;
-  extent_kernel<<<static_cast<unsigned>(std::min(blocks, kMostBlocks)), kBlockThreads, 0, stream>>>(
+  extent_kernel<<<static_cast<unsigned>(std::min(blocks, kMaxBlocks)), kBlockThreads, 0, stream>>>(
       points, count, extent.data());
   cuda_check(cudaGetLastError(), "find the extent of points");
   return extent;

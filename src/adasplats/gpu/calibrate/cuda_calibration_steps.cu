@@ -4,7 +4,7 @@
 #include "adasplats/core/error.h"
 #include "adasplats/gpu/base/device.h"
 #include "adasplats/gpu/calibrate/gpu_calibrate.h"
-#include "adasplats/gpu/neighbors/gpu_place.cuh"
+#include "adasplats/gpu/neighbors/gpu_backend.cuh"
 
 namespace adasplats {
 
@@ -13,7 +13,7 @@ std::unique_ptr<CalibrationSteps> make_cuda_calibration_steps(int device) {
   if (found.devices.empty())
     throw Error(ErrorKind::unavailable, "cannot calibrate on a GPU: " + found.reason);
   const gpu::DeviceGuard guard(device);
-  return std::make_unique<CalibrationStepsOn<gpu::GpuPlace>>(device);
+  return std::make_unique<CalibrationStepsOn<gpu::GpuBackend>>(device);
 }
 
 }  // namespace adasplats

@@ -115,8 +115,8 @@ std::size_t compare_steps(const Drive& drive, PointSet set, const RowOptions& op
 
 RowOptions row_options() {
   RowOptions options;
-  options.most_points = 60;
-  options.most_weight = 30;
+  options.max_points = 60;
+  options.max_weight = 30;
   options.width_m = 0.1;
   return options;
 }

@@ -31,7 +31,7 @@ class DeviceCover {
   /// `seeds`: device memory, one a point of `index` in its order, copied; without a radius: not
   /// there. `unchecked`: flags of seeds that have options.unchecked_sectors (null: none). Waits
   /// for the stream.
-  /// Errors: usage (more neighbours than DevicePointIndex::kMostNeighbors).
+  /// Errors: usage (more neighbours than DevicePointIndex::kMaxNeighbors).
   DeviceCover(const Disk* seeds, const std::uint8_t* unchecked, const DevicePointIndex& index,
               const CoverOptions& options, cudaStream_t stream);
 

@@ -324,7 +324,7 @@ TEST_F(ConsistentOnGpu, PiecesOfAPlaceAreTheSame) {
   std::vector<std::uint32_t> near, far;
   for (std::uint32_t i = 0; i < room.size(); ++i)
     (room.positions[i].x < 2.5F ? near : far).push_back(i);
-  WholePlace whole;
+  GlobalContext whole;
   whole.box = curve_box_of(room.positions, executor);
   whole.typical = {0.01, 0.05};
   whole.rays = 5'000'000;

@@ -11,7 +11,7 @@ namespace adasplats::gpu {
 
 /// Private to gpu/: adaptive_planes() in device memory, the same bits. `index` holds the cells in
 /// their order.
-/// Errors: usage (scales above DevicePointIndex::kMostNeighbors).
+/// Errors: usage (scales above DevicePointIndex::kMaxNeighbors).
 DeviceBuffer<LocalPlane> planes_on_device(const CellsView& cells, const DevicePointIndex& index,
                                           const AdaptivePlaneOptions& options, cudaStream_t stream);
 

@@ -17,8 +17,8 @@
 namespace adasplats::gpu {
 namespace {
 
-constexpr std::size_t kMostRays = std::size_t{1} << 22;  // at once
-constexpr int kPostponeInCheck = 10;                     // as for scans, cuda_scene.cu
+constexpr std::size_t kMaxRays = std::size_t{1} << 22;  // at once
+constexpr int kPostponeInCheck = 10;                    // as for scans, cuda_scene.cu
 
 /// Adds to a number that is not negative, or to one that wraps: the same bits.
 __device__ void add_to(std::int64_t& sum, std::int64_t value) {
@@ -34,7 +34,7 @@ void cast_nearest(const Disk* disks, std::size_t count, const MeasuredPoints& po
   const std::size_t wanted = numbers.size();
   if (wanted == 0) return;
   const std::unique_ptr<DeviceScene> scene = make_cuda_scene_of_device_disks(disks, count, stream);
-  const std::size_t at_once = std::min(wanted, kMostRays);
+  const std::size_t at_once = std::min(wanted, kMaxRays);
   const DeviceBuffer<Ray> rays(at_once, stream);
   const DeviceBuffer<Hit> hits(at_once, stream);
   RaySource source;
@@ -76,7 +76,7 @@ struct EvidenceOfRay {
 void count_rays(const DeviceRays& rays, const Disk* disks, const WideTree<LeafDisk>& tree,
                 const EvidenceOptions& options, EvidenceView counts, cudaStream_t stream) {
   const bool nowhere = rays.ends() == RayEnds::nowhere;
-  const float beyond_m = nowhere ? 0 : options.most_margin_m();
+  const float beyond_m = nowhere ? 0 : options.max_margin_m();
   const std::span<const std::uint32_t> cast = rays.points_of(options.parts, options.part);
   for_each(cast.size(), stream, "count rays",
            [disks, counts, points = rays.measured(), options, nowhere, beyond_m, tree = tree.view(),
@@ -103,20 +103,20 @@ bool any_present(const Disk* disks, std::size_t count, cudaStream_t stream) {
 }
 
 DeviceBuffer<std::uint32_t> points_of_rays(const MeasuredPoints& points, std::size_t count,
-                                           double least_range_m, cudaStream_t stream) {
+                                           double min_range_m, cudaStream_t stream) {
   DeviceBuffer<std::uint64_t> keys(count, stream);
   for_each(count, stream, "order rays", [points, to = keys.data()] __device__(std::uint64_t i) {
     to[i] = measured_ray_key(points.sensors[i], points.positions[i]);
   });
   const DeviceBuffer<std::uint32_t> order = sort_order(keys, stream);
   DeviceBuffer<std::uint8_t> has_ray(count, stream);
-  for_each(count, stream, "order rays",
-           [points, least_range_m, from = order.data(),
-            to = has_ray.data()] __device__(std::uint64_t i) {
-             const std::uint32_t k = from[i];
-             to[i] = is_beam(points.kind(k)) &&
-                     has_measured_ray(points.sensors[k], points.positions[k], least_range_m);
-           });
+  for_each(
+      count, stream, "order rays",
+      [points, min_range_m, from = order.data(), to = has_ray.data()] __device__(std::uint64_t i) {
+        const std::uint32_t k = from[i];
+        to[i] = is_beam(points.kind(k)) &&
+                has_measured_ray(points.sensors[k], points.positions[k], min_range_m);
+      });
   DeviceBuffer<std::uint32_t> numbers = flagged(has_ray.data(), count, stream);
   for_each(numbers.size(), stream, "order rays",
            [from = order.data(), to = numbers.data()] __device__(std::uint64_t i) {
@@ -140,13 +140,13 @@ DeviceBuffer<std::uint32_t> points_of_part(const MeasuredPoints& points,
 
 }  // namespace
 
-DeviceRays::DeviceRays(const MeasuredPoints& points, std::size_t count, double least_range_m,
+DeviceRays::DeviceRays(const MeasuredPoints& points, std::size_t count, double min_range_m,
                        cudaStream_t stream, RayEnds ends)
     : measured_(points),
       point_count_(count),
       stream_(stream),
       ends_(ends),
-      numbers_(points_of_rays(points, count, least_range_m, stream)),
+      numbers_(points_of_rays(points, count, min_range_m, stream)),
       by_part_(numbers_.size(), stream) {
   for (std::uint32_t part = 0; part < kRayParts; ++part) {
     const DeviceBuffer<std::uint32_t> own = points_of_part(measured_, numbers_, part, stream_);

@@ -30,8 +30,8 @@ struct DeviceEvidence {
 class DeviceRays {
  public:
   /// `points` (device memory, with sensors) must outlive the rays. Points nearer to their sensor
-  /// than `least_range_m` have no ray. Waits for the stream.
-  DeviceRays(const MeasuredPoints& points, std::size_t count, double least_range_m,
+  /// than `min_range_m` have no ray. Waits for the stream.
+  DeviceRays(const MeasuredPoints& points, std::size_t count, double min_range_m,
              cudaStream_t stream, RayEnds ends = RayEnds::at_surfaces);
 
   std::size_t size() const { return numbers_.size(); }

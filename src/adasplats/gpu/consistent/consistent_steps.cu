@@ -44,9 +44,9 @@ class ConsistentOnGpu : public RaysOnGpu {
                         const DeviceBuffer<float>& units_m) const {
     return gpu::median_spacing(planes, units_m, stream());
   }
-  DeviceRays rays(const DeviceCloud& cloud, const MeasuredPoints& points, double least_range_m,
+  DeviceRays rays(const DeviceCloud& cloud, const MeasuredPoints& points, double min_range_m,
                   RayEnds ends) const {
-    return {points, cloud.size(), least_range_m, stream(), ends};
+    return {points, cloud.size(), min_range_m, stream(), ends};
   }
   DeviceEvidence evidence(const DeviceBuffer<Disk>& disks, std::span<const DeviceRays* const> rays,
                           const EvidenceOptions& options) const {
@@ -89,7 +89,7 @@ Reflectances measure_reflectances(int device, const std::vector<Disk>& disks,
   const DeviceCloud copy = copy_to_device(cloud, place.stream());
   const MeasuredPoints points = {copy.positions.data(), copy.sensor_positions.data(),
                                  data_or_null(copy.origin_kinds)};
-  const DeviceRays rays(points, copy.size(), kLeastReflectanceRange_m, place.stream());
+  const DeviceRays rays(points, copy.size(), kMinReflectanceRange_m, place.stream());
   const RaysWithIntensities<RaysOnGpu> measured = {&rays, &copy.intensities};
   return ReflectancesOn<RaysOnGpu>(place, disks, fallback).run({&measured, 1});
 }

@@ -6,16 +6,16 @@
 #include <utility>
 
 #include "adasplats/gpu/consistent/consistent_rays.h"
-#include "adasplats/gpu/neighbors/gpu_place.cuh"
+#include "adasplats/gpu/neighbors/gpu_backend.cuh"
 #include "adasplats/splats/reflectance/element_steps.h"
 
 namespace adasplats::gpu {
 
-/// Private to gpu/: a GpuPlace that casts measured rays, as RaysOnCpu.
-class RaysOnGpu : public GpuPlace {
+/// Private to gpu/: a GpuBackend that casts measured rays, as RaysOnCpu.
+class RaysOnGpu : public GpuBackend {
  public:
   using Rays = DeviceRays;
-  using GpuPlace::GpuPlace;
+  using GpuBackend::GpuBackend;
 
   void observe(const DeviceBuffer<Disk>& disks,
                std::span<const std::pair<const DeviceRays*, ObserveRay>> parts) const {

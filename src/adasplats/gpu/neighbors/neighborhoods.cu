@@ -77,7 +77,7 @@ DevicePointIndex::DevicePointIndex(const Vec3f* points, std::size_t count, cudaS
   copy_coordinates(points, count, padded, coordinates_.data(), stream);
 
   // Levels until one group of boxes is left, each padded to whole groups.
-  std::uint32_t sizes[PointIndexView::kMostLevels] = {};
+  std::uint32_t sizes[PointIndexView::kMaxLevels] = {};
   std::uint32_t boxes = 0;
   for (std::uint32_t size = view_.leaves;; size = groups_over(size)) {
     sizes[view_.levels] = size;
@@ -103,10 +103,10 @@ DevicePointIndex::DevicePointIndex(const Vec3f* points, std::size_t count, cudaS
 }
 
 void check_neighbors(std::uint64_t neighbors) {
-  if (neighbors <= DevicePointIndex::kMostNeighbors) return;
+  if (neighbors <= DevicePointIndex::kMaxNeighbors) return;
   throw Error(ErrorKind::usage, "neighbourhoods of " + std::to_string(neighbors) +
                                     " points are more than a GPU takes (" +
-                                    std::to_string(DevicePointIndex::kMostNeighbors) +
+                                    std::to_string(DevicePointIndex::kMaxNeighbors) +
                                     "); use `device` cpu");
 }
 

@@ -36,7 +36,7 @@ namespace search {
 
 /// Pending nodes of one warp: the squared distance of their box << 32 | level << 27 | group of
 /// boxes. A node is taken from the stack before its children go there.
-inline constexpr std::uint32_t kStackSize = 32 * PointIndexView::kMostLevels;
+inline constexpr std::uint32_t kStackSize = 32 * PointIndexView::kMaxLevels;
 inline constexpr std::uint32_t kGroupBits = 27;
 
 __device__ inline Vec3f point_of(const PointIndexView& index, std::uint32_t rank) {
@@ -267,7 +267,7 @@ __global__ void __launch_bounds__(kWarpsPerBlock* kWarpLanes)
 template <std::uint32_t kMost, bool kAscending = false, class Limit, class Body>
 void for_each_neighborhood(const DevicePointIndex& index, cudaStream_t stream, const char* doing,
                            Limit limit, Body body) {
-  static_assert(kMost > 0 && kMost <= DevicePointIndex::kMostNeighbors);
+  static_assert(kMost > 0 && kMost <= DevicePointIndex::kMaxNeighbors);
   if (index.size() == 0) return;
   const auto blocks =
       static_cast<unsigned>((index.size() + search::kWarpsPerBlock - 1) / search::kWarpsPerBlock);
@@ -277,7 +277,7 @@ void for_each_neighborhood(const DevicePointIndex& index, cudaStream_t stream, c
 }
 
 /// The same for counts that are known at run time only: `most` is their largest.
-/// Errors: usage (more than DevicePointIndex::kMostNeighbors).
+/// Errors: usage (more than DevicePointIndex::kMaxNeighbors).
 template <bool kAscending = false, class Limit, class Body>
 void for_each_neighborhood_of(std::uint64_t most, const DevicePointIndex& index,
                               cudaStream_t stream, const char* doing, Limit limit, Body body) {
@@ -287,8 +287,8 @@ void for_each_neighborhood_of(std::uint64_t most, const DevicePointIndex& index,
   } else if (most <= 160) {
     for_each_neighborhood<160, kAscending>(index, stream, doing, limit, body);
   } else {
-    for_each_neighborhood<DevicePointIndex::kMostNeighbors, kAscending>(index, stream, doing, limit,
-                                                                        body);
+    for_each_neighborhood<DevicePointIndex::kMaxNeighbors, kAscending>(index, stream, doing, limit,
+                                                                       body);
   }
 }
 

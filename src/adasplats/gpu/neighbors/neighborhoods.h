@@ -14,13 +14,13 @@ namespace adasplats::gpu {
 /// that have the same parent; absent ones are inverted and infinitely far.
 struct PointIndexView {
   static constexpr std::uint32_t kChildren = 32;  ///< of a node, and points of a leaf
-  static constexpr std::uint32_t kMostLevels = 6;
+  static constexpr std::uint32_t kMaxLevels = 6;
 
   const float* coordinates[3] = {};  ///< by rank, padded to whole leaves with infinity
   const float* low[3] = {};          ///< of the boxes of all levels
   const float* high[3] = {};
-  std::uint32_t begins[kMostLevels] = {};  ///< where a level's boxes begin; level 0 are the leaves
-  std::uint32_t levels = 0;                ///< the last has one group of boxes
+  std::uint32_t begins[kMaxLevels] = {};  ///< where a level's boxes begin; level 0 are the leaves
+  std::uint32_t levels = 0;               ///< the last has one group of boxes
   std::uint32_t leaves = 0;
   std::uint32_t size = 0;
 };
@@ -32,7 +32,7 @@ struct PointIndexView {
 class DevicePointIndex {
  public:
   /// The longest neighbourhood that can be searched.
-  static constexpr std::uint32_t kMostNeighbors = 512;
+  static constexpr std::uint32_t kMaxNeighbors = 512;
 
   /// `points`: device memory, copied. Errors: unavailable (2^31 points or more).
   DevicePointIndex(const Vec3f* points, std::size_t count, cudaStream_t stream);
@@ -46,7 +46,7 @@ class DevicePointIndex {
   DeviceBuffer<float> boxes_;
 };
 
-/// Refuses neighbourhoods of more points than DevicePointIndex::kMostNeighbors.
+/// Refuses neighbourhoods of more points than DevicePointIndex::kMaxNeighbors.
 /// Errors: usage, with what to do.
 void check_neighbors(std::uint64_t neighbors);
 

@@ -177,11 +177,11 @@ class OptixScene final : public DeviceScene {
   /// often.
   void cast_to_host(const RaySource& source, std::uint64_t count, std::uint32_t depth, Hit* hits,
                     cudaStream_t stream) const {
-    constexpr std::uint64_t kMostHits = std::uint64_t{1} << 24U;  // 128 MB
+    constexpr std::uint64_t kMaxHits = std::uint64_t{1} << 24U;  // 128 MB
     // Whole scans: within one, hits may come in another order than rays.
     const std::uint64_t scan = source.order == nullptr ? 1 : source.firing_count;
     const std::uint64_t part =
-        std::min(count, std::max<std::uint64_t>(kMostHits / depth / scan, 1) * scan);
+        std::min(count, std::max<std::uint64_t>(kMaxHits / depth / scan, 1) * scan);
     const DeviceBuffer<Hit> lists(part * depth, stream);
     for (std::uint64_t done = 0; done < count; done += part) {
       const std::uint64_t rays = std::min(part, count - done);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <vector>
 
-#include "adasplats/gpu/neighbors/gpu_place.cuh"
+#include "adasplats/gpu/neighbors/gpu_backend.cuh"
 #include "adasplats/gpu/neighbors/neighborhoods.h"
 #include "adasplats/gpu/paper/paper_cuda_steps.h"
 #include "adasplats/gpu/paper/paper_generation.h"
@@ -14,10 +14,10 @@ namespace adasplats::gpu {
 namespace {
 
 /// What the steps of the paper's methods need of a GPU.
-class PaperOnGpu : public GpuPlace {
+class PaperOnGpu : public GpuBackend {
  public:
   using Generation = DeviceGeneration;
-  using GpuPlace::GpuPlace;
+  using GpuBackend::GpuBackend;
 
   DeviceBuffer<SemanticGroup> copied(const std::vector<SemanticGroup>& groups) const {
     return {std::span(groups), stream()};

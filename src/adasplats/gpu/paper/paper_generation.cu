@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "adasplats/gpu/neighbors/gpu_place.cuh"
+#include "adasplats/gpu/neighbors/gpu_backend.cuh"
 #include "adasplats/gpu/neighbors/neighborhoods_lists.cuh"
 #include "adasplats/gpu/paper/paper_generation.h"
 #include "adasplats/gpu/paper/paper_shapes.h"
@@ -131,7 +131,7 @@ void begin(std::string_view name, cudaStream_t stream, StepSink step) {
 
 }  // namespace
 
-DeviceGeneration generate_splats(const GpuPlace& place, const DeviceCloud& cloud,
+DeviceGeneration generate_splats(const GpuBackend& place, const DeviceCloud& cloud,
                                  const DeviceBuffer<SemanticGroup>& groups,
                                  const PaperOptions& options, StepSink step) {
   const cudaStream_t stream = place.stream();

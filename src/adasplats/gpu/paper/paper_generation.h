@@ -10,7 +10,7 @@
 
 namespace adasplats::gpu {
 
-class GpuPlace;
+class GpuBackend;
 
 /// Private to gpu/: a Generation in device memory.
 struct DeviceGeneration {
@@ -23,7 +23,7 @@ struct DeviceGeneration {
 
 /// What generate_splats() gives, the same bits. `groups` are empty or one a point of the cloud.
 /// Errors: usage (neighbourhoods too large for a GPU).
-DeviceGeneration generate_splats(const GpuPlace& place, const DeviceCloud& cloud,
+DeviceGeneration generate_splats(const GpuBackend& place, const DeviceCloud& cloud,
                                  const DeviceBuffer<SemanticGroup>& groups,
                                  const PaperOptions& options, StepSink step);
 

@@ -107,8 +107,8 @@ struct Fill {
 };
 
 /// How many new points sparse splats can make at most.
-std::size_t most_new_points(const DeviceBuffer<std::uint32_t>& densities, double wanted,
-                            cudaStream_t stream) {
+std::size_t max_new_points(const DeviceBuffer<std::uint32_t>& densities, double wanted,
+                           cudaStream_t stream) {
   DeviceBuffer<std::uint32_t> counts(densities.size(), stream);
   for_each(densities.size(), stream, "resample splats",
            [wanted, from = densities.data(), to = counts.data()] __device__(std::uint64_t i) {
@@ -127,7 +127,7 @@ NewPoints interpolate_points(const Centers& centers, double radius_m, const Pape
   const auto radius = static_cast<float>(radius_m);
   const DeviceBuffer<std::uint32_t> densities = count_within(index, radius, stream);
   const double wanted = options.resample_density * mean_density(densities, centers.groups, stream);
-  const std::size_t most = most_new_points(densities, wanted, stream);
+  const std::size_t most = max_new_points(densities, wanted, stream);
   NewPoints made{DeviceBuffer<Vec3f>(most, stream), DeviceBuffer<std::uint32_t>(most, stream)};
   DeviceBuffer<std::uint32_t> count(1, stream);
   count.fill_bytes(0);

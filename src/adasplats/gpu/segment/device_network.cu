@@ -11,9 +11,9 @@
 namespace adasplats::gpu {
 namespace {
 
-constexpr std::uint32_t kConvolveWarps = 4;                  // a block
-constexpr std::uint32_t kAtOnce = 16;                        // points of a kernel
-constexpr std::size_t kMostWeighted = std::size_t{1} << 26;  // numbers in memory at a time
+constexpr std::uint32_t kConvolveWarps = 4;                 // a block
+constexpr std::uint32_t kAtOnce = 16;                       // points of a kernel
+constexpr std::size_t kMaxWeighted = std::size_t{1} << 26;  // numbers in memory at a time
 
 /// Neighbours of a layer's points.
 struct ReachView {
@@ -242,7 +242,7 @@ class DeviceRun {
     DeviceValues result = room_for(layer, weight.columns);
     const std::size_t points = level(layer.level).points.size();
     const std::size_t at_once =
-        std::min(points, std::max<std::size_t>(1, kMostWeighted / weight.rows));
+        std::min(points, std::max<std::size_t>(1, kMaxWeighted / weight.rows));
     const DeviceBuffer<float> weighted(at_once * weight.rows, stream_);
     for (std::size_t first = 0; first < points; first += at_once) {
       const auto count = static_cast<std::uint32_t>(std::min(at_once, points - first));

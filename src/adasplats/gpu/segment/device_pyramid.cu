@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kKeyBits = 3 * CellGrid::kAxisBits;
 constexpr std::uint32_t kSearchWarps = 4;  // a block
-constexpr std::size_t kMostShared = 48 * 1024;
+constexpr std::size_t kMaxShared = 48 * 1024;
 
 /// A grid with room for all points within 2^20 cells of the origin.
 CellGrid wide_grid(float cell_m) {
@@ -120,7 +120,7 @@ __global__ void __launch_bounds__(kSearchWarps* kWarpLanes)
 
 /// How many cells a ball of the radius touches, at most: their middles are within half a diagonal
 /// of it, and a ball with another half holds them whole.
-std::uint32_t most_cells(float radius_m, float cell_m) {
+std::uint32_t max_cells(float radius_m, float cell_m) {
   const double reach = static_cast<double>(radius_m) / static_cast<double>(cell_m) + std::sqrt(3.0);
   return static_cast<std::uint32_t>(std::ceil(4.0 / 3 * 3.14159265 * reach * reach * reach));
 }
@@ -133,9 +133,9 @@ DeviceBuffer<std::uint32_t> find_neighbors(const DeviceBuffer<Vec3f>& queries,
   DeviceBuffer<std::uint64_t> keys = keys_of(supports, grid, stream);
   const DeviceBuffer<std::uint32_t> order = sort_order(keys, stream, 0, kKeyBits);
   const auto count = static_cast<std::uint32_t>(queries.size());
-  const std::uint32_t capacity = most_cells(radius_m, cell_m);
+  const std::uint32_t capacity = max_cells(radius_m, cell_m);
   const std::size_t shared = std::size_t{kSearchWarps} * capacity * sizeof(Candidate);
-  if (shared > kMostShared)
+  if (shared > kMaxShared)
     throw Error(ErrorKind::unavailable,
                 "the network's neighbourhoods are too wide for a GPU; use "
                 "`device` cpu");

@@ -207,7 +207,7 @@ void queue_reports(const FiringRules& rules, const LaunchPoses& poses, const Hit
   } else if (rules.beam.sub_rays <= kFewSubRays) {
     report_kernel<kFewSubRays><<<grid, kThreads, 0, stream>>>(rules, poses, hits, space);
   } else {
-    report_kernel<static_cast<int>(kMostSubRays)>
+    report_kernel<static_cast<int>(kMaxSubRays)>
         <<<grid, kThreads, 0, stream>>>(rules, poses, hits, space);
   }
   cuda_check(cudaGetLastError(), "make returns on the GPU");

@@ -11,7 +11,7 @@ namespace adasplats::gpu {
 namespace {
 
 constexpr unsigned kObjectBlock = 64;
-constexpr int kMostObjectHits = 64;
+constexpr int kMaxObjectHits = 64;
 
 /// How far an object is worth looking at for hits within `reach_m`, in its geometry's unit: some
 /// more than that, as both are rounded.
@@ -135,7 +135,7 @@ void WorldObjects::add_hits(const RaySource& source, std::uint64_t rays, int dep
     add_object_hits_kernel<FewNearestHits<5>>
         <<<blocks, kObjectBlock, 0, stream>>>(world, source, rays, depth, hits);
   } else {
-    add_object_hits_kernel<NearestHits<kMostObjectHits>>
+    add_object_hits_kernel<NearestHits<kMaxObjectHits>>
         <<<blocks, kObjectBlock, 0, stream>>>(world, source, rays, depth, hits);
   }
   cuda_check(cudaGetLastError(), "cast objects on the GPU");

@@ -19,7 +19,7 @@ namespace gpu {
 namespace {
 
 constexpr std::size_t kLanes = 3;  // launches under way on each device
-constexpr std::size_t kMostScansAtOnce = 256;
+constexpr std::size_t kMaxScansAtOnce = 256;
 
 /// Reference from sensor at all knots, in the order of BatchPoses.
 void upload_frame_poses(std::span<const ScanMotion> motions, PinnedBuffer<ScanPose>& poses,
@@ -82,9 +82,9 @@ class PinnedPool : public std::enable_shared_from_this<PinnedPool> {
     return buffer;
   }
   void give_back(Buffer buffer) {
-    constexpr std::size_t kMostFree = 2 * kLanes;
+    constexpr std::size_t kMaxFree = 2 * kLanes;
     const std::lock_guard lock(mutex_);
-    if (free_.size() < kMostFree) free_.push_back(std::move(buffer));
+    if (free_.size() < kMaxFree) free_.push_back(std::move(buffer));
   }
 
   std::mutex mutex_;
@@ -206,7 +206,7 @@ GpuReporter::~GpuReporter() = default;
 std::size_t GpuReporter::scans_at_once(std::size_t scans, std::size_t lanes) const {
   const std::size_t work = firings_ * std::max(hits_a_firing_, returns_a_firing_);
   const std::size_t most =
-      std::clamp<std::size_t>(gpu::kScanRaysAtOnce / work, 1, gpu::kMostScansAtOnce);
+      std::clamp<std::size_t>(gpu::kScanRaysAtOnce / work, 1, gpu::kMaxScansAtOnce);
   return std::clamp<std::size_t>((scans + lanes - 1) / lanes, 1, most);
 }
 

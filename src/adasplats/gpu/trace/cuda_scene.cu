@@ -15,15 +15,15 @@ namespace {
 /// Small blocks: a long ray holds back few others.
 constexpr unsigned kCastBlock = 64;
 /// On an SM, which bounds the registers of a ray.
-constexpr unsigned kLeastBlocks = 18;
+constexpr unsigned kMinBlocks = 18;
 /// Of a warp's rays, so many percent must have primitives to test, or they wait. Measured on an
 /// H100: 10 traces 1.3 times as many scans as 0.
 constexpr int kPostpone = 10;
-constexpr int kMostHits = 64;
+constexpr int kMaxHits = 64;
 
 /// The same for launches of fewer rays than kSmallLaunch: more registers make each ray faster, and
 /// so does waiting a little more often.
-constexpr unsigned kLeastBlocksOfSmall = 12;
+constexpr unsigned kMinBlocksOfSmall = 12;
 constexpr int kPostponeInSmall = 20;
 
 template <int kWait, unsigned kBlocks, Sensors kSensors>
@@ -50,10 +50,10 @@ template <Sensors kSensors>
 void launch_nearest(unsigned blocks, const TreesView& trees, const RaySource& source,
                     std::uint64_t count, Hit* hits, cudaStream_t stream) {
   if (count < kSmallLaunch) {
-    cast_nearest_kernel<kPostponeInSmall, kLeastBlocksOfSmall, kSensors>
+    cast_nearest_kernel<kPostponeInSmall, kMinBlocksOfSmall, kSensors>
         <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
   } else {
-    cast_nearest_kernel<kPostpone, kLeastBlocks, kSensors>
+    cast_nearest_kernel<kPostpone, kMinBlocks, kSensors>
         <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, hits);
   }
 }
@@ -103,9 +103,8 @@ class CudaScene final : public DeviceScene {
 void cast_trees(const TreesView& trees, const RaySource& source, std::uint64_t count, int depth,
                 Hit* hits, cudaStream_t stream) {
   // One grid holds 2^31 - 1 blocks.
-  constexpr std::uint64_t kMostBlocks = 0x7fffffffU;
-  if (count > kMostBlocks * kCastBlock)
-    throw Error(ErrorKind::data, "too many rays for one launch");
+  constexpr std::uint64_t kMaxBlocks = 0x7fffffffU;
+  if (count > kMaxBlocks * kCastBlock) throw Error(ErrorKind::data, "too many rays for one launch");
   if (count == 0) return;
   const auto blocks = static_cast<unsigned>((count + kCastBlock - 1) / kCastBlock);
   const bool still = source.first_poses == nullptr;
@@ -115,12 +114,12 @@ void cast_trees(const TreesView& trees, const RaySource& source, std::uint64_t c
     launch_nearest<Sensors::may_move>(blocks, trees, source, count, hits, stream);
   } else if (depth <= 5) {
     launch_few(depth, blocks, trees, source, count, hits, stream);
-  } else if (depth <= kMostHits) {
-    cast_hits_kernel<NearestHits<kMostHits>>
+  } else if (depth <= kMaxHits) {
+    cast_hits_kernel<NearestHits<kMaxHits>>
         <<<blocks, kCastBlock, 0, stream>>>(trees, source, count, depth, hits);
   } else {
     throw Error(ErrorKind::usage, std::to_string(depth) + " hits a ray; a GPU keeps " +
-                                      std::to_string(kMostHits) + " at most");
+                                      std::to_string(kMaxHits) + " at most");
   }
   cuda_check(cudaGetLastError(), "cast rays on the GPU");
 }

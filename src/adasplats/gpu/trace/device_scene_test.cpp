@@ -129,7 +129,7 @@ Vec3d random_unit(Random& random) {
 }
 
 /// Where a random scene lies and how large its primitives are.
-struct Place {
+struct Backend {
   std::uint64_t seed;
   Vec3d center;
   double half_m;
@@ -145,7 +145,7 @@ struct Place {
 };
 
 /// A fifth of the disks faces an axis exactly; a tenth is the same as the one before.
-std::vector<Disk> random_disks(const Place& place, std::size_t count) {
+std::vector<Disk> random_disks(const Backend& place, std::size_t count) {
   std::vector<Disk> disks;
   for (std::size_t i = 0; i < count; ++i) {
     Random random(place.seed, 0, i);
@@ -161,7 +161,7 @@ std::vector<Disk> random_disks(const Place& place, std::size_t count) {
 }
 
 /// Pairs of triangles with a common edge, some of them flat in an axis.
-TriangleMesh random_mesh(const Place& place, std::size_t count) {
+TriangleMesh random_mesh(const Backend& place, std::size_t count) {
   TriangleMesh mesh;
   for (std::uint32_t i = 0; 2 * i < count; ++i) {
     Random random(place.seed, 1, i);
@@ -192,7 +192,7 @@ std::vector<Disk> targets_of(const SceneView& scene) {
 }
 
 /// A ray of the i-th kind that traversals get wrong, at a target.
-Ray awkward_ray(std::size_t kind, const Disk& target, const Place& place, Random& random) {
+Ray awkward_ray(std::size_t kind, const Disk& target, const Backend& place, Random& random) {
   const Vec3d c = vec_cast<double>(target.center), n = vec_cast<double>(target.normal);
   const Vec3d in_plane = normalized(cross(n, random_unit(random)));
   const double r = static_cast<double>(target.radius);
@@ -232,7 +232,7 @@ Ray awkward_ray(std::size_t kind, const Disk& target, const Place& place, Random
   return ray;
 }
 
-std::vector<Ray> awkward_rays(const Place& place, const SceneView& scene, std::size_t count) {
+std::vector<Ray> awkward_rays(const Backend& place, const SceneView& scene, std::size_t count) {
   const std::vector<Disk> targets = targets_of(scene);
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < count; ++i) {
@@ -303,14 +303,14 @@ class ComparedScene : public DeviceScene {
 };
 
 constexpr std::array kPlaces = {
-    Place{1, {0, 0, 0}, 5, 0.05, 2},          // as a room
-    Place{2, {300, -200, 80}, 40, 0.02, 30},  // off the origin
-    Place{3, {0, 0, 0}, 200, 0.01, 100},      // sizes of four orders
-    Place{4, {0, 0, 0}, 0.05, 1e-3, 0.02},    // tiny
+    Backend{1, {0, 0, 0}, 5, 0.05, 2},          // as a room
+    Backend{2, {300, -200, 80}, 40, 0.02, 30},  // off the origin
+    Backend{3, {0, 0, 0}, 200, 0.01, 100},      // sizes of four orders
+    Backend{4, {0, 0, 0}, 0.05, 1e-3, 0.02},    // tiny
 };
 
 TEST_P(ComparedScene, DisksAreHitAsByBruteForce) {
-  for (const Place& place : kPlaces) {
+  for (const Backend& place : kPlaces) {
     SCOPED_TRACE("place " + std::to_string(place.seed));
     const auto disks = random_disks(place, 400);
     const SceneView scene = {disks, nullptr};
@@ -319,7 +319,7 @@ TEST_P(ComparedScene, DisksAreHitAsByBruteForce) {
 }
 
 TEST_P(ComparedScene, TrianglesAreHitAsByBruteForce) {
-  for (const Place& place : kPlaces) {
+  for (const Backend& place : kPlaces) {
     SCOPED_TRACE("place " + std::to_string(place.seed));
     const auto mesh = random_mesh(place, 400);
     const SceneView scene = {{}, &mesh};
@@ -328,7 +328,7 @@ TEST_P(ComparedScene, TrianglesAreHitAsByBruteForce) {
 }
 
 TEST_P(ComparedScene, DisksAndTrianglesTogetherAreHitAsByBruteForce) {
-  for (const Place& place : kPlaces) {
+  for (const Backend& place : kPlaces) {
     SCOPED_TRACE("place " + std::to_string(place.seed));
     const auto disks = random_disks(place, 201);
     const auto mesh = random_mesh(place, 200);
@@ -338,7 +338,7 @@ TEST_P(ComparedScene, DisksAndTrianglesTogetherAreHitAsByBruteForce) {
 }
 
 TEST_P(ComparedScene, AHundredThousandDisksAreHitAsByBruteForce) {
-  const Place place = {5, {10, 20, 30}, 50, 0.1, 1};
+  const Backend place = {5, {10, 20, 30}, 50, 0.1, 1};
   const auto disks = random_disks(place, 100'000);
   const SceneView scene = {disks, nullptr};
   expect_oracle(scene, awkward_rays(place, scene, 4'000));
@@ -347,7 +347,7 @@ TEST_P(ComparedScene, AHundredThousandDisksAreHitAsByBruteForce) {
 // Oracle: Embree, which is brute force bit for bit up to 1024 m. The margin of the boxes covers
 // rounding of any box test in single precision, OptiX's own, too.
 TEST_P(ComparedScene, AMillionRaysAreHitAsByEmbree) {
-  const Place place = {6, {0, 0, 0}, 60, 0.05, 1};
+  const Backend place = {6, {0, 0, 0}, 60, 0.05, 1};
   const auto disks = random_disks(place, 300'000);
   const SceneView scene = {disks, nullptr};
   const auto rays = awkward_rays(place, scene, 1'000'000);

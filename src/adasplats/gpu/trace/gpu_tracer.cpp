@@ -25,14 +25,14 @@ struct Slot {
   DeviceBuffer<Hit> device_hits;
   std::size_t first = 0, count = 0;
 
-  void reserve(std::size_t most_rays, std::size_t most_hits) {
-    if (rays.size() < most_rays) {
-      rays = PinnedBuffer<Ray>(most_rays);
-      device_rays = DeviceBuffer<Ray>(most_rays, stream.get());
+  void reserve(std::size_t max_rays, std::size_t max_hits) {
+    if (rays.size() < max_rays) {
+      rays = PinnedBuffer<Ray>(max_rays);
+      device_rays = DeviceBuffer<Ray>(max_rays, stream.get());
     }
-    if (hits.size() < most_hits) {
-      hits = PinnedBuffer<Hit>(most_hits);
-      device_hits = DeviceBuffer<Hit>(most_hits, stream.get());
+    if (hits.size() < max_hits) {
+      hits = PinnedBuffer<Hit>(max_hits);
+      device_hits = DeviceBuffer<Hit>(max_hits, stream.get());
     }
   }
 };

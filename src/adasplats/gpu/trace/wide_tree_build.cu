@@ -33,7 +33,7 @@ __device__ inline std::uint64_t spread(std::uint64_t v) {
 }
 
 constexpr int kPairBlock = 256;
-constexpr int kMostRadius = 64;
+constexpr int kMaxRadius = 64;
 
 /// The neighbour on the curve with which a cluster has the smallest box, within `radius` places. Of
 /// equal ones the one whose place has the fewest high bits in common: that order is the same seen
@@ -41,7 +41,7 @@ constexpr int kMostRadius = 64;
 __global__ void __launch_bounds__(kPairBlock)
     nearest_cluster_kernel(const std::uint32_t* clusters, std::uint32_t count, const Box* boxes,
                            int radius, bool balanced, std::uint32_t* nearest) {
-  __shared__ Box near[kPairBlock + 2 * kMostRadius];
+  __shared__ Box near[kPairBlock + 2 * kMaxRadius];
   const int block_first = static_cast<int>(blockIdx.x) * kPairBlock;
   const int first = block_first - radius;
   for (int k = static_cast<int>(threadIdx.x); k < kPairBlock + 2 * radius; k += kPairBlock) {
@@ -193,7 +193,7 @@ struct Builder {
       tree.boxes[i] = box_of(primitives[ids[i]]);
       clusters_data[i] = static_cast<std::uint32_t>(i);
     });
-    const int radius = std::min(std::max(options_.search_radius, 1), kMostRadius);
+    const int radius = std::min(std::max(options_.search_radius, 1), kMaxRadius);
     std::uint32_t made = 0;
     for (std::uint32_t left = count; left > 1;) {
       nearest_cluster_kernel<<<(left + kPairBlock - 1) / kPairBlock, kPairBlock, 0, stream_>>>(
@@ -234,10 +234,10 @@ struct Builder {
   WideTree<Leaf> widen() {
     WideTree<Leaf> tree;
     // Every wide node but the root has at least two children, so there are fewer than primitives.
-    const std::size_t most_nodes = count_;
-    DeviceBuffer<WideNode> nodes(most_nodes, stream_);
+    const std::size_t max_nodes = count_;
+    DeviceBuffer<WideNode> nodes(max_nodes, stream_);
     tree.leaves = DeviceBuffer<Leaf>(count_, stream_);
-    DeviceBuffer<Task> tasks(most_nodes, stream_), next_tasks(most_nodes, stream_);
+    DeviceBuffer<Task> tasks(max_nodes, stream_), next_tasks(max_nodes, stream_);
     DeviceBuffer<Cursors> cursors(1, stream_);
     const Task first = {root_, 0};
     tasks.upload({&first, 1});

@@ -17,9 +17,9 @@ namespace {
 constexpr std::size_t kKittiFloats = 4;
 constexpr std::size_t kNuScenesFloats = 5;
 // Sensors and file formats give intensities as shares of 1, in bytes or in 16 bits.
-constexpr float kMostIntensity = 65535;
+constexpr float kMaxIntensity = 65535;
 // No sensor has more beams; the whole numbers of a column of rings lie below it.
-constexpr float kMostRings = 256;
+constexpr float kMaxRings = 256;
 
 Table read_floats(InputFile& file, std::initializer_list<const char*> names) {
   std::vector<RecordField> fields;
@@ -48,7 +48,7 @@ std::vector<float> flat(const Table& table) {
 
 /// Intensities that are not finite are not known.
 bool can_be_intensity(float value) {
-  return !std::isfinite(value) || (value >= 0 && value <= kMostIntensity);
+  return !std::isfinite(value) || (value >= 0 && value <= kMaxIntensity);
 }
 
 /// Whether of every five floats the fourth can be an intensity and the fifth a ring.
@@ -58,7 +58,7 @@ bool has_rings(const Table& table) {
     const float intensity = values[i + 3];
     const float ring = values[i + 4];
     if (!can_be_intensity(intensity)) return false;
-    if (!(ring >= 0 && ring < kMostRings) || ring != std::trunc(ring)) return false;
+    if (!(ring >= 0 && ring < kMaxRings) || ring != std::trunc(ring)) return false;
   }
   return true;
 }

@@ -61,10 +61,10 @@ McapChunk chunk_of(ByteReader reader) {
 
 /// The content of a record in the file. Errors: data (more than the file or a chunk may have).
 std::string_view content_here(InputFile& file, std::uint64_t offset, std::uint64_t length) {
-  if (length > kMostChunkBytes)
+  if (length > kMaxChunkBytes)
     throw data_error({file.path(), offset, {}}, "a record of " + std::to_string(length) +
                                                     " bytes, at most " +
-                                                    std::to_string(kMostChunkBytes) + " are taken");
+                                                    std::to_string(kMaxChunkBytes) + " are taken");
   const auto size = static_cast<std::size_t>(length);
   return size == 0 ? std::string_view() : view_of(file.peek(size), size);
 }

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kAlwaysTaken = std::uint64_t{1} << 30;
-constexpr std::uint64_t kMostRatio = 256;  // recordings pack to a half or a tenth
+constexpr std::uint64_t kMaxRatio = 256;  // recordings pack to a half or a tenth
 constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
 
 /// A folder beside those of others that goes with this object.
@@ -58,7 +58,7 @@ class RoomyFile {
  public:
   RoomyFile(const fs::path& packed, std::uint64_t packed_bytes, fs::path to)
       : packed_(packed.string()),
-        most_(kAlwaysTaken + kMostRatio * packed_bytes),
+        most_(kAlwaysTaken + kMaxRatio * packed_bytes),
         to_(std::move(to)),
         file_(to_, std::ios::binary) {}
 
@@ -66,10 +66,10 @@ class RoomyFile {
     written_ += bytes.size();
     if (written_ > most_)
       throw Error(ErrorKind::data, packed_ + ": unpacks to more than " + std::to_string(most_) +
-                                       " bytes, " + std::to_string(kMostRatio) +
+                                       " bytes, " + std::to_string(kMaxRatio) +
                                        " times its size, as no recording does");
     unchecked_ += bytes.size();
-    if (unchecked_ >= kCheckedEvery) require_room();
+    if (unchecked_ >= kCheckedEvery) require_disk_space();
     file_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (!file_) throw no_room();
   }
@@ -81,7 +81,7 @@ class RoomyFile {
  private:
   static constexpr std::uint64_t kCheckedEvery = std::uint64_t{64} << 20;
 
-  void require_room() {
+  void require_disk_space() {
     unchecked_ = 0;
     std::error_code problem;
     const fs::space_info space = fs::space(to_.parent_path(), problem);

@@ -55,7 +55,7 @@ class RecordingFile {
 /// Messages by topics, as robots record them: MCAP (Foxglove's specification, version 0), ROS 1
 /// bags (format 2.0), and ROS 2 bags: a folder with metadata.yaml and files of MCAP or SQLite, or
 /// one such file, packed as a whole or not (packed_recording.h). It is read from front to back; a
-/// chunk is in memory at a time, and of message() the last four (kMostChunkBytes each at most).
+/// chunk is in memory at a time, and of message() the last four (kMaxChunkBytes each at most).
 class Recording {
  public:
   /// Errors: no_input, data (none of these formats; a folder whose files are not all there).

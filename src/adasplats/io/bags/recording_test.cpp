@@ -330,7 +330,7 @@ TEST(Unpack, GivesWhatOthersPacked) {
     }
     EXPECT_EQ(found, std::string(1000, '\0')) << packed.packing;
     for (const std::uint64_t size : {std::uint64_t{999}, std::uint64_t{1001}, std::uint64_t{0},
-                                     kMostChunkBytes, kMostChunkBytes + 1})
+                                     kMaxChunkBytes, kMaxChunkBytes + 1})
       expect_error(ErrorKind::data, {"x"},
                    [&] { unpack(packed.packing, packed.bytes, size, "x"); });
     for (std::size_t size = 0; size + 4 < packed.bytes.size(); ++size)

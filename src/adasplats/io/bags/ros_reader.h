@@ -35,7 +35,7 @@ class RosReader {
       throw reader_.error("begins with an encapsulation of " + std::to_string(high) + " " +
                           std::to_string(low) + ", expected plain CDR (0 0, 0 1, 0 6 or 0 7)");
     swap_ = (low & 1) == 0;
-    most_alignment_ = kind == kPlain2 ? 4 : 8;
+    max_alignment_ = kind == kPlain2 ? 4 : 8;
   }
 
   bool is_ros1() const { return !is_cdr_; }
@@ -56,10 +56,10 @@ class RosReader {
     const std::uint32_t size = number<std::uint32_t>();
     return reader_.take(size);
   }
-  /// How many elements follow, of `least_bytes` each at least.
-  std::uint32_t count(std::size_t least_bytes) {
+  /// How many elements follow, of `min_bytes` each at least.
+  std::uint32_t count(std::size_t min_bytes) {
     const std::uint32_t count = number<std::uint32_t>();
-    if (count > reader_.remaining() / least_bytes)
+    if (count > reader_.remaining() / min_bytes)
       throw reader_.error("says " + std::to_string(count) + " elements, but has " +
                           std::to_string(reader_.remaining()) + " bytes");
     return count;
@@ -71,7 +71,7 @@ class RosReader {
   void align(std::size_t size) {
     if (!is_cdr_) return;
     constexpr std::size_t kEncapsulationBytes = 4;
-    const std::size_t alignment = size < most_alignment_ ? size : most_alignment_;
+    const std::size_t alignment = size < max_alignment_ ? size : max_alignment_;
     const std::size_t over = (reader_.place() - kEncapsulationBytes) % alignment;
     if (over != 0) reader_.take(alignment - over);
   }
@@ -79,7 +79,7 @@ class RosReader {
   ByteReader reader_;
   bool is_cdr_;
   bool swap_ = false;
-  std::size_t most_alignment_ = 8;
+  std::size_t max_alignment_ = 8;
 };
 
 }  // namespace adasplats

@@ -49,10 +49,10 @@ constexpr std::array kPointFieldTypes = {ColumnType::i8,  ColumnType::u8,  Colum
                                          ColumnType::f32, ColumnType::f64};
 
 std::vector<RecordField> read_point_fields(RosReader& reader) {
-  constexpr std::size_t kLeastBytes = 4 + 4 + 1 + 4;
-  constexpr std::size_t kMostValues = 4096;  // of one point, so that lying counts take no memory
+  constexpr std::size_t kMinBytes = 4 + 4 + 1 + 4;
+  constexpr std::size_t kMaxValues = 4096;  // of one point, so that lying counts take no memory
   std::vector<RecordField> fields;
-  const std::uint32_t count = reader.count(kLeastBytes);
+  const std::uint32_t count = reader.count(kMinBytes);
   for (std::uint32_t k = 0; k < count; ++k) {
     const std::string name = reader.text();
     const auto offset = reader.number<std::uint32_t>();
@@ -62,7 +62,7 @@ std::vector<RecordField> read_point_fields(RosReader& reader) {
     if (type == 0 || type > kPointFieldTypes.size())
       throw reader.error("has a field " + shown(name) + " of datatype " + std::to_string(type) +
                          ", expected 1 (INT8) to 8 (FLOAT64)");
-    if (values > kMostValues - fields.size())
+    if (values > kMaxValues - fields.size())
       throw reader.error("has a field " + shown(name) + " of " + std::to_string(values) +
                          " values, at most 4096 a point are taken");
     const ColumnType column = kPointFieldTypes[type - 1];
@@ -110,8 +110,8 @@ std::vector<RosPose> ros_poses(std::string_view bytes, std::string_view type,
   RosReader reader(bytes, encoding, what);
   if (type == kRosTransform) return {read_transform(reader)};
   if (type == kRosTransforms || type == kOldRosTransforms) {
-    constexpr std::size_t kLeastBytes = 7 * 8;
-    std::vector<RosPose> poses(reader.count(kLeastBytes));
+    constexpr std::size_t kMinBytes = 7 * 8;
+    std::vector<RosPose> poses(reader.count(kMinBytes));
     for (RosPose& pose : poses) pose = read_transform(reader);
     return poses;
   }

@@ -141,10 +141,10 @@ class RosbagRecording final : public RecordingFile {
                            std::to_string(file.remaining() - sizeof(std::uint32_t)) +
                            " follow: the bag is damaged, or the recording was cut off (`rosbag "
                            "reindex` mends that)");
-    if (size > kMostChunkBytes)
+    if (size > kMaxChunkBytes)
       throw data_error({file.path(), record, {}},
                        "a record of " + std::to_string(size) + " bytes, at most " +
-                           std::to_string(kMostChunkBytes) + " are taken");
+                           std::to_string(kMaxChunkBytes) + " are taken");
     return size;
   }
   /// Bytes behind their number, while the file stays where it is.

@@ -28,7 +28,7 @@ using PageBytes = std::span<const unsigned char>;
 constexpr unsigned char kIndexInterior = 2, kIndexLeaf = 10, kTableLeaf = 13;
 constexpr std::size_t kFileHeader = 100;  // on the first page, ahead of that of the tree
 constexpr std::uint64_t kCutOff = std::numeric_limits<std::uint64_t>::max();
-constexpr std::size_t kLeastPage = 512, kMostPage = 65536;
+constexpr std::size_t kMinPage = 512, kMaxPage = 65536;
 
 std::size_t number_of_16_bits(PageBytes page, std::size_t at) {
   return std::size_t{page[at]} << 8 | page[at + 1];
@@ -37,11 +37,11 @@ std::size_t number_of_16_bits(PageBytes page, std::size_t at) {
 /// The size of a record that stands at the beginning of its cell: seven bits a byte, the last one
 /// below 128; kCutOff where the page ends first, behind which SQLite would read on.
 std::uint64_t record_bytes(PageBytes cell) {
-  constexpr std::size_t kMostBytes = 9;
+  constexpr std::size_t kMaxBytes = 9;
   std::uint64_t value = 0;
-  for (std::size_t k = 0; k < std::min(kMostBytes, cell.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(kMaxBytes, cell.size()); ++k) {
     value = value << 7 | (cell[k] & 0x7fU);
-    if (cell[k] < 0x80 || k + 1 == kMostBytes) return value;
+    if (cell[k] < 0x80 || k + 1 == kMaxBytes) return value;
   }
   return kCutOff;
 }
@@ -94,10 +94,10 @@ void SqliteDatabase::PageCheck::watch(sqlite3_file& file) {
 bool SqliteDatabase::PageCheck::holds(PageBytes page, std::uint64_t offset) const {
   // Pages that hold the rest of a record begin with the number of the next one: with 0 or 1, where
   // there are less than 2^25 of them. In larger files such a list is no burden.
-  constexpr std::uint64_t kMostPages = 1ULL << 25;
-  const bool is_page = std::has_single_bit(page.size()) && page.size() >= kLeastPage &&
-                       page.size() <= kMostPage && offset % page.size() == 0;
-  if (!is_page || file_bytes / page.size() >= kMostPages) return true;
+  constexpr std::uint64_t kMaxPages = 1ULL << 25;
+  const bool is_page = std::has_single_bit(page.size()) && page.size() >= kMinPage &&
+                       page.size() <= kMaxPage && offset % page.size() == 0;
+  if (!is_page || file_bytes / page.size() >= kMaxPages) return true;
   const std::uint64_t largest = largest_record(page, offset == 0 ? kFileHeader : 0);
   if (largest <= file_bytes) return true;
   fault = Fault{offset, largest};
@@ -126,7 +126,7 @@ SqliteDatabase::SqliteDatabase(std::filesystem::path path)
   sqlite3_db_config(made, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(made, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_limit(made, SQLITE_LIMIT_LENGTH,
-                static_cast<int>(std::min(kMostChunkBytes - 1, file.size_bytes())));
+                static_cast<int>(std::min(kMaxChunkBytes - 1, file.size_bytes())));
   check_->file_bytes = file.size_bytes();
   sqlite3_file* opened = nullptr;
   if (sqlite3_file_control(made, "main", SQLITE_FCNTL_FILE_POINTER, &opened) != SQLITE_OK ||

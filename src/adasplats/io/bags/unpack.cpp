@@ -113,12 +113,12 @@ std::string unpack_bz2(std::string_view packed, std::size_t size, const std::str
   if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) throw std::bad_alloc();
   const std::unique_ptr<bz_stream, int (*)(bz_stream*)> end(&stream, &BZ2_bzDecompressEnd);
   const auto step = [&](UnpackState& state) {
-    constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // sizes have 32 bits there
-    std::string taken(state.in.substr(0, kMostAtOnce));        // which it wants to be mutable
+    constexpr std::size_t kMaxAtOnce = std::size_t{1} << 30;  // sizes have 32 bits there
+    std::string taken(state.in.substr(0, kMaxAtOnce));        // which it wants to be mutable
     stream.next_in = taken.data();
     stream.avail_in = static_cast<unsigned>(taken.size());
     stream.next_out = state.to();
-    stream.avail_out = static_cast<unsigned>(std::min(kMostAtOnce, state.room()));
+    stream.avail_out = static_cast<unsigned>(std::min(kMaxAtOnce, state.room()));
     const unsigned room = stream.avail_out;
     const int result = BZ2_bzDecompress(&stream);
     if (result != BZ_OK && result != BZ_STREAM_END)
@@ -189,9 +189,9 @@ void unpack_zstd_stream(FunctionRef<std::string_view(std::size_t)>,
 
 std::string unpack(std::string_view packing, std::string_view packed, std::uint64_t size,
                    const std::string& where) {
-  if (size > kMostChunkBytes)
+  if (size > kMaxChunkBytes)
     throw Error(ErrorKind::data, where + " is said to hold " + std::to_string(size) +
-                                     " bytes, more than the " + std::to_string(kMostChunkBytes) +
+                                     " bytes, more than the " + std::to_string(kMaxChunkBytes) +
                                      " that are taken");
   [[maybe_unused]] const auto bytes = static_cast<std::size_t>(size);
   if (packing.empty() || packing == "none") {

@@ -11,11 +11,11 @@
 namespace adasplats {
 
 /// The most that a packed chunk of a recording may hold: more than any message of a sensor.
-inline constexpr std::uint64_t kMostChunkBytes = std::uint64_t{1} << 30;
+inline constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{1} << 30;
 
 /// Unpacks what is one stream of zstd (RFC 8878), an lz4 frame (LZ4 Frame Format 1.6) or bz2, as
 /// `packing` calls it; "" and "none" are not packed. It must give exactly `size` bytes. `where`
-/// begins messages. Memory grows with what is unpacked, whatever `size` says; kMostChunkBytes at
+/// begins messages. Memory grows with what is unpacked, whatever `size` says; kMaxChunkBytes at
 /// most. Errors: data (broken, another size, another word), unavailable (a packing whose library
 /// was not there when the program was built).
 std::string unpack(std::string_view packing, std::string_view packed, std::uint64_t size,

@@ -13,7 +13,7 @@ namespace adasplats {
 namespace {
 
 // WKT 2 needs about 10.
-constexpr std::size_t kMostWktDepth = 32;
+constexpr std::size_t kMaxWktDepth = 32;
 
 /// Takes a text apart, character by character.
 class WktParser {
@@ -44,7 +44,7 @@ class WktParser {
   }
 
   void open() {
-    if (open_.size() == kMostWktDepth) {
+    if (open_.size() == kMaxWktDepth) {
       ++too_deep_;
     } else {
       open_.push_back({lower_case(BlankTokens(word_).rest()), {}, {}});

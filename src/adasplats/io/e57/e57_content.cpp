@@ -16,8 +16,8 @@
 namespace adasplats {
 namespace {
 
-constexpr std::uint64_t kMostXmlBytes = std::uint64_t{64} << 20;
-constexpr std::size_t kMostE57Fields = 1000;
+constexpr std::uint64_t kMaxXmlBytes = std::uint64_t{64} << 20;
+constexpr std::size_t kMaxE57Fields = 1000;
 constexpr double kE57NormTolerance = 1e-3;  // as of trajectories
 
 /// Reads what one scan says. All messages begin with the scan's name.
@@ -95,8 +95,8 @@ class ScanReader {
         add_fields(element, fields);
         continue;
       }
-      if (fields.size() == kMostE57Fields)
-        throw error("its points have more than " + std::to_string(kMostE57Fields) + " fields");
+      if (fields.size() == kMaxE57Fields)
+        throw error("its points have more than " + std::to_string(kMaxE57Fields) + " fields");
       fields.push_back(field_of(element, type == nullptr ? "" : *type));
     }
   }
@@ -193,9 +193,9 @@ const E57Field* E57Scan::field(std::string_view field_name) const {
 }
 
 E57Content read_e57_content(PagedFile& file) {
-  if (file.xml_bytes() > kMostXmlBytes)
+  if (file.xml_bytes() > kMaxXmlBytes)
     throw data_error({file.path(), {}, {}}, "its XML has " + std::to_string(file.xml_bytes()) +
-                                                " bytes, at most " + std::to_string(kMostXmlBytes) +
+                                                " bytes, at most " + std::to_string(kMaxXmlBytes) +
                                                 " are read");
   std::string text(file.xml_bytes(), '\0');
   file.read(file.xml_offset(), std::as_writable_bytes(std::span(text)));

@@ -28,7 +28,7 @@ T packet_value(std::span<const std::byte> bytes, std::size_t offset) {
 
 /// The fewest bits that a record can have, each field one: that bounds what is allocated, where
 /// fields that are the same in all points take none.
-std::uint64_t least_record_bits(const E57Scan& scan) {
+std::uint64_t min_record_bits(const E57Scan& scan) {
   std::uint64_t bits = 0;
   for (const E57Field& field : scan.fields)
     bits += field.codec == E57Codec::other ? 8 : field.bits;  // a text has its length in a byte
@@ -142,7 +142,7 @@ E57Section read_e57_section(PagedFile& file, const E57Scan& scan) {
                                         scan.name + ": its first packet");
   if (section.packets < section.begin + header.size() || section.packets > section.end)
     refuse("its first packet lies outside of the section");
-  const std::uint64_t room = 8 * (section.end - section.packets) / least_record_bits(scan);
+  const std::uint64_t room = 8 * (section.end - section.packets) / min_record_bits(scan);
   if (scan.points > room)
     refuse("found room for at most " + std::to_string(room) + " points, recordCount says " +
            std::to_string(scan.points));

@@ -20,8 +20,8 @@ constexpr std::string_view kE57Signature = "ASTM-E57";
 constexpr std::size_t kE57HeaderBytes = 48;
 constexpr std::size_t kE57ChecksumBytes = 4;
 // The standard has 1024 alone and says so in the header; others are read, within reason.
-constexpr std::uint64_t kLeastPageBytes = 64;
-constexpr std::uint64_t kMostPageBytes = std::uint64_t{1} << 20;
+constexpr std::uint64_t kMinPageBytes = 64;
+constexpr std::uint64_t kMaxPageBytes = std::uint64_t{1} << 20;
 constexpr std::uint64_t kE57BufferBytes = std::uint64_t{256} << 10;
 
 template <class T>
@@ -57,7 +57,7 @@ void PagedFile::read_header() {
                                          std::to_string(header_value<std::uint32_t>(header, 12)) +
                                          " of E57, version 1 is understood");
   page_bytes_ = header_value<std::uint64_t>(header, 40);
-  if (page_bytes_ < kLeastPageBytes || page_bytes_ > kMostPageBytes)
+  if (page_bytes_ < kMinPageBytes || page_bytes_ > kMaxPageBytes)
     throw data_error({path_, 40, {}}, "the header has pages of " + std::to_string(page_bytes_) +
                                           " bytes, expected 1024");
   pages_ = 1;

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::string_view kXmlBlanks = " \t\r\n";
 constexpr std::string_view kE57Namespace = "http://www.astm.org/COMMIT/E57/2010-e57-v";
-constexpr int kMostDepth = 64;                  // E57's own elements are not ten deep
-constexpr std::size_t kMostXmlNodes = 1000000;  // a scan has about a hundred
+constexpr int kMaxDepth = 64;                  // E57's own elements are not ten deep
+constexpr std::size_t kMaxXmlNodes = 1000000;  // a scan has about a hundred
 
 std::string_view without_blanks_around(std::string_view text) {
   const std::size_t begin = std::min(text.find_first_not_of(kXmlBlanks), text.size());
@@ -103,8 +103,8 @@ class XmlParser {
 
   /// What follows a "<".
   XmlElement parse_element(int depth) {
-    if (depth > kMostDepth)
-      throw error("elements are more than " + std::to_string(kMostDepth) + " deep");
+    if (depth > kMaxDepth)
+      throw error("elements are more than " + std::to_string(kMaxDepth) + " deep");
     count_node();
     XmlElement element;
     const std::string name(take_name());
@@ -219,8 +219,8 @@ class XmlParser {
   }
 
   void count_node() {
-    if (++nodes_ > kMostXmlNodes)
-      throw error("has more than " + std::to_string(kMostXmlNodes) + " elements and attributes");
+    if (++nodes_ > kMaxXmlNodes)
+      throw error("has more than " + std::to_string(kMaxXmlNodes) + " elements and attributes");
   }
 
   Error error(const std::string& message) const {

@@ -23,7 +23,7 @@ constexpr std::size_t kInfoBytes = 160;
 constexpr std::uint16_t kInfoRecordId = 1;
 constexpr std::size_t kEntryBytes = 32;
 // A cube of the earth's size is cut down to a centimetre on level 30.
-constexpr std::int32_t kMostLevel = 30;
+constexpr std::int32_t kMaxLevel = 30;
 
 struct CopcInfo {
   Vec3d center;
@@ -44,7 +44,7 @@ struct NodeKey {
   }
   bool is_sound() const {
     const auto is_there = [this](std::int32_t place) { return place >= 0 && place >> level == 0; };
-    return level >= 0 && level <= kMostLevel && std::ranges::all_of(at, is_there);
+    return level >= 0 && level <= kMaxLevel && std::ranges::all_of(at, is_there);
   }
   /// Whether it is `other` or lies in it.
   bool is_in(const NodeKey& other) const {
@@ -141,10 +141,10 @@ class OctreeReader {
   };
 
   static std::int32_t last_level(const CopcInfo& info, const PointSelection& selection) {
-    std::int32_t level = kMostLevel;
+    std::int32_t level = kMaxLevel;
     if (selection.level)
       level = static_cast<std::int32_t>(
-          std::min<std::uint32_t>(*selection.level, static_cast<std::uint32_t>(kMostLevel)));
+          std::min<std::uint32_t>(*selection.level, static_cast<std::uint32_t>(kMaxLevel)));
     if (!selection.resolution_m) return level;
     std::int32_t fine = 0;
     while (fine < level && std::ldexp(info.spacing_m, -fine) > *selection.resolution_m) ++fine;

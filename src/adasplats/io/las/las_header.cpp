@@ -14,8 +14,8 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kLeastHeaderBytes = 227;    // 1.0 to 1.2
-constexpr std::size_t kLeastHeaderBytes14 = 375;  // 1.4: 64-bit counts
+constexpr std::size_t kMinHeaderBytes = 227;    // 1.0 to 1.2
+constexpr std::size_t kMinHeaderBytes14 = 375;  // 1.4: 64-bit counts
 // No coordinate on Earth, in any unit that surveys use, is larger.
 constexpr double kLargestCoordinate = 1e12;
 
@@ -78,11 +78,11 @@ void check_layout(const InputFile& file, const HeaderBytes& bytes, const LasHead
     throw bytes.error(104, "found point format " + std::to_string(header.format) +
                                ", expected 0 to " + std::to_string(kLasFormatCount - 1));
   }
-  if (header.record_bytes < las_format(header.format).least_bytes) {
+  if (header.record_bytes < las_format(header.format).min_bytes) {
     throw bytes.error(105, "found point records of " + std::to_string(header.record_bytes) +
                                " bytes, format " + std::to_string(header.format) +
                                " has at least " +
-                               std::to_string(las_format(header.format).least_bytes));
+                               std::to_string(las_format(header.format).min_bytes));
   }
 }
 
@@ -109,7 +109,7 @@ void check_transform(const HeaderBytes& bytes, const LasHeader& header) {
 
 LasHeader read_las_header(InputFile& file) {
   check_signature(file);
-  const HeaderBytes first(file, file.peek(kLeastHeaderBytes));
+  const HeaderBytes first(file, file.peek(kMinHeaderBytes));
   const int major = first.at<std::uint8_t>(24);
   const int minor = first.at<std::uint8_t>(25);
   if (major != 1 || minor > 4) {
@@ -117,12 +117,12 @@ LasHeader read_las_header(InputFile& file) {
                               std::to_string(minor) + ", expected 1.0 to 1.4");
   }
   const std::size_t header_bytes = first.at<std::uint16_t>(94);
-  const std::size_t least_bytes = minor == 4 ? kLeastHeaderBytes14 : kLeastHeaderBytes;
-  if (header_bytes < least_bytes) {
+  const std::size_t min_bytes = minor == 4 ? kMinHeaderBytes14 : kMinHeaderBytes;
+  if (header_bytes < min_bytes) {
     throw first.error(94, "found a header of " + std::to_string(header_bytes) +
-                              " bytes, expected at least " + std::to_string(least_bytes));
+                              " bytes, expected at least " + std::to_string(min_bytes));
   }
-  const HeaderBytes bytes(file, file.peek(least_bytes));
+  const HeaderBytes bytes(file, file.peek(min_bytes));
   LasHeader header;
   header.minor_version = static_cast<unsigned>(minor);
   header.software = bytes.text_at(58, 32);

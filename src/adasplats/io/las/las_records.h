@@ -9,7 +9,7 @@ namespace adasplats {
 /// Where a point data record format (0-10) keeps what not every format has (ASPRS, "LAS
 /// specification 1.4 - R15", tables 7 to 17).
 struct LasFormat {
-  std::size_t least_bytes = 0;
+  std::size_t min_bytes = 0;
   bool is_extended = false;         ///< formats 6-10: wider bit fields
   std::size_t gps_time_offset = 0;  ///< 0: none
   std::size_t colour_offset = 0;    ///< 0: none

@@ -48,7 +48,7 @@ std::vector<LasExtraField> extra_fields_of(std::string_view record, const LasHea
   constexpr std::size_t kDescriptorBytes = 192;
   constexpr std::uint8_t kHasScale = 1 << 3, kHasOffset = 1 << 4;
   std::vector<LasExtraField> fields;
-  std::size_t place = las_format(header.format).least_bytes;
+  std::size_t place = las_format(header.format).min_bytes;
   for (; record.size() >= kDescriptorBytes; record.remove_prefix(kDescriptorBytes)) {
     const auto type = value_at<std::uint8_t>(record, 2);
     const auto options = value_at<std::uint8_t>(record, 3);
@@ -211,12 +211,12 @@ RecordStart record_start(InputFile& file, bool is_extended) {
 /// Takes the record where `file` stands, and moves on behind it.
 void take_record(InputFile& file, const RecordStart& record, Descriptor& descriptor) {
   // The longest text that there is has some 10 kB; of extra bytes there are less than 64 kB.
-  constexpr std::uint64_t kMostBytes = std::uint64_t{16} << 20;
+  constexpr std::uint64_t kMaxBytes = std::uint64_t{16} << 20;
   if (record.bytes > 0 && Descriptor::is_wanted(record.user, record.number)) {
-    if (record.bytes > kMostBytes)
+    if (record.bytes > kMaxBytes)
       throw file.error_here("found " + std::to_string(record.bytes) + " bytes of record " +
                             std::to_string(record.number) + " of '" + record.user +
-                            "', expected at most " + std::to_string(kMostBytes));
+                            "', expected at most " + std::to_string(kMaxBytes));
     const auto bytes = static_cast<std::size_t>(record.bytes);
     descriptor.take(record.number, {reinterpret_cast<const char*>(file.peek(bytes).data()), bytes});
   }

@@ -30,7 +30,7 @@ constexpr std::size_t kPointFormat = 6;
 constexpr std::size_t kHeaderBytes = 375;       // table 3
 constexpr std::size_t kExtraRecordBytes = 192;  // table 24
 constexpr std::uint16_t kExtraRecordId = 4;
-constexpr std::size_t kMostReturns = 15;
+constexpr std::size_t kMaxReturns = 15;
 // Point formats 6 to 10 should set it (table 4): a coordinate system, if any, is reported as WKT.
 constexpr std::uint16_t kWktBit = 1 << 4;
 constexpr std::uint16_t kWktRecordId = 2112;
@@ -137,7 +137,7 @@ class PointColumns {
 /// What the header says of all points.
 struct Summary {
   std::array<std::int32_t, 3> low, high;
-  std::array<std::uint64_t, kMostReturns> by_return = {};
+  std::array<std::uint64_t, kMaxReturns> by_return = {};
 };
 
 /// Coordinates as they are stored.
@@ -189,7 +189,7 @@ Summary summary_of(const PointColumns& columns, std::size_t rows, const Grid& gr
     }
     const std::size_t number = columns.return_number(row);
     const std::size_t of = columns.number_of_returns(row);
-    if (number < 1 || number > of || of > kMostReturns)
+    if (number < 1 || number > of || of > kMaxReturns)
       throw Error(ErrorKind::data, grid.path().string() + ": point " + std::to_string(row) +
                                        ": return " + std::to_string(number) + " of " +
                                        std::to_string(of) + ", LAS has 1 to 15");
@@ -299,7 +299,7 @@ std::string header_of(std::size_t rows, const Summary& summary, const Grid& grid
     put(bytes, 187 + 16 * axis, grid.coordinate(axis, summary.low[axis]));
   }
   put(bytes, 247, static_cast<std::uint64_t>(rows));
-  for (std::size_t k = 0; k < kMostReturns; ++k) put(bytes, 255 + 8 * k, summary.by_return[k]);
+  for (std::size_t k = 0; k < kMaxReturns; ++k) put(bytes, 255 + 8 * k, summary.by_return[k]);
   return header;
 }
 
@@ -310,7 +310,7 @@ void put_las(ByteSink& file, const std::filesystem::path& path, std::size_t rows
   const PointColumns points(columns);
   const Grid grid(path, options);
   const Summary summary = summary_of(points, rows, grid);
-  const std::size_t fixed_bytes = las_format(kPointFormat).least_bytes;
+  const std::size_t fixed_bytes = las_format(kPointFormat).min_bytes;
   std::size_t record_bytes = fixed_bytes;
   for (const ColumnView& extra : points.extras()) record_bytes += type_bytes(extra.type);
   const Records records = records_of(path, points.extras(), record_bytes, options);

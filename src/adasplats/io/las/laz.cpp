@@ -85,14 +85,14 @@ class LazReader {
         next_offset_(layout.first_chunk_bytes) {
     if (!layout.has_table || executor == nullptr) return;
     const std::size_t affordable = kModelBytes / (kBytesPerModel * layout.header.record_bytes);
-    most_open_ = std::clamp<std::size_t>(2 * static_cast<std::size_t>(executor->threads()), 1,
-                                         std::max<std::size_t>(1, affordable));
+    max_open_ = std::clamp<std::size_t>(2 * static_cast<std::size_t>(executor->threads()), 1,
+                                        std::max<std::size_t>(1, affordable));
   }
 
   /// Hands all records to the table, until there is a fault.
   void read() {
     while (fault_.empty() && (unread_ > 0 || !open_.empty())) {
-      while (unread_ > 0 && open_.size() < most_open_) open_next();
+      while (unread_ > 0 && open_.size() < max_open_) open_next();
       unpack();
       hand_over();
     }
@@ -192,7 +192,7 @@ class LazReader {
   InputFile file_;
   PlausibleRecords plausible_;
   std::size_t rows_at_once_;
-  std::size_t most_open_ = 1;
+  std::size_t max_open_ = 1;
   std::deque<OpenChunk> open_;
   std::uint64_t unread_;  // points of chunks that are not open yet
   std::size_t next_chunk_ = 0;

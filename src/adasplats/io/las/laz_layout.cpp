@@ -94,7 +94,7 @@ class TableReader {
                              std::to_string(chunk.offset_bytes) +
                              " reaches into the table of chunks");
     }
-    if (chunk.points > left || chunk.points > kMostPointsPerByte * chunk.bytes) {
+    if (chunk.points > left || chunk.points > kMaxPointsPerByte * chunk.bytes) {
       throw file_.error_here(name + " is said to have " + std::to_string(chunk.points) +
                              " points in " + std::to_string(chunk.bytes) + " bytes, " +
                              std::to_string(left) + " are left of the header's");

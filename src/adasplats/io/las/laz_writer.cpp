@@ -24,7 +24,7 @@ void append(std::string& bytes, T value) {
 }  // namespace
 
 std::string laszip_record(std::size_t record_bytes) {
-  const std::size_t point_bytes = las_format(kPackedFormat).least_bytes;
+  const std::size_t point_bytes = las_format(kPackedFormat).min_bytes;
   std::vector<LazItem> items = {{LazItemType::point14, point_bytes, kItemVersion}};
   if (record_bytes > point_bytes)
     items.push_back({LazItemType::extra_bytes14, record_bytes - point_bytes, kItemVersion});

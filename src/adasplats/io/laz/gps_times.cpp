@@ -14,9 +14,9 @@ namespace adasplats {
 namespace {
 
 // Symbols 0 to 500 are multiples of the step, the next ten -1 to -10.
-constexpr std::uint32_t kMostMultiple = 500;
+constexpr std::uint32_t kMaxMultiple = 500;
 constexpr std::uint32_t kFewestMultiple = 10;
-constexpr std::uint32_t kMultiples = kMostMultiple + kFewestMultiple + 1;
+constexpr std::uint32_t kMultiples = kMaxMultiple + kFewestMultiple + 1;
 constexpr int kExtremesForNewStep = 3;
 
 std::int32_t times(std::int32_t step, std::int32_t multiple) {
@@ -117,12 +117,12 @@ void GpsTimes::decode_multiple(RangeDecoder& decoder, std::uint32_t symbol) {
     sequence.extremes = 0;
   } else if (symbol == 0) {
     found = take_extreme(difference(0, 7));
-  } else if (symbol < kMostMultiple) {
+  } else if (symbol < kMaxMultiple) {
     found = difference(multiple, symbol < 10 ? 2 : 3);
-  } else if (symbol == kMostMultiple) {
+  } else if (symbol == kMaxMultiple) {
     found = take_extreme(difference(multiple, 4));
   } else if (symbol < kMultiples - 1) {
-    found = difference(static_cast<std::int32_t>(kMostMultiple) - multiple, 5);
+    found = difference(static_cast<std::int32_t>(kMaxMultiple) - multiple, 5);
   } else {
     found = take_extreme(difference(-static_cast<std::int32_t>(kFewestMultiple), 6));
   }
@@ -159,7 +159,7 @@ void GpsTimes::encode_near(RangeEncoder& encoder, std::int32_t difference) {
 }
 
 void GpsTimes::encode_multiple(RangeEncoder& encoder, std::int32_t difference) {
-  constexpr auto kMost = static_cast<std::int32_t>(kMostMultiple);
+  constexpr auto kMost = static_cast<std::int32_t>(kMaxMultiple);
   constexpr auto kFewest = -static_cast<std::int32_t>(kFewestMultiple);
   Sequence& sequence = sequences_[current_];
   const std::int32_t multiple =

@@ -14,7 +14,7 @@ namespace adasplats {
 /// The most points that a byte of a chunk can stand for, rounded up: each point costs at least
 /// the symbol of what changed and the lengths of x, y and z or of x and y, whose models never
 /// give a symbol more than all but 63, 32, 32 and 32 (127, 32 and 32) parts of 2^15.
-inline constexpr std::uint64_t kMostPointsPerByte = 2048;
+inline constexpr std::uint64_t kMaxPointsPerByte = 2048;
 
 /// Unpacks the records of one chunk as a LAS file has them, a part at a time. Whatever the bytes
 /// are, it ends and stays in them.

@@ -119,10 +119,10 @@ class Point10V1 final : public PointwiseItem {
     const std::int32_t dx = dx_.decode_signed(decoder, median(x_steps_));
     const unsigned x_bits = dx_.last_bits();
     const std::int32_t dy =
-        dy_.decode_signed(decoder, median(y_steps_), std::min(x_bits, kMostBits));
+        dy_.decode_signed(decoder, median(y_steps_), std::min(x_bits, kMaxBits));
     const unsigned mean_bits = (x_bits + dy_.last_bits()) / 2;
     const std::int32_t z = z_.decode_signed(decoder, load_value<std::int32_t>(&last_[kZAt]),
-                                            std::min(mean_bits, kMostBits));
+                                            std::min(mean_bits, kMaxBits));
     store_value(&last_[0], wrapped_sum(load_value<std::int32_t>(&last_[0]), dx));
     store_value(&last_[kYAt], wrapped_sum(load_value<std::int32_t>(&last_[kYAt]), dy));
     store_value(&last_[kZAt], z);
@@ -134,7 +134,7 @@ class Point10V1 final : public PointwiseItem {
   }
 
  private:
-  static constexpr unsigned kMostBits = 19;
+  static constexpr unsigned kMaxBits = 19;
   using Steps = std::array<std::int32_t, 3>;
 
   static std::int32_t median(Steps steps) {

@@ -33,10 +33,10 @@ std::uint32_t RangeDecoder::bits(unsigned count) {
 }
 
 void BitModel::update() {
-  constexpr std::uint32_t kMostBits = 1U << 13;
+  constexpr std::uint32_t kMaxBits = 1U << 13;
   constexpr std::uint32_t kLongestCycle = 64;
   bits_ += cycle_;
-  if (bits_ > kMostBits) {
+  if (bits_ > kMaxBits) {
     bits_ = (bits_ + 1) >> 1;
     zeros_ = (zeros_ + 1) >> 1;
     if (zeros_ == bits_) ++bits_;
@@ -63,9 +63,9 @@ void SymbolModel::start() {
 }
 
 void SymbolModel::update() {
-  constexpr std::uint32_t kMostCounts = 1U << 15;
+  constexpr std::uint32_t kMaxCounts = 1U << 15;
   total_ += cycle_;
-  if (total_ > kMostCounts) {
+  if (total_ > kMaxCounts) {
     total_ = 0;
     for (std::uint32_t k = 0; k < symbols_; ++k) {
       counts()[k] = static_cast<std::uint16_t>((counts()[k] + 1) >> 1);

@@ -87,7 +87,7 @@ class RangeDecoder {
   friend class BitModel;
   friend class SymbolModel;
 
-  static constexpr std::uint32_t kLeastLength = 1U << 24;
+  static constexpr std::uint32_t kMinLength = 1U << 24;
 
   std::uint32_t next_byte() {
     if (next_ != end_) return std::to_integer<std::uint32_t>(*next_++);
@@ -95,7 +95,7 @@ class RangeDecoder {
     return 0;
   }
   void renormalise() {
-    while (length_ < kLeastLength) {
+    while (length_ < kMinLength) {
       value_ = (value_ << 8) | next_byte();
       length_ <<= 8;
     }

@@ -30,8 +30,8 @@ void RangeEncoder::put_bits(std::uint32_t number, unsigned count) {
 std::string RangeEncoder::finish() {
   // A number within the interval that takes as few bytes as can be, then zeros: a decoder reads
   // four bytes ahead.
-  const bool is_wide = length_ > 2 * kLeastLength;
-  narrow(is_wide ? kLeastLength : kLeastLength >> 1, kLeastLength >> (is_wide ? 1 : 9));
+  const bool is_wide = length_ > 2 * kMinLength;
+  narrow(is_wide ? kMinLength : kMinLength >> 1, kMinLength >> (is_wide ? 1 : 9));
   bytes_.append(is_wide ? 3 : 2, '\0');
   return std::move(bytes_);
 }

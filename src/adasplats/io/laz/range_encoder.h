@@ -20,7 +20,7 @@ class RangeEncoder {
   friend class BitModel;
   friend class SymbolModel;
 
-  static constexpr std::uint32_t kLeastLength = 1U << 24;
+  static constexpr std::uint32_t kMinLength = 1U << 24;
 
   /// Goes on with `length` of the interval from `begin` of it on.
   void narrow(std::uint32_t begin, std::uint32_t length) {
@@ -28,7 +28,7 @@ class RangeEncoder {
     base_ += begin;
     if (base_ < before) carry();
     length_ = length;
-    for (; length_ < kLeastLength; length_ <<= 8) {
+    for (; length_ < kMinLength; length_ <<= 8) {
       bytes_ += static_cast<char>(base_ >> 24);
       base_ <<= 8;
     }

@@ -135,7 +135,7 @@ inline std::size_t follow_chunk_index(std::string_view file, const Record& recor
   EXPECT_EQ(times.number<std::uint64_t>(), first_ns);
   EXPECT_EQ(times.number<std::uint64_t>(), last_ns);
   std::size_t messages = 0, index_number = 0;
-  std::uint64_t least_ns = ~std::uint64_t{0}, most_ns = 0;
+  std::uint64_t min_ns = ~std::uint64_t{0}, max_ns = 0;
   while (!places.at_end()) {
     const auto channel = places.number<std::uint16_t>();
     const Record& index = indexes.at(index_number++);
@@ -152,13 +152,13 @@ inline std::size_t follow_chunk_index(std::string_view file, const Record& recor
       const Message message = message_of({opcode, 0, 0, inner.take(inner.number<std::uint64_t>())});
       EXPECT_EQ(message.channel, channel);
       EXPECT_EQ(message.time_ns, time_ns);
-      least_ns = std::min(least_ns, time_ns);
-      most_ns = std::max(most_ns, time_ns);
+      min_ns = std::min(min_ns, time_ns);
+      max_ns = std::max(max_ns, time_ns);
     }
   }
   EXPECT_EQ(index_number, indexes.size());
-  EXPECT_EQ(first_ns, least_ns);
-  EXPECT_EQ(last_ns, most_ns);
+  EXPECT_EQ(first_ns, min_ns);
+  EXPECT_EQ(last_ns, max_ns);
   return messages;
 }
 

@@ -20,9 +20,9 @@ constexpr std::uint32_t kMicrosecondMagic = 0xA1B2C3D4, kNanosecondMagic = 0xA1B
 constexpr std::uint32_t kSectionBlock = 0x0A0D0D0A, kByteOrderMagic = 0x1A2B3C4D;
 constexpr std::uint32_t kInterfaceBlock = 1, kSimplePacketBlock = 3, kEnhancedPacketBlock = 6;
 constexpr std::size_t kClassicHeadBytes = 24, kRecordHeadOfCapture = 16, kBlockFrameBytes = 12;
-constexpr std::uint32_t kMostFrameBytes = 262'144;  // libpcap's limit
-constexpr std::uint32_t kMostBlockBytes = 16U << 20U;
-constexpr std::size_t kMostLinks = 4096;
+constexpr std::uint32_t kMaxFrameBytes = 262'144;  // libpcap's limit
+constexpr std::uint32_t kMaxBlockBytes = 16U << 20U;
+constexpr std::size_t kMaxLinks = 4096;
 constexpr std::uint64_t kMillion = 1'000'000, kBillion = 1'000'000'000;
 
 std::uint32_t swapped(std::uint32_t value) {
@@ -111,9 +111,9 @@ std::optional<CapturedFrame> CaptureReader::next_classic() {
   const CaptureLink& link = place_.links->front();
   const auto seconds = number_at<std::uint32_t>(head, 0), part = number_at<std::uint32_t>(head, 4);
   const auto bytes = number_at<std::uint32_t>(head, 8), whole = number_at<std::uint32_t>(head, 12);
-  if (bytes > kMostFrameBytes)
+  if (bytes > kMaxFrameBytes)
     throw file_.error_here("a frame of " + std::to_string(bytes) + " bytes, expected at most " +
-                           std::to_string(kMostFrameBytes) + ": the capture is damaged");
+                           std::to_string(kMaxFrameBytes) + ": the capture is damaged");
   if (part >= link.ticks_per_s)
     throw file_.error_here("a frame whose fraction of a second is " + std::to_string(part) +
                            " of " + std::to_string(link.ticks_per_s) + ": the capture is damaged");
@@ -135,10 +135,10 @@ std::optional<CapturedFrame> CaptureReader::next_block() {
     head = take(8, "a block");
   }
   const auto type = number_at<std::uint32_t>(head, 0), bytes = number_at<std::uint32_t>(head, 4);
-  if (bytes < kBlockFrameBytes || bytes % 4 != 0 || bytes > kMostBlockBytes)
+  if (bytes < kBlockFrameBytes || bytes % 4 != 0 || bytes > kMaxBlockBytes)
     throw file_.error_here("a block of " + std::to_string(bytes) +
                            " bytes, expected a multiple of 4 from 12 to " +
-                           std::to_string(kMostBlockBytes) + ": the capture is damaged");
+                           std::to_string(kMaxBlockBytes) + ": the capture is damaged");
   const std::string_view block = take(bytes, "a block");
   if (number_at<std::uint32_t>(block, bytes - 4) != bytes)
     throw file_.error_here("a block whose two lengths differ: the capture is damaged");
@@ -176,8 +176,8 @@ void CaptureReader::add_link(std::string_view body) {
   }
   if (link.ticks_per_s == 0)
     throw file_.error_here("an interface whose times are in steps that are not understood");
-  if (place_.links->size() >= kMostLinks)
-    throw file_.error_here("more than " + std::to_string(kMostLinks) + " interfaces");
+  if (place_.links->size() >= kMaxLinks)
+    throw file_.error_here("more than " + std::to_string(kMaxLinks) + " interfaces");
   std::vector<CaptureLink> links = *place_.links;
   links.push_back(link);
   place_.links = std::make_shared<const std::vector<CaptureLink>>(std::move(links));

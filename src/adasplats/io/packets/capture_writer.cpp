@@ -12,8 +12,8 @@ namespace adasplats {
 namespace {
 
 constexpr std::uint32_t kPcapMicroseconds = 0xA1B2C3D4, kSnapLength = 65535, kLinkEthernet = 1;
-constexpr std::size_t kMostIpPayload = 1480;  // of frames of 1500 bytes; a multiple of 8
-constexpr std::size_t kMostUdpPayload = 65507;
+constexpr std::size_t kMaxIpPayload = 1480;  // of frames of 1500 bytes; a multiple of 8
+constexpr std::size_t kMaxUdpPayload = 65507;
 constexpr std::uint64_t kMicrosecondsInSecond = 1'000'000;
 
 std::string bytes_of(std::span<const std::uint8_t> bytes) {
@@ -69,18 +69,18 @@ CaptureWriter::CaptureWriter(const std::filesystem::path& path) : path_(path), f
 
 void CaptureWriter::add(std::uint64_t time_us, const UdpEnd& from, const UdpEnd& to,
                         std::string_view payload) {
-  if (payload.size() > kMostUdpPayload)
+  if (payload.size() > kMaxUdpPayload)
     throw Error(ErrorKind::data, path_.string() + ": a datagram of " +
                                      std::to_string(payload.size()) + " bytes, expected at most " +
-                                     std::to_string(kMostUdpPayload));
+                                     std::to_string(kMaxUdpPayload));
   if (time_us / kMicrosecondsInSecond > UINT32_MAX)
     throw Error(ErrorKind::data, path_.string() + ": a time of " +
                                      std::to_string(time_us / kMicrosecondsInSecond) +
                                      " s since 1970 is beyond what PCAP can say (2106)");
   const std::string datagram = udp_datagram(from, to, payload);
   ++datagram_;
-  for (std::size_t offset = 0; offset < datagram.size(); offset += kMostIpPayload) {
-    const std::string_view part = std::string_view(datagram).substr(offset, kMostIpPayload);
+  for (std::size_t offset = 0; offset < datagram.size(); offset += kMaxIpPayload) {
+    const std::string_view part = std::string_view(datagram).substr(offset, kMaxIpPayload);
     add_frame(time_us, from, to, part, offset, offset + part.size() < datagram.size());
   }
 }

@@ -9,8 +9,8 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kMostOpenDatagrams = 32;
-constexpr std::size_t kMostDatagramBytes = 65535;
+constexpr std::size_t kMaxOpenDatagrams = 32;
+constexpr std::size_t kMaxDatagramBytes = 65535;
 
 /// What of a frame is IPv4; nothing where it is another protocol.
 std::optional<std::string_view> ipv4_of(std::uint32_t link_type, std::string_view frame) {
@@ -99,7 +99,7 @@ std::optional<Datagram> DatagramReader::joined(const Packet& packet, const Captu
   CapturePlace place = frame.place;
   if (packet.offset != 0 || packet.has_more) {
     const std::size_t end = packet.offset + bytes.size();
-    if (end > kMostDatagramBytes || (packet.has_more && bytes.size() % kFragmentUnit != 0)) {
+    if (end > kMaxDatagramBytes || (packet.has_more && bytes.size() % kFragmentUnit != 0)) {
       ++counts_.cut;
       return std::nullopt;
     }
@@ -121,7 +121,7 @@ std::optional<Datagram> DatagramReader::joined(const Packet& packet, const Captu
     }
     parts.has_end = parts.has_end || !packet.has_more;
     if (parts.missing != 0 || !parts.has_end) {
-      if (parts_.size() > kMostOpenDatagrams) drop_oldest();
+      if (parts_.size() > kMaxOpenDatagrams) drop_oldest();
       return std::nullopt;
     }
     whole_ = std::move(parts.bytes);

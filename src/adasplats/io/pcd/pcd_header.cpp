@@ -12,7 +12,7 @@ namespace adasplats {
 namespace {
 
 // Descriptors of the largest kind have some thousand values a point.
-constexpr std::uint64_t kMostValues = 65536;
+constexpr std::uint64_t kMaxValues = 65536;
 
 ColumnType pcd_type(const LineReader& lines, char type, std::size_t bytes) {
   if (type == 'F' && bytes == 4) return ColumnType::f32;
@@ -62,7 +62,7 @@ class PcdHeaderParser {
     } else if (keyword == "TYPE") {
       for (const std::string_view word : split_blanks(tokens.rest())) take_type(word);
     } else if (keyword == "COUNT") {
-      counts_ = take_numbers(keyword, tokens, 1, kMostValues);
+      counts_ = take_numbers(keyword, tokens, 1, kMaxValues);
     } else if (keyword == "WIDTH") {
       width_ = take_number(keyword, tokens);
     } else if (keyword == "HEIGHT") {
@@ -148,8 +148,8 @@ class PcdHeaderParser {
       const auto bytes = static_cast<std::size_t>(sizes_[k]);
       const auto count = static_cast<std::size_t>(counts_[k]);
       values += count;
-      if (values > kMostValues)
-        throw lines_.error_here("more than " + std::to_string(kMostValues) + " values a point");
+      if (values > kMaxValues)
+        throw lines_.error_here("more than " + std::to_string(kMaxValues) + " values a point");
       header_.fields.push_back({names_[k], pcd_type(lines_, types_[k], bytes), bytes, count});
     }
   }

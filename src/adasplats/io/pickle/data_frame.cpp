@@ -16,8 +16,8 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kMostUnpacked = std::size_t{1} << 30;
-constexpr std::size_t kMostParts = 4096;
+constexpr std::size_t kMaxUnpacked = std::size_t{1} << 30;
+constexpr std::size_t kMaxParts = 4096;
 constexpr std::string_view kGzipStart = "\x1f\x8b";
 
 /// Makes a table of what a pickle says.
@@ -52,9 +52,9 @@ class FrameReaderOfPickle {
 
   /// Values may be named many times in a pickle, which then is more work than its size tells.
   void require_few(std::size_t count, const std::string& what) const {
-    if (count > kMostParts)
+    if (count > kMaxParts)
       throw fault(std::to_string(count) + " " + what + ", expected at most " +
-                  std::to_string(kMostParts));
+                  std::to_string(kMaxParts));
   }
 
   void add(std::string_view name, const PickledArray& array, std::size_t line) {
@@ -194,7 +194,7 @@ Table data_frame_of(const std::filesystem::path& path, std::string pickle) {
 
 Table read_data_frame(const std::filesystem::path& path) {
   std::string bytes = read_file(path);
-  if (bytes.starts_with(kGzipStart)) bytes = gunzipped(path, bytes, kMostUnpacked);
+  if (bytes.starts_with(kGzipStart)) bytes = gunzipped(path, bytes, kMaxUnpacked);
   return data_frame_of(path, std::move(bytes));
 }
 

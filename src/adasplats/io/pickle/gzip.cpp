@@ -16,7 +16,7 @@ namespace {
 constexpr int kGzipWindow = 15 + 16;  // of 32 KiB, with gzip's header
 // Coordinates hardly shrink more at higher levels, which take three times as long.
 constexpr int kGzipLevel = 3;
-constexpr std::size_t kMostAtOnce = std::numeric_limits<uInt>::max();
+constexpr std::size_t kMaxAtOnce = std::numeric_limits<uInt>::max();
 
 Bytef* bytes_for_zlib(std::string_view bytes) {
   // zlib's interface is older than const, but reads alone.
@@ -41,7 +41,7 @@ class Inflater {
 }  // namespace
 
 std::string gzipped(std::string_view bytes) {
-  if (bytes.size() > kMostAtOnce) throw std::logic_error("gzipped: more than 4 GiB");
+  if (bytes.size() > kMaxAtOnce) throw std::logic_error("gzipped: more than 4 GiB");
   z_stream stream{};
   constexpr int kMemoryLevel = 8;  // zlib's default
   if (deflateInit2(&stream, kGzipLevel, Z_DEFLATED, kGzipWindow, kMemoryLevel,
@@ -60,23 +60,23 @@ std::string gzipped(std::string_view bytes) {
 }
 
 std::string gunzipped(const std::filesystem::path& file, std::string_view bytes,
-                      std::size_t most_bytes) {
+                      std::size_t max_bytes) {
   constexpr std::size_t kStep = std::size_t{1} << 20;
   Inflater inflater;
   z_stream& stream = inflater.get();
-  std::string content, part(std::min(kStep, most_bytes + 1), '\0');
+  std::string content, part(std::min(kStep, max_bytes + 1), '\0');
   std::string_view left = bytes;
   for (bool is_whole = left.empty(); !is_whole;) {
     stream.next_in = bytes_for_zlib(left);
-    stream.avail_in = static_cast<uInt>(std::min(left.size(), kMostAtOnce));
+    stream.avail_in = static_cast<uInt>(std::min(left.size(), kMaxAtOnce));
     stream.next_out = reinterpret_cast<Bytef*>(part.data());
     stream.avail_out = static_cast<uInt>(part.size());
     const std::size_t given = stream.avail_in;
     const int result = inflate(&stream, Z_NO_FLUSH);
     const std::size_t used = given - stream.avail_in, made = part.size() - stream.avail_out;
-    if (content.size() + made > most_bytes)
-      throw Error(ErrorKind::data, file.string() + ": unpacks to more than " +
-                                       std::to_string(most_bytes) + " bytes");
+    if (content.size() + made > max_bytes)
+      throw Error(ErrorKind::data,
+                  file.string() + ": unpacks to more than " + std::to_string(max_bytes) + " bytes");
     content.append(part, 0, made);
     left.remove_prefix(used);
     is_whole = result == Z_STREAM_END && left.empty();

@@ -13,8 +13,8 @@ namespace adasplats {
 std::string gzipped(std::string_view bytes);
 
 /// What the members of a gzip file hold. `file` is for messages. Memory: twice what they hold, at
-/// most `most_bytes`. Errors: data (no gzip, damaged or cut, more than `most_bytes`).
+/// most `max_bytes`. Errors: data (no gzip, damaged or cut, more than `max_bytes`).
 std::string gunzipped(const std::filesystem::path& file, std::string_view bytes,
-                      std::size_t most_bytes);
+                      std::size_t max_bytes);
 
 }  // namespace adasplats

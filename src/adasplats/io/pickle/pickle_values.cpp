@@ -16,7 +16,7 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kMostOpcodes = 1'000'000;
+constexpr std::size_t kMaxOpcodes = 1'000'000;
 
 /// What pickles of data frames name, by any version of pandas and NumPy so far.
 constexpr std::array<std::string_view, 21> kKnownGlobals = {
@@ -51,7 +51,7 @@ class PickleMachine {
 
   void run() {
     for (std::size_t count = 0; !is_done_; ++count) {
-      if (count == kMostOpcodes) throw fault("more than a million opcodes: no table of numbers");
+      if (count == kMaxOpcodes) throw fault("more than a million opcodes: no table of numbers");
       begin_ = at_;
       const char code = take(1)[0];
       if (!push_constant(code) && !use_stack(code) && !use_memo(code)) {

@@ -124,9 +124,9 @@ PlyElementData PlyBody::read(const PlyElement& element, const PlyProperty* kept_
 }
 
 Table PlyBody::read(const PlyElement& element, RecordSpan records) {
-  check_room(file_, element.count, element.least_record_bytes(), element.name + " records");
+  check_room(file_, element.count, element.min_record_bytes(), element.name + " records");
   const RecordSpan span = records.within(element.count);
-  file_.skip(span.first * element.least_record_bytes());
+  file_.skip(span.first * element.min_record_bytes());
   return read_plain(element, span.count);
 }
 
@@ -180,7 +180,7 @@ PlyElementData PlyBody::read_text(const PlyElement& element, const PlyProperty* 
 }
 
 PlyElementData PlyBody::read_lists(const PlyElement& element, const PlyProperty* kept_list) {
-  check_room(file_, element.count, element.least_record_bytes(), element.name + " records");
+  check_room(file_, element.count, element.min_record_bytes(), element.name + " records");
   ScalarColumns scalars = make_scalar_columns(element);
   PlyElementData data;
   for (std::size_t row = 0; row < element.count; ++row) {
@@ -215,9 +215,9 @@ void PlyBody::skip(const PlyElement& element) {
     }
     return;
   }
-  check_room(file_, element.count, element.least_record_bytes(), element.name + " records");
+  check_room(file_, element.count, element.min_record_bytes(), element.name + " records");
   if (!element.has_lists()) {
-    file_.skip(element.count * element.least_record_bytes());
+    file_.skip(element.count * element.min_record_bytes());
     return;
   }
   for (std::uint64_t row = 0; row < element.count; ++row) {

@@ -149,7 +149,7 @@ bool PlyElement::has_lists() const {
                      [](const PlyProperty& property) { return property.is_list; });
 }
 
-std::size_t PlyElement::least_record_bytes() const {
+std::size_t PlyElement::min_record_bytes() const {
   std::size_t bytes = 0;
   for (const PlyProperty& property : properties)
     bytes += type_bytes(property.is_list ? property.count_type : property.type);

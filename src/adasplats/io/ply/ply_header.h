@@ -27,7 +27,7 @@ struct PlyElement {
 
   bool has_lists() const;
   /// Bytes of a binary record whose lists are all empty.
-  std::size_t least_record_bytes() const;
+  std::size_t min_record_bytes() const;
 };
 
 enum class PlyEncoding : std::uint8_t { ascii, little_endian, big_endian };

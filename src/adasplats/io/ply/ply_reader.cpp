@@ -76,7 +76,7 @@ Table repeat_rows(const Table& faces, const std::vector<std::size_t>& face_of_tr
 /// for any amount of memory.
 void check_repeated_size(const InputFile& file, const PlyElement& element, std::size_t triangles) {
   constexpr std::uint64_t kLargestGrowth = 16;
-  const std::uint64_t bytes = static_cast<std::uint64_t>(triangles) * element.least_record_bytes();
+  const std::uint64_t bytes = static_cast<std::uint64_t>(triangles) * element.min_record_bytes();
   if (bytes <= kLargestGrowth * std::max<std::uint64_t>(file.size_bytes(), 4096)) return;
   throw data_error({file.path(), {}, {}},
                    "the faces' properties, repeated for each of " + std::to_string(triangles) +

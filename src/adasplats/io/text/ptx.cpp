@@ -47,8 +47,8 @@ class PtxReader {
   void read_scan(std::string_view first_line) {
     const ScanHeader scan = read_header(first_line);
     // "0 0 0 0" and its line end.
-    constexpr std::uint64_t kLeastBytes = 8;
-    const std::uint64_t room = (file_.remaining() + 1) / kLeastBytes;
+    constexpr std::uint64_t kMinBytes = 8;
+    const std::uint64_t room = (file_.remaining() + 1) / kMinBytes;
     if (scan.points > room) {
       throw lines_.error_here("found room for at most " + std::to_string(room) +
                               " points after this line, the scan's header says " +

@@ -17,7 +17,7 @@ namespace adasplats {
 namespace {
 
 // A file of empty comments would otherwise take 16 times its size.
-constexpr std::size_t kMostComments = 1000;
+constexpr std::size_t kMaxComments = 1000;
 
 /// Splits a line into cells at a separator; at runs of blanks and tabs where that is ' '.
 class Cells {
@@ -133,7 +133,7 @@ class TextReader {
     line.remove_prefix(line.starts_with('#') ? 1 : 2);
     const std::string_view text = BlankTokens(line).rest();
     if (values_.empty()) last_comment_ = text;
-    if (table_.comments.size() < kMostComments) table_.comments.emplace_back(text);
+    if (table_.comments.size() < kMaxComments) table_.comments.emplace_back(text);
   }
 
   /// A whole number alone on its line says how many points follow (PTS); a PTS file may hold

@@ -19,8 +19,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kGroupScans = 10;
 constexpr double kReach_m = 40;              // of rays that are looked at
 constexpr std::size_t kRaysAGroup = 20'000;  // at most
-constexpr std::size_t kLeastHits = 1'000;    // that say anything of a group
-constexpr double kLeastHitShare = 0.2;       // of its rays: else most of it is not in the city
+constexpr std::size_t kMinHits = 1'000;      // that say anything of a group
+constexpr double kMinHitShare = 0.2;         // of its rays: else most of it is not in the city
 constexpr double kSamePlace_m = 1e-3;        // where a scan is the one that was corrected before
 
 /// A correction at the place of one scan.
@@ -116,12 +116,12 @@ const FitScene* CityAlignment::scene_around(const FitRays& rays) {
 }
 
 void CityAlignment::find_motion(Group& group) {
-  if (group.rays.ends.size() < kLeastHits) return;
+  if (group.rays.ends.size() < kMinHits) return;
   const FitScene* const scene = scene_around(group.rays);
   if (scene == nullptr) return;
   const FitMotion fit = fit_motion(*scene, group.rays, group.rays.middle(), executor_);
   const double share = static_cast<double>(fit.hits) / static_cast<double>(group.rays.ends.size());
-  if (fit.hits < kLeastHits || share < kLeastHitShare) return;
+  if (fit.hits < kMinHits || share < kMinHitShare) return;
   // The same about the world's zero.
   const Vec3d origin = manifest_.origin;
   group.motion = {fit.motion.rotation,

@@ -22,7 +22,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kTiles = 24;           // that are looked at, at most
 constexpr std::size_t kBeamsATile = 20'000;  // likewise
-constexpr std::size_t kLeastBeams = 200;     // that say anything of a tile
+constexpr std::size_t kMinBeams = 200;       // that say anything of a tile
 
 /// Tiles of the city with splats and enough new points, all over what they have in common.
 std::vector<std::size_t> tiles_in_common(const CityManifest& city, const PointLayer& added) {
@@ -30,7 +30,7 @@ std::vector<std::size_t> tiles_in_common(const CityManifest& city, const PointLa
   for (std::size_t k = 0; k < city.tiles.size(); ++k) {
     const auto found = added.facts.tiles.find(city.tiles[k].key);
     const std::size_t points = found == added.facts.tiles.end() ? 0 : found->second.points;
-    if (city.tiles[k].splats > 0 && points >= kLeastBeams) common.push_back(k);
+    if (city.tiles[k].splats > 0 && points >= kMinBeams) common.push_back(k);
   }
   if (common.size() <= kTiles) return common;
   std::vector<std::size_t> some;
@@ -111,7 +111,7 @@ PointFit require_fit(const CityToExtend& before, const CityWork& work, Resumable
     work.session.progress.warn("the new points and " + before.path().string() +
                                " have next to nothing in common: whether they fit is not known (" +
                                std::to_string(fit.rays) + " new rays end near its splats)");
-  } else if (std::max(length(fit.shift_m), fit.part_shift_m) > work.job.addition.most_shift_m) {
+  } else if (std::max(length(fit.shift_m), fit.part_shift_m) > work.job.addition.max_shift_m) {
     throw Error(ErrorKind::data, "the new points lie beside " + before.path().string() +
                                      ": they fit best when all "
                                      "are shifted by " +
@@ -119,7 +119,7 @@ PointFit require_fit(const CityToExtend& before, const CityWork& work, Resumable
                                      metres(fit.shift_m.z) + ", tiles alone by " +
                                      metres(fit.part_shift_m) + " (median of " +
                                      std::to_string(fit.parts) + "), and `most_shift` is " +
-                                     metres(work.job.addition.most_shift_m) +
+                                     metres(work.job.addition.max_shift_m) +
                                      ": both would be modelled side by side; correct their poses");
   }
   write_file_in_place(work.path(name), to_json(fit).dump(1) + "\n");

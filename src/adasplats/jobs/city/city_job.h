@@ -26,16 +26,16 @@ void visit_settings(TileChoice& choice, Visit&& visit) {
                         "takes (default: 0 where that fits into memory)",
                 .key = "tile_m",
                 .group = kGroup,
-                .least = 0,
-                .most = 10'000},
+                .min = 0,
+                .max = 10'000},
         choice.tile_m);
   visit(Setting{.name = "halo",
                 .help = "Around a tile the points that it is modelled with, m; splats farther than "
                         "that from the borders are those of one large model",
                 .key = "halo_m",
                 .group = kGroup,
-                .least = 0,
-                .most = 1'000},
+                .min = 0,
+                .max = 1'000},
         choice.halo_m);
 }
 
@@ -53,14 +53,14 @@ void visit_settings(MemoryChoice& choice, Visit&& visit) {
                 .value = "GB",
                 .key = "memory_gb",
                 .group = "Cities",
-                .least = 0,
-                .most = 1e6},
+                .min = 0,
+                .max = 1e6},
         choice.memory_gb);
 }
 
 /// What points that are added to a city must be like.
 struct AdditionChoice {
-  double most_shift_m = 0.1;  ///< that they may lie beside its splats (PointFit)
+  double max_shift_m = 0.1;  ///< that they may lie beside its splats (PointFit)
 };
 
 template <class Visit>
@@ -69,9 +69,9 @@ void visit_settings(AdditionChoice& choice, Visit&& visit) {
                 .help = "How far points may lie beside the city that they are added to, m",
                 .key = "most_shift_m",
                 .group = "Cities",
-                .least = 0,
-                .most = 1'000},
-        choice.most_shift_m);
+                .min = 0,
+                .max = 1'000},
+        choice.max_shift_m);
 }
 
 /// Points of any number in, the folder of a city out.

@@ -41,7 +41,7 @@ std::vector<TileKey> checked_tiles(const PointLayer& layer) {
 }
 
 std::vector<MovedEvidence> evidence_in(TileKey tile, const LabelScheme* scheme,
-                                       const WholePlace& whole, const ModelEngine& engine,
+                                       const GlobalContext& whole, const ModelEngine& engine,
                                        const CityWork& work) {
   PointCloud cloud = points_around(tile, work.layers.back(), work);
   if (!cloud.has_beams()) return {};
@@ -67,7 +67,7 @@ OriginCheck check_tiles(const CityWork& work) {
   std::vector<std::vector<MovedEvidence>> of_tiles(chosen.size());
   std::size_t done = 0;
   const auto check = [&](std::size_t k, Session& session) {
-    WholePlace whole;
+    GlobalContext whole;
     whole.box = work.first().box;
     whole.typical = work.typical;
     whole.rays = work.first().rays;

@@ -34,7 +34,7 @@ class LayerRays {
     const TileCount& count = layer_.facts.tiles.at(tile);
     RaysByTile passing, empty;
     if (count.points > 0 && may_reach(count.rays))
-      passing = passing_rays(points_that_stay(tile), tiles_, work_.options.least_range_m, executor);
+      passing = passing_rays(points_that_stay(tile), tiles_, work_.options.min_range_m, executor);
     const auto reach_m = static_cast<double>(layer_.facts.empty_reach_m);
     if (count.empty_beams > 0 && may_reach(tiles_.grid.box_of(tile).grown(reach_m))) {
       PointCloud ends = ends_of(read_tile_beams(folder(), tile), layer_.facts.empty_reach_m);

@@ -46,7 +46,7 @@ Spacings spacings_in(TileKey tile, const LabelScheme* scheme, const ModelEngine&
   PointCloud cloud = points_around(tile, work);
   ClassTables tables;
   tables.removed = points_to_remove(cloud, scheme, work.job.build.remove).ids;
-  WholePlace whole;
+  GlobalContext whole;
   whole.box = work.first().box;
   const std::unique_ptr<ConsistentSteps> steps = engine.consistent_steps();
   if (steps->load(std::move(cloud), tables, &whole) == 0) return found;

@@ -33,8 +33,8 @@ TileModeller::TileModeller(const CityWork& work) : work_(work), tiles_(tiles_to_
   }
 }
 
-WholePlace TileModeller::whole_of(TileKey tile) const {
-  WholePlace whole;
+GlobalContext TileModeller::whole_of(TileKey tile) const {
+  GlobalContext whole;
   whole.box = work_.first().box;
   whole.typical = work_.typical;
   whole.rays = work_.first().rays;
@@ -47,7 +47,7 @@ WholePlace TileModeller::whole_of(TileKey tile) const {
 }
 
 SplatModel TileModeller::model(TileKey tile, Session& session) const {
-  const WholePlace whole = whole_of(tile);
+  const GlobalContext whole = whole_of(tile);
   ModelOptions options = work_.job;
   options.calibration.on = false;
   options.segment.on = false;                  // the points have their classes

@@ -27,7 +27,7 @@ class TileModeller {
   std::vector<std::string> files_for(TileKey tile) const;
 
  private:
-  WholePlace whole_of(TileKey tile) const;
+  GlobalContext whole_of(TileKey tile) const;
   void keep_own(TileKey tile, SplatModel& model) const;
 
   /// Where a layer's rays for each tile are.

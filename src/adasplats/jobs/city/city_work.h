@@ -14,7 +14,7 @@
 #include "adasplats/jobs/city/point_layer.h"
 #include "adasplats/jobs/model/make_model.h"
 #include "adasplats/jobs/session/session.h"
-#include "adasplats/splats/consistent/whole_place.h"
+#include "adasplats/splats/consistent/global_context.h"
 #include "adasplats/splats/model/splat_model.h"
 #include "adasplats/splats/reflectance/reflectance.h"
 

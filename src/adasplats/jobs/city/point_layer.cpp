@@ -42,7 +42,7 @@ void read_points_of(TileKey tile, const fs::path& folder, const CityJob& job, Po
 }
 
 std::size_t count_rays(const PointCloud& cloud, const LabelScheme* scheme, const CityJob& job) {
-  const double least_range_m = consistent_options_of(job).least_range_m;
+  const double min_range_m = consistent_options_of(job).min_range_m;
   const RemovedPoints removed = points_to_remove(cloud, scheme, job.build.remove);
   std::size_t rays = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -50,7 +50,7 @@ std::size_t count_rays(const PointCloud& cloud, const LabelScheme* scheme, const
     const float range_m = length(cloud.positions[i] - cloud.sensor_positions[i]);
     const bool stays =
         removed.ids.empty() || cloud.classes.empty() || removed.ids[cloud.classes[i]] == 0;
-    if (stays && static_cast<double>(range_m) >= least_range_m) ++rays;
+    if (stays && static_cast<double>(range_m) >= min_range_m) ++rays;
   }
   return rays;
 }

@@ -24,8 +24,8 @@ constexpr std::uint64_t kSamples = 24;
 constexpr std::uint64_t kSampledRecords = 50'000;
 
 /// No file has more points than that for its size; LAZ has the fewest bytes a point, 2 or more
-/// (kMostPointsPerByte is for broken ones).
-double most_points_of_file(const fs::path& file) {
+/// (kMaxPointsPerByte is for broken ones).
+double max_points_of_file(const fs::path& file) {
   std::error_code problem;
   const auto bytes = static_cast<double>(fs::file_size(file, problem));
   if (problem) return 0;
@@ -68,7 +68,7 @@ TileAdvice one_piece(double points, double memory_gb) {
 
 }  // namespace
 
-double PlaceEstimate::most_points_of_tile(double tile_m, double halo_m) const {
+double PlaceEstimate::max_points_of_tile(double tile_m, double halo_m) const {
   const TileGrid grid = {tile_m}, own = {kCell_m};
   std::map<TileKey, double> tiles;
   const auto near = static_cast<std::int32_t>(std::ceil(halo_m / tile_m));
@@ -88,17 +88,17 @@ double PlaceEstimate::most_points_of_tile(double tile_m, double halo_m) const {
   return most;
 }
 
-double most_points_of(std::span<const fs::path> inputs) {
+double max_points_of(std::span<const fs::path> inputs) {
   double points = 0;
   for (const fs::path& input : inputs) {
     std::error_code problem;
     if (!fs::is_directory(input, problem)) {
-      points += most_points_of_file(input);
+      points += max_points_of_file(input);
       continue;
     }
     fs::recursive_directory_iterator entry(input, problem), end;
     for (; !problem && entry != end; entry.increment(problem))
-      if (entry->is_regular_file(problem)) points += most_points_of_file(entry->path());
+      if (entry->is_regular_file(problem)) points += max_points_of_file(entry->path());
   }
   return points;
 }
@@ -126,7 +126,7 @@ PlaceEstimate estimate_place(const OpenInputs& inputs, Session& session) {
 TileAdvice advise_tiles(const CityJob& job, Session& session) {
   double memory_gb = job.memory.memory_gb;
   if (memory_gb == 0) memory_gb = 0.75 * static_cast<double>(usable_memory_bytes()) / 1e9;
-  const double most = most_points_of(job.inputs);
+  const double most = max_points_of(job.inputs);
   if (memory_gb == 0 || most * kModelBytesAPoint <= memory_gb * 1e9)
     return one_piece(most, memory_gb);
   LoadOptions load = job.load;
@@ -141,7 +141,7 @@ TileAdvice advise_tiles(const CityJob& job, Session& session) {
   double need_gb = 0;
   for (const double tile_m : {64.0, 32.0, 16.0}) {
     need_gb =
-        at_once * place.most_points_of_tile(tile_m, job.tiles.halo_m) * kModelBytesAPoint / 1e9;
+        at_once * place.max_points_of_tile(tile_m, job.tiles.halo_m) * kModelBytesAPoint / 1e9;
     if (need_gb > memory_gb) continue;
     advice.tile_m = tile_m;
     return advice;

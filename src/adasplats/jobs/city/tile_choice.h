@@ -25,11 +25,11 @@ struct PlaceEstimate {
   std::map<TileKey, double> cells;  ///< points by squares of kCell_m
 
   /// Of the tile that takes most, with its halo.
-  double most_points_of_tile(double tile_m, double halo_m) const;
+  double max_points_of_tile(double tile_m, double halo_m) const;
 };
 
 /// No fewer points than inputs can have, by the sizes of their files. Time: that of listing them.
-double most_points_of(std::span<const std::filesystem::path> inputs);
+double max_points_of(std::span<const std::filesystem::path> inputs);
 
 /// Looks at scans or records all over the inputs, two million points or so; files whose records are
 /// not at random are read. Errors: those of OpenInputs.

@@ -87,7 +87,7 @@ TEST(PlaceEstimate, SizesOfFilesSayAtMostHowManyPointsThereAre) {
   folder.write("drive/velodyne/000000.bin", std::string(160, 0));
   folder.write("drive/velodyne/000001.bin", std::string(320, 0));
   const std::vector<fs::path> inputs = {folder.path() / "drive"};
-  EXPECT_EQ(most_points_of(inputs), 30);
+  EXPECT_EQ(max_points_of(inputs), 30);
 }
 
 }  // namespace

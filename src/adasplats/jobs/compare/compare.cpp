@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostPoses = 20;
+constexpr std::size_t kMaxPoses = 20;
 constexpr double kBehind_m = 12, kAbove_m = 6, kAhead_m = 15;
 constexpr double kMemoryShare = 0.9;  // of the machine's, where no limit is given
 
@@ -118,7 +118,7 @@ CompetitionRules rules_of(const CompareJob& job, const ComparisonData& data,
     throw Error(ErrorKind::data, rules.data.trajectory.string() + ": no poses");
   }
   rules.offset_m = data.offset_m.value_or(Vec3d{});
-  rules.every = job.every > 0 ? job.every : (trajectory.size() + kMostPoses - 1) / kMostPoses;
+  rules.every = job.every > 0 ? job.every : (trajectory.size() + kMaxPoses - 1) / kMaxPoses;
   rules.view = view_along(trajectory, rules.offset_m);
   rules.pictures = folder.pictures();
   rules.device = device_key(device);

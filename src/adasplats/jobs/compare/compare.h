@@ -31,15 +31,15 @@ void visit_settings(CompareLimits& limits, Visit&& visit) {
   visit(Setting{.name = "time_limit",
                 .help = "Seconds",
                 .value = "S",
-                .least = 0,
-                .most = std::numeric_limits<double>::infinity(),
-                .above_least = true},
+                .min = 0,
+                .max = std::numeric_limits<double>::infinity(),
+                .exclusive_min = true},
         limits.seconds);
   visit(Setting{.name = "memory_limit",
                 .help = "GiB; 0: 90 % of the machine's",
                 .value = "GIB",
-                .least = 0,
-                .most = 1e9},
+                .min = 0,
+                .max = 1e9},
         limits.memory_gib);
   visit(Setting{.name = "retry", .help = "Run steps again that failed"}, limits.retry);
 }
@@ -73,19 +73,19 @@ void visit_settings(CompareJob& job, Visit&& visit) {
   visit(Setting{.name = "every",
                 .help = "Take every n-th pose; 0: at most 20 poses",
                 .value = "N",
-                .least = 0},
+                .min = 0},
         job.every);
   visit(Setting{.name = "picture_width",
                 .help = "Pixels; the height is 9/16 of it",
                 .value = "N",
-                .least = 64,
-                .most = 8192},
+                .min = 64,
+                .max = 8192},
         job.picture_width);
   visit(Setting{.name = "poisson_depth",
                 .help = "Depth of the octree",
                 .value = "N",
-                .least = 1,
-                .most = 16},
+                .min = 1,
+                .max = 16},
         job.poisson_depth);
   visit(Setting{.name = "network",
                 .help = "File of the network of the method kpconv; else the one that comes with "

@@ -36,10 +36,10 @@ Side open_side(std::string name, const std::filesystem::path& given, const Reali
                Session& session) {
   Side side{std::move(name), open_ring_scans(given, job.trajectory, session), {}};
   side.chosen = chosen_scans(job.scans, side.sequence.scans.size(), side.sequence.folder);
-  if (side.chosen.size() < kLeastRealismScans)
+  if (side.chosen.size() < kMinRealismScans)
     throw Error(ErrorKind::data,
                 side.name + ", " + given.string() + ": " + std::to_string(side.chosen.size()) +
-                    " scans, expected at least " + std::to_string(kLeastRealismScans));
+                    " scans, expected at least " + std::to_string(kMinRealismScans));
   return side;
 }
 

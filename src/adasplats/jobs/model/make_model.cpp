@@ -145,7 +145,7 @@ class ModelMaker {
 namespace {
 
 /// Only what checks disks by rays has a use for them.
-bool uses_empty_beams(const ModelRecipe& recipe) {
+bool uses_empty_beams(const MethodOptions& recipe) {
   const auto* ours = std::get_if<ConsistentOptions>(&recipe);
   return ours != nullptr && ours->empty_beams && ours->balance_rounds > 0;
 }

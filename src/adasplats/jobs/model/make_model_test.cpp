@@ -38,7 +38,7 @@ class MakeModelTest : public testing::Test {
 TEST_F(MakeModelTest, PointsInMemoryGiveTheModelOfTheStageBelow) {
   for (const SplatMethod method : {SplatMethod::basic, SplatMethod::consistent}) {
     ModelOptions options;
-    options.build.recipe = RecipeChoice{.method = method}.recipe();
+    options.build.recipe = MethodChoice{.method = method}.recipe();
     options.build.remove = DynamicRemoval::none;
     const PointCloud cloud = plane();
     const auto [model, result] = make_model(cloud, options, session_);
@@ -56,7 +56,7 @@ TEST_F(MakeModelTest, PointsInMemoryGiveTheModelOfTheStageBelow) {
 TEST_F(MakeModelTest, LabelsAreNamedInTheModel) {
   ModelOptions options;
   options.labels = "semantickitti";
-  options.build.recipe = RecipeChoice{.method = SplatMethod::semantic}.recipe();
+  options.build.recipe = MethodChoice{.method = SplatMethod::semantic}.recipe();
   const auto made = make_model(plane(), options, session_);
   EXPECT_EQ(made.first.label_scheme, "semantickitti");
   EXPECT_EQ(to_json(made.second)["primitives"], made.first.size());
@@ -68,7 +68,7 @@ TEST_F(MakeModelTest, LabelsAreNamedInTheModel) {
 TEST_F(MakeModelTest, SegmentedPointsGiveTheModelOfTheNetworksLabels) {
   ModelOptions options;
   options.segment.on = true;
-  options.build.recipe = RecipeChoice{.method = SplatMethod::semantic}.recipe();
+  options.build.recipe = MethodChoice{.method = SplatMethod::semantic}.recipe();
   options.build.remove = DynamicRemoval::none;
   if (!can_segment()) {
     expect_error(ErrorKind::unavailable, {"OpenBLAS"},

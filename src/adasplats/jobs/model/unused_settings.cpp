@@ -55,8 +55,8 @@ void add_own(const PaperOptions& paper, List& unused) {
 
 }  // namespace
 
-List unused_settings(const RecipeChoice& choice) {
-  const ModelRecipe recipe = choice.recipe();
+List unused_settings(const MethodChoice& choice) {
+  const MethodOptions recipe = choice.recipe();
   std::string chosen;
   visit_methods(choice, [&]<class Options>(const Options&, const char* method) {
     if (std::holds_alternative<Options>(recipe)) chosen = method;

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "adasplats/splats/recipe.h"
+#include "adasplats/splats/method_options.h"
 
 namespace adasplats {
 
@@ -33,6 +33,6 @@ std::vector<UnusedSetting> all_unused(const Settings& settings, const std::strin
 
 /// Which settings of making a model the method and the other settings leave without effect. A user
 /// who has given one of them believes something else.
-std::vector<UnusedSetting> unused_settings(const RecipeChoice& choice);
+std::vector<UnusedSetting> unused_settings(const MethodChoice& choice);
 
 }  // namespace adasplats

@@ -10,8 +10,8 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kMostEntries = 14;
-constexpr std::size_t kLeastShare = 1000;  // one in so many
+constexpr std::size_t kMaxEntries = 14;
+constexpr std::size_t kMinShare = 1000;  // one in so many
 
 struct Entry {
   std::uint64_t count = 0;
@@ -21,11 +21,11 @@ struct Entry {
 
 ClassLegend commonest(std::vector<Entry> entries, std::size_t all) {
   std::erase_if(entries, [&](const Entry& entry) {
-    return entry.count == 0 || entry.count * kLeastShare < all;
+    return entry.count == 0 || entry.count * kMinShare < all;
   });
   std::stable_sort(entries.begin(), entries.end(),
                    [](const Entry& a, const Entry& b) { return a.count > b.count; });
-  if (entries.size() > kMostEntries) entries.resize(kMostEntries);
+  if (entries.size() > kMaxEntries) entries.resize(kMaxEntries);
   ClassLegend legend;
   for (Entry& entry : entries) legend.emplace_back(entry.rgb, std::move(entry.name));
   return legend;

@@ -48,10 +48,8 @@ struct RenderResult {
 
 template <class Visit>
 void visit_settings(RenderJob& job, Visit&& visit) {
-  visit(
-      Setting{
-          .name = "samples", .help = "Rays a pixel: the square of this", .least = 1, .most = 64},
-      job.look.samples_per_axis);
+  visit(Setting{.name = "samples", .help = "Rays a pixel: the square of this", .min = 1, .max = 64},
+        job.look.samples_per_axis);
   visit(Setting{.name = "relief", .help = "Dark corners and gaps, splats that run into each other"},
         job.look.relief);
   visit(Setting{.name = "captions", .help = "Title, legend, scale and north"}, job.look.captions);
@@ -61,20 +59,20 @@ void visit_settings(RenderJob& job, Visit&& visit) {
   visit(Setting{.name = "seconds",
                 .help = "Length of a film",
                 .value = "S",
-                .least = 0,
-                .most = 3600,
-                .above_least = true},
+                .min = 0,
+                .max = 3600,
+                .exclusive_min = true},
         job.seconds);
   visit(Setting{.name = "frames_per_s",
                 .help = "Pictures a second of a film",
                 .value = "N",
-                .least = 1,
-                .most = 120},
+                .min = 1,
+                .max = 120},
         job.frames_per_s);
   visit(Setting{.name = "repeat",
                 .help = "Render so often and report the median of the time",
                 .value = "N",
-                .least = 1},
+                .min = 1},
         job.repeat);
 }
 

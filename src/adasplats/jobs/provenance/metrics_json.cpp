@@ -149,7 +149,7 @@ Json to_json(const LabelAgreementResult& result) {
 
 Json to_json(const SegmentationResult& result) {
   const SegmentationConfusion& confusion = result.confusion;
-  const double least_share = result.options.least_share;
+  const double min_share = result.options.min_share;
   Json names = Json::array(), iou = Json::object(), share = Json::object(), rare = Json::array();
   for (std::size_t c = 0; c < confusion.classes(); ++c) {
     const std::string& name = result.classes.classes()[c].name;
@@ -157,9 +157,9 @@ Json to_json(const SegmentationResult& result) {
     if (confusion.of_truth(c) == 0) continue;
     iou[name] = confusion.iou(c);
     share[name] = confusion.share(c);
-    if (confusion.is_rare(c, least_share)) rare.push_back(name);
+    if (confusion.is_rare(c, min_share)) rare.push_back(name);
   }
-  return {{"miou_present", confusion.mean_iou(least_share)},
+  return {{"miou_present", confusion.mean_iou(min_share)},
           {"accuracy", confusion.accuracy()},
           {"points", confusion.points()},
           {"ignored", confusion.ignored()},

@@ -280,12 +280,12 @@ std::pair<Vec3d, Vec3d> CityScene::middle_box() const {
   return box.value_or(std::pair<Vec3d, Vec3d>());
 }
 
-std::size_t CityScene::make_ready(std::span<const ScanMotion> scans, double reach_m) const {
+std::size_t CityScene::prefetch(std::span<const ScanMotion> scans, double reach_m) const {
   // As far ahead as TileStream looks.
   std::vector<SeenFrom> seen;
   for (const ScanMotion& scan : scans.first(std::min(scans.size(), TileStream::kHorizon)))
     seen.push_back(seen_from(scan, reach_m));
-  return impl_->stream->make_ready(seen);
+  return impl_->stream->prefetch(seen);
 }
 
 }  // namespace adasplats

@@ -9,7 +9,7 @@
 
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/city/tile_stream.h"
-#include "adasplats/jobs/scene/scan_place.h"
+#include "adasplats/jobs/scene/scan_scene.h"
 #include "adasplats/jobs/session/session.h"
 
 namespace adasplats {
@@ -20,7 +20,7 @@ bool is_streamable(const std::filesystem::path& model);
 
 /// A city of which only the tiles near the sensor are in memory. Scans are those of the whole city
 /// in memory (ModelScene), byte for byte.
-class CityScene final : public ScanPlace {
+class CityScene final : public ScanScene {
  public:
   /// `model`: is_streamable(). `labels` as load_label_scheme takes it names the classes; empty:
   /// what the city says. `memory_bytes`: that tiles may take. Errors: those of load_city_manifest,
@@ -40,7 +40,7 @@ class CityScene final : public ScanPlace {
   float highest_intensity() const override;
   /// Of all splats.
   std::pair<Vec3d, Vec3d> middle_box() const override;
-  std::size_t make_ready(std::span<const ScanMotion> scans, double reach_m) const override;
+  std::size_t prefetch(std::span<const ScanMotion> scans, double reach_m) const override;
   const CityManifest& manifest() const;
   /// What was done so far.
   TileStreamCounts counts() const;

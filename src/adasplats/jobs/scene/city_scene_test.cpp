@@ -114,7 +114,7 @@ class CitySceneTest : public testing::TestWithParam<DeviceKind> {
     choice_.gpus = {search.devices.front()};
   }
 
-  std::vector<Scan> scans_in(const ScanPlace& scene, std::span<const ScanMotion> motions) {
+  std::vector<Scan> scans_in(const ScanScene& scene, std::span<const ScanMotion> motions) {
     ScanSimulator simulator(scene, settings_, executor_);
     std::vector<Scan> taken;
     simulator.run_held(motions, 3, [&](std::size_t i, HeldScan&& held) {

@@ -42,8 +42,8 @@ void visit_settings(DriveOptions& drive, Visit&& visit) {
                 .help = "On a path, m/s; without it 10",
                 .value = "M/S",
                 .key = "speed_mps",
-                .least = 0,
-                .above_least = true},
+                .min = 0,
+                .exclusive_min = true},
         drive.speed_mps);
   visit(Setting{.name = "height",
                 .help = "Above the ground at places and on paths, m; without it 1.73, a car's roof",
@@ -52,19 +52,19 @@ void visit_settings(DriveOptions& drive, Visit&& visit) {
         drive.height_m);
   visit(Setting{.name = "offset", .help = "Shift of the trajectory in world axes, m"},
         drive.offset_m);
-  visit(Setting{.name = "every", .help = "Take every n-th pose", .value = "N", .least = 1},
+  visit(Setting{.name = "every", .help = "Take every n-th pose", .value = "N", .min = 1},
         drive.every);
   visit(Setting{.name = "rate",
                 .help = "Poses a second instead of those of the file, or 10 on a path",
                 .value = "HZ",
-                .least = 0,
-                .above_least = true},
+                .min = 0,
+                .exclusive_min = true},
         drive.rate_hz);
   visit(Setting{.name = "spacing",
                 .help = "Poses so far apart instead of those of the file or the path",
                 .value = "M",
-                .least = 0,
-                .above_least = true},
+                .min = 0,
+                .exclusive_min = true},
         drive.spacing_m);
   visit(
       Setting{.name = "rolling_shutter",

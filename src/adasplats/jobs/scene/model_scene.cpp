@@ -39,7 +39,7 @@ ModelScene::ModelScene(const std::filesystem::path& file, const std::string& lab
   if (file.extension() == ".toml") world_file = place_with_objects(file, world_files);
   if (!labels.empty()) labels_ = load_label_scheme(labels);
   session.progress.begin_step("load " + file.filename().string(), 0);
-  place_ = load_place_or_city(world_file ? world_file->model : file);
+  place_ = load_any_model_or_city(world_file ? world_file->model : file);
   prepare(file.string(), session);
   if (world_file) {
     add_objects([&](World& world) {
@@ -49,7 +49,7 @@ ModelScene::ModelScene(const std::filesystem::path& file, const std::string& lab
   session.progress.end_step();
 }
 
-ModelScene::ModelScene(Place place, std::optional<LabelScheme> labels, Session& session)
+ModelScene::ModelScene(AnyModel place, std::optional<LabelScheme> labels, Session& session)
     : executor_(session.executor), place_(std::move(place)), labels_(std::move(labels)) {
   prepare(splats() != nullptr ? "the model" : "the mesh", session);
   session.progress.end_step();
@@ -101,7 +101,7 @@ float ModelScene::highest_intensity() const {
 }
 
 /// All of it is there.
-std::size_t ModelScene::make_ready(std::span<const ScanMotion> scans, double) const {
+std::size_t ModelScene::prefetch(std::span<const ScanMotion> scans, double) const {
   return scans.size();
 }
 
@@ -138,7 +138,7 @@ ImageScene ModelScene::image_scene() const {
 
 ImageColor ModelScene::default_color() const {
   const ImageScene scene = image_scene();
-  if (share_with_class_colors(scene.attributes.classes, scene.labels) >= kMostHaveClasses)
+  if (share_with_class_colors(scene.attributes.classes, scene.labels) >= kMaxHaveClasses)
     return ImageColor::semantic;
   if (!scene.attributes.intensities.empty()) return ImageColor::intensity;
   return scene.groups.empty() ? ImageColor::height : ImageColor::semantic;

@@ -13,7 +13,7 @@
 
 #include "adasplats/core/function_ref.h"
 #include "adasplats/gpu/simulate/gpu_scene.h"
-#include "adasplats/jobs/scene/scan_place.h"
+#include "adasplats/jobs/scene/scan_scene.h"
 #include "adasplats/jobs/scene/shown_part.h"
 #include "adasplats/jobs/session/session.h"
 #include "adasplats/simulate/image/image.h"
@@ -21,7 +21,7 @@
 #include "adasplats/simulate/scan/scan_rules.h"
 #include "adasplats/simulate/world/world.h"
 #include "adasplats/simulate/world/world_file.h"
-#include "adasplats/splats/model/place.h"
+#include "adasplats/splats/model/any_model.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {
@@ -31,14 +31,14 @@ enum class WorldFiles : std::uint8_t { refused, taken };
 
 /// A splat model or a triangle mesh from a file with what is needed to cast rays into it, on
 /// the session's device. A world file: its place, and what was put there as `world`.
-class ModelScene final : public ScanPlace {
+class ModelScene final : public ScanScene {
  public:
   /// `labels` as load_label_scheme takes it names the classes; empty: what the model's file says.
   /// Errors: usage (a world file where they are refused, or that names no model).
   ModelScene(const std::filesystem::path& file, const std::string& labels, Session& session,
              WorldFiles world_files = WorldFiles::refused);
   /// A model in memory; `labels`: what its classes mean.
-  ModelScene(Place place, std::optional<LabelScheme> labels, Session& session);
+  ModelScene(AnyModel place, std::optional<LabelScheme> labels, Session& session);
   ModelScene(const ModelScene&) = delete;  // the tracer and the views look into it
   ModelScene& operator=(const ModelScene&) = delete;
 
@@ -58,12 +58,12 @@ class ModelScene final : public ScanPlace {
   /// The same, made when it is first asked for. It is shared by all sensors in the scene.
   std::shared_ptr<const PrimitiveTable> primitive_table() const override;
   float highest_intensity() const override;
-  std::size_t make_ready(std::span<const ScanMotion> scans, double reach_m) const override;
+  std::size_t prefetch(std::span<const ScanMotion> scans, double reach_m) const override;
   /// What was put into the place; null where nothing was.
   const World* world() const override { return world_ ? &*world_ : nullptr; }
   /// Gives an object of the world other poses (World::move_object()). Not while it is cast.
   void move_object(std::size_t object, Trajectory trajectory);
-  const Place& place() const { return place_; }
+  const AnyModel& place() const { return place_; }
   /// Null where it is a mesh.
   const SplatModel* splats() const { return std::get_if<SplatModel>(&place_); }
   const Executor& executor() const { return executor_; }
@@ -95,7 +95,7 @@ class ModelScene final : public ScanPlace {
   std::vector<Vec3f> disk_centers() const;
 
   const Executor& executor_;
-  Place place_;
+  AnyModel place_;
   std::optional<LabelScheme> labels_;
   std::optional<GpuScene> gpu_;
   mutable std::unique_ptr<GpuRenderer> renderer_;  ///< of the last options on a GPU

@@ -22,9 +22,9 @@ constexpr std::array<double, 4> kGroundRadii_m = {0.5, 1, 2, 4};
 constexpr int kGridSteps = 3;          // of rays from the middle to the radius: 29 in all
 constexpr int kGroundHits = 32;        // of a ray, from below: roofs are farther up
 constexpr double kBeyondModel_m = 50;  // above and below the model's middle 98 %
-constexpr float kLeastLevel = 0.7F;    // z of a unit normal: 45 degrees
-constexpr double kLeastShareOfRays = 0.4;
-constexpr double kMostPoses = 1e7;
+constexpr float kMinLevel = 0.7F;      // z of a unit normal: 45 degrees
+constexpr double kMinShareOfRays = 0.4;
+constexpr double kMaxPoses = 1e7;
 
 /// Whether a primitive is as level as ground can be.
 bool is_level(const SceneView& view, std::uint32_t primitive) {
@@ -35,7 +35,7 @@ bool is_level(const SceneView& view, std::uint32_t primitive) {
     const Triangle t = view.mesh->triangle(primitive - view.disk_count());
     normal = cross(t.b - t.a, t.c - t.a);
   }
-  return std::abs(normal.z) >= kLeastLevel * length(normal);
+  return std::abs(normal.z) >= kMinLevel * length(normal);
 }
 
 /// A level thing above a place of the grid.
@@ -71,7 +71,7 @@ std::size_t cast_upwards(const ModelScene& scene, double x_m, double y_m, double
 }
 
 /// The median of the lowest level that enough rays meet within `thickness_m`, each counted once.
-std::optional<double> lowest_level(std::vector<LevelHit> hits, std::size_t least_rays,
+std::optional<double> lowest_level(std::vector<LevelHit> hits, std::size_t min_rays,
                                    double thickness_m) {
   std::ranges::sort(hits, {}, &LevelHit::z_m);
   for (std::size_t begin = 0; begin < hits.size(); ++begin) {
@@ -80,7 +80,7 @@ std::optional<double> lowest_level(std::vector<LevelHit> hits, std::size_t least
     for (std::size_t k = begin; k < hits.size() && hits[k].z_m <= hits[begin].z_m + thickness_m;
          ++k)
       if (rays.insert(hits[k].ray).second) heights.push_back(hits[k].z_m);
-    if (rays.size() >= least_rays) return heights[heights.size() / 2];
+    if (rays.size() >= min_rays) return heights[heights.size() / 2];
   }
   return std::nullopt;
 }
@@ -160,7 +160,7 @@ std::optional<double> ground_height(const ModelScene& scene, double x_m, double 
     std::vector<LevelHit> hits;
     const std::size_t rays = cast_upwards(scene, x_m, y_m, radius_m, box, executor, hits);
     const auto least =
-        static_cast<std::size_t>(std::ceil(kLeastShareOfRays * static_cast<double>(rays)));
+        static_cast<std::size_t>(std::ceil(kMinShareOfRays * static_cast<double>(rays)));
     // Streets rise by up to a fifth of the way.
     const double thickness_m = 0.2 + 2 * 0.2 * radius_m;
     if (const auto z_m = lowest_level(std::move(hits), least, thickness_m)) return z_m;
@@ -187,7 +187,7 @@ Trajectory poses_on_path(const ModelScene& scene, std::span<const PathCorner> co
   const double step_m = drive.spacing_m ? *drive.spacing_m : drive.speed_mps / drive.rate_hz;
   // The last pose may miss the last corner by rounding alone.
   const double steps = std::floor(line.length_m() / step_m * (1 + 1e-12));
-  if (!(steps < kMostPoses))
+  if (!(steps < kMaxPoses))
     throw Error(ErrorKind::usage, "`path` would have more than ten million poses");
   Trajectory trajectory;
   for (std::size_t k = 0; k <= static_cast<std::size_t>(steps); ++k) {

@@ -62,7 +62,7 @@ ScanSettings ScanChoice::settings_of(LidarModel model, std::uint64_t seed) const
   return settings;
 }
 
-ScanSimulator::ScanSimulator(const ScanPlace& scene, ScanSettings settings,
+ScanSimulator::ScanSimulator(const ScanScene& scene, ScanSettings settings,
                              const Executor& executor)
     : scene_(scene),
       settings_(checked(std::move(settings))),
@@ -83,7 +83,7 @@ double ScanSimulator::reach_m() const {
 ReportTimes ScanSimulator::by_spans(std::span<const ScanMotion> scans, Span cast) {
   ReportTimes sum;
   for (std::size_t first = 0; first < scans.size();) {
-    const std::size_t count = scene_.make_ready(scans.subspan(first), reach_m());
+    const std::size_t count = scene_.prefetch(scans.subspan(first), reach_m());
     sum += cast(scans.subspan(first, count), first);
     first += count;
   }

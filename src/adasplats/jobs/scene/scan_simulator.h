@@ -12,7 +12,7 @@
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/function_ref.h"
-#include "adasplats/jobs/scene/scan_place.h"
+#include "adasplats/jobs/scene/scan_scene.h"
 #include "adasplats/sensors/lidar_model.h"
 #include "adasplats/sensors/sensor_overrides.h"
 #include "adasplats/simulate/scan/ray_drop.h"
@@ -102,12 +102,12 @@ class ScanSimulator {
   using Sink = ScanCaster::ScanSink;
 
   /// Scene and executor must outlive it. Errors: those of check().
-  ScanSimulator(const ScanPlace& scene, ScanSettings settings, const Executor& executor);
+  ScanSimulator(const ScanScene& scene, ScanSettings settings, const Executor& executor);
 
   const ScanSettings& settings() const { return settings_; }
   /// Of a scan; where the pattern does not repeat, of the last one that was simulated.
   std::span<const Firing> firings() const { return rules_.firings(); }
-  const ScanPlace& scene() const { return scene_; }
+  const ScanScene& scene() const { return scene_; }
   const ScanRules& rules() const { return rules_; }
 
   /// Scan i has the number `first_number` + i, which names its noise, the firings of a pattern that
@@ -133,7 +133,7 @@ class ScanSimulator {
                             Sink sink);
   double reach_m() const;
 
-  const ScanPlace& scene_;
+  const ScanScene& scene_;
   ScanSettings settings_;
   const Executor& executor_;
   ScanRules rules_;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kShareShown = 0.90;
 constexpr int kColumnsAcross = 96;  // of the longer side of the middle box
-constexpr std::size_t kMostPoints = 20'000;
+constexpr std::size_t kMaxPoints = 20'000;
 constexpr double kRim = 0.94;  // of the picture is for the part
 constexpr int kDirections = 24;
 
@@ -54,7 +54,7 @@ std::vector<bool> full_columns(const std::vector<std::size_t>& counts, std::size
 
 /// Every n-th of them, so that few enough are left.
 void thin(std::vector<Vec3d>& points) {
-  const std::size_t step = points.size() / kMostPoints + 1;
+  const std::size_t step = points.size() / kMaxPoints + 1;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < points.size(); i += step) points[kept++] = points[i];
   points.resize(kept);

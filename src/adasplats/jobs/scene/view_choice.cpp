@@ -11,7 +11,7 @@ namespace adasplats {
 namespace {
 
 constexpr double kRadiansPerDegree = 0.017453292519943295;
-constexpr int kMostPixels = 1 << 28;
+constexpr int kMaxPixels = 1 << 28;
 
 constexpr double kFromAfar_deg = 45, kFromWithin_deg = 70;
 
@@ -31,7 +31,7 @@ double fov_within_rad(const ViewChoice& view) {
 }  // namespace
 
 void check(const ViewChoice& view) {
-  if (!(view.width > 0 && view.height > 0 && view.width <= kMostPixels / view.height)) {
+  if (!(view.width > 0 && view.height > 0 && view.width <= kMaxPixels / view.height)) {
     throw Error(ErrorKind::usage, "`width` and `height` are out of range");
   }
   if (const double fov_deg = view.horizontal_fov_deg.value_or(kFromWithin_deg);

@@ -12,8 +12,8 @@ ScanWindows::ScanWindows(const KittiSequence& sequence, std::vector<std::size_t>
                          const WindowOptions& options, double farthest_m)
     : sequence_(sequence),
       chosen_(std::move(chosen)),
-      most_points_(options.points * 2 / 3),
-      most_context_(options.points / 6),
+      max_points_(options.points * 2 / 3),
+      max_context_(options.points / 6),
       farthest_m_(farthest_m) {
   check_settings(options);
 }
@@ -41,7 +41,7 @@ const ScanWindows::Placed& ScanWindows::at(std::size_t place) {
 
 std::size_t ScanWindows::first_of_context(std::size_t place) {
   std::size_t points = 0;
-  while (place > first_ && points < most_context_) points += at(--place).positions.size();
+  while (place > first_ && points < max_context_) points += at(--place).positions.size();
   return place;
 }
 
@@ -58,9 +58,9 @@ void ScanWindows::add_points(const Placed& placed, PointCloud& cloud) const {
 std::optional<ScanWindow> ScanWindows::next() {
   if (next_ == chosen_.size()) return std::nullopt;
   std::size_t end = next_, points = 0;
-  while (end < chosen_.size() && points < most_points_) points += at(end++).positions.size();
+  while (end < chosen_.size() && points < max_points_) points += at(end++).positions.size();
   std::size_t context_end = end;
-  for (points = 0; context_end < chosen_.size() && points < most_context_;)
+  for (points = 0; context_end < chosen_.size() && points < max_context_;)
     points += at(context_end++).positions.size();
   if (context_end == chosen_.size()) end = context_end;
 

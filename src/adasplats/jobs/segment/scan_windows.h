@@ -26,8 +26,8 @@ void visit_settings(WindowOptions& window, Visit&& visit) {
                 .help = "Most points of a drive that are looked at together; longer ones are cut "
                         "into windows of scans",
                 .value = "N",
-                .least = 60,
-                .most = 1e9},
+                .min = 60,
+                .max = 1e9},
         window.points);
 }
 
@@ -70,7 +70,7 @@ class ScanWindows {
 
   const KittiSequence& sequence_;
   std::vector<std::size_t> chosen_;
-  std::size_t most_points_, most_context_;
+  std::size_t max_points_, max_context_;
   double farthest_m_;
   std::deque<Placed> read_;  ///< of the chosen scans from first_ on
   std::size_t first_ = 0;

@@ -21,8 +21,8 @@ using nlohmann::json;
 
 constexpr std::string_view kMagic = "adasplats-network\n";
 constexpr int kVersion = 1;
-constexpr std::uint64_t kMostRows = std::uint64_t{1} << 31;  // a product of two fits 64 bits
-constexpr std::size_t kMostWidth = 65536;
+constexpr std::uint64_t kMaxRows = std::uint64_t{1} << 31;  // a product of two fits 64 bits
+constexpr std::size_t kMaxWidth = 65536;
 
 /// A number of 16 bits (IEEE 754 binary16) as one of 32.
 float from_half(std::uint16_t half) {
@@ -105,7 +105,7 @@ Weights weights_of(const json& object, std::string_view data) {
     throw std::runtime_error("weights of " + std::to_string(bits) + " bits are not known");
   const std::size_t count = weights.rows * weights.columns;
   const std::size_t bytes = bits == 16 ? 2 * count : count + 4 * weights.columns;
-  if (weights.rows > kMostRows || weights.columns > kMostRows || offset > data.size() ||
+  if (weights.rows > kMaxRows || weights.columns > kMaxRows || offset > data.size() ||
       bytes > data.size() - offset)
     throw std::runtime_error("weights lie beyond its end");
   weights.values.resize(count);
@@ -160,7 +160,7 @@ class LayerCheck {
       if (layer.kind == LayerKind::add) require(second == width);
       if (layer.kind == LayerKind::join) result = width + second;
     }
-    require(result <= kMostWidth);
+    require(result <= kMaxWidth);
     widths_[layer.output] = result;
     levels_[layer.output] = layer.level;
   }

@@ -14,7 +14,7 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kRows = 256;  // points of a product
-constexpr std::size_t kMostKernel = 64;
+constexpr std::size_t kMaxKernel = 64;
 
 /// Numbers of the points of a level, point by point.
 struct Values {
@@ -130,7 +130,7 @@ class Run {
                      const Values& input, float* weighted) const {
     const float cell_m = reach.supports->cell_m;
     const float sigma_m = network_.sigma * cell_m;
-    std::array<float, kMostKernel> influences{};
+    std::array<float, kMaxKernel> influences{};
     for (const std::uint32_t j : neighbors) {
       if (j == NeighborTable::kNone) break;
       const Vec3f way = reach.supports->points[j] - point;

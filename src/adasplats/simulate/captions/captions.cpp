@@ -46,12 +46,12 @@ void draw_classes(Image& image, const std::vector<std::pair<Rgb, std::string>>& 
   }
 }
 
-ScaleBar scale_bar(double px_per_m, int most_px) {
-  const double most_m = most_px / px_per_m;
-  const double power = std::pow(10.0, std::floor(std::log10(most_m)));
+ScaleBar scale_bar(double px_per_m, int max_px) {
+  const double max_m = max_px / px_per_m;
+  const double power = std::pow(10.0, std::floor(std::log10(max_m)));
   ScaleBar bar;
   for (const double factor : {1.0, 2.0, 5.0})
-    if (factor * power <= most_m * (1 + 1e-9)) bar.length_m = factor * power;
+    if (factor * power <= max_m * (1 + 1e-9)) bar.length_m = factor * power;
   bar.length_px = static_cast<int>(std::lround(bar.length_m * px_per_m));
   bar.text = length_text(bar.length_m);
   return bar;
@@ -77,13 +77,13 @@ void draw_scale_bar(Image& image, const ScaleBar& bar, std::string_view note) {
 }
 
 Vec3d north_in_picture(const Camera& camera) {
-  constexpr double kLeastTilt = 0.35;  // sine of 20 degrees
+  constexpr double kMinTilt = 0.35;  // sine of 20 degrees
   const Mat3d axes = camera.world_from_camera.rotation.transposed();
   const Vec3d forward = axes.rows[0], left = axes.rows[1], up = axes.rows[2];
   // What is ahead on the ground is up in the picture; straight down the picture's up says it.
   const double level = std::hypot(forward.x, forward.y);
   const double ahead = level > 1e-6 ? forward.y / level : up.y;
-  const double tilt = std::max(std::fabs(forward.z), kLeastTilt);
+  const double tilt = std::max(std::fabs(forward.z), kMinTilt);
   return {-left.y, -ahead * tilt, 0};
 }
 

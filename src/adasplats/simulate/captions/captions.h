@@ -26,7 +26,7 @@ struct ScaleBar {
 };
 
 /// The longest that fits into so many pixels.
-ScaleBar scale_bar(double px_per_m, int most_px);
+ScaleBar scale_bar(double px_per_m, int max_px);
 
 /// Draws it into the lower right corner; `note` behind its text says where it holds.
 void draw_scale_bar(Image& image, const ScaleBar& bar, std::string_view note);

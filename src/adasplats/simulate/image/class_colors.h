@@ -21,6 +21,6 @@ std::array<std::uint8_t, 3> muted(std::array<std::uint8_t, 3> rgb);
 double share_with_class_colors(std::span<const std::uint16_t> classes, const LabelScheme* labels);
 
 /// From this share on classes are what a picture shows by itself.
-inline constexpr double kMostHaveClasses = 0.5;
+inline constexpr double kMaxHaveClasses = 0.5;
 
 }  // namespace adasplats

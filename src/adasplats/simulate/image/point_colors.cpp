@@ -91,7 +91,7 @@ ValueRange shown_range(const PointCloud& cloud, ImageColor color) {
 }
 
 ImageColor default_color(const PointCloud& cloud, const LabelScheme* labels) {
-  if (share_with_class_colors(cloud.classes, labels) >= kMostHaveClasses)
+  if (share_with_class_colors(cloud.classes, labels) >= kMaxHaveClasses)
     return ImageColor::semantic;
   return cloud.intensities.empty() ? ImageColor::height : ImageColor::intensity;
 }

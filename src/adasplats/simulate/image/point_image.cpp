@@ -80,7 +80,7 @@ class Canvas {
   void draw(const Projected& point, std::uint32_t index) {
     const double wanted_px = std::min(options_.point_size_m * point.px_per_m, 1e4);
     const int size =
-        std::clamp(static_cast<int>(std::lround(wanted_px)), options_.least_px, options_.most_px);
+        std::clamp(static_cast<int>(std::lround(wanted_px)), options_.min_px, options_.max_px);
     const double left = point.u - 0.5 * size;
     const double top = point.v - 0.5 * size;
     // Compared as doubles: a point far outside has no place as an integer.

@@ -17,8 +17,8 @@ using Rgb = std::array<std::uint8_t, 3>;
 
 struct PointImageOptions {
   double point_size_m = 0.06;  ///< side of the square that stands for a point
-  int least_px = 2;            ///< the square's bounds in the picture
-  int most_px = 8;
+  int min_px = 2;              ///< the square's bounds in the picture
+  int max_px = 8;
   Rgb background = ImageOptions{}.background;
   bool sky = true;  ///< as ImageOptions has them
   bool relief = true;

@@ -40,7 +40,7 @@ PointImageOptions on_white(PointImageOptions options = {}) {
 /// Every point is one pixel, without relief: what is where can be said exactly.
 PointImageOptions single_pixels() {
   PointImageOptions options = on_white();
-  options.least_px = options.most_px = 1;
+  options.min_px = options.max_px = 1;
   options.relief = false;
   return on_white(options);
 }
@@ -93,14 +93,14 @@ TEST(DrawPoints, SquaresShrinkWithDistanceWithinTheirBounds) {
   PointImageOptions options = on_white();
   options.relief = false;
   options.point_size_m = 0.4;
-  options.most_px = 1000;
+  options.max_px = 1000;
   const auto pixels_at = [&](float distance_m) {
     return count(draw({{distance_m, 0, 0}}, {kRed}, camera, options), kRed);
   };
   EXPECT_EQ(pixels_at(4), 100U);
   EXPECT_EQ(pixels_at(8), 25U);
   EXPECT_EQ(pixels_at(4000), 4U);  // 2 x 2 at least
-  options.most_px = 3;
+  options.max_px = 3;
   EXPECT_EQ(pixels_at(4), 9U);
 }
 
@@ -138,10 +138,10 @@ TEST(DrawPoints, ReliefDarkensWhatLiesBehind) {
   Camera camera = look_at(kOrigin, kOrigin + Vec3d{1, 0, 0});
   camera.width = camera.height = 60;
   PointImageOptions options = on_white();
-  options.least_px = options.most_px = 60;
+  options.min_px = options.max_px = 60;
   const Rgb grey = {200, 200, 200};
   EXPECT_EQ(count(draw({{10, 0, 0}}, {grey}, camera, options), grey), 3600U);
-  options.least_px = 20;
+  options.min_px = 20;
   options.point_size_m = 1e3;
   const Image image = draw({{1000, 0, 0}, {5, 0, 4}}, {grey, kRed}, camera, options);
   EXPECT_EQ(pixel(image, 30, 50), grey);

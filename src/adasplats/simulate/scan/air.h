@@ -19,8 +19,8 @@ namespace adasplats {
 inline constexpr double kNeededReflectance = 0.8;
 /// What no sensor reports, however near: half a step of the reflectivity of Velodynes.
 inline constexpr double kNeededNear = 0.005;
-inline constexpr double kLeastReflectance = 0.01;  // a step of the reflectivity of Velodynes
-inline constexpr double kUsualReflectance = 0.3;   // where the intensity is not known
+inline constexpr double kMinReflectance = 0.01;   // a step of the reflectivity of Velodynes
+inline constexpr double kUsualReflectance = 0.3;  // where the intensity is not known
 /// Width of a beam as it leaves: Velodyne VLP-16, geometric mean of 9.5 x 12.7 mm.
 inline constexpr double kBeamExit_m = 0.011;
 /// Half the length of a pulse of 5 ns: what of the fog answers at a time.
@@ -65,7 +65,7 @@ ADASPLATS_HD inline double needed_reflectance(double range_m, double max_range_m
 
 ADASPLATS_HD inline double usable_reflectance(double reflectance) {
   if (!(reflectance == reflectance)) return kUsualReflectance;
-  return reflectance > kLeastReflectance ? reflectance : kLeastReflectance;
+  return reflectance > kMinReflectance ? reflectance : kMinReflectance;
 }
 
 /// How likely a return is reported whose `power` in clear air is in units of what the sensor needs.
@@ -91,8 +91,8 @@ ADASPLATS_HD inline double fog_power(const AirRules& air, double range_m) {
 
 /// What a particle must measure to be reported: one that fills the share s of the beam's width
 /// sends back s^2 of a wall's power. Infinite where filling the beam is not enough.
-ADASPLATS_HD inline double least_diameter_mm(const AirRules& air, const Particles& kind,
-                                             double range_m) {
+ADASPLATS_HD inline double min_diameter_mm(const AirRules& air, const Particles& kind,
+                                           double range_m) {
   const double share = 1.0 / std::sqrt(attenuated_power(air, kind.reflectance, range_m));
   return share <= 1.0 ? 1e3 * beam_width_m(air, range_m) * share
                       : std::numeric_limits<double>::infinity();
@@ -112,7 +112,7 @@ ADASPLATS_HD inline ClutterRates clutter_rates(const AirRules& air, double range
     const Particles& kind = air.kinds[i];
     if (kind.density_per_m3 > 0)
       rates.of[i] = area_m2 * kind.density_per_m3 *
-                    exp_of(-kind.slope_per_mm * least_diameter_mm(air, kind, range_m));
+                    exp_of(-kind.slope_per_mm * min_diameter_mm(air, kind, range_m));
   }
   if (air.fog_backscatter > 0) rates.of[2] = exp_of(-1.0 / fog_power(air, range_m)) / kHalfPulse_m;
   return rates;
@@ -138,7 +138,7 @@ ADASPLATS_HD inline double speck_power(const AirRules& air, double range_m, Rand
   const double beyond = -log_of(1.0 - random.uniform());
   if (place >= rates.of[0] + rates.of[1]) return 1.0 + beyond * fog_power(air, range_m);
   const Particles& kind = air.kinds[place < rates.of[0] ? 0 : 1];
-  const double diameter_mm = least_diameter_mm(air, kind, range_m) + beyond / kind.slope_per_mm;
+  const double diameter_mm = min_diameter_mm(air, kind, range_m) + beyond / kind.slope_per_mm;
   double share = 1e-3 * diameter_mm / beam_width_m(air, range_m);
   share = share < 1.0 ? share : 1.0;
   return attenuated_power(air, kind.reflectance, range_m) * share * share;

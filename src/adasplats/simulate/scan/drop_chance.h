@@ -29,12 +29,12 @@ struct DropConditions {
 
 ADASPLATS_HD inline DropConditions drop_conditions(float range_m, float cos_incidence,
                                                    float reflectance, double usual_reflectance) {
-  constexpr double kLeastRange = 0.01, kDimmest = 0.005;
+  constexpr double kMinRange = 0.01, kDimmest = 0.005;
   const double tens = static_cast<double>(range_m) / 10;
   const auto cosine = static_cast<double>(cos_incidence);
   const bool is_finite = reflectance - reflectance == 0.0F;
   const double known = is_finite ? static_cast<double>(reflectance) : usual_reflectance;
-  return {tens > kLeastRange ? tens : kLeastRange,
+  return {tens > kMinRange ? tens : kMinRange,
           1 - (cosine < 0.0   ? 0.0
                : cosine > 1.0 ? 1.0
                               : cosine),

@@ -29,8 +29,8 @@ struct Pulse {
   std::uint16_t class_id;
 };
 
-ADASPLATS_HD inline bool lie_apart(float near_m, float far_m, double most_m) {
-  return static_cast<double>(far_m) - static_cast<double>(near_m) > most_m;
+ADASPLATS_HD inline bool lie_apart(float near_m, float far_m, double max_m) {
+  return static_cast<double>(far_m) - static_cast<double>(near_m) > max_m;
 }
 
 /// How many of the `depth` hits of one ray are averaged: D' of kernel_mean().

@@ -20,7 +20,7 @@ inline constexpr float kRangeEdge_m = 0.5F;
 /// weak echoes. shares[k]: of the edges, those at which k + 1 beams one after the other are lost.
 struct EdgeRunRules {
   bool on = false;
-  double shares[kMostEdgeRun] = {};
+  double shares[kMaxEdgeRun] = {};
 };
 
 /// What edges look at: the hits of a scan's firings, of which [first, end) are there.
@@ -59,16 +59,15 @@ ADASPLATS_HD inline bool lost_at_edge(const EdgeRunRules& rules, const Firing* f
                                       std::uint64_t scan_index, std::uint32_t firing) {
   constexpr std::uint32_t kRingsAlike = 4;
   const std::uint32_t first =
-      firing >= hits.first + kMostEdgeRun ? firing - kMostEdgeRun : hits.first;
-  const std::uint32_t last =
-      firing + kMostEdgeRun < hits.end ? firing + kMostEdgeRun : hits.end - 1;
+      firing >= hits.first + kMaxEdgeRun ? firing - kMaxEdgeRun : hits.first;
+  const std::uint32_t last = firing + kMaxEdgeRun < hits.end ? firing + kMaxEdgeRun : hits.end - 1;
   if (!ranges_jump(hits, first, last)) return false;
   for (std::uint32_t i = first; i < last; ++i) {
     if (!is_edge(firings, hits, i)) continue;
     Random random(seed ^ 0x6564676573ULL, scan_index,
                   std::uint64_t{firings[i].ring / kRingsAlike} << 32 | firings[i].column);
     double drawn = random.uniform();
-    for (std::uint32_t k = 0; k < kMostEdgeRun; ++k) {
+    for (std::uint32_t k = 0; k < kMaxEdgeRun; ++k) {
       drawn -= rules.shares[k];
       if (drawn >= 0) continue;
       // k + 1 beams, of which `before` are on this side of the edge.

@@ -279,7 +279,7 @@ inline constexpr int kFewSubRays = 8;
 
 /// All that a sensor reports of a firing from the hits of its rays, (&hits.of(firing))[ray * depth
 /// + k]: at most rules.beam.returns, in the order in which it reports them. `hits` has those of the
-/// firing and, where it asks for edges, of kMostEdgeRun before and behind it. kMost: at least as
+/// firing and, where it asks for edges, of kMaxEdgeRun before and behind it. kMost: at least as
 /// many as there are sub-rays. `out` has room for kMost + 1.
 template <int kMost>
 ADASPLATS_HD inline int report_firing(const FiringRules& rules, const ScanState& scan,

@@ -141,7 +141,7 @@ struct RingSectors {
 bool is_blocked(const std::map<std::uint32_t, SectorCount>& places) {
   std::size_t blocked = 0;
   for (const auto& [place, count] : places) blocked += 2 * count.dropped > count.echoes ? 1 : 0;
-  return blocked >= kLeastBlockedPlaces && 4 * blocked >= 3 * places.size();
+  return blocked >= kMinBlockedPlaces && 4 * blocked >= 3 * places.size();
 }
 
 /// Blocked sectors, neighbours joined.
@@ -168,7 +168,7 @@ DropRules drop_rules(const RayDropModel& model) {
   rules.usual_reflectance = model.usual_reflectance;
   std::copy_n(model.weights.begin(), kN, rules.weights);
   rules.edges.on = !model.edge_runs.empty();
-  std::copy_n(model.edge_runs.begin(), std::min<std::size_t>(model.edge_runs.size(), kMostEdgeRun),
+  std::copy_n(model.edge_runs.begin(), std::min<std::size_t>(model.edge_runs.size(), kMaxEdgeRun),
               rules.edges.shares);
   return rules;
 }
@@ -197,12 +197,12 @@ RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
   // From the share alone, which is near enough for Newton's method; halved where it overshoots.
   model.weights[0] = std::log(static_cast<double>(lost) / static_cast<double>(reported));
   Likelihood at = likelihood_of(rows, dropped, model.weights);
-  constexpr int kMostSteps = 50, kMostHalvings = 20;
-  for (int step = 0; step < kMostSteps; ++step) {
+  constexpr int kMaxSteps = 50, kMaxHalvings = 20;
+  for (int step = 0; step < kMaxSteps; ++step) {
     Row change = newton_step(at);
     const Row from = model.weights;
     const double before = at.value;
-    for (int halving = 0; halving < kMostHalvings; ++halving) {
+    for (int halving = 0; halving < kMaxHalvings; ++halving) {
       for (std::size_t k = 0; k < kN; ++k) model.weights[k] = from[k] - change[k];
       at = likelihood_of(rows, dropped, model.weights);
       if (at.value <= before) break;

@@ -31,12 +31,12 @@ RayDropModel fit_ray_drop(std::span<const EchoConditions> echoes,
                           std::span<const std::uint8_t> dropped);
 
 /// Fewer places tell no blocked sectors.
-inline constexpr std::size_t kLeastBlockedPlaces = 3;
+inline constexpr std::size_t kMinBlockedPlaces = 3;
 
 /// Sectors of one degree of azimuth of each ring (without `rings` of each elevation: beams within
 /// 0.01 degrees are one) in which
 /// most echoes that a model foretells were dropped, from at least three quarters of the places and
-/// from kLeastBlockedPlaces of them: what stands still in the sensor's frame while the world goes
+/// from kMinBlockedPlaces of them: what stands still in the sensor's frame while the world goes
 /// by. places[i]: the number of the place that echo i was fired from. Neighbours are joined. Error:
 /// std::logic_error (sizes differ).
 std::vector<BlockedSector> find_blocked_sectors(std::span<const EchoConditions> echoes,

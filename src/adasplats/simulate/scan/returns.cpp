@@ -131,8 +131,8 @@ std::size_t returns_of(std::span<const Hit> hits, std::span<const float> weights
   for (const Hit& hit : hits)
     if (!classes.empty() && hit.valid() && hit.primitive >= classes.size())
       throw std::logic_error("an attribute has fewer values than the scene has primitives");
-  std::array<Return, kMostSubRays> returns{};
-  const int count = firing_returns<kMostSubRays>(
+  std::array<Return, kMaxSubRays> returns{};
+  const int count = firing_returns<kMaxSubRays>(
       hits.data(), weights.data(), options,
       [&](std::uint32_t primitive) -> std::uint16_t {
         return primitive < classes.size() ? classes[primitive] : 0;

@@ -45,42 +45,42 @@ struct BeamOptions {
 };
 
 /// Most hits a ray and most rays a firing: returns_of() works without the heap.
-inline constexpr int kMostDepth = 64;
-inline constexpr std::size_t kMostSubRays = 64;
+inline constexpr int kMaxDepth = 64;
+inline constexpr std::size_t kMaxSubRays = 64;
 
 template <class Visit>
 void visit_settings(BeamOptions& beam, Visit&& visit) {
   visit(Setting{.name = "depth",
                 .help = "Splats along a ray whose weighted mean is the echo (the paper's D = 5)",
                 .value = "D",
-                .least = 1,
-                .most = kMostDepth},
+                .min = 1,
+                .max = kMaxDepth},
         beam.depth);
   visit(Setting{.name = "depth_gap",
                 .help = "Splats of a ray farther behind the one before are not averaged, m",
                 .value = "M",
                 .key = "depth_gap_m",
-                .least = 0,
-                .most = std::numeric_limits<double>::infinity()},
+                .min = 0,
+                .max = std::numeric_limits<double>::infinity()},
         beam.depth_gap_m);
   visit(Setting{.name = "sub_rays",
                 .help = "Rays over the cross-section of a beam",
                 .value = "N",
-                .least = 1,
-                .most = kMostSubRays},
+                .min = 1,
+                .max = kMaxSubRays},
         beam.sub_rays);
   visit(Setting{.name = "separation",
                 .help = "Echoes nearer to one another are one return, m",
                 .value = "M",
                 .key = "separation_m",
-                .least = 0,
-                .most = std::numeric_limits<double>::infinity()},
+                .min = 0,
+                .max = std::numeric_limits<double>::infinity()},
         beam.separation_m);
   visit(Setting{.name = "returns",
                 .help = "Most returns of a firing",
                 .value = "N",
-                .least = 1,
-                .most = kMostSubRays},
+                .min = 1,
+                .max = kMaxSubRays},
         beam.returns);
   visit(Setting{.name = "return_mode", .help = "Which echo comes first or alone"}, beam.mode);
 }

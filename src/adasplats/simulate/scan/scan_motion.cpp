@@ -11,8 +11,8 @@
 namespace adasplats {
 namespace {
 
-constexpr std::size_t kMostKnots = 64;
-constexpr double kMostTurn_rad = 0.5 * std::numbers::pi / 180;
+constexpr std::size_t kMaxKnots = 64;
+constexpr double kMaxTurn_rad = 0.5 * std::numbers::pi / 180;
 
 /// Between which two knots a share of the revolution is, and how far behind the first, 0..1.
 struct KnotPlace {
@@ -39,9 +39,9 @@ std::size_t knots_needed(const Trajectory& motion, double begin_s, double end_s)
   }
   turn_rad += angle_between(before, interpolate(motion, end_s).rotation);
   const auto poses_inside = static_cast<std::size_t>(last - first);
-  const double turns = std::ceil(turn_rad / kMostTurn_rad);
+  const double turns = std::ceil(turn_rad / kMaxTurn_rad);
   const auto segments = std::max<std::size_t>(poses_inside + 1, static_cast<std::size_t>(turns));
-  return std::min(segments + 1, kMostKnots);
+  return std::min(segments + 1, kMaxKnots);
 }
 
 }  // namespace

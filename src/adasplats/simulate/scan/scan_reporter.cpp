@@ -60,7 +60,7 @@ void ScanReporter::report_firings(const ScanState& state, std::size_t begin, std
   } else if (view_.beam.sub_rays <= kFewSubRays) {
     report_each<kFewSubRays>(state, begin, end, hits, chunk);
   } else {
-    report_each<static_cast<int>(kMostSubRays)>(state, begin, end, hits, chunk);
+    report_each<static_cast<int>(kMaxSubRays)>(state, begin, end, hits, chunk);
   }
 }
 
@@ -71,7 +71,7 @@ void ScanReporter::report(const ScanMotion& motion, const ScanPoses& poses,
   report_chunks(
       motion, state,
       [&](std::size_t begin, std::size_t end, Chunk& chunk) {
-        const std::size_t beside = view_.drop.edges.on ? kMostEdgeRun : 0;
+        const std::size_t beside = view_.drop.edges.on ? kMaxEdgeRun : 0;
         const std::size_t first = begin - std::min(begin, beside);
         const std::size_t last = std::min(end + beside, rules_.firings().size());
         std::vector<Hit> hits((last - first) * hits_a_firing);

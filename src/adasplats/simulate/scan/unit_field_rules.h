@@ -49,7 +49,7 @@ ADASPLATS_HD inline BeamFields beam_fields(const UnitFieldRules& rules, std::uin
   const auto drop = static_cast<double>(b[0]) + 0.5;
   const auto noise = static_cast<double>(b[2]) - 128;
   const auto zero = static_cast<double>(b[3]) + 0.5;
-  constexpr double kPerSquare_m = kMostFieldNoise_m / (127.0 * 127.0);
+  constexpr double kPerSquare_m = kMaxFieldNoise_m / (127.0 * 127.0);
   return {drop * drop / 65536.0, (static_cast<double>(b[1]) + 0.5) / 256.0,
           kPerSquare_m * noise * (noise < 0 ? -noise : noise), zero * zero / 65536.0};
 }

@@ -51,7 +51,7 @@ TEST(UnitFields, AreOneTurnTurnedBySomeColumns) {
     EXPECT_DOUBLE_EQ(beam_fields(rules, 1, scan, 5, 0, 0).drop, first.drop);
   }
   EXPECT_GT(firsts.size(), 25U);
-  EXPECT_EQ(noises_m, (std::set<double>{0, kMostFieldNoise_m}));
+  EXPECT_EQ(noises_m, (std::set<double>{0, kMaxFieldNoise_m}));
   EXPECT_NE(beam_fields(rules, 1, 0, 0, 0, 0).intensity,
             beam_fields(rules, 2, 0, 0, 0, 0).intensity);
 }
@@ -140,8 +140,8 @@ TEST(EdgeRuns, NeedNoMoreThanTheHitsBeside) {
   rules.shares[0] = 0.3;
   rules.shares[5] = 0.3;
   for (std::uint32_t i = 100; i < 500; ++i) {
-    const ScanHits few = {wall.hits.data() + i - kMostEdgeRun, 1, i - kMostEdgeRun,
-                          i + kMostEdgeRun + 1};
+    const ScanHits few = {wall.hits.data() + i - kMaxEdgeRun, 1, i - kMaxEdgeRun,
+                          i + kMaxEdgeRun + 1};
     EXPECT_EQ(lost_at_edge(rules, wall.firings.data(), few, 1, 2, i),
               lost_at_edge(rules, wall.firings.data(), wall.all(), 1, 2, i));
   }

@@ -25,7 +25,7 @@ struct Weather {
 };
 
 /// Above the most that was ever measured: 38 mm in a minute (Barot, Guadeloupe, 1970; WMO).
-inline constexpr double kMostRain_mm_h = 3000;
+inline constexpr double kMaxRain_mm_h = 3000;
 
 template <class Visit>
 void visit_settings(Weather& weather, Visit&& visit) {
@@ -33,29 +33,29 @@ void visit_settings(Weather& weather, Visit&& visit) {
                 .help = "Rate of rain, mm/h",
                 .value = "MM/H",
                 .key = "rain_mm_h",
-                .least = 0,
-                .most = kMostRain_mm_h},
+                .min = 0,
+                .max = kMaxRain_mm_h},
         weather.rain_mm_h);
   visit(Setting{.name = "fog",
                 .help = "Visibility in fog, m",
                 .value = "M",
                 .key = "fog_visibility_m",
-                .least = 0,
-                .most = std::numeric_limits<double>::infinity()},
+                .min = 0,
+                .max = std::numeric_limits<double>::infinity()},
         weather.fog_visibility_m);
   visit(Setting{.name = "snow",
                 .help = "Rate of snow, mm/h of water",
                 .value = "MM/H",
                 .key = "snow_mm_h",
-                .least = 0,
-                .most = kMostRain_mm_h},
+                .min = 0,
+                .max = kMaxRain_mm_h},
         weather.snow_mm_h);
   visit(Setting{.name = "white_intensity",
                 .help = "Intensity of a white wall in the model's unit, for weather: 1, or 100 of "
                         "bytes",
                 .value = "I",
-                .least = 0,
-                .above_least = true},
+                .min = 0,
+                .exclusive_min = true},
         weather.white_intensity);
 }
 

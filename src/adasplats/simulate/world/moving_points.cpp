@@ -42,8 +42,8 @@ std::map<std::uint32_t, Indices> moving_objects(const KittiScan& scan, const Lab
 /// Whether the points of a neighbourhood say where the surface is: three or more, not on a line.
 /// What is a twentieth as wide as long is the noise of a single ring.
 bool is_flat(const Moments& moments, const LocalShape& shape) {
-  constexpr double kLeastWidth = 0.05;
-  return moments.count >= 3 && shape.lambda[1] > kLeastWidth * kLeastWidth * shape.lambda[0];
+  constexpr double kMinWidth = 0.05;
+  return moments.count >= 3 && shape.lambda[1] > kMinWidth * kMinWidth * shape.lambda[0];
 }
 
 /// Normals of one object's points, on the side of the sensor, which is at zero.

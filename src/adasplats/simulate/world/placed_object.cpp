@@ -39,14 +39,14 @@ ObjectPose knot_at(const PlacedObject& placed, double time_s, double share, Vec3
 /// it to turn by less than half a degree from one to the next.
 std::vector<double> knot_times(const PlacedObject& placed, double begin_s, double end_s) {
   constexpr double kHalfDegree_rad = 0.5 * std::numbers::pi / 180;
-  constexpr double kMostParts = 64;
+  constexpr double kMaxParts = 64;
   const Trajectory& poses = placed.object.trajectory;
   std::vector<double> times = {begin_s};
   RigidTransform before = placed.world_from_object(begin_s);
   const auto go_to = [&](double time_s) {
     const RigidTransform here = placed.world_from_object(time_s);
     const double turn_rad = angle_between(before.rotation, here.rotation);
-    const double parts = std::clamp(std::ceil(turn_rad / kHalfDegree_rad), 1.0, kMostParts);
+    const double parts = std::clamp(std::ceil(turn_rad / kHalfDegree_rad), 1.0, kMaxParts);
     const double from_s = times.back();
     for (double part = 1; part < parts; ++part)
       times.push_back(from_s + part / parts * (time_s - from_s));
@@ -61,7 +61,7 @@ std::vector<double> knot_times(const PlacedObject& placed, double begin_s, doubl
 
 }  // namespace
 
-ObjectGeometry::ObjectGeometry(Place model, std::vector<std::uint16_t> instances_of_primitives)
+ObjectGeometry::ObjectGeometry(AnyModel model, std::vector<std::uint16_t> instances_of_primitives)
     : place(std::move(model)),
       instances(std::move(instances_of_primitives)),
       usual_class(adasplats::usual_class(classes_of(place))),

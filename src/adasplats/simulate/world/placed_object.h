@@ -11,7 +11,7 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/simulate/world/object_ray.h"
 #include "adasplats/simulate/world/world.h"
-#include "adasplats/splats/model/place.h"
+#include "adasplats/splats/model/any_model.h"
 #include "adasplats/trace/tracer.h"
 
 namespace adasplats {
@@ -36,12 +36,12 @@ struct WorldBox {
 /// What objects are made of. It does not move in memory: its tracer keeps views.
 struct ObjectGeometry {
   /// `instances`: one a primitive, or empty.
-  ObjectGeometry(Place model, std::vector<std::uint16_t> instances);
+  ObjectGeometry(AnyModel model, std::vector<std::uint16_t> instances);
 
   /// Built by who asks first: on a GPU nobody does.
   const Tracer& tracer(const Executor& executor) const;
 
-  Place place;
+  AnyModel place;
   std::vector<std::uint16_t> instances;
   WorldBox box;               ///< in the object's frame, before it is scaled
   std::uint16_t usual_class;  ///< that most primitives have

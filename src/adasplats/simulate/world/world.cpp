@@ -82,7 +82,7 @@ World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
-std::size_t World::add_geometry(Place geometry, std::vector<std::uint16_t> instances) {
+std::size_t World::add_geometry(AnyModel geometry, std::vector<std::uint16_t> instances) {
   impl_->geometries.push_back(
       std::make_unique<ObjectGeometry>(std::move(geometry), std::move(instances)));
   impl_->lasting.push_back(false);
@@ -170,7 +170,7 @@ std::size_t World::geometry_count() const { return impl_->geometries.size(); }
 SceneView World::geometry_view(std::size_t geometry) const {
   return view_of(impl_->geometries.at(geometry)->place);
 }
-const Place& World::geometry(std::size_t geometry) const {
+const AnyModel& World::geometry(std::size_t geometry) const {
   return impl_->geometries.at(geometry)->place;
 }
 bool World::is_in_all_scans(std::size_t geometry) const { return impl_->lasting.at(geometry); }

@@ -17,7 +17,7 @@
 #include "adasplats/simulate/scan/scan_caster.h"
 #include "adasplats/simulate/scan/scan_motion.h"
 #include "adasplats/simulate/world/object_ray.h"
-#include "adasplats/splats/model/place.h"
+#include "adasplats/splats/model/any_model.h"
 
 namespace adasplats {
 
@@ -41,7 +41,7 @@ struct WorldObject {
 /// What an object is made of. `instances`: one a primitive, or empty; with them a geometry is the
 /// points of many objects, which has no box.
 struct NewGeometry {
-  Place place;
+  AnyModel place;
   std::vector<std::uint16_t> instances;
 };
 
@@ -77,7 +77,7 @@ class World {
   World& operator=(World&&) noexcept;
 
   /// Geometries are numbered in the order in which they come.
-  std::size_t add_geometry(Place geometry, std::vector<std::uint16_t> instances = {});
+  std::size_t add_geometry(AnyModel geometry, std::vector<std::uint16_t> instances = {});
   /// `count` of them at once, the i-th of made(i), which several threads call; gives the number of
   /// the first.
   std::size_t add_geometries(std::size_t count, FunctionRef<NewGeometry(std::size_t)> made,
@@ -111,7 +111,7 @@ class World {
              ObjectSightings& all) const;
   std::size_t geometry_count() const;
   SceneView geometry_view(std::size_t geometry) const;
-  const Place& geometry(std::size_t geometry) const;
+  const AnyModel& geometry(std::size_t geometry) const;
   /// Whether objects that are there in many scans are made of it.
   bool is_in_all_scans(std::size_t geometry) const;
   /// Another one for every world, and after every geometry or object that is added: who keeps what
@@ -137,7 +137,7 @@ class World {
 };
 
 /// Casts as `place` does and adds what is in `world`; scan i of a call is scan `first_scan` + i of
-/// the world. Place, world and executor must outlive it.
+/// the world. AnyModel, world and executor must outlive it.
 std::unique_ptr<ScanCaster> make_world_caster(const ScanCaster& place, const World& world,
                                               const Executor& executor,
                                               std::uint64_t first_scan = 0);

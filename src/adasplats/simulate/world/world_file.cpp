@@ -22,8 +22,8 @@ namespace {
 using KeyNames = std::vector<std::string>;
 
 constexpr double kFarthest_m = 1e9;
-constexpr double kMostScale = 1e6;
-constexpr double kMostAngle_deg = 360;
+constexpr double kMaxScale = 1e6;
+constexpr double kMaxAngle_deg = 360;
 
 Error line_error(const std::filesystem::path& path, std::uint64_t line, const std::string& message,
                  ErrorKind kind = ErrorKind::config) {
@@ -120,12 +120,12 @@ class WorldTable {
 
 /// The parser recurses over dotted keys without a limit of its own (over brackets it has one).
 void refuse_deep_keys(const std::filesystem::path& path, std::string_view text) {
-  constexpr int kMostDots = 64;
+  constexpr int kMaxDots = 64;
   std::uint64_t line = 1;
   int dots = 0;
   for (const char c : text) {
-    if (c == '.' && ++dots > kMostDots)
-      throw line_error(path, line, "more than " + std::to_string(kMostDots) + " dots in a line");
+    if (c == '.' && ++dots > kMaxDots)
+      throw line_error(path, line, "more than " + std::to_string(kMaxDots) + " dots in a line");
     if (c != '\n') continue;
     ++line;
     dots = 0;
@@ -144,7 +144,7 @@ toml::table parse(const std::filesystem::path& path) {
 
 RigidTransform read_placement(const WorldTable& table) {
   const auto angle_rad = [&](const char* key) {
-    return table.number(key, 0, -kMostAngle_deg, kMostAngle_deg) * std::numbers::pi / 180;
+    return table.number(key, 0, -kMaxAngle_deg, kMaxAngle_deg) * std::numbers::pi / 180;
   };
   return {rotation_from_yaw_pitch_roll(angle_rad("yaw_deg"), angle_rad("pitch_deg"),
                                        angle_rad("roll_deg")),
@@ -188,7 +188,7 @@ WorldFileObject read_object(const WorldTable& table, std::size_t number) {
   if (object.only_during && object.trajectory.empty())
     throw table.error("present", "is 'during', which needs a trajectory");
   object.only_scan = table.whole_number("scan", std::numeric_limits<std::int64_t>::max());
-  object.scale = table.number("scale", 1, 1 / kMostScale, kMostScale);
+  object.scale = table.number("scale", 1, 1 / kMaxScale, kMaxScale);
   return object;
 }
 

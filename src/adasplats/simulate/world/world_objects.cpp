@@ -9,7 +9,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/simulate/world/world_file.h"
-#include "adasplats/splats/model/place.h"
+#include "adasplats/splats/model/any_model.h"
 
 namespace adasplats {
 namespace {
@@ -61,7 +61,7 @@ void add_objects(World& world, const WorldFile& file, const LabelScheme& scheme)
     if (known != geometries.end()) {
       added.geometry = known->second;
     } else {
-      added.geometry = world.add_geometry(load_place(object.geometry));
+      added.geometry = world.add_geometry(load_any_model(object.geometry));
       geometries.emplace(object.geometry, added.geometry);
     }
     world.add_object(std::move(added));

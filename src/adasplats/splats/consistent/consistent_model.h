@@ -26,22 +26,22 @@ struct ConsistentOptions {
   std::uint8_t split_scale = 1;
   double small_cell_m = 0.02;  ///< ...into these; 0: not split
   AdaptivePlaneOptions planes;
-  double seed_spacing = 1.2;      ///< radius of a seed, times the distance to the 7th cell
-  double least_radius_m = 0.015;  ///< of a seed
+  double seed_spacing = 1.2;    ///< radius of a seed, times the distance to the 7th cell
+  double min_radius_m = 0.015;  ///< of a seed
   /// Largest radius of a seed, times the median spacing of cells: per metre of distance to the
   /// sensor where that is known, as beams spread.
   double largest_spacing = 1.2;
   /// Where there are no rays to say what is free, disks stay smaller and end where points end.
   double unchecked_largest_spacing = 0.6;
-  double isolated = 3;         ///< a cell that wants so many times the largest has no splat
-  double least_range_m = 0.1;  ///< nearer points have no ray: no LiDAR measures them
-  int balance_rounds = 4;      ///< of shrinking and removing seeds; 0: no ray check
-  JudgeOptions judge;          ///< of seeds
-  EvidenceOptions evidence;    ///< its parts are the most: of few rays more are taken
+  double isolated = 3;       ///< a cell that wants so many times the largest has no splat
+  double min_range_m = 0.1;  ///< nearer points have no ray: no LiDAR measures them
+  int balance_rounds = 4;    ///< of shrinking and removing seeds; 0: no ray check
+  JudgeOptions judge;        ///< of seeds
+  EvidenceOptions evidence;  ///< its parts are the most: of few rays more are taken
   std::size_t evidence_rays = 2'000'000;  ///< enough of them for a round
   CoverOptions cover;
-  int strict_rounds = 5;            ///< of limiting chosen disks
-  double most_contradicted = 0.05;  ///< of the rays that confirm a disk that was grown
+  int strict_rounds = 5;           ///< of limiting chosen disks
+  double max_contradicted = 0.05;  ///< of the rays that confirm a disk that was grown
   int settle_rounds = 2;
   SettleOptions settle;
   bool empty_beams = true;  ///< that are known say what is free
@@ -72,35 +72,35 @@ void visit_settings(ConsistentOptions& consistent, Visit&& visit) {
                 .help = "Side of the cells that points are fused in, m",
                 .key = "cell_m",
                 .group = kGroup,
-                .least = 0,
-                .above_least = true},
+                .min = 0,
+                .exclusive_min = true},
         consistent.cell_m);
   visit(Setting{.name = "small_cell",
                 .help = "Side of cells where the surface is not flat, m; 0: as elsewhere",
                 .key = "small_cell_m",
                 .group = kGroup,
-                .least = 0},
+                .min = 0},
         consistent.small_cell_m);
   visit(Setting{.name = "largest_radius",
                 .help = "Of a splat, m; 0: splats do not grow over their neighbours",
                 .key = "largest_radius_m",
                 .group = kGroup,
-                .least = 0},
+                .min = 0},
         consistent.cover.largest_radius_m);
   visit(Setting{.name = "balance_rounds",
                 .help = "Of judging small disks by the measured rays; 0: no ray check",
                 .group = kGroup,
-                .least = 0},
+                .min = 0},
         consistent.balance_rounds);
   visit(Setting{.name = "strict_rounds",
                 .help = "Of limiting grown splats that rays go through",
                 .group = kGroup,
-                .least = 0},
+                .min = 0},
         consistent.strict_rounds);
   visit(Setting{.name = "settle_rounds",
                 .help = "Of moving splats to where rays end",
                 .group = kGroup,
-                .least = 0},
+                .min = 0},
         consistent.settle_rounds);
   visit(Setting{.name = "empty_beams",
                 .help = "Beams that returned nothing say what is free, too, where a drive shows "

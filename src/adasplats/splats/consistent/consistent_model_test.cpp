@@ -556,10 +556,10 @@ TEST(ConsistentDisks, CellsBelongToTheirDisks) {
   const Made made = disks_of(cloud, options);
   EXPECT_TRUE(made.checked);
   ASSERT_EQ(made.cells.size(), made.disks.size());
-  const double most_m = options.planes.most_shift_m + options.settle.most_shift_m;
+  const double max_m = options.planes.max_shift_m + options.settle.max_shift_m;
   for (std::size_t i = 0; i < made.disks.size(); ++i) {
     const Vec3f mean = made.fused.positions[made.cells[i]];
-    EXPECT_LE(length(made.disks[i].center - mean), most_m + 1e-5);
+    EXPECT_LE(length(made.disks[i].center - mean), max_m + 1e-5);
   }
   const std::vector<std::string> expected = {"fusion",
                                              "planes",
@@ -594,10 +594,10 @@ TEST(ConsistentDisks, StepsWithRaysAreLeftOutWithoutThem) {
 }
 
 /// Which points' rays meet no disk up to `beyond_m` behind their ends.
-std::vector<bool> points_missed(const PointCloud& cloud, const Made& made, double least_range_m,
+std::vector<bool> points_missed(const PointCloud& cloud, const Made& made, double min_range_m,
                                 float beyond_m) {
   const Executor executor(2);
-  const MeasuredRays rays(cloud, least_range_m, executor);
+  const MeasuredRays rays(cloud, min_range_m, executor);
   const auto tracer = make_cpu_tracer({made.disks, nullptr}, executor);
   std::vector<Ray> cast;
   for (std::size_t i = 0; i < rays.size(); ++i) cast.push_back(rays.ray(i, beyond_m));
@@ -616,7 +616,7 @@ TEST(ConsistentDisks, FillingAddsSplatsWhereRaysFallBetweenAndChangesNoOther) {
   const Made bare = disks_of(cloud, options);
   options.fill = true;
   const Made filled = disks_of(cloud, options);
-  const auto missed = points_missed(cloud, bare, options.least_range_m, options.missed_m);
+  const auto missed = points_missed(cloud, bare, options.min_range_m, options.missed_m);
   std::size_t i = 0, added = 0;
   for (std::size_t k = 0; k < filled.disks.size(); ++k) {
     if (i < bare.disks.size() && bare.cells[i] == filled.cells[k]) {
@@ -632,7 +632,7 @@ TEST(ConsistentDisks, FillingAddsSplatsWhereRaysFallBetweenAndChangesNoOther) {
   EXPECT_EQ(filled.report.splats_filled, added);
   EXPECT_EQ(bare.report.splats_filled, 0U);
   EXPECT_GT(added, 20U);
-  const auto still = points_missed(cloud, filled, options.least_range_m, options.missed_m);
+  const auto still = points_missed(cloud, filled, options.min_range_m, options.missed_m);
   EXPECT_LT(std::count(still.begin(), still.end(), true),
             std::count(missed.begin(), missed.end(), true) - 20);
 }
@@ -689,18 +689,18 @@ TEST(ConsistentDisks, WithoutSensorPositionsDisksEndWhereAFlatPatchEnds) {
     const Made made = disks_of(cloud, options);
     EXPECT_FALSE(made.checked);
     ASSERT_GT(made.disks.size(), 50U);
-    float least_m = 1, largest_m = 0;
+    float min_m = 1, largest_m = 0;
     for (const Disk& disk : made.disks) {
-      least_m = std::min(least_m, disk.radius);
+      min_m = std::min(min_m, disk.radius);
       largest_m = std::max(largest_m, disk.radius);
     }
-    EXPECT_LT(least_m, 0.06F);  // a seed
+    EXPECT_LT(min_m, 0.06F);  // a seed
     EXPECT_GT(largest_m, 0.3F);
     const float cosine = std::cos(6.2831853F / static_cast<float>(sectors));
     for (const Disk& disk : made.disks) {
       const Vec3f c = disk.center;
       const float inside_m = std::min({c.x - 0.02F, c.y - 0.02F, kEnd_m - c.x, kEnd_m - c.y});
-      EXPECT_LE(disk.radius, std::max(least_m, inside_m / cosine + 0.5F * least_m) + 1e-4F);
+      EXPECT_LE(disk.radius, std::max(min_m, inside_m / cosine + 0.5F * min_m) + 1e-4F);
     }
   }
   // With 16 that is no farther over the border than a seed, give or take.

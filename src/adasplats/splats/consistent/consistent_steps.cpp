@@ -31,7 +31,7 @@ class ConsistentOnCpu : public RaysOnCpu {
   using Cells = FusedPoints;
   using Index = PointIndex;
   using Cover = SurfaceCover;
-  using CpuPlace::on_host;
+  using CpuBackend::on_host;
   using RaysOnCpu::RaysOnCpu;
 
   static const FusedPoints& on_host(const FusedPoints& cells) { return cells; }
@@ -51,9 +51,9 @@ class ConsistentOnCpu : public RaysOnCpu {
                                  const AdaptivePlaneOptions& options) const {
     return adaptive_planes(cells, index, options, executor());
   }
-  MeasuredRays rays(const PointCloud& cloud, const MeasuredPoints& /*points*/, double least_range_m,
+  MeasuredRays rays(const PointCloud& cloud, const MeasuredPoints& /*points*/, double min_range_m,
                     RayEnds ends) const {
-    return {cloud, least_range_m, executor(), ends};
+    return {cloud, min_range_m, executor(), ends};
   }
   RayEvidence evidence(std::span<const Disk> disks, std::span<const MeasuredRays* const> rays,
                        const EvidenceOptions& options) const {

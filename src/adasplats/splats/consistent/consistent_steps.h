@@ -11,8 +11,8 @@
 #include "adasplats/core/executor.h"
 #include "adasplats/scene/intersect.h"
 #include "adasplats/splats/consistent/consistent_model.h"
+#include "adasplats/splats/consistent/global_context.h"
 #include "adasplats/splats/consistent/origin_check.h"
-#include "adasplats/splats/consistent/whole_place.h"
 #include "adasplats/splats/model/class_tables.h"
 #include "adasplats/splats/reflectance/reflectance.h"
 
@@ -44,11 +44,11 @@ class ConsistentSteps {
   /// `whole`: the cloud is a piece of a place of which this is known; nullptr: it is all. Gives the
   /// number of points kept.
   virtual std::size_t load(PointCloud cloud, const ClassTables& tables,
-                           const WholePlace* whole = nullptr) = 0;
+                           const GlobalContext* whole = nullptr) = 0;
 
   /// Points in cells.
   virtual void fuse(const ConsistentOptions& options) = 0;
-  /// Of the cells that points were fused in, for WholePlace::typical. May be called before
+  /// Of the cells that points were fused in, for GlobalContext::typical. May be called before
   /// fit_seeds() alone.
   virtual std::vector<CellSpacing> spacings(const ConsistentOptions& options) = 0;
   /// Splits cells where nothing is flat, fits planes, turns normals to the sensors, makes seeds.

@@ -13,23 +13,24 @@
 #include "adasplats/splats/consistent/consistent_state.h"
 #include "adasplats/splats/consistent/consistent_steps.h"
 #include "adasplats/splats/consistent/element_steps.h"
+#include "adasplats/splats/consistent/global_context.h"
 #include "adasplats/splats/consistent/origin_check.h"
-#include "adasplats/splats/consistent/whole_place.h"
 #include "adasplats/splats/model/canonical_order.h"
 #include "adasplats/splats/reflectance/reflectances_on.h"
 
 namespace adasplats {
 
-/// The steps of the consistent method, once for all devices. `Place` is a CpuPlace or GpuPlace that
-/// also has what is of another shape on each device (Cells, Index, Rays, Cover and the members that
-/// are called here); what one element does is in element_steps.h.
-template <class Place>
+/// The steps of the consistent method, once for all devices. `Backend` is a CpuBackend or
+/// GpuBackend that also has what is of another shape on each device (Cells, Index, Rays, Cover and
+/// the members that are called here); what one element does is in element_steps.h.
+template <class Backend>
 class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentState {
  public:
   template <class Where>
   explicit ConsistentStepsOn(const Where& where) : place_(where) {}
 
-  std::size_t load(PointCloud cloud, const ClassTables& tables, const WholePlace* whole) override {
+  std::size_t load(PointCloud cloud, const ClassTables& tables,
+                   const GlobalContext* whole) override {
     [[maybe_unused]] const auto entered = place_.enter();
     const std::vector<EmptyBeam> empty = std::exchange(cloud.empty_beams, {});
     const std::size_t beams = cloud.size() + (whole != nullptr ? whole->passing.size() : 0);
@@ -93,7 +94,7 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
     auto cloud = place_.load_as_it_is(beams_);
     const auto& given = place_.copied(beams_.sensor_positions);
     const auto rays =
-        place_.rays(cloud, points_of(cloud), options.least_range_m, RayEnds::at_surfaces);
+        place_.rays(cloud, points_of(cloud), options.min_range_m, RayEnds::at_surfaces);
     const float unit_m = origin_unit_m(beams_);
     std::vector<MovedEvidence> pieces(kOriginPieces);
     count_crossed(seeds, rays, [&](std::size_t k) -> CrossedSeeds& { return pieces[k].given; });
@@ -101,7 +102,7 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
       // Rays read where they start from their cloud.
       place_.for_each(cloud.size(), "move beams",
                       MoveOrigin{cloud.positions.data(), given.data(), unit_m * kOriginMoves[m],
-                                 options.least_range_m, cloud.sensor_positions.data()});
+                                 options.min_range_m, cloud.sensor_positions.data()});
       count_crossed(seeds, rays,
                     [&](std::size_t k) -> CrossedSeeds& { return pieces[k].moved[m]; });
     }
@@ -112,12 +113,12 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   void order_rays(const ConsistentOptions& options) override {
     [[maybe_unused]] const auto entered = place_.enter();
     rays_.emplace(
-        place_.rays(cloud_, points_of(cloud_), options.least_range_m, RayEnds::at_surfaces));
+        place_.rays(cloud_, points_of(cloud_), options.min_range_m, RayEnds::at_surfaces));
     if (options.empty_beams && empty_.size() > 0)
       empty_rays_.emplace(place_.rays(empty_, points_of(empty_), 0, RayEnds::nowhere));
     if (passing_.size() > 0)
       passing_rays_.emplace(
-          place_.rays(passing_, points_of(passing_), options.least_range_m, RayEnds::at_surfaces));
+          place_.rays(passing_, points_of(passing_), options.min_range_m, RayEnds::at_surfaces));
   }
 
   /// What stands behind seeds that went is judged better in the next round.
@@ -146,7 +147,7 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
     auto counts = count(chosen_, options.evidence_of_round(round, rays_of_all()));
     place_.for_each(
         chosen_.size(), "limit disks",
-        LimitOverhang{cover_->limits(), chosen_.data(), counts.view(), options.most_contradicted});
+        LimitOverhang{cover_->limits(), chosen_.data(), counts.view(), options.max_contradicted});
     place_.wait("limit disks");
   }
 
@@ -201,15 +202,15 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
                                     const ConsistentOptions& options) override {
     [[maybe_unused]] const auto entered = place_.enter();
     if (!rays_) order_rays(options);
-    std::vector<RaysWithIntensities<Place>> measured = {{&*rays_, &cloud_.intensities}};
-    std::optional<typename Place::Rays> others;
+    std::vector<RaysWithIntensities<Backend>> measured = {{&*rays_, &cloud_.intensities}};
+    std::optional<typename Backend::Rays> others;
     if (removed_.size() > 0) {
       others.emplace(
-          place_.rays(removed_, points_of(removed_), options.least_range_m, RayEnds::at_surfaces));
+          place_.rays(removed_, points_of(removed_), options.min_range_m, RayEnds::at_surfaces));
       measured.push_back({&*others, &removed_.intensities});
     }
     const IntensityResponse* response = whole_ && whole_->response ? &*whole_->response : nullptr;
-    return ReflectancesOn<Place>(place_, disks, fallback, response).run(measured);
+    return ReflectancesOn<Backend>(place_, disks, fallback, response).run(measured);
   }
 
   ConsistentState state() const override {
@@ -232,26 +233,26 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
 
  private:
   template <class T>
-  using Array = typename Place::template Array<T>;
+  using Array = typename Backend::template Array<T>;
 
-  static MeasuredPoints points_of(const typename Place::Cloud& cloud) {
+  static MeasuredPoints points_of(const typename Backend::Cloud& cloud) {
     return {cloud.positions.data(), data_or_null(cloud.sensor_positions),
             data_or_null(cloud.origin_kinds)};
   }
   MeasuredPoints points() const { return points_of(cloud_); }
 
   auto count(const Array<Disk>& disks, const EvidenceOptions& options) const {
-    std::vector<const typename Place::Rays*> rays = {&*rays_};
+    std::vector<const typename Backend::Rays*> rays = {&*rays_};
     if (empty_rays_) rays.push_back(&*empty_rays_);
     if (passing_rays_) rays.push_back(&*passing_rays_);
-    return place_.evidence(disks, std::span<const typename Place::Rays* const>(rays), options);
+    return place_.evidence(disks, std::span<const typename Backend::Rays* const>(rays), options);
   }
   /// Counts seeds piece by piece, as they stand along the curve.
   template <class PieceOf>
-  void count_crossed(const Array<Disk>& seeds, const typename Place::Rays& rays,
+  void count_crossed(const Array<Disk>& seeds, const typename Backend::Rays& rays,
                      const PieceOf& piece_of) const {
     const std::array all = {&rays};
-    auto counts = place_.evidence(seeds, std::span<const typename Place::Rays* const>(all),
+    auto counts = place_.evidence(seeds, std::span<const typename Backend::Rays* const>(all),
                                   origin_evidence());
     for (std::size_t k = 0; k < kOriginPieces; ++k) {
       const std::size_t first = k * seeds.size() / kOriginPieces;
@@ -296,20 +297,20 @@ class ConsistentStepsOn final : public ConsistentSteps, public ShowsConsistentSt
   };
 
   // In the order in which they are made; memory goes back to the place before it ends.
-  Place place_;
+  Backend place_;
   std::optional<Whole> whole_;
   CurveBox box_;
   PointCloud beams_;  ///< sample_beams()
-  typename Place::Cloud cloud_;
-  typename Place::Cloud empty_;    ///< ends_of() empty beams
-  typename Place::Cloud passing_;  ///< WholePlace::passing
-  typename Place::Cloud removed_;  ///< points of removed classes, where intensities are measured
-  typename Place::Cells cells_;
-  std::optional<typename Place::Index> index_;  ///< of the cells
+  typename Backend::Cloud cloud_;
+  typename Backend::Cloud empty_;    ///< ends_of() empty beams
+  typename Backend::Cloud passing_;  ///< GlobalContext::passing
+  typename Backend::Cloud removed_;  ///< points of removed classes, where intensities are measured
+  typename Backend::Cells cells_;
+  std::optional<typename Backend::Index> index_;  ///< of the cells
   Array<LocalPlane> planes_;
   Array<Disk> seeds_;
-  std::optional<typename Place::Rays> rays_, empty_rays_, passing_rays_;
-  std::optional<typename Place::Cover> cover_;
+  std::optional<typename Backend::Rays> rays_, empty_rays_, passing_rays_;
+  std::optional<typename Backend::Cover> cover_;
   Array<Disk> chosen_;
 };
 

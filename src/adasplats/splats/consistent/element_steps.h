@@ -79,12 +79,12 @@ struct MoveOrigin {
   const Vec3f* points;
   const Vec3f* given;
   Vec3f move_m;
-  double least_range_m;
+  double min_range_m;
   Vec3f* origins;
 
   ADASPLATS_HD void operator()(std::size_t i) const {
     const Vec3f moved = given[i] + move_m;
-    origins[i] = has_measured_ray(moved, points[i], least_range_m) ? moved : given[i];
+    origins[i] = has_measured_ray(moved, points[i], min_range_m) ? moved : given[i];
   }
 };
 
@@ -134,13 +134,13 @@ struct LimitOverhang {
   CoverLimits cover;
   const Disk* chosen;
   EvidenceView evidence;
-  double most_contradicted;
+  double max_contradicted;
 
   ADASPLATS_HD void operator()(std::size_t i) const {
     const DiskEvidence own = evidence.of(i);
     const float radius_m = chosen[i].radius;
     if (!(radius_m > 0) || !own.seen()) return;
-    cover.limit(i, overhang_limit(own, radius_m, cover.seeds[i].radius, most_contradicted));
+    cover.limit(i, overhang_limit(own, radius_m, cover.seeds[i].radius, max_contradicted));
   }
 };
 

@@ -19,8 +19,8 @@ constexpr std::uint64_t kEnoughOfPart = 1000, kEnough = 1500;
 
 // OriginCheck::near_rise and far_rise: no right place has less than the first, few have less than
 // the second of both (docs/fidelity.md).
-constexpr double kLeastNear = 0.96, kDoubtedNear = 1.03;
-constexpr double kLeastFar = 0.97, kDoubtedFar = 1.06;
+constexpr double kMinNear = 0.96, kDoubtedNear = 1.03;
+constexpr double kMinFar = 0.97, kDoubtedFar = 1.06;
 
 /// Pieces with enough contradicted seeds each, of pieces that are joined with those behind them.
 std::vector<MovedEvidence> parts_of(std::span<const MovedEvidence> pieces) {
@@ -37,7 +37,7 @@ std::vector<MovedEvidence> parts_of(std::span<const MovedEvidence> pieces) {
 }
 
 /// Contradicted seeds from the best of some places.
-std::uint64_t least_contradicted(std::span<const CrossedSeeds> moved) {
+std::uint64_t min_contradicted(std::span<const CrossedSeeds> moved) {
   return std::ranges::min(moved, {}, &CrossedSeeds::contradicted).contradicted;
 }
 
@@ -75,8 +75,8 @@ OriginCheck origin_check(std::span<const MovedEvidence> pieces) {
   std::uint64_t near = 0, far = 0;
   for (const MovedEvidence& part : parts_of(pieces)) {
     const std::span moved(part.moved);
-    near += least_contradicted(moved.first(kNearMoves));
-    far += least_contradicted(moved.subspan(kNearMoves));
+    near += min_contradicted(moved.first(kNearMoves));
+    far += min_contradicted(moved.subspan(kNearMoves));
   }
   if (check.contradicted < kEnough) return check;
   check.near_rise = static_cast<double>(near) / static_cast<double>(check.contradicted);
@@ -86,10 +86,10 @@ OriginCheck origin_check(std::span<const MovedEvidence> pieces) {
 
 std::string origin_objection(const OriginCheck& check) {
   if (check.contradicted < kEnough) return {};
-  if (check.near_rise >= kLeastNear && check.far_rise >= kLeastFar) return {};
+  if (check.near_rise >= kMinNear && check.far_rise >= kMinFar) return {};
   return "the sensor positions are not those of the points: " + figures(check) +
-         "; from the right ones it is at least " + hundredths(kLeastNear) + " and " +
-         hundredths(kLeastFar) + " (`trust_origins` takes them nevertheless)";
+         "; from the right ones it is at least " + hundredths(kMinNear) + " and " +
+         hundredths(kMinFar) + " (`trust_origins` takes them nevertheless)";
 }
 
 std::string origin_doubt(const OriginCheck& check) {

@@ -102,7 +102,7 @@ ADASPLATS_HD inline float seed_radius(double spacing_m, double largest_m,
   if (wanted_m > options.isolated * largest_m && spacing_m > kSidesInLine * options.cell_m)
     return 0;
   return static_cast<float>(
-      std::clamp(wanted_m, options.least_radius_m, std::max(options.least_radius_m, largest_m)));
+      std::clamp(wanted_m, options.min_radius_m, std::max(options.min_radius_m, largest_m)));
 }
 
 }  // namespace adasplats

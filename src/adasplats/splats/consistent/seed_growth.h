@@ -12,11 +12,11 @@
 
 namespace adasplats {
 
-struct CoverOptions {                // docs/fidelity.md has where each number comes from
-  std::uint32_t neighbors = 160;     ///< seeds that a disk can grow over, at most
-  double tolerance_m = 0.02;         ///< a disk grows over seeds this near to its plane
-  double least_normal_cosine = 0.9;  ///< and turned like it
-  double edge_m = 0.25;              ///< seeds farther from the plane are other things: no edge
+struct CoverOptions {              // docs/fidelity.md has where each number comes from
+  std::uint32_t neighbors = 160;   ///< seeds that a disk can grow over, at most
+  double tolerance_m = 0.02;       ///< a disk grows over seeds this near to its plane
+  double min_normal_cosine = 0.9;  ///< and turned like it
+  double edge_m = 0.25;            ///< seeds farther from the plane are other things: no edge
   double largest_radius_m = 0.5;
   /// A disk reaches no farther than the seeds it grows over do in every one of so many directions
   /// (and half a seed beyond): nothing hangs over edges. 0: no such limit, for clouds in which
@@ -45,7 +45,7 @@ ADASPLATS_HD inline bool grows_over(const Disk& disk, const Disk& other, const P
                                     const CoverOptions& options) {
   const auto height_m = static_cast<double>(place.height_m);
   const auto cosine = static_cast<double>(std::fabs(dot(other.normal, disk.normal)));
-  return height_m < options.tolerance_m && cosine > options.least_normal_cosine;
+  return height_m < options.tolerance_m && cosine > options.min_normal_cosine;
 }
 
 /// Whether a disk must end before another seed.
@@ -83,11 +83,11 @@ ADASPLATS_HD inline int sixteenth_of_turn(float x, float y) {
 /// How far seeds reach from a disk's middle in each of some equal sectors of its plane.
 class SectorReach {
  public:
-  static constexpr int kMostSectors = 16;
+  static constexpr int kMaxSectors = 16;
 
   /// Sectors are made of whole sixteenths of a turn.
   static bool can_have(int sectors) {
-    return sectors == 0 || (sectors > 0 && sectors <= kMostSectors && kMostSectors % sectors == 0);
+    return sectors == 0 || (sectors > 0 && sectors <= kMaxSectors && kMaxSectors % sectors == 0);
   }
 
   ADASPLATS_HD SectorReach(const Disk& disk, int sectors)
@@ -103,7 +103,7 @@ class SectorReach {
     if (sectors_ == 0) return;
     const Vec3f offset = point - center_;
     const int sixteenth = sixteenth_of_turn(dot(offset, right_), dot(offset, up_));
-    float& reach_m = reach_m_[sixteenth * sectors_ / kMostSectors];
+    float& reach_m = reach_m_[sixteenth * sectors_ / kMaxSectors];
     reach_m = std::max(reach_m, along_m);
   }
 
@@ -111,22 +111,22 @@ class SectorReach {
   ADASPLATS_HD float& reach_m(int sector) { return reach_m_[sector]; }
 
   /// Of the sector with the least; without sectors there is no limit.
-  ADASPLATS_HD float least_m() const {
-    float least_m = std::numeric_limits<float>::max();
-    for (int i = 0; i < sectors_; ++i) least_m = std::min(least_m, reach_m_[i]);
-    return least_m;
+  ADASPLATS_HD float min_m() const {
+    float min_m = std::numeric_limits<float>::max();
+    for (int i = 0; i < sectors_; ++i) min_m = std::min(min_m, reach_m_[i]);
+    return min_m;
   }
 
  private:
   Vec3f center_, right_, up_;
-  float reach_m_[kMostSectors];
+  float reach_m_[kMaxSectors];
   int sectors_;
 };
 
 /// The radius of a disk that grew over seeds up to `reach_m` from its middle.
 ADASPLATS_HD inline float grown_radius(const Disk& disk, float reach_m,
                                        const SectorReach& sectors) {
-  return std::max(disk.radius, std::min(reach_m, sectors.least_m() + 0.5F * disk.radius));
+  return std::max(disk.radius, std::min(reach_m, sectors.min_m() + 0.5F * disk.radius));
 }
 
 /// What a disk of this radius covers.

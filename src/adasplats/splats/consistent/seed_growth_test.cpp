@@ -60,11 +60,11 @@ TEST(SectorReach, SectorsAreWholeSixteenths) {
   for (const int sectors : {1, 2, 4, 8, 16}) {
     SectorReach reach(disk, sectors);
     for (int i = 0; i < sectors; ++i) {
-      EXPECT_EQ(reach.least_m(), 0.0F);
+      EXPECT_EQ(reach.min_m(), 0.0F);
       const double angle = (i + 0.5) * 2 * std::numbers::pi / sectors;
       reach.add(vec_cast<float>(Vec3d{std::cos(angle), std::sin(angle), 0}), 2);
     }
-    EXPECT_EQ(reach.least_m(), 2.0F);
+    EXPECT_EQ(reach.min_m(), 2.0F);
   }
 }
 

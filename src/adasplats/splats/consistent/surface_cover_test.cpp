@@ -19,7 +19,7 @@ CoverOptions tested_options() {
   CoverOptions options;
   options.neighbors = 160;
   options.tolerance_m = 0.015;
-  options.least_normal_cosine = 0.9;
+  options.min_normal_cosine = 0.9;
   options.edge_m = 0.25;
   options.largest_radius_m = 0.5;
   options.overlap = 0.8;
@@ -229,7 +229,7 @@ struct GrownPatch {
 
 /// A seed in a sector of 45 degrees that a straight border cuts off `d` away stands no farther than
 /// d / cos(45 degrees), whichever way the sectors are turned.
-float most_reach(float d) { return std::sqrt(2.0F) * d; }
+float max_reach(float d) { return std::sqrt(2.0F) * d; }
 
 TEST(SurfaceCover, WithSectorsDisksEndWhereSeedsEndInTheirNearestDirection) {
   constexpr float kSide_m = 30 * kStep_m;
@@ -242,7 +242,7 @@ TEST(SurfaceCover, WithSectorsDisksEndWhereSeedsEndInTheirNearestDirection) {
       const Disk& disk = limited.disks[i];
       const float x = limited.x_of(disk), y = limited.y_of(disk);
       const float from_border_m = std::max(0.0F, std::min({x, y, kSide_m - x, kSide_m - y}));
-      EXPECT_LE(disk.radius, std::max(kSeed_m, most_reach(from_border_m) + 0.5F * kSeed_m) + 1e-4F);
+      EXPECT_LE(disk.radius, std::max(kSeed_m, max_reach(from_border_m) + 0.5F * kSeed_m) + 1e-4F);
       EXPECT_GE(disk.radius, std::max(kSeed_m, std::min(from_border_m, 0.45F) - 1e-4F));
       EXPECT_LE(disk.radius, free.disks[i].radius);
       largest_m = std::max(largest_m, disk.radius);
@@ -270,7 +270,7 @@ TEST(SurfaceCover, WithSectorsAGapEndsDisksUnlessTheyReachItsOtherSide) {
   };
   EXPECT_GT(radius_beside(0.15F, 8), 0.4F);  // seeds 0.35 m and more away lie across it
   EXPECT_GE(radius_beside(0.6F, 8), 0.2F);
-  EXPECT_LE(radius_beside(0.6F, 8), most_reach(0.2F) + 0.5F * kSeed_m);
+  EXPECT_LE(radius_beside(0.6F, 8), max_reach(0.2F) + 0.5F * kSeed_m);
   EXPECT_GT(radius_beside(0.6F, 0), 0.45F);
 }
 

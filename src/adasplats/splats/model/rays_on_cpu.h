@@ -7,18 +7,18 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/splats/model/cpu_place.h"
+#include "adasplats/splats/model/cpu_backend.h"
 #include "adasplats/splats/rays/measured_rays.h"
 #include "adasplats/splats/rays/present_disks.h"
 #include "adasplats/splats/reflectance/element_steps.h"
 
 namespace adasplats {
 
-/// A CpuPlace that casts measured rays.
-class RaysOnCpu : public CpuPlace {
+/// A CpuBackend that casts measured rays.
+class RaysOnCpu : public CpuBackend {
  public:
   using Rays = MeasuredRays;
-  using CpuPlace::CpuPlace;
+  using CpuBackend::CpuBackend;
 
   /// Each calls what it is paired with for all of its rays, in any order.
   void observe(const std::vector<Disk>& disks,

@@ -84,10 +84,10 @@ struct MakeSplat {
 };
 
 /// MakeSurfacePoint for every point of a cloud of any place.
-template <class Place>
-auto surface_points(const Place& place, const typename Place::Cloud& cloud,
-                    const typename Place::template Array<Vec3f>& normals,
-                    const typename Place::template Array<SemanticGroup>& groups) {
+template <class Backend>
+auto surface_points(const Backend& place, const typename Backend::Cloud& cloud,
+                    const typename Backend::template Array<Vec3f>& normals,
+                    const typename Backend::template Array<SemanticGroup>& groups) {
   auto points = place.template array<SurfacePoint>(cloud.size());
   place.for_each(cloud.size(), "orient normals",
                  MakeSurfacePoint{cloud.positions.data(), data_or_null(cloud.sensor_positions),

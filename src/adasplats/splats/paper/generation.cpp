@@ -7,7 +7,7 @@
 
 #include "adasplats/core/progress_meter.h"
 #include "adasplats/neighbors/point_index.h"
-#include "adasplats/splats/model/cpu_place.h"
+#include "adasplats/splats/model/cpu_backend.h"
 #include "adasplats/splats/paper/element_steps.h"
 
 namespace adasplats {
@@ -90,7 +90,7 @@ Generation generate_splats(const PointCloud& cloud, std::span<const SemanticGrou
   Generation result;
   result.radius_m = base.radius_m;
   result.error_m = options.error_m.value_or(base.error_m);
-  const CpuPlace place(executor);
+  const CpuBackend place(executor);
   if (options.variant != PaperVariant::basic && !groups.empty()) {
     result.groups.assign(groups.begin(), groups.end());
   } else if (options.variant != PaperVariant::basic) {

@@ -81,15 +81,15 @@ void visit_cleaning_settings(PaperOptions& paper, Visit&& visit) {
   visit(Setting{.name = "denoise_sigmas",
                 .help = "A neighbourhood votes against points farther than this from its plane",
                 .group = kCleaning,
-                .least = 0,
-                .above_least = true},
+                .min = 0,
+                .exclusive_min = true},
         paper.denoise_sigmas);
   visit(Setting{.name = "denoise_votes",
                 .help = "Share of its neighbourhoods that removes a point",
                 .group = kCleaning,
-                .least = 0,
-                .most = 1,
-                .above_least = true},
+                .min = 0,
+                .max = 1,
+                .exclusive_min = true},
         paper.denoise_votes);
   visit(Setting{.name = "resample",
                 .help = "Fill in points on splats and generate again",
@@ -99,8 +99,8 @@ void visit_cleaning_settings(PaperOptions& paper, Visit&& visit) {
                 .help = "Wanted density of splats, times its mean; none are added where two thirds "
                         "of it are there",
                 .group = kCleaning,
-                .least = 0,
-                .most = 100},
+                .min = 0,
+                .max = 100},
         paper.resample_density);
   visit(Setting{.name = "resample_base",
                 .help = "What the second generation starts from, with the new points",
@@ -112,7 +112,7 @@ template <class Visit>
 void visit_scale_settings(PaperOptions& paper, Visit&& visit) {
   constexpr const char* kScales = "Scales of neighbours K, radius R and error bound E by group";
   const auto scale = [&](const char* name, const char* help, GroupScale& value) {
-    visit(Setting{.name = name, .help = help, .group = kScales, .least = 0}, value);
+    visit(Setting{.name = name, .help = help, .group = kScales, .min = 0}, value);
   };
   scale("ground_scale", "Of the group ground", paper.semantic_scales[0]);
   scale("surface_scale", "Of the group surface", paper.semantic_scales[1]);
@@ -128,28 +128,28 @@ void visit_scale_settings(PaperOptions& paper, Visit&& visit) {
 
 template <class Visit>
 void visit_settings(PaperOptions& paper, Visit&& visit) {
-  visit(Setting{.name = "neighbors", .help = "K, neighbours of a point", .least = 3, .most = 1e5},
+  visit(Setting{.name = "neighbors", .help = "K, neighbours of a point", .min = 3, .max = 1e5},
         paper.neighbors);
   visit(Setting{.name = "alpha",
                 .help = "Share of a splat's radius within which other seeds are discarded",
-                .least = 0,
-                .most = 1},
+                .min = 0,
+                .max = 1},
         paper.alpha);
   visit(Setting{.name = "smoothness",
                 .help = "Least dot product of normals in a splat",
-                .least = -1,
-                .most = 1},
+                .min = -1,
+                .max = 1},
         paper.smoothness);
   visit(Setting{.name = "radius",
                 .help = "R, m; without it the mean distance to the K-th neighbour",
                 .key = "radius_m",
-                .least = 0,
-                .above_least = true},
+                .min = 0,
+                .exclusive_min = true},
         paper.radius_m);
   visit(Setting{.name = "error_bound",
                 .help = "E, m; without it the mean distance of neighbours from their plane",
                 .key = "error_m",
-                .least = 0},
+                .min = 0},
         paper.error_m);
   visit(Setting{.name = "selection", .help = "Order in which candidate splats are taken"},
         paper.selection);

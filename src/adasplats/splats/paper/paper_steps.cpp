@@ -3,7 +3,7 @@
 #include "adasplats/splats/paper/paper_steps.h"
 
 #include "adasplats/neighbors/point_index.h"
-#include "adasplats/splats/model/cpu_place.h"
+#include "adasplats/splats/model/cpu_backend.h"
 #include "adasplats/splats/paper/paper_steps_on.h"
 #include "adasplats/splats/paper/resample.h"
 
@@ -11,10 +11,10 @@ namespace adasplats {
 namespace {
 
 /// What the steps of the paper's methods need of the CPU.
-class PaperOnCpu : public CpuPlace {
+class PaperOnCpu : public CpuBackend {
  public:
   using Generation = adasplats::Generation;
-  using CpuPlace::CpuPlace;
+  using CpuBackend::CpuBackend;
 
   static const std::vector<SemanticGroup>& copied(const std::vector<SemanticGroup>& groups) {
     return groups;

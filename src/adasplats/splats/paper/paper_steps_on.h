@@ -11,10 +11,10 @@
 
 namespace adasplats {
 
-/// The steps of the paper's methods, once for all devices. `Place` is a CpuPlace or GpuPlace that
-/// also has what is of another shape on each device (Generation and the members that are called
-/// here); what one element does is in element_steps.h.
-template <class Place>
+/// The steps of the paper's methods, once for all devices. `Backend` is a CpuBackend or GpuBackend
+/// that also has what is of another shape on each device (Generation and the members that are
+/// called here); what one element does is in element_steps.h.
+template <class Backend>
 class PaperStepsOn final : public PaperSteps {
  public:
   template <class Where>
@@ -80,10 +80,10 @@ class PaperStepsOn final : public PaperSteps {
   }
 
  private:
-  Place place_;  // before what is there, which ends before it
-  typename Place::Cloud cloud_;
-  typename Place::template Array<SemanticGroup> groups_;  ///< where known before a generation
-  typename Place::Generation generation_;
+  Backend place_;  // before what is there, which ends before it
+  typename Backend::Cloud cloud_;
+  typename Backend::template Array<SemanticGroup> groups_;  ///< where known before a generation
+  typename Backend::Generation generation_;
 };
 
 }  // namespace adasplats

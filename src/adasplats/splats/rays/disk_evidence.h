@@ -18,20 +18,20 @@ struct EvidenceOptions {  // numbers: docs/fidelity.md
   /// ...and as much farther as puts its end this far off the disk's plane: a disk that stands or
   /// leans a little wrong is crossed far from there by grazing rays.
   float height_margin_m = 0.01F;
-  float least_cosine = 0.1F;  ///< rays that graze more have no wider margins
+  float min_cosine = 0.1F;  ///< rays that graze more have no wider margins
   /// Rays are cast in turns: one part of so many (kRayParts or a power of two below)...
   std::uint32_t parts = 4;
   std::uint32_t part = 0;  ///< ...and this one
 
   /// How far behind its end a ray may cross a disk at which it ends.
-  float most_margin_m() const { return range_margin_m + height_margin_m / least_cosine; }
+  float max_margin_m() const { return range_margin_m + height_margin_m / min_cosine; }
 };
 
 /// How near to its end a ray in this direction must cross a disk to end at it.
 ADASPLATS_HD inline float end_margin_m(const Disk& disk, Vec3f direction,
                                        const EvidenceOptions& options) {
   const float cosine = std::fabs(dot(disk.normal, direction));
-  return options.range_margin_m + options.height_margin_m / std::max(options.least_cosine, cosine);
+  return options.range_margin_m + options.height_margin_m / std::max(options.min_cosine, cosine);
 }
 
 /// What a ray that crosses a disk says of it.
@@ -123,12 +123,12 @@ ADASPLATS_HD inline bool is_borne_out(const DiskEvidence& evidence) {
   return balance >= 0 || best * best >= contradicted;
 }
 
-struct JudgeOptions {             // numbers: docs/fidelity.md
-  int core_rings = 2;             ///< the middle of a disk
-  std::uint32_t core_rays = 3;    ///< that must confirm the middle...
-  double core_share = 0.3;        ///< ...and be so much of those that cross it, to give it a chance
-  float core_radius = 0.25F;      ///< of the radius: what is tried next
-  float least_radius_m = 0.015F;  ///< not below this
+struct JudgeOptions {           // numbers: docs/fidelity.md
+  int core_rings = 2;           ///< the middle of a disk
+  std::uint32_t core_rays = 3;  ///< that must confirm the middle...
+  double core_share = 0.3;      ///< ...and be so much of those that cross it, to give it a chance
+  float core_radius = 0.25F;    ///< of the radius: what is tried next
+  float min_radius_m = 0.015F;  ///< not below this
 };
 
 /// What the rays leave of a disk: its balanced radius; where that is none but many rays confirm
@@ -136,7 +136,7 @@ struct JudgeOptions {             // numbers: docs/fidelity.md
 ADASPLATS_HD inline float judged_radius(const DiskEvidence& evidence, float radius_m,
                                         const JudgeOptions& options) {
   const float balanced_m = is_borne_out(evidence) ? balanced_radius(evidence, radius_m) : 0;
-  if (balanced_m > 0 || radius_m <= options.least_radius_m) return balanced_m;
+  if (balanced_m > 0 || radius_m <= options.min_radius_m) return balanced_m;
   std::uint32_t yes = 0, no = 0;
   for (std::size_t bin = 0; bin < static_cast<std::size_t>(options.core_rings); ++bin) {
     yes += evidence.confirmed[bin];
@@ -144,18 +144,18 @@ ADASPLATS_HD inline float judged_radius(const DiskEvidence& evidence, float radi
   }
   const bool has_chance =
       yes >= options.core_rays && yes >= options.core_share * (double{1} * yes + no);
-  return has_chance ? std::max(options.core_radius * radius_m, options.least_radius_m) : 0;
+  return has_chance ? std::max(options.core_radius * radius_m, options.min_radius_m) : 0;
 }
 
-/// The largest radius at which at most `most_share` as many rays contradict as confirm.
+/// The largest radius at which at most `max_share` as many rays contradict as confirm.
 ADASPLATS_HD inline float strict_radius(const DiskEvidence& evidence, float radius_m,
-                                        double most_share) {
+                                        double max_share) {
   double yes = 0, no = 0;
   int rings = 0;
   for (int k = 0; k < DiskEvidence::kBins; ++k) {
     yes += evidence.confirmed[static_cast<std::size_t>(k)];
     no += evidence.contradicted[static_cast<std::size_t>(k)];
-    if (no <= most_share * yes) rings = k + 1;
+    if (no <= max_share * yes) rings = k + 1;
   }
   return rings == DiskEvidence::kBins ? radius_m : radius_of_rings(rings, radius_m);
 }
@@ -163,8 +163,8 @@ ADASPLATS_HD inline float strict_radius(const DiskEvidence& evidence, float radi
 /// What a chosen disk is limited to so that hardly any ray goes through it; not less than what the
 /// rays leave of its seed, which need not be free of contradiction: leaves are not.
 ADASPLATS_HD inline float overhang_limit(const DiskEvidence& evidence, float radius_m,
-                                         float seed_radius_m, double most_share) {
-  const float strict_m = strict_radius(evidence, radius_m, most_share);
+                                         float seed_radius_m, double max_share) {
+  const float strict_m = strict_radius(evidence, radius_m, max_share);
   if (strict_m >= radius_m) return radius_m;
   return std::max(strict_m, std::min(balanced_radius(evidence, radius_m), seed_radius_m));
 }

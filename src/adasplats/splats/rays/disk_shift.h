@@ -12,13 +12,13 @@
 
 namespace adasplats {
 
-struct SettleOptions {        // numbers: docs/fidelity.md
-  double reach_m = 0.4;       ///< rays whose range is farther from the disk say nothing of it
-  double scale_m = 0.08;      ///< of the Cauchy weights on range errors
-  double prior_rays = 3;      ///< as many rays say that the disk is right as it is
-  double least_cosine = 0.1;  ///< grazing rays count no more than at this cosine
-  std::uint32_t least_rays = 4;
-  double most_shift_m = 0.1;
+struct SettleOptions {      // numbers: docs/fidelity.md
+  double reach_m = 0.4;     ///< rays whose range is farther from the disk say nothing of it
+  double scale_m = 0.08;    ///< of the Cauchy weights on range errors
+  double prior_rays = 3;    ///< as many rays say that the disk is right as it is
+  double min_cosine = 0.1;  ///< grazing rays count no more than at this cosine
+  std::uint32_t min_rays = 4;
+  double max_shift_m = 0.1;
 };
 
 /// What of a ray is cast to settle disks: what stands farther before its end says nothing of the
@@ -42,8 +42,8 @@ ADASPLATS_HD inline ShiftSums shift_of_ray(const Disk& disk, const Ray& ray, flo
                                            float range_m, const SettleOptions& options) {
   const double error_m = static_cast<double>(hit_t) - static_cast<double>(range_m);
   if (std::fabs(error_m) > options.reach_m) return {};
-  const double cosine = std::max(options.least_cosine,
-                                 std::fabs(static_cast<double>(dot(disk.normal, ray.direction))));
+  const double cosine =
+      std::max(options.min_cosine, std::fabs(static_cast<double>(dot(disk.normal, ray.direction))));
   const double relative = error_m / options.scale_m;
   const double weight = 1.0 / ((1.0 + relative * relative) * cosine * cosine);
   const Vec3f point = ray.origin + range_m * ray.direction;
@@ -54,12 +54,12 @@ ADASPLATS_HD inline ShiftSums shift_of_ray(const Disk& disk, const Ray& ray, flo
 
 /// The disk moved along its normal to where its rays say the surface is.
 ADASPLATS_HD inline Disk settled(Disk disk, const ShiftSums& sums, const SettleOptions& options) {
-  if (sums.rays < options.least_rays) return disk;
+  if (sums.rays < options.min_rays) return disk;
   const double weight = ShiftSums::kUnit * static_cast<double>(sums.weight);
   const double prior = options.prior_rays * weight / sums.rays;
   const double shift_m =
       std::clamp(ShiftSums::kUnit * static_cast<double>(sums.shift) / (weight + prior),
-                 -options.most_shift_m, options.most_shift_m);
+                 -options.max_shift_m, options.max_shift_m);
   disk.center = disk.center + static_cast<float>(shift_m) * disk.normal;
   return disk;
 }

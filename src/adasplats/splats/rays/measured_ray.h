@@ -116,8 +116,8 @@ ADASPLATS_HD inline Ray measured_ray(Vec3f sensor, Vec3f point, RayReach reach) 
 }
 
 /// Whether a point is so far from its sensor that it has a ray: nearer ones are the vehicle.
-ADASPLATS_HD inline bool has_measured_ray(Vec3f sensor, Vec3f point, double least_range_m) {
-  return static_cast<double>(length(point - sensor)) >= least_range_m;
+ADASPLATS_HD inline bool has_measured_ray(Vec3f sensor, Vec3f point, double min_range_m) {
+  return static_cast<double>(length(point - sensor)) >= min_range_m;
 }
 
 }  // namespace adasplats

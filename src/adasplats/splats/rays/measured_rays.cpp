@@ -19,7 +19,7 @@ void count_one(std::uint32_t& counter) {
 
 }  // namespace
 
-MeasuredRays::MeasuredRays(const PointCloud& cloud, double least_range_m, const Executor& executor,
+MeasuredRays::MeasuredRays(const PointCloud& cloud, double min_range_m, const Executor& executor,
                            RayEnds ends)
     : cloud_(cloud), ends_(ends) {
   std::vector<std::uint64_t> keys(cloud.size());
@@ -31,7 +31,7 @@ MeasuredRays::MeasuredRays(const PointCloud& cloud, double least_range_m, const 
   executor.sort_keys(keys, points_);
   std::erase_if(points_, [&](std::uint32_t i) {
     return !is_beam(cloud.origin_kind(i)) ||
-           !has_measured_ray(cloud.sensor_positions[i], cloud.positions[i], least_range_m);
+           !has_measured_ray(cloud.sensor_positions[i], cloud.positions[i], min_range_m);
   });
   order_by_part(executor);
 }
@@ -137,7 +137,7 @@ RayEvidence collect_evidence(std::span<const Disk> disks, std::span<const Measur
       // Apart: where an atomic operation stands between them, loads do not overlap.
       for (std::uint32_t* counter : counters) count_one(*counter);
     };
-    const float beyond_m = cast.ends() == RayEnds::nowhere ? 0 : options.most_margin_m();
+    const float beyond_m = cast.ends() == RayEnds::nowhere ? 0 : options.max_margin_m();
     RayCasting casting = {{}, {beyond_m}, RayCasting::Hits::all};
     if (options.parts > 1) casting.numbers = cast.part(options.parts, options.part);
     present.cast(cast, casting, executor, count);

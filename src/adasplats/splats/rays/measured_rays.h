@@ -24,8 +24,8 @@ enum class RayEnds : std::uint8_t { at_surfaces, nowhere };
 class MeasuredRays {
  public:
   /// Needs sensor positions. Points whose origin nobody measured or stated, and those nearer to
-  /// their sensor than `least_range_m` have no ray.
-  MeasuredRays(const PointCloud& cloud, double least_range_m, const Executor& executor,
+  /// their sensor than `min_range_m` have no ray.
+  MeasuredRays(const PointCloud& cloud, double min_range_m, const Executor& executor,
                RayEnds ends = RayEnds::at_surfaces);
 
   std::size_t size() const { return points_.size(); }

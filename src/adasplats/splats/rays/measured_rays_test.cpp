@@ -51,7 +51,7 @@ EvidenceOptions tested_options() {
   EvidenceOptions options;
   options.range_margin_m = 0.15F;
   options.height_margin_m = 0.03F;
-  options.least_cosine = 0.2F;
+  options.min_cosine = 0.2F;
   options.parts = 1;
   options.part = 0;
   return options;
@@ -290,7 +290,7 @@ TEST(CollectEvidence, GrazingRaysEndAtDisksThatTheyCrossFarther) {
   EvidenceOptions options;
   options.range_margin_m = 0.02F;
   options.height_margin_m = 0.01F;
-  options.least_cosine = 0.1F;
+  options.min_cosine = 0.1F;
   const Ray ray{{0, 0, 0}, 0, {1, 0, 0}, 100};
   const auto word = [&](float cosine, float range_m) {
     const Disk disk{{10, 0, 0}, 1, {cosine, std::sqrt(1 - cosine * cosine), 0}};
@@ -305,7 +305,7 @@ TEST(CollectEvidence, GrazingRaysEndAtDisksThatTheyCrossFarther) {
   // Below the least cosine it grows no more.
   EXPECT_EQ(word(0.01F, 10.119F), RayWord::confirms);
   EXPECT_EQ(word(0.01F, 10.121F), RayWord::contradicts);
-  EXPECT_FLOAT_EQ(options.most_margin_m(), 0.12F);
+  EXPECT_FLOAT_EQ(options.max_margin_m(), 0.12F);
 }
 
 // What a beam without return crosses within its reach is contradicted, however near to the end.

@@ -20,8 +20,8 @@ float balanced(const Rings& confirmed, const Rings& contradicted) {
   return balanced_radius({confirmed, contradicted}, 2.0F);
 }
 
-float strict(const Rings& confirmed, const Rings& contradicted, double most_share) {
-  return strict_radius({confirmed, contradicted}, 2.0F, most_share);
+float strict(const Rings& confirmed, const Rings& contradicted, double max_share) {
+  return strict_radius({confirmed, contradicted}, 2.0F, max_share);
 }
 
 /// Radius of a circle that holds that many sixteenths of the area of one with radius 2.
@@ -116,7 +116,7 @@ JudgeOptions tested_judge() {
   options.core_rays = 4;
   options.core_share = 0.25;
   options.core_radius = 0.25F;
-  options.least_radius_m = 0.015F;
+  options.min_radius_m = 0.015F;
   return options;
 }
 
@@ -212,9 +212,9 @@ SettleOptions tested_options() {
   options.reach_m = 0.4;
   options.scale_m = 0.08;
   options.prior_rays = 3;
-  options.least_cosine = 0.1;
-  options.least_rays = 4;
-  options.most_shift_m = 0.1;
+  options.min_cosine = 0.1;
+  options.min_rays = 4;
+  options.max_shift_m = 0.1;
   return options;
 }
 

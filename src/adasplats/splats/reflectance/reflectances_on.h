@@ -19,14 +19,14 @@
 namespace adasplats {
 
 /// Measured rays and the intensities of their points, both where a place has them.
-template <class Place>
+template <class Backend>
 struct RaysWithIntensities {
-  const typename Place::Rays* rays;
-  const typename Place::template Array<float>* intensities;
+  const typename Backend::Rays* rays;
+  const typename Backend::template Array<float>* intensities;
 };
 
 /// Points nearer to their sensor say nothing: their rays have no direction.
-inline constexpr double kLeastReflectanceRange_m = 1e-3;
+inline constexpr double kMinReflectanceRange_m = 1e-3;
 
 /// Casts every measured ray into a model, and finds by turns the reflectance of every disk and the
 /// response of the sensor that explain the intensities of the rays whose first hit lies within
@@ -35,14 +35,14 @@ inline constexpr double kLeastReflectanceRange_m = 1e-3;
 /// rays had said so), that one to the mean of all. Sums are whole numbers: the same bytes on any
 /// number of threads and on every device.
 ///
-/// Once for all devices: `Place` is a RaysOnCpu or its twin on a GPU; what one element does is in
+/// Once for all devices: `Backend` is a RaysOnCpu or its twin on a GPU; what one element does is in
 /// element_steps.h. Memory: 32 bytes a ray.
-template <class Place>
+template <class Backend>
 class ReflectancesOn {
  public:
   /// `fallback`: values for disks in cells that no ray met, one a disk; NaN: the mean of all.
   /// `response`: of the sensor, as result() has it, which then is not looked for; may be null.
-  ReflectancesOn(const Place& place, const std::vector<Disk>& disks,
+  ReflectancesOn(const Backend& place, const std::vector<Disk>& disks,
                  const std::vector<float>& fallback, const IntensityResponse* response = nullptr)
       : place_(place), disks_(disks), fallback_(fallback), is_response_known_(response != nullptr) {
     gains_.of_ranges.fill(1.0F);
@@ -57,11 +57,11 @@ class ReflectancesOn {
 
   /// Without rays, or with fewer than 1000 rays that meet their point: the fallback and an empty
   /// response.
-  Reflectances run(std::span<const RaysWithIntensities<Place>> measured) {
+  Reflectances run(std::span<const RaysWithIntensities<Backend>> measured) {
     if (disks_.empty()) return {fallback_, {}};
     const auto& disks = place_.copied(disks_);
     observe(disks, measured);
-    if (ray_count_ < (is_response_known_ ? 1 : kLeastRays)) return {fallback_, {}};
+    if (ray_count_ < (is_response_known_ ? 1 : kMinRays)) return {fallback_, {}};
     order_cells(disks);
     sums_ = place_.template array<ValueSums>(disks_.size());
     values_ = place_.template array<float>(disks_.size());
@@ -77,10 +77,10 @@ class ReflectancesOn {
 
  private:
   template <class T>
-  using Array = typename Place::template Array<T>;
+  using Array = typename Backend::template Array<T>;
 
   /// A choice: some 35 rays a node of the tables. Fewer say more of their noise than of the sensor.
-  static constexpr std::uint64_t kLeastRays = 1000;
+  static constexpr std::uint64_t kMinRays = 1000;
   /// Of both fits. A choice: each takes a pass over all rays.
   static constexpr int kTurns = 5;
 
@@ -91,7 +91,7 @@ class ReflectancesOn {
   }
 
   /// Observations by disk.
-  void observe(const Array<Disk>& disks, std::span<const RaysWithIntensities<Place>> measured) {
+  void observe(const Array<Disk>& disks, std::span<const RaysWithIntensities<Backend>> measured) {
     double largest = 0;
     std::size_t rays = 0;
     for (const auto& part : measured) {
@@ -101,7 +101,7 @@ class ReflectancesOn {
     intensity_unit_ = power_of_two_above(largest);
     auto counts = place_.template zeros<std::uint32_t>(disks.size());
     auto unordered = place_.template array<Observation>(rays);
-    std::vector<std::pair<const typename Place::Rays*, ObserveRay>> parts;
+    std::vector<std::pair<const typename Backend::Rays*, ObserveRay>> parts;
     Observation* to = unordered.data();
     for (const auto& part : measured) {
       const ObserveRay observe = {
@@ -178,7 +178,7 @@ class ReflectancesOn {
     return result;
   }
 
-  const Place& place_;
+  const Backend& place_;
   const std::vector<Disk>& disks_;
   const std::vector<float>& fallback_;
   bool is_response_known_;

@@ -12,9 +12,8 @@ namespace {
 
 constexpr std::uint64_t kLandStream = 0x6c616e64;
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kMostSlopeOfBend =
-    0.045;  // of one wave: streets cross within 10 degrees of square
-constexpr double kMostSlopeOfHill = 0.014;
+constexpr double kMaxSlopeOfBend = 0.045;  // of one wave: streets cross within 10 degrees of square
+constexpr double kMaxSlopeOfHill = 0.014;
 
 }  // namespace
 
@@ -29,10 +28,10 @@ CityLand::CityLand(std::uint64_t seed) {
     wave.amplitude = random.uniform(0.2, 1) * slope * wave.length_m / kTurn;
     return wave;
   };
-  for (Wave& wave : shift_east_) wave = draw(400, 1100, kMostSlopeOfBend);
-  for (Wave& wave : shift_north_) wave = draw(400, 1100, kMostSlopeOfBend);
+  for (Wave& wave : shift_east_) wave = draw(400, 1100, kMaxSlopeOfBend);
+  for (Wave& wave : shift_north_) wave = draw(400, 1100, kMaxSlopeOfBend);
   for (Hill& hill : hills_) {
-    hill.wave = draw(250, 1000, kMostSlopeOfHill);
+    hill.wave = draw(250, 1000, kMaxSlopeOfHill);
     const double direction = random.uniform(0, kTurn);
     hill.east = std::cos(direction);
     hill.north = std::sin(direction);

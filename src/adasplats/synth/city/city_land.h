@@ -36,6 +36,6 @@ class CityLand {
 };
 
 /// The grid's lines are bent by no more than this, m.
-inline constexpr double kMostBend_m = 16;
+inline constexpr double kMaxBend_m = 16;
 
 }  // namespace adasplats

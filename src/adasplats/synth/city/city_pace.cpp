@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kDefaultSpacing_m = 1;
 constexpr double kReturningShare = 0.85;  // of rays, before any is cast
-constexpr double kMostScans = 1e6;        // that six digits name
-constexpr double kLeastSpacing_m = 0.001;
+constexpr double kMaxScans = 1e6;         // that six digits name
+constexpr double kMinSpacing_m = 0.001;
 
 }  // namespace
 
@@ -28,11 +28,11 @@ CityPace::CityPace(const SynthCityOptions& options, std::size_t rays)
                 "`points` and `spacing` are two ways to say the same: give one of them");
   // Where a scan has fewer points than expected there are more scans.
   const double scans = options.points ? 2 * points_ / mean_points_ : length_m_ / spacing_m_ + 1;
-  if (scans > kMostScans)
+  if (scans > kMaxScans)
     throw Error(ErrorKind::usage,
-                "that is more than " + std::to_string(static_cast<long>(kMostScans)) +
+                "that is more than " + std::to_string(static_cast<long>(kMaxScans)) +
                     " scans; several cities of other seeds, or a larger" + " `spacing`");
-  if (options.points && length_m_ / scans < kLeastSpacing_m)
+  if (options.points && length_m_ / scans < kMinSpacing_m)
     throw Error(ErrorKind::usage,
                 "scans would be less than 1 mm apart: fewer `points`, or more"
                 " `length`");

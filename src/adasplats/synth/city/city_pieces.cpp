@@ -43,7 +43,7 @@ CityPiece::CityPiece(const CityGrid& grid, const CityPieceId& of, const MoverMod
 
 std::set<CityPieceId> pieces_around(const CityGrid& grid, Vec3d grid_place, double range_m) {
   constexpr double kOverhang_m = 8;  // of crowns and roofs beyond a piece
-  const double reach = range_m + kMostBend_m + kOverhang_m;
+  const double reach = range_m + kMaxBend_m + kOverhang_m;
   const int west = grid.block_at(CityAxis::east, grid_place.x - reach) - 1;
   const int east = grid.block_at(CityAxis::east, grid_place.x + reach) + 1;
   const int south = grid.block_at(CityAxis::north, grid_place.y - reach) - 1;

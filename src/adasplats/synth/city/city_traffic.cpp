@@ -139,8 +139,8 @@ class Rail {
 };
 
 constexpr std::uint16_t kFirstWalker = kFirstMover + 64 * 128;
-constexpr int kMostWalkers = 16;  // of one side of a piece
-static_assert(kFirstWalker + 2 * kMostWalkers * kPieceGroups <= 65535);
+constexpr int kMaxWalkers = 16;  // of one side of a piece
+static_assert(kFirstWalker + 2 * kMaxWalkers * kPieceGroups <= 65535);
 
 }  // namespace
 
@@ -203,14 +203,14 @@ std::vector<Walker> draw_walkers(const CityGrid& grid, const CityPieceId& id, co
                               2 * street_key(id.axis, id.line) + (side > 0 ? 1 : 0), id.block);
     const double wish = plan.style.walkers * (s1 - s0) / 100 * random.uniform(0.5, 1.5);
     const double walk = 0.5 * (plan.road_end(side) + plan.property_line(side));
-    for (int k = 0; k < std::min(kMostWalkers, static_cast<int>(wish + random.uniform())); ++k) {
+    for (int k = 0; k < std::min(kMaxWalkers, static_cast<int>(wish + random.uniform())); ++k) {
       Walker walker = {
           .side = side, .from_axis = walk + random.uniform(-0.4, 0.4), .s0 = s0, .s1 = s1};
       walker.model = models.pick(VehicleKind::walker, random);
       walker.speed_m_per_s = random.uniform(0.8, 1.7);
       walker.phase_m = random.uniform(0, 2 * (s1 - s0));
       walker.instance = static_cast<std::uint16_t>(
-          kFirstWalker + (2 * piece_group(id) + (side > 0 ? 1 : 0)) * kMostWalkers + k);
+          kFirstWalker + (2 * piece_group(id) + (side > 0 ? 1 : 0)) * kMaxWalkers + k);
       walkers.push_back(walker);
     }
   }

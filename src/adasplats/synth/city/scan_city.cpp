@@ -98,7 +98,7 @@ class CityScanner {
       }
       pieces_.add(std::move(piece), executor_);
     }
-    report_.most_pieces = std::max(report_.most_pieces, pieces_.size());
+    report_.max_pieces = std::max(report_.max_pieces, pieces_.size());
   }
 
   std::unique_ptr<CityPiece> make(const CityPieceId& id) const {

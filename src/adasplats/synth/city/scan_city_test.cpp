@@ -96,7 +96,7 @@ TEST(ScanSynthCity, HoldsNoMorePiecesOnALongDrive) {
   const SynthCityReport few = record(thin_city(300, 100), 2).report;
   const SynthCityReport many = record(thin_city(1500, 100), 2).report;
   EXPECT_GT(many.pieces, 2 * few.pieces);
-  EXPECT_LE(many.most_pieces, 16U);
+  EXPECT_LE(many.max_pieces, 16U);
   EXPECT_EQ(many.scans, 16U);
 }
 

@@ -33,21 +33,21 @@ void visit_settings(SynthCityOptions& city, Visit&& visit) {
                 .help = "Of the drive, m, or with a unit: 10km",
                 .value = "M",
                 .key = "length_m",
-                .least = 50,
-                .most = 1e6},
+                .min = 50,
+                .max = 1e6},
         city.length_m);
   visit(Setting{.name = "points",
                 .help = "Of all scans together: chooses their spacing",
                 .value = "N",
-                .least = 1,
-                .most = 1e12},
+                .min = 1,
+                .max = 1e12},
         city.points);
   visit(Setting{.name = "spacing",
                 .help = "Between scans, m (1 where --points is not given)",
                 .value = "M",
                 .key = "spacing_m",
-                .least = 0.001,
-                .most = 1000},
+                .min = 0.001,
+                .max = 1000},
         city.spacing_m);
   visit(Setting{.name = "truth", .help = "Write the exact surface of what stands, piece by piece"},
         city.truth);
@@ -58,7 +58,7 @@ struct SynthCityReport {
   std::size_t scans = 0;
   std::size_t points = 0;
   std::size_t pieces = 0;             ///< that were within the sensor's range at some time
-  std::size_t most_pieces = 0;        ///< in memory at once
+  std::size_t max_pieces = 0;         ///< in memory at once
   std::size_t mesh_triangles = 0;     ///< of all pieces
   std::size_t pieces_made_again = 0;  ///< where the drive came back
 };

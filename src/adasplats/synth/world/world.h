@@ -52,21 +52,21 @@ void visit_settings(WorldOptions& world, Visit&& visit) {
                 .help = "Of the road, m",
                 .value = "M",
                 .key = "length_m",
-                .least = 80,
-                .most = 1000},
+                .min = 80,
+                .max = 1000},
         world.length_m);
 }
 
 template <class Visit>
 void visit_settings(WorldScanOptions& scan, Visit&& visit) {
-  visit(Setting{.name = "scans", .help = "How many", .value = "N", .least = 1, .most = 10000},
+  visit(Setting{.name = "scans", .help = "How many", .value = "N", .min = 1, .max = 10000},
         scan.scans);
   visit(Setting{.name = "spacing",
                 .help = "Between scans, m",
                 .value = "M",
                 .key = "spacing_m",
-                .least = 0,
-                .most = 100},
+                .min = 0,
+                .max = 100},
         scan.spacing_m);
 }
 

@@ -25,13 +25,13 @@ WorldRoute::WorldRoute(double length_m, const RouteLimits& limits, Random random
     wave.length_m = random.uniform(120, 420);
     wave.phase = random.uniform(0, kFullTurn);
     // The curvature of a wave of the heading is at most amplitude * 2 pi / length.
-    const double curvature = 0.5 * random.uniform() / limits.least_radius_m;
+    const double curvature = 0.5 * random.uniform() / limits.min_radius_m;
     wave.amplitude = curvature * wave.length_m / kFullTurn;
   }
   for (Wave& wave : height_) {
     wave.length_m = random.uniform(90, 360);
     wave.phase = random.uniform(0, kFullTurn);
-    wave.amplitude = 0.5 * limits.most_climb * random.uniform() * wave.length_m / kFullTurn;
+    wave.amplitude = 0.5 * limits.max_climb * random.uniform() * wave.length_m / kFullTurn;
   }
   Vec3d place;
   const double beyond = length_m + 2 * kBeyond_m;

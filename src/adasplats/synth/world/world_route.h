@@ -16,8 +16,8 @@ namespace adasplats {
 
 /// How far a kind of place bends and climbs.
 struct RouteLimits {
-  double least_radius_m = 100;
-  double most_climb = 0.03;  ///< slope of the road
+  double min_radius_m = 100;
+  double max_climb = 0.03;  ///< slope of the road
 };
 
 /// Where the place (s, d) of a road is, with the height of the land there.

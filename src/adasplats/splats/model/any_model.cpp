@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/splats/model/place.h"
+#include "adasplats/splats/model/any_model.h"
 
 #include <limits>
 
@@ -27,26 +27,26 @@ std::pair<Vec3d, Vec3d> world_box(const MeshModel& model) {
 
 }  // namespace
 
-Place load_place(const std::filesystem::path& file) {
+AnyModel load_any_model(const std::filesystem::path& file) {
   if (is_mesh_file(file)) return load_mesh(file);
   return load_model(file);
 }
 
-std::span<const std::uint16_t> classes_of(const Place& place) {
+std::span<const std::uint16_t> classes_of(const AnyModel& place) {
   if (const auto* mesh = std::get_if<MeshModel>(&place)) return mesh->mesh.classes;
   return std::get<SplatModel>(place).classes;
 }
 
-std::span<const float> intensities_of(const Place& place) {
+std::span<const float> intensities_of(const AnyModel& place) {
   if (const auto* splats = std::get_if<SplatModel>(&place)) return splats->intensities;
   return {};
 }
 
-std::pair<Vec3d, Vec3d> world_box_of(const Place& place) {
+std::pair<Vec3d, Vec3d> world_box_of(const AnyModel& place) {
   return std::visit([](const auto& model) { return world_box(model); }, place);
 }
 
-std::string_view primitives_of(const Place& place) {
+std::string_view primitives_of(const AnyModel& place) {
   return std::holds_alternative<MeshModel>(place) ? "triangles" : "splats";
 }
 

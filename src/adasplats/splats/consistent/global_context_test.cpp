@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/splats/consistent/whole_place.h"
+#include "adasplats/splats/consistent/global_context.h"
 
 #include <gtest/gtest.h>
 
@@ -82,9 +82,9 @@ TypicalSpacing surveyed(const PointCloud& cloud) {
   return typical_spacing(with_beam, without);
 }
 
-TEST(WholePlace, APieceHasTheSplatsOfTheWhole) {
+TEST(GlobalContext, APieceHasTheSplatsOfTheWhole) {
   const PointCloud cloud = long_place();
-  WholePlace whole;
+  GlobalContext whole;
   whole.box = curve_box_of(cloud.positions, Executor(1));
   whole.typical = surveyed(cloud);
   whole.rays = cloud.size();
@@ -111,8 +111,8 @@ TEST(WholePlace, APieceHasTheSplatsOfTheWhole) {
   EXPECT_GT(area_in_the_air(disks_of_piece(piece, options)), 3 * area_in_the_air(disks));
 }
 
-TEST(WholePlace, IsOfTheMethodConsistentAlone) {
-  WholePlace whole;
+TEST(GlobalContext, IsOfTheMethodConsistentAlone) {
+  GlobalContext whole;
   BuildOptions options;
   options.recipe = PaperOptions();
   options.whole = &whole;

@@ -17,7 +17,7 @@ namespace adasplats {
 /// What a piece of a place has to know of the whole, so that the splats that stand far enough from
 /// where it was cut are those of the whole, to the last bit. Coordinates are relative to the origin
 /// of the piece's cloud, which must be that of the whole's for that.
-struct WholePlace {
+struct GlobalContext {
   CurveBox box;            ///< of all points: they are ordered along the same curve
   TypicalSpacing typical;  ///< of all cells
   std::size_t rays = 0;    ///< measured ones of all: they say in how many parts rays are cast

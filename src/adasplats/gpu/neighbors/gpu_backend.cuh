@@ -38,9 +38,9 @@ struct AddPart {
   __device__ void operator()(std::uint64_t i, Sums& sum) const { sum += parts[i]; }
 };
 
-/// Private to gpu/: where the steps of a method run and what they keep is, as CpuPlace: a stream
+/// Private to gpu/: where the steps of a method run and what they keep is, as CpuBackend: a stream
 /// and the memory of one GPU. Nothing else of the GPU may live longer than the place.
-class GpuPlace {
+class GpuBackend {
  public:
   template <class T>
   using Array = DeviceBuffer<T>;
@@ -49,11 +49,11 @@ class GpuPlace {
   using Cloud = DeviceCloud;
 
   /// The device must be the current one.
-  explicit GpuPlace(int device) : device_(device), pool_(device) {}
+  explicit GpuBackend(int device) : device_(device), pool_(device) {}
   /// The pool gives back what is free when its guard ends.
-  ~GpuPlace() { static_cast<void>(cudaStreamSynchronize(stream())); }
-  GpuPlace(const GpuPlace&) = delete;
-  GpuPlace& operator=(const GpuPlace&) = delete;
+  ~GpuBackend() { static_cast<void>(cudaStreamSynchronize(stream())); }
+  GpuBackend(const GpuBackend&) = delete;
+  GpuBackend& operator=(const GpuBackend&) = delete;
 
   cudaStream_t stream() const { return stream_.get(); }
   DeviceGuard enter() const { return DeviceGuard(device_); }

@@ -12,8 +12,8 @@
 namespace adasplats {
 
 /// Where the steps of a method run and what they keep is: the threads and the memory of the CPU.
-/// gpu::GpuPlace is its twin; the steps are written once, as templates on the place.
-class CpuPlace : public CpuArrays {
+/// gpu::GpuBackend is its twin; the steps are written once, as templates on the place.
+class CpuBackend : public CpuArrays {
  public:
   using Cloud = PointCloud;
 

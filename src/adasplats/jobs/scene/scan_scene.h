@@ -18,9 +18,9 @@ namespace adasplats {
 
 /// Where scans are simulated: a model or a mesh in memory (ModelScene), or a city whose tiles come
 /// and go (CityScene), with what was put there.
-class ScanPlace {
+class ScanScene {
  public:
-  virtual ~ScanPlace() = default;
+  virtual ~ScanScene() = default;
 
   /// World coordinates of the local origin, m.
   virtual Vec3d origin() const = 0;
@@ -42,7 +42,7 @@ class ScanPlace {
   /// Makes ready what the first of some scans meet whose rays are `reach_m` long, and gives how
   /// many of them, at least one where there is one. To be called before they are cast, while
   /// nothing is.
-  virtual std::size_t make_ready(std::span<const ScanMotion> scans, double reach_m) const = 0;
+  virtual std::size_t prefetch(std::span<const ScanMotion> scans, double reach_m) const = 0;
 };
 
 }  // namespace adasplats

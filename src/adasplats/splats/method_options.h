@@ -14,7 +14,7 @@
 namespace adasplats {
 
 /// How splats are made of points: a method with its options, each beside its steps.
-using ModelRecipe = std::variant<ConsistentOptions, PaperOptions>;
+using MethodOptions = std::variant<ConsistentOptions, PaperOptions>;
 
 /// The words for methods: the paper's variants, and ours.
 enum class SplatMethod : std::uint8_t { consistent, basic, descriptors, semantic };
@@ -25,18 +25,18 @@ inline constexpr std::pair<std::string_view, SplatMethod> kSplatMethods[] = {
     {"semantic", SplatMethod::semantic}};
 inline Words<SplatMethod> words_of(SplatMethod) { return kSplatMethods; }
 
-SplatMethod method_of(const ModelRecipe& recipe);
+SplatMethod method_of(const MethodOptions& recipe);
 /// Errors: usage (an option out of range).
-void check(const ModelRecipe& recipe);
+void check(const MethodOptions& recipe);
 
 /// A recipe as users choose one: a word, and options of every method.
-struct RecipeChoice {
+struct MethodChoice {
   SplatMethod method = SplatMethod::consistent;
   PaperOptions paper;  ///< without the variant, which the method says
   ConsistentOptions consistent;
 
   /// That of the method; the options of others have no effect (unused_settings()).
-  ModelRecipe recipe() const;
+  MethodOptions recipe() const;
 };
 
 /// Calls visit(options, who they are for) for the options of every method.
@@ -47,7 +47,7 @@ void visit_methods(Choice& choice, Visit&& visit) {
 }
 
 template <class Visit>
-void visit_settings(RecipeChoice& choice, Visit&& visit) {
+void visit_settings(MethodChoice& choice, Visit&& visit) {
   visit(Setting{.name = "method",
                 .help = "consistent agrees with the measured rays; the others are the paper's "
                         "variants, of which semantic needs labels"},

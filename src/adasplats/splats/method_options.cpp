@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/splats/recipe.h"
+#include "adasplats/splats/method_options.h"
 
 #include <stdexcept>
 
@@ -26,13 +26,13 @@ PaperOptions with_variant(PaperOptions paper, PaperVariant variant) {
 
 }  // namespace
 
-SplatMethod method_of(const ModelRecipe& recipe) { return std::visit(MethodOf{}, recipe); }
+SplatMethod method_of(const MethodOptions& recipe) { return std::visit(MethodOf{}, recipe); }
 
-void check(const ModelRecipe& recipe) {
+void check(const MethodOptions& recipe) {
   std::visit([](const auto& options) { check(options); }, recipe);
 }
 
-ModelRecipe RecipeChoice::recipe() const {
+MethodOptions MethodChoice::recipe() const {
   switch (method) {
     case SplatMethod::consistent: return consistent;
     case SplatMethod::basic: return with_variant(paper, PaperVariant::basic);
