@@ -44,8 +44,8 @@ class RealFiles : public testing::Test {
 
   /// How many points the reader has left out as withheld.
   static std::size_t withheld_of(const Table& table) {
-    for (const std::string& comment : table.comments)
-      if (const auto count = number_after(comment, "withheld: ")) return *count;
+    for (const ReaderNote& note : table.notes)
+      if (note.kind == NoteKind::withheld) return number_after(note.text, "").value();
     return 0;
   }
   /// The number that follows `word` in a file's line of the catalogue.
@@ -257,7 +257,7 @@ TEST_F(RealFiles, E57HasTheCataloguedPoints) {
     const Table table = read_points(folder_ / name);
     const std::size_t left_out = without_return.contains(name) ? without_return.at(name) : 0;
     EXPECT_EQ(std::optional(table.rows + left_out), number_after(entry.second, "records ['"));
-    EXPECT_EQ(table.comments.size(), left_out > 0 ? 1U : 0U);
+    EXPECT_EQ(table.notes.size(), left_out > 0 ? 1U : 0U);
     ++read;
   }
   EXPECT_EQ(read, 6);

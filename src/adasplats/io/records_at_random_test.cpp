@@ -60,8 +60,7 @@ void expect_pieces(const std::filesystem::path& file, std::uint64_t piece) {
   Table all;
   for (std::uint64_t first = 0; first < whole.rows; first += piece) {
     const Table part = read(file, {first, piece}, piece % 2 == 0 ? &executor : nullptr);
-    for (const std::string& comment : part.comments)
-      EXPECT_EQ(comment.find("salvaged"), std::string::npos) << comment;
+    for (const ReaderNote& note : part.notes) EXPECT_NE(note.kind, NoteKind::salvaged) << note.text;
     if (first == 0) {
       all = part;
       continue;
@@ -149,7 +148,7 @@ TEST(RecordsAtRandom, FilesThatEndEarlyAreErrorsInEveryPiece) {
   LasReadOptions options;
   options.salvage = true;
   options.selection.records = {990, 10};
-  EXPECT_EQ(read_points(folder.path() / "a.las", options).comments.back().substr(0, 8), "salvaged");
+  EXPECT_EQ(read_points(folder.path() / "a.las", options).notes.back().kind, NoteKind::salvaged);
 }
 
 }  // namespace

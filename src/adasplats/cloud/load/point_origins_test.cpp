@@ -117,7 +117,7 @@ TEST(PointOrigins, ScansOfE57AreMeasuredFromTheirPoses) {
   EXPECT_EQ(cloud.origin_kinds, (std::vector<OriginKind>{measured, none}));
   EXPECT_TRUE(cloud.origin + vec_cast<double>(cloud.sensor_positions.at(0)) ==
               (Vec3d{500, 5000, 7}));
-  EXPECT_NE(warnings.text.find("a.e57: left out: column 'red', which 1 of 2 scans have"),
+  EXPECT_NE(warnings.text.find("a.e57: left out: column 'red', which only 1 of 2 scans have"),
             std::string::npos)
       << warnings.text;
 }

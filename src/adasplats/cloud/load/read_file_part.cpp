@@ -188,41 +188,44 @@ std::vector<Vec3d> read_sensor_positions(const PointFile& file, const LoadOption
   return {};
 }
 
-/// What a reader says beside the columns.
-void take_comment(const PointFile& file, const std::string& comment, ProgressSink& progress) {
-  constexpr std::string_view kNotMetres = "not metres: ", kWithheld = "withheld: ",
-                             kNotKnown = "not known: ";
-  if (comment.starts_with(kWithheld))
-    progress.warn(file.path.string() + ": " + comment.substr(kWithheld.size()) +
-                  " are flagged as withheld (deleted), left out");
-  if (comment.starts_with(kNotKnown))
-    progress.warn(file.path.string() + ": has " + comment.substr(kNotKnown.size()) +
-                  ", which is newer than what is known here: taken as metres");
-  if (comment.starts_with("salvaged") || comment.starts_with("left out: ") ||
-      comment.starts_with("intensities: "))
-    progress.warn(file.path.string() + ": " + comment);
-  if (comment.starts_with("geographic: ") && file.table.rows > 0)
-    throw Error(ErrorKind::data,
-                file.path.string() + ": its coordinates are longitudes and latitudes (" + comment +
-                    "), not metres; project them first (UTM, say, with 'pdal translate IN OUT "
-                    "reprojection --filters.reprojection.out_srs=...')");
-  if (comment.starts_with(kNotMetres) && file.table.rows > 0)
-    throw Error(ErrorKind::data,
-                file.path.string() + ": its coordinates are not in metres (" +
-                    comment.substr(kNotMetres.size()) +
-                    "); bring them to a system that is, heights included (UTM zone 18 and NAVD88, "
-                    "say, with 'pdal translate IN OUT reprojection "
-                    "--filters.reprojection.out_srs=EPSG:32618+5703')");
+/// Reports a note of the reader as a warning or an error.
+void report(const PointFile& file, const ReaderNote& note, ProgressSink& progress) {
+  const std::string start = file.path.string() + ": ";
+  switch (note.kind) {
+    case NoteKind::withheld:
+      return progress.warn(start + note.text + " are flagged as withheld (deleted) and left out");
+    case NoteKind::unknown_unit:
+      return progress.warn(start + note.text +
+                           ", which this version does not know; metres assumed");
+    case NoteKind::salvaged: return progress.warn(start + "salvaged " + note.text);
+    case NoteKind::left_out: return progress.warn(start + "left out: " + note.text);
+    case NoteKind::intensity_scale: return progress.warn(start + note.text);
+    case NoteKind::geographic:
+      if (file.table.rows == 0) return;
+      throw Error(ErrorKind::data,
+                  start + "its coordinates are longitudes and latitudes (" + note.text +
+                      "), not metres; project them first (e.g. to UTM: 'pdal translate IN OUT "
+                      "reprojection --filters.reprojection.out_srs=...')");
+    case NoteKind::not_metres:
+      if (file.table.rows == 0) return;
+      throw Error(ErrorKind::data,
+                  start + "its coordinates are not in metres (" + note.text +
+                      "); reproject them to a system in metres, heights included (e.g. UTM zone 18 "
+                      "and NAVD88: 'pdal translate IN OUT reprojection "
+                      "--filters.reprojection.out_srs=EPSG:32618+5703')");
+    case NoteKind::adjusted_gps:
+    case NoteKind::no_return:
+    case NoteKind::wrong_count: return;
+  }
 }
 
-/// LAS alone says what its times are: seconds of the week, where no comment says otherwise.
+/// Only LAS states its clock: adjusted GPS time if a note reports it, else seconds of the week.
 SaidClock said_clock_of(const PointFile& file) {
   const std::string extension = lower_case(file.path.extension().string());
   if (extension != ".las" && extension != ".laz") return SaidClock::nothing;
-  const auto& comments = file.table.comments;
-  return std::ranges::find(comments, "adjusted GPS time") != comments.end()
-             ? SaidClock::adjusted_gps
-             : SaidClock::gps_week;
+  const bool is_adjusted = std::ranges::find(file.table.notes, NoteKind::adjusted_gps,
+                                             &ReaderNote::kind) != file.table.notes.end();
+  return is_adjusted ? SaidClock::adjusted_gps : SaidClock::gps_week;
 }
 
 }  // namespace
@@ -237,7 +240,7 @@ CloudPart read_file_part(const std::filesystem::path& path, const LoadOptions& o
 CloudPart part_of_table(const std::filesystem::path& path, const Table& table,
                         const LoadOptions& options, ProgressSink& progress) {
   const PointFile file{path, table};
-  for (const std::string& comment : table.comments) take_comment(file, comment, progress);
+  for (const ReaderNote& note : table.notes) report(file, note, progress);
 
   CloudPart part;
   part.cloud.crs = table.crs;

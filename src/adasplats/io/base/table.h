@@ -30,15 +30,37 @@ struct Column {
   double as_double(std::size_t row) const;
 };
 
-/// What a file of points holds: named columns of equal length, its comments, and the system that it
-/// says its coordinates are in.
+/// What a reader reports about a file besides its points. The text of each note is given in quotes.
+enum class NoteKind : std::uint8_t {
+  geographic,       ///< x and y are longitude and latitude: where the file states it
+  not_metres,       ///< a unit other than the metre: "z in feet (0.3048 m), by EPSG:8228"
+  unknown_unit,     ///< a unit that cannot be looked up: "z in the unit of EPSG:10480"
+  adjusted_gps,     ///< times are adjusted GPS time; no text
+  withheld,         ///< points flagged as deleted and not read: "1 of 3 points"
+  salvaged,         ///< a truncated file, read as far as it goes: "2 of 3 records"
+  left_out,         ///< columns, images or records that were not read: "2 images"
+  intensity_scale,  ///< intensities that are not scaled as expected
+  no_return,        ///< points without a return, not read: "2 points without a return"
+  wrong_count,      ///< more points than the file states: "the file states 1 points and has 2"
+};
+
+struct ReaderNote {
+  NoteKind kind;
+  std::string text;
+
+  bool operator==(const ReaderNote&) const = default;
+};
+
+/// Content of a point file: named columns of equal length, the comments in the file, notes of the
+/// reader, and the coordinate reference system that the file states.
 struct Table {
   std::size_t rows = 0;
   std::vector<Column> columns;
   std::vector<std::string> comments;
+  std::vector<ReaderNote> notes;
   Crs crs;
 
-  const Column* find(std::string_view name) const;  ///< nullptr where there is none
+  const Column* find(std::string_view name) const;  ///< nullptr if there is none
 };
 
 /// Leaves the rows that have a flag.

@@ -97,10 +97,12 @@ class E57Table {
     for (std::size_t k = 0; k < names.size(); ++k)
       table.columns.push_back(Column{names[k], std::move(values_[k])});
     if (without_return_ > 0)
-      table.comments.push_back(std::to_string(without_return_) + " points without a return");
+      table.notes.push_back(
+          {NoteKind::no_return, std::to_string(without_return_) + " points without a return"});
     for (const auto& [name, count] : columns_.dropped)
-      table.comments.push_back("left out: column '" + name + "', which " + std::to_string(count) +
-                               " of " + std::to_string(scans) + " scans have");
+      table.notes.push_back({NoteKind::left_out, "column '" + name + "', which only " +
+                                                     std::to_string(count) + " of " +
+                                                     std::to_string(scans) + " scans have"});
     return table;
   }
 
@@ -142,8 +144,8 @@ std::size_t scale_intensities(const E57Scan& scan, const std::vector<std::string
   return beyond;
 }
 
-/// What was done to intensities, where that is not what the file says.
-void tell_of_intensities(const std::vector<E57Scan>& scans, std::size_t beyond, Table& table) {
+/// Notes where intensities are not on one scale from 0 to 1.
+void add_intensity_notes(const std::vector<E57Scan>& scans, std::size_t beyond, Table& table) {
   std::size_t with = 0, limited = 0;
   for (const E57Scan& scan : scans) {
     if (scan.field("intensity") == nullptr) continue;
@@ -151,21 +153,24 @@ void tell_of_intensities(const std::vector<E57Scan>& scans, std::size_t beyond, 
     if (scan.intensity_limits) ++limited;
   }
   if (limited > 0 && limited < with)
-    table.comments.push_back("intensities: as stored, since only " + std::to_string(limited) +
-                             " of " + std::to_string(with) + " scans have intensityLimits");
+    table.notes.push_back({NoteKind::intensity_scale,
+                           "intensities are as stored: only " + std::to_string(limited) + " of " +
+                               std::to_string(with) + " scans have intensityLimits"});
   if (beyond > 0)
-    table.comments.push_back("intensities: " + std::to_string(beyond) +
-                             " are beyond the intensityLimits of their scan, and so beyond 0 to 1");
+    table.notes.push_back({NoteKind::intensity_scale,
+                           std::to_string(beyond) +
+                               " intensities exceed the intensityLimits of their scan, and thus "
+                               "the range 0 to 1"});
 }
 
-void add_comments(const E57Content& content, Table& table) {
+void add_content_notes(const E57Content& content, Table& table) {
   if (content.images > 0)
-    table.comments.push_back("left out: " + std::to_string(content.images) + " images");
+    table.notes.push_back({NoteKind::left_out, std::to_string(content.images) + " images"});
   table.crs = crs_of_wkt(content.coordinate_system);
   if (const auto system = geographic_system_of_wkt(content.coordinate_system))
-    table.comments.push_back("geographic: " + *system);
+    table.notes.push_back({NoteKind::geographic, *system});
   if (const auto units = foreign_units_of_wkt(content.coordinate_system))
-    table.comments.push_back("not metres: " + *units);
+    table.notes.push_back({NoteKind::not_metres, *units});
 }
 
 }  // namespace
@@ -191,8 +196,8 @@ Table read_e57(const std::filesystem::path& path) {
     gathered.add(scans[k], std::move(points));
   }
   Table table = gathered.take(scans.size());
-  add_comments(content, table);
-  tell_of_intensities(scans, beyond, table);
+  add_content_notes(content, table);
+  add_intensity_notes(scans, beyond, table);
   return table;
 }
 

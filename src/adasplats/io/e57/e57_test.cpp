@@ -28,6 +28,7 @@ using io_test::values_of;
 using io_test::xyz_fields;
 
 using Doubles = std::vector<double>;
+using Notes = std::vector<ReaderNote>;
 
 Table read_composed(const std::string& content) {
   const TemporaryFolder folder;
@@ -53,7 +54,7 @@ TEST(E57, PointsWithoutAPoseHaveNoSensor) {
   EXPECT_EQ(values_of(table, "x"), (Doubles{1, 2, 3}));
   EXPECT_EQ(values_of(table, "y"), (Doubles{4, 5, 6}));
   EXPECT_EQ(values_of(table, "z"), (Doubles{7, 8, 9}));
-  EXPECT_TRUE(table.comments.empty());
+  EXPECT_TRUE(table.notes.empty());
 }
 
 // Oracle: a quarter turn about z takes (x, y, z) to (-y, x, z); half a turn about x to (x, -y, -z).
@@ -113,7 +114,7 @@ TEST(E57, SphericalPointsAreSeenFromTheirScanner) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       EXPECT_NEAR(values_of(table, std::string(1, "xyz"[axis]))[i], expected[3 * i + axis], 1e-15);
   EXPECT_EQ(values_of(table, "sensor_x"), (Doubles{0, 0, 0}));
-  EXPECT_EQ(table.comments, std::vector<std::string>{"1 points without a return"});
+  EXPECT_EQ(table.notes, (Notes{{NoteKind::no_return, "1 points without a return"}}));
 }
 
 // As in PTX, a point in the scanner is none; in a cloud without a scanner the origin is a place.
@@ -128,7 +129,7 @@ TEST(E57, PointsWithoutAReturnAreLeftOut) {
   EXPECT_EQ(values_of(read_composed(cloud.file()), "x"), (Doubles{1, 0}));
   const Table table = read_composed(scan.file());
   EXPECT_EQ(values_of(table, "x"), (Doubles{2}));
-  EXPECT_EQ(table.comments, std::vector<std::string>{"3 points without a return"});
+  EXPECT_EQ(table.notes, (Notes{{NoteKind::no_return, "3 points without a return"}}));
 }
 
 TEST(E57, ScaledIntegersOfOddWidths) {
@@ -248,17 +249,18 @@ TEST(E57, IntensitiesAreBetweenTheirLimits) {
   const Table both = two_scans(limits_of("100", "200"), limits_of("0", "400"));
   EXPECT_EQ(first_six(both), (Doubles{0, 0.5, 1, 0.25, 0.375, 0.5}));
   EXPECT_TRUE(std::isnan(values_of(both, "intensity")[7]));
-  EXPECT_TRUE(both.comments.empty());
+  EXPECT_TRUE(both.notes.empty());
   const Doubles stored = {100, 150, 200, 100, 150, 200};
   const Table one = two_scans(limits_of("100", "200"), "");
   EXPECT_EQ(first_six(one), stored);
-  ASSERT_EQ(one.comments.size(), 1U);
-  EXPECT_NE(one.comments[0].find("1 of 2 scans have intensityLimits"), std::string::npos);
+  ASSERT_EQ(one.notes.size(), 1U);
+  EXPECT_EQ(one.notes[0].kind, NoteKind::intensity_scale);
+  EXPECT_NE(one.notes[0].text.find("1 of 2 scans have intensityLimits"), std::string::npos);
   EXPECT_EQ(first_six(two_scans(limits_of("0", "0"), limits_of("", ""))), stored) << "not known";
   const Table beyond = two_scans(limits_of("0", "160"), limits_of("100", "200"));
   EXPECT_EQ(first_six(beyond)[2], 1.25);
-  ASSERT_EQ(beyond.comments.size(), 1U);
-  EXPECT_NE(beyond.comments[0].find("intensities: 1 are beyond"), std::string::npos);
+  ASSERT_EQ(beyond.notes.size(), 1U);
+  EXPECT_NE(beyond.notes[0].text.find("1 intensities exceed"), std::string::npos);
   const std::string scaled =
       "<intensityLimits type=\"Structure\"><intensityMinimum type=\"ScaledInteger\" scale=\"10\" "
       "offset=\"50\">5</intensityMinimum><intensityMaximum type=\"Integer\">200"
@@ -279,8 +281,8 @@ TEST(E57, ColumnsThatOnlySomeScansHave) {
   EXPECT_EQ(names_of_columns(table), (std::vector<std::string>{"x", "y", "z", "intensity"}));
   EXPECT_TRUE(std::isnan(values_of(table, "intensity")[0]));
   EXPECT_EQ(values_of(table, "intensity")[5], 3);
-  EXPECT_EQ(table.comments,
-            std::vector<std::string>{"left out: column 'red', which 1 of 2 scans have"});
+  EXPECT_EQ(table.notes,
+            (Notes{{NoteKind::left_out, "column 'red', which only 1 of 2 scans have"}}));
 }
 
 // dateTimeValue counts seconds of GPS time, timeStamp from there.
@@ -302,19 +304,35 @@ TEST(E57, TimesOfScansThatSayWhenTheyBegan) {
 TEST(E57, WhatTheFileSaysBesideItsPoints) {
   E57Composer composer;
   composer.add_scan(3, xyz_fields(), three_points());
-  const auto comments = [&](const std::string& more) {
-    return read_composed(composer.file(more)).comments;
+  const auto notes = [&](const std::string& more) {
+    return read_composed(composer.file(more)).notes;
   };
-  EXPECT_EQ(comments("<coordinateMetadata>PROJCS[\"a\",UNIT[\"ft\",0.3048]]</coordinateMetadata>"),
-            std::vector<std::string>{"not metres: x and y in ft (0.3048 m), by the WKT"});
+  EXPECT_EQ(notes("<coordinateMetadata>PROJCS[\"a\",UNIT[\"ft\",0.3048]]</coordinateMetadata>"),
+            (Notes{{NoteKind::not_metres, "x and y in ft (0.3048 m), by the WKT"}}));
   EXPECT_EQ(
-      comments("<coordinateMetadata><![CDATA[GEOGCS[\"WGS 84\",DATUM[]]]]></coordinateMetadata>"),
-      std::vector<std::string>{"geographic: GEOGCS[\"WGS 84\""});
+      notes("<coordinateMetadata><![CDATA[GEOGCS[\"WGS 84\",DATUM[]]]]></coordinateMetadata>"),
+      (Notes{{NoteKind::geographic, "GEOGCS[\"WGS 84\""}}));
   EXPECT_EQ(read_composed(composer.file("<coordinateMetadata>PROJCS[\"a\"]</coordinateMetadata>"))
                 .crs.wkt,
             "PROJCS[\"a\"]");
-  EXPECT_EQ(comments("<images2D><vectorChild/><vectorChild/></images2D>"),
-            std::vector<std::string>{"left out: 2 images"});
+  EXPECT_EQ(notes("<images2D><vectorChild/><vectorChild/></images2D>"),
+            (Notes{{NoteKind::left_out, "2 images"}}));
+}
+
+// A byte order mark, comments, entities, sections, a prefix of E57's own namespace, and zeros after
+// the root, as some writers fill the section.
+TEST(E57, XmlOfManyWriters) {
+  const std::string xml =
+      "\xef\xbb\xbf<?xml version=\"1.0\"?>\n<!-- a > b -->\n<e:e57Root "
+      "xmlns:e=\"http://www.astm.org/COMMIT/E57/2010-e57-v1.0\" xmlns:las='l'>\n"
+      "<las:images2D><vectorChild/></las:images2D><e:images2D > <vectorChild/></e:images2D>"
+      "<e:coordinateMetadata>\n PROJCS[&quot;&#65;&#xe9;&amp;<!-- & --><![CDATA[<&amp;\"]]]>"
+      "</e:coordinateMetadata><e:data3D><e:vectorChild><e:points recordCount='0' fileOffset=\"0\">"
+      "<e:prototype/></e:points></e:vectorChild></e:data3D></e:e57Root>\n" +
+      std::string(9, '\0');
+  const Table table = read_composed(E57Composer().file_of_xml(xml));
+  EXPECT_EQ(table.notes, (Notes{{NoteKind::left_out, "1 images"}}));
+  EXPECT_EQ(table.crs.wkt, "PROJCS[\"A\xc3\xa9&<&amp;\"]");
 }
 
 TEST(E57, ScansWithoutPoints) {

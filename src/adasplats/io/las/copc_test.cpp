@@ -69,7 +69,7 @@ TEST(Copc, LevelsAreThoseOfTheOctree) {
     expect_equal(read(file.bytes(), {.level = 2}, threads), all);
     expect_equal(read(file.bytes(), {.level = 4000000000}, threads), all);
   }
-  EXPECT_TRUE(read(file.bytes(), {.level = 0}).comments.empty());
+  EXPECT_TRUE(read(file.bytes(), {.level = 0}).notes.empty());
   // 8 m on level 0, 4 m on level 1: the first that is as fine as that.
   EXPECT_EQ(read(file.bytes(), {.resolution_m = 100.0}).rows, first);
   EXPECT_EQ(read(file.bytes(), {.resolution_m = 8.0}).rows, first);

@@ -42,15 +42,14 @@ void LasTable::add(std::span<const WantedRecords> parts, const Executor* executo
 Table LasTable::finish() {
   Table table = columns_.take_table();
   if (withheld_ > 0)
-    table.comments.push_back("withheld: " + std::to_string(withheld_) + " of " +
-                             std::to_string(records()) + " points");
-  for (std::string& comment : schema_.description.comments())
-    table.comments.push_back(std::move(comment));
+    table.notes.push_back({NoteKind::withheld, std::to_string(withheld_) + " of " +
+                                                   std::to_string(records()) + " points"});
+  schema_.description.add_notes(table.notes);
   table.crs = schema_.description.crs;
-  if (records() < schema_.header.points) {
-    table.comments.push_back("salvaged " + std::to_string(records()) + " of " +
-                             std::to_string(schema_.header.points) + " records");
-  }
+  if (records() < schema_.header.points)
+    table.notes.push_back(
+        {NoteKind::salvaged,
+         std::to_string(records()) + " of " + std::to_string(schema_.header.points) + " records"});
   return table;
 }
 

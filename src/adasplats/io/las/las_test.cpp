@@ -19,6 +19,7 @@ using io_test::put;
 using io_test::TemporaryFolder;
 using io_test::values_of;
 using Doubles = std::vector<double>;
+using Notes = std::vector<ReaderNote>;
 
 /// A header as the specification lays it out, with nothing between it and the points.
 std::string las_header(int minor, int format, int record_bytes, std::uint32_t points) {
@@ -130,7 +131,7 @@ TEST(Las, WithheldPointsAreLeftOut) {
     const Table table = read(header + records);
     EXPECT_EQ(table.rows, 2U);
     EXPECT_EQ(values_of(table, "x"), (Doubles{0.01, 0.03}));
-    EXPECT_EQ(table.comments, std::vector<std::string>{"withheld: 1 of 3 points"});
+    EXPECT_EQ(table.notes, (Notes{{NoteKind::withheld, "1 of 3 points"}}));
     for (const std::size_t row : {0U, 2U})
       put(records, row * bytes + 15, static_cast<std::uint8_t>(format == 0 ? 0x80 : 0x04));
     EXPECT_EQ(read(header + records).rows, 0U);
@@ -185,15 +186,13 @@ TEST(Las, AttributesInExtraBytes) {
 // ASPRS LAS 1.4 R15, table 4.
 TEST(Las, TheClockOfItsTimesIsSaid) {
   std::string file = las_with(las_vlr("other", 1, "x"), 1, 0);
-  EXPECT_TRUE(read(file).comments.empty());
+  EXPECT_TRUE(read(file).notes.empty());
   put(file, 6, std::uint16_t{17});
-  EXPECT_EQ(read(file).comments, std::vector<std::string>{"adjusted GPS time"});
+  EXPECT_EQ(read(file).notes, (Notes{{NoteKind::adjusted_gps, ""}}));
 }
 
 TEST(Las, LongitudesAndLatitudesAreSaid) {
-  const auto comments = [](const std::string& record) {
-    return read(las_with(record, 1, 0)).comments;
-  };
+  const auto notes = [](const std::string& record) { return read(las_with(record, 1, 0)).notes; };
   const auto keys = [](std::uint16_t model) {
     std::string directory;
     for (const int value : {1, 1, 0, 1, 1024, 0, 1, 0})
@@ -201,49 +200,50 @@ TEST(Las, LongitudesAndLatitudesAreSaid) {
     put(directory, 14, model);
     return las_vlr("LASF_Projection", 34735, directory);
   };
-  EXPECT_EQ(comments(keys(2)), std::vector<std::string>{"geographic: GTModelType 2, geographic"});
-  EXPECT_TRUE(comments(keys(1)).empty());
+  EXPECT_EQ(notes(keys(2)), (Notes{{NoteKind::geographic, "GTModelType 2, geographic"}}));
+  EXPECT_TRUE(notes(keys(1)).empty());
   const auto text = [](const std::string& wkt) { return las_vlr("LASF_Projection", 2112, wkt); };
-  EXPECT_EQ(comments(text("GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\"]]")),
-            std::vector<std::string>{"geographic: GEOGCS[\"WGS 84\""});
-  EXPECT_TRUE(comments(text("PROJCS[\"UTM 31N\",GEOGCS[\"WGS 84\"]]")).empty());
-  EXPECT_TRUE(comments(text("GEOCCS[\"ECEF\"]")).empty());
-  EXPECT_TRUE(comments(las_vlr("other", 2112, "GEOGCS[\"x\"]")).empty());
+  EXPECT_EQ(notes(text("GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\"]]")),
+            (Notes{{NoteKind::geographic, "GEOGCS[\"WGS 84\""}}));
+  EXPECT_TRUE(notes(text("PROJCS[\"UTM 31N\",GEOGCS[\"WGS 84\"]]")).empty());
+  EXPECT_TRUE(notes(text("GEOCCS[\"ECEF\"]")).empty());
+  EXPECT_TRUE(notes(las_vlr("other", 2112, "GEOGCS[\"x\"]")).empty());
 }
 
 // Oracle: the units' numbers in GeoTIFF 1.0, section 6.3.1.3.
 TEST(Las, UnitsThatAreNoMetresAreSaid) {
-  const auto comments = [](int key, int unit) {
+  const auto notes = [](int key, int unit) {
     std::string directory;
     for (const int value : {1, 1, 0, 2, 1024, 0, 1, 1, key, 0, 1, unit})
       directory += bytes_of(static_cast<std::uint16_t>(value));
-    return read(las_with(las_vlr("LASF_Projection", 34735, directory), 1, 0)).comments;
+    return read(las_with(las_vlr("LASF_Projection", 34735, directory), 1, 0)).notes;
   };
   const auto both = [](int system, int unit) {
     std::string directory;
     for (const int value : {1, 1, 0, 2, 3072, 0, 1, system, 3076, 0, 1, unit})
       directory += bytes_of(static_cast<std::uint16_t>(value));
-    return read(las_with(las_vlr("LASF_Projection", 34735, directory), 1, 0)).comments;
+    return read(las_with(las_vlr("LASF_Projection", 34735, directory), 1, 0)).notes;
   };
+  const auto not_metres = [](const char* what) { return Notes{{NoteKind::not_metres, what}}; };
   EXPECT_TRUE(both(2263, 9001).empty());  // what is stated comes before what is looked up
   EXPECT_EQ(both(2263, 9003).size(), 1U);
   for (const int key : {3076, 4099})
-    for (const int unit : {9001, 0, 32767}) EXPECT_TRUE(comments(key, unit).empty());
-  EXPECT_EQ(comments(3076, 9002).at(0),
-            "not metres: x and y in feet (0.3048 m), by GeoTIFF key 3076 = 9002");
-  EXPECT_EQ(comments(4099, 9003).at(0),
-            "not metres: z in US survey feet (1200/3937 m), by GeoTIFF key 4099 = 9003");
-  EXPECT_EQ(comments(3076, 9005).at(0),
-            "not metres: x and y in the unit EPSG 9005, by GeoTIFF key 3076 = 9005");
+    for (const int unit : {9001, 0, 32767}) EXPECT_TRUE(notes(key, unit).empty());
+  EXPECT_EQ(notes(3076, 9002),
+            not_metres("x and y in feet (0.3048 m), by GeoTIFF key 3076 = 9002"));
+  EXPECT_EQ(notes(4099, 9003),
+            not_metres("z in US survey feet (1200/3937 m), by GeoTIFF key 4099 = 9003"));
+  EXPECT_EQ(notes(3076, 9005),
+            not_metres("x and y in the unit EPSG 9005, by GeoTIFF key 3076 = 9005"));
   // Systems by their codes alone (EPSG registry).
-  EXPECT_EQ(comments(3072, 2263).at(0),
-            "not metres: x and y in US survey feet (1200/3937 m), by EPSG:2263");
-  EXPECT_EQ(comments(4096, 8228).at(0), "not metres: z in feet (0.3048 m), by EPSG:8228");
-  EXPECT_EQ(comments(3072, 10480).at(0), "not known: x and y in the unit of EPSG:10480");
-  for (const int metres : {32632, 2154, 0, 32767}) EXPECT_TRUE(comments(3072, metres).empty());
+  EXPECT_EQ(notes(3072, 2263), not_metres("x and y in US survey feet (1200/3937 m), by EPSG:2263"));
+  EXPECT_EQ(notes(4096, 8228), not_metres("z in feet (0.3048 m), by EPSG:8228"));
+  EXPECT_EQ(notes(3072, 10480),
+            (Notes{{NoteKind::unknown_unit, "x and y in the unit of EPSG:10480"}}));
+  for (const int metres : {32632, 2154, 0, 32767}) EXPECT_TRUE(notes(3072, metres).empty());
   const std::string wkt = "PROJCS[\"x\",GEOGCS[\"y\",UNIT[\"degree\",0.017]],UNIT[\"ft\",0.3048]]";
-  EXPECT_EQ(read(las_with(las_vlr("LASF_Projection", 2112, wkt), 1, 0)).comments.at(0),
-            "not metres: x and y in ft (0.3048 m), by the WKT");
+  EXPECT_EQ(read(las_with(las_vlr("LASF_Projection", 2112, wkt), 1, 0)).notes,
+            not_metres("x and y in ft (0.3048 m), by the WKT"));
 }
 
 const std::string kZone32 = "PROJCS[\"WGS 84 / UTM zone 32N\",AUTHORITY[\"EPSG\",\"32632\"]]";
@@ -293,19 +293,18 @@ std::string las_with_extended(const std::string& user, std::uint16_t number,
 TEST(Las, ExtendedRecordsAreRead) {
   const std::string file = las_with_extended("LASF_Projection", 2112, kZone33);
   EXPECT_EQ(read(file).crs.wkt, kZone33);
-  EXPECT_TRUE(read(file).comments.empty());
+  EXPECT_TRUE(read(file).notes.empty());
   EXPECT_TRUE(read(las_with_extended("other", 2112, kZone33)).crs.empty());
-  const std::vector<std::string> said = {
-      "left out: extended records that reach beyond the file's end"};
+  const Notes said = {{NoteKind::left_out, "extended records that reach beyond the file's end"}};
   for (const std::size_t cut : {1U, 30U, 110U}) {
     SCOPED_TRACE(cut);
     const Table table = read(file.substr(0, file.size() - cut));
     EXPECT_EQ(table.rows, 1U);
-    EXPECT_EQ(table.comments, said);
+    EXPECT_EQ(table.notes, said);
   }
   std::string far = file;
   put(far, 235, ~std::uint64_t{0});
-  EXPECT_EQ(read(far).comments, said);
+  EXPECT_EQ(read(far).notes, said);
   std::string large = las_with_extended("LASF_Projection", 2112, std::string(17 << 20, 'x'));
   expect_data_error(large, {"2112", "LASF_Projection", "bytes"});
 }
@@ -365,15 +364,15 @@ TEST(Las, FewerRecordsThanTheHeaderSays) {
     expect_data_error(content, {"byte 227", "room for 2", std::to_string(points)});
     const Table table = read(content, true);
     EXPECT_EQ(values_of(table, "x"), (Doubles{0.01, 0.02}));
-    EXPECT_EQ(table.comments,
-              std::vector<std::string>{"salvaged 2 of " + std::to_string(points) + " records"});
+    EXPECT_EQ(table.notes,
+              (Notes{{NoteKind::salvaged, "2 of " + std::to_string(points) + " records"}}));
   }
 }
 
 TEST(Las, SalvageOfAWholeFileChangesNothing) {
   const Table table = read(las_header(2, 0, 20, 1) + las_record(20, 1, 0, 0), true);
   EXPECT_EQ(table.rows, 1U);
-  EXPECT_TRUE(table.comments.empty());
+  EXPECT_TRUE(table.notes.empty());
 }
 
 // Fault 20.

@@ -252,14 +252,13 @@ bool read_evlrs(const std::filesystem::path& path, const LasHeader& header,
 
 }  // namespace
 
-std::vector<std::string> LasDescription::comments() const {
-  std::vector<std::string> comments;
-  if (geographic) comments.push_back("geographic: " + *geographic);
-  if (not_metres) comments.push_back("not metres: " + *not_metres);
-  if (unknown_unit) comments.push_back("not known: " + *unknown_unit);
-  if (has_adjusted_times) comments.push_back("adjusted GPS time");
-  if (is_cut) comments.push_back("left out: extended records that reach beyond the file's end");
-  return comments;
+void LasDescription::add_notes(std::vector<ReaderNote>& notes) const {
+  if (geographic) notes.push_back({NoteKind::geographic, *geographic});
+  if (not_metres) notes.push_back({NoteKind::not_metres, *not_metres});
+  if (unknown_unit) notes.push_back({NoteKind::unknown_unit, *unknown_unit});
+  if (has_adjusted_times) notes.push_back({NoteKind::adjusted_gps, {}});
+  if (is_cut)
+    notes.push_back({NoteKind::left_out, "extended records that reach beyond the file's end"});
 }
 
 LasDescription read_las_description(const std::filesystem::path& path, const LasHeader& header) {

@@ -42,8 +42,8 @@ struct LasDescription {
   /// Whether extended records reach beyond the file's end, and were not read.
   bool is_cut = false;
 
-  /// What of it whoever reads the points must know, as comments of the table (read_las()).
-  std::vector<std::string> comments() const;
+  /// Adds what a user of the points has to know.
+  void add_notes(std::vector<ReaderNote>& notes) const;
 };
 
 /// Reads the records between the header and the points, and the extended ones, as far as they are

@@ -108,8 +108,8 @@ TEST(Laz, WithoutATableChunksAreReadOneByOne) {
   const Table salvaged = read_bytes(cut.substr(0, cut.size() - 30), {.salvage = true});
   EXPECT_GE(salvaged.rows, 32U);
   EXPECT_LT(salvaged.rows, 40U);
-  EXPECT_EQ(salvaged.comments.back(),
-            "salvaged " + std::to_string(salvaged.rows) + " of 40 records");
+  const ReaderNote note = {NoteKind::salvaged, std::to_string(salvaged.rows) + " of 40 records"};
+  EXPECT_EQ(salvaged.notes.back(), note);
 
   std::string variable = laz_file(layered());
   put(variable, points_at(variable), std::uint64_t{points_at(variable)});

@@ -39,7 +39,8 @@ class PtxReader {
     for (std::size_t k = 0; k < names.size(); ++k)
       table.columns.push_back(Column{names[k], std::move(values_[k])});
     if (without_return_ > 0)
-      table.comments.push_back(std::to_string(without_return_) + " points without a return");
+      table.notes.push_back(
+          {NoteKind::no_return, std::to_string(without_return_) + " points without a return"});
     return table;
   }
 

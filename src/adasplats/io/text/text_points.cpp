@@ -209,8 +209,9 @@ class TextReader {
     }
     // Scanners' software is known to write counts that are too small; the points are there.
     if (expected_rows_ && table_.rows > *expected_rows_) {
-      table_.comments.push_back("the file says " + std::to_string(*expected_rows_) +
-                                " points and has " + std::to_string(table_.rows));
+      table_.notes.push_back(
+          {NoteKind::wrong_count, "the file states " + std::to_string(*expected_rows_) +
+                                      " points and has " + std::to_string(table_.rows)});
     }
     for (std::size_t k = 0; k < values_.size(); ++k)
       table_.columns.push_back(Column{std::move(names_[k]), std::move(values_[k])});

@@ -98,7 +98,9 @@ TEST(TextPoints, PtsCounts) {
   expect_data_error("18446744073709551615\n1 2 3\n1\n", {"2^64"});
   const Table more = read("1\n1 2 3\n4 5 6\n");
   EXPECT_EQ(more.rows, 2U);
-  EXPECT_EQ(more.comments, Names{"the file says 1 points and has 2"});
+  EXPECT_EQ(
+      more.notes,
+      (std::vector<ReaderNote>{{NoteKind::wrong_count, "the file states 1 points and has 2"}}));
   EXPECT_EQ(read("0\n").rows, 0U);
   EXPECT_EQ(read("x y z\n").rows, 0U);
 }
@@ -139,7 +141,8 @@ TEST(Ptx, ScansAreBroughtIntoTheWorld) {
   EXPECT_EQ(values_of(table, "sensor_x"), (Doubles{10, 10, 0}));
   EXPECT_EQ(values_of(table, "sensor_y"), (Doubles{20, 20, 0}));
   EXPECT_EQ(values_of(table, "sensor_z"), (Doubles{30, 30, 0}));
-  EXPECT_EQ(table.comments, Names{"2 points without a return"});
+  EXPECT_EQ(table.notes,
+            (std::vector<ReaderNote>{{NoteKind::no_return, "2 points without a return"}}));
 }
 
 TEST(Ptx, ColoursAndErrors) {
