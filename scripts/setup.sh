@@ -26,6 +26,9 @@ demo  libcli11-dev         -             the command line
 demo  nlohmann-json3-dev   -             reports of the program
 demo  libtomlplusplus-dev  -             sensor, label and configuration files
 demo  libpng-dev           -             images
+demo  zlib1g-dev           -             gzip, checksums of archives and MCAP
+demo  libssl-dev           -             SHA-256 and base64 (libcrypto)
+demo  libpugixml-dev       -             E57 (XML)
 demo  libboost-dev         -             the viewer's server (headers)
 maybe ccache               ccache        compiles nothing twice
 maybe libopenblas-dev      -             segmentation by networks

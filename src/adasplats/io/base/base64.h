@@ -8,10 +8,11 @@
 
 namespace adasplats {
 
-/// RFC 4648, with = at the end.
+/// RFC 4648, padded with =. At most 1 GiB.
 std::string to_base64(std::string_view bytes);
 
-/// Nothing where a character is none of base64.
+/// The decoded bytes, with or without padding; nothing if a character is not base64 or the text has
+/// 2 GiB or more.
 std::optional<std::string> from_base64(std::string_view text);
 
 }  // namespace adasplats

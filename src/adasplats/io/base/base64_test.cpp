@@ -20,7 +20,9 @@ TEST(Base64, IsThatOfRfc4648) {
     EXPECT_EQ(from_base64(coded[k]), plain[k]);
   }
   EXPECT_EQ(to_base64("\xff\xfe\xfd"), "//79");
-  EXPECT_FALSE(from_base64("Zm9v\n").has_value());
+  EXPECT_EQ(from_base64("Zm8"), "fo");  // without padding
+  for (const char* const wrong : {"Zm9v\n", " Zm9v", "Zm=v", "Zm9-"})
+    EXPECT_FALSE(from_base64(wrong).has_value()) << wrong;
 }
 
 }  // namespace

@@ -2,55 +2,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/io/base/sha256.h"
 
+#include <openssl/evp.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <array>
 #include <cerrno>
-#include <cstring>
+#include <stdexcept>
 #include <vector>
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/input_file.h"
-#include "adasplats/io/base/sha256_blocks.h"
 
 namespace adasplats {
-void Sha256::mix_blocks(const unsigned char* data, std::size_t blocks) {
-  static const bool by_instructions = has_sha256_instructions();
-  if (by_instructions) return mix_blocks_by_instructions(state_, data, blocks);
-  mix_blocks_portably(state_, data, blocks);
+namespace {
+
+void require_success(int result) {
+  if (result != 1) throw std::runtime_error("OpenSSL cannot compute SHA-256");
+}
+
+}  // namespace
+
+Sha256::Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
+  require_success(EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr));
 }
 
 void Sha256::add(const void* data, std::size_t bytes) {
-  const auto* from = static_cast<const unsigned char*>(data);
-  while (bytes > 0) {
-    const std::size_t filled = bytes_ % 64;
-    if (filled == 0 && bytes >= 64) {
-      const std::size_t whole = bytes / 64 * 64;
-      mix_blocks(from, whole / 64);
-      from += whole;
-      bytes -= whole;
-      bytes_ += whole;
-      continue;
-    }
-    const std::size_t taken = std::min(bytes, 64 - filled);
-    std::memcpy(block_.data() + filled, from, taken);
-    from += taken;
-    bytes -= taken;
-    bytes_ += taken;
-    if (bytes_ % 64 == 0) mix_blocks(block_.data(), 1);
-  }
+  require_success(EVP_DigestUpdate(context_.get(), data, bytes));
 }
 
 std::string Sha256::digest() {
-  // Section 5.1.1: a one, zeros, the length in bits.
-  const std::uint64_t bits = bytes_ * 8;
-  std::string padding(1 + (119 - bytes_ % 64) % 64, '\0');
-  padding[0] = '\x80';
-  for (int shift = 56; shift >= 0; shift -= 8) padding += static_cast<char>(bits >> shift & 0xff);
-  add(padding);
+  std::array<unsigned char, 32> digest{};
+  require_success(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr));
   std::string text;
-  for (const std::uint32_t word : state_)
-    for (int shift = 28; shift >= 0; shift -= 4) text += "0123456789abcdef"[word >> shift & 0xf];
+  for (const unsigned char byte : digest)
+    for (const int shift : {4, 0}) text += "0123456789abcdef"[byte >> shift & 0xf];
   return text;
 }
 

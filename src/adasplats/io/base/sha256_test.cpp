@@ -4,9 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
-#include "adasplats/io/base/sha256_blocks.h"
 #include "adasplats/io/base/test_files.h"
 
 namespace adasplats {
@@ -40,20 +37,6 @@ TEST(Sha256, PiecesDoNotMatter) {
     const std::string text(length, 'x');
     const std::string whole = digest_of(text, 1000);
     for (const std::size_t piece : {1U, 7U, 64U, 65U}) EXPECT_EQ(digest_of(text, piece), whole);
-  }
-}
-
-// Oracle: the portable loop, whichever the processor takes.
-TEST(Sha256, InstructionsGiveTheSameBits) {
-  if (!has_sha256_instructions()) return;
-  std::vector<unsigned char> data(64 * 9);
-  for (std::size_t i = 0; i < data.size(); ++i) data[i] = static_cast<unsigned char>(i * i + 7 * i);
-  for (std::size_t blocks = 0; blocks <= 9; ++blocks) {
-    std::array<std::uint32_t, 8> portable = {1, 2, 3, 4, 5, 6, 7, 0x80000000U};
-    std::array<std::uint32_t, 8> fast = portable;
-    mix_blocks_portably(portable, data.data(), blocks);
-    mix_blocks_by_instructions(fast, data.data(), blocks);
-    EXPECT_EQ(portable, fast) << blocks;
   }
 }
 
