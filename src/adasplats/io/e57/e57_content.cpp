@@ -5,46 +5,146 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <pugixml.hpp>
+#include <set>
 #include <span>
 #include <utility>
 
 #include "adasplats/io/base/number_text.h"
-#include "adasplats/io/e57/e57_columns.h"
-#include "adasplats/io/e57/xml.h"
 
 namespace adasplats {
 namespace {
 
 constexpr std::uint64_t kMaxXmlBytes = std::uint64_t{64} << 20;
 constexpr std::size_t kMaxE57Fields = 1000;
-constexpr double kE57NormTolerance = 1e-3;  // as of trajectories
+constexpr int kMaxPrototypeDepth = 64;
+constexpr double kE57NormTolerance = 1e-3;  // as for trajectories
+constexpr std::string_view kE57Namespace = "http://www.astm.org/COMMIT/E57/2010-e57-v";
 
-/// Reads what one scan says. All messages begin with the scan's name.
+struct StandardField {
+  std::string_view field;
+  std::string_view column;  ///< empty: no column of its own
+};
+
+// ASTM E2807-11, table of the fields of a point record; columns as the other readers call them.
+constexpr StandardField kStandardFields[] = {{"cartesianX", ""},
+                                             {"cartesianY", ""},
+                                             {"cartesianZ", ""},
+                                             {"sphericalRange", ""},
+                                             {"sphericalAzimuth", ""},
+                                             {"sphericalElevation", ""},
+                                             {"cartesianInvalidState", ""},
+                                             {"sphericalInvalidState", ""},
+                                             {"isIntensityInvalid", ""},
+                                             {"isColorInvalid", ""},
+                                             {"isTimeStampInvalid", ""},
+                                             {"intensity", "intensity"},
+                                             {"colorRed", "red"},
+                                             {"colorGreen", "green"},
+                                             {"colorBlue", "blue"},
+                                             {"rowIndex", "row"},
+                                             {"columnIndex", "column"},
+                                             {"returnIndex", "return_number"},
+                                             {"returnCount", "number_of_returns"},
+                                             {"timeStamp", "timestamp"}};
+
+/// What the table has of its own.
+constexpr std::string_view kOwnColumns[] = {"x", "y", "z", "sensor_x", "sensor_y", "sensor_z"};
+
+/// Sets E57Field::column of all fields of a scan: "intensity", "red", ... for the standard ones
+/// (returnIndex counts from 0, "return_number" from 1: its offset is raised); else the name after
+/// the prefix of its extension, or with the prefix if that name is in use.
+void name_columns(std::vector<E57Field>& fields) {
+  std::set<std::string> taken(std::begin(kOwnColumns), std::end(kOwnColumns));
+  for (const StandardField& standard : kStandardFields) taken.emplace(standard.column);
+  std::set<std::string> standard_taken;
+  for (E57Field& field : fields) {
+    if (field.codec == E57Codec::other) continue;
+    const auto standard = std::ranges::find(kStandardFields, field.name, &StandardField::field);
+    if (standard != std::end(kStandardFields)) {
+      if (standard_taken.insert(field.name).second) field.column = standard->column;
+      if (field.name == "returnIndex") field.offset += 1;
+      continue;
+    }
+    const std::string own = field.name.substr(field.name.find(':') + 1);
+    if (taken.insert(own).second)
+      field.column = own;
+    else if (taken.insert(field.name).second)
+      field.column = field.name;
+  }
+}
+
+/// Parses the XML section. Elements of E57's own namespace lose a prefix, others keep theirs
+/// ("las:classification"). Entities that a document type defines stay as they are.
+pugi::xml_node parse_xml(const std::filesystem::path& path, const std::string& text,
+                         pugi::xml_document& document) {
+  constexpr unsigned kOptions = pugi::parse_cdata | pugi::parse_escapes | pugi::parse_trim_pcdata;
+  const pugi::xml_parse_result result =
+      document.load_buffer(text.data(), text.size(), kOptions, pugi::encoding_utf8);
+  if (!result) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + result.offset, '\n');
+    throw data_error({path, {}, {}},
+                     "line " + std::to_string(line) + " of its XML: " + result.description());
+  }
+  struct PrefixRemover final : pugi::xml_tree_walker {
+    std::string prefix;
+    bool for_each(pugi::xml_node& node) override {
+      const std::string name = node.name();
+      if (name.starts_with(prefix)) node.set_name(name.substr(prefix.size()).c_str());
+      return true;
+    }
+  } remover;
+  constexpr std::string_view kDeclaration = "xmlns:";
+  for (const pugi::xml_attribute attribute : document.document_element().attributes()) {
+    const std::string_view name = attribute.name();
+    if (!name.starts_with(kDeclaration)) continue;
+    if (!std::string_view(attribute.value()).starts_with(kE57Namespace)) continue;
+    remover.prefix = std::string(name.substr(kDeclaration.size())) + ":";
+    document.traverse(remover);
+  }
+  return document.document_element();
+}
+
+/// The text of an element, possibly of several sections.
+std::string text_of(const pugi::xml_node& element) {
+  std::string text;
+  for (const pugi::xml_node part : element.children()) text += part.value();
+  return text;
+}
+
+std::vector<pugi::xml_node> elements_of(const pugi::xml_node& parent) {
+  std::vector<pugi::xml_node> elements;
+  for (const pugi::xml_node child : parent.children())
+    if (child.type() == pugi::node_element) elements.push_back(child);
+  return elements;
+}
+
+/// Reads the description of one scan. All messages begin with the scan's name.
 class ScanReader {
  public:
-  ScanReader(const std::filesystem::path& path, const XmlElement& element, std::size_t number)
+  ScanReader(const std::filesystem::path& path, pugi::xml_node element, std::size_t number)
       : path_(path), element_(element), name_("scan " + std::to_string(number)) {
-    if (const XmlElement* const name = element.child("name"); name && !name->text.empty())
-      name_ += " " + shown(name->text);
+    const std::string name = text_of(element.child("name"));
+    if (!name.empty()) name_ += " " + shown(name);
   }
 
   E57Scan read() const {
     E57Scan scan;
     scan.name = name_;
-    const XmlElement* const points = element_.child("points");
-    if (points == nullptr) throw error("has no points");
-    scan.points = required_number<std::uint64_t>(*points, "recordCount");
-    scan.section_offset = required_number<std::uint64_t>(*points, "fileOffset");
-    require_plain_codecs(*points);
-    const XmlElement* const prototype = points->child("prototype");
-    if (prototype == nullptr) throw error("has no prototype of its points");
-    add_fields(*prototype, scan.fields);
+    const pugi::xml_node points = element_.child("points");
+    if (!points) throw error("has no points");
+    scan.points = required_number<std::uint64_t>(points, "recordCount");
+    scan.section_offset = required_number<std::uint64_t>(points, "fileOffset");
+    require_plain_codecs(points);
+    const pugi::xml_node prototype = points.child("prototype");
+    if (!prototype) throw error("has no prototype of its points");
+    add_fields(prototype, scan.fields, 1);
     name_columns(scan.fields);
-    take_pose(scan);
-    if (const XmlElement* const start = element_.child("acquisitionStart"))
-      if (const XmlElement* const value = start->child("dateTimeValue"))
-        scan.start_gps_s = parsed<double>("dateTimeValue of acquisitionStart", value->text);
+    set_pose(scan);
+    if (const pugi::xml_node start = element_.child("acquisitionStart").child("dateTimeValue"))
+      scan.start_gps_s = parsed<double>("dateTimeValue of acquisitionStart", text_of(start));
     scan.intensity_limits = intensity_limits();
     return scan;
   }
@@ -54,7 +154,7 @@ class ScanReader {
     return data_error({path_, {}, {}}, name_ + ": " + message);
   }
 
-  /// Numbers of zero are written as nothing at all.
+  /// Writers leave out the number zero.
   template <class T>
   T parsed(const std::string& what, std::string_view text) const {
     if (text.empty()) return T{};
@@ -64,46 +164,46 @@ class ScanReader {
   }
 
   template <class T>
-  T number_or(const XmlElement& element, std::string_view attribute, T otherwise) const {
-    const std::string* const text = element.attribute(attribute);
-    return text == nullptr ? otherwise
-                           : parsed<T>(std::string(attribute) + " of " + element.name, *text);
+  T number_or(pugi::xml_node element, const char* attribute, T otherwise) const {
+    const pugi::xml_attribute value = element.attribute(attribute);
+    if (!value) return otherwise;
+    return parsed<T>(std::string(attribute) + " of " + element.name(), value.value());
   }
 
   template <class T>
-  T required_number(const XmlElement& element, std::string_view attribute) const {
-    const std::string* const text = element.attribute(attribute);
-    if (text == nullptr || text->empty())
-      throw error(element.name + " has no " + std::string(attribute));
+  T required_number(pugi::xml_node element, const char* attribute) const {
+    if (*element.attribute(attribute).value() == '\0')
+      throw error(std::string(element.name()) + " has no " + attribute);
     return number_or<T>(element, attribute, {});
   }
 
-  /// The standard has one codec, which is meant where none is named.
-  void require_plain_codecs(const XmlElement& points) const {
-    const XmlElement* const codecs = points.child("codecs");
-    if (codecs == nullptr) return;
-    for (const XmlElement& codec : codecs->children)
-      if (codec.child("bitPackCodec") == nullptr)
-        throw error("its points have a codec that is not bitPackCodec, the only one known");
+  /// The standard defines one codec, which is also the default.
+  void require_plain_codecs(pugi::xml_node points) const {
+    for (const pugi::xml_node codec : elements_of(points.child("codecs")))
+      if (!codec.child("bitPackCodec"))
+        throw error("its points have an unknown codec, only bitPackCodec is supported");
   }
 
-  /// The values of the prototype in the order of their byte streams, those within structures, too.
-  void add_fields(const XmlElement& parent, std::vector<E57Field>& fields) const {
-    for (const XmlElement& element : parent.children) {
-      const std::string* const type = element.attribute("type");
-      if (type != nullptr && (*type == "Structure" || *type == "Vector")) {
-        add_fields(element, fields);
+  /// The values of the prototype in the order of their byte streams, structures flattened.
+  void add_fields(pugi::xml_node parent, std::vector<E57Field>& fields, int depth) const {
+    if (depth > kMaxPrototypeDepth)
+      throw error("its prototype is nested more than " + std::to_string(kMaxPrototypeDepth) +
+                  " deep");
+    for (const pugi::xml_node element : elements_of(parent)) {
+      const std::string type = element.attribute("type").value();
+      if (type == "Structure" || type == "Vector") {
+        add_fields(element, fields, depth + 1);
         continue;
       }
       if (fields.size() == kMaxE57Fields)
         throw error("its points have more than " + std::to_string(kMaxE57Fields) + " fields");
-      fields.push_back(field_of(element, type == nullptr ? "" : *type));
+      fields.push_back(field_of(element, type));
     }
   }
 
-  E57Field field_of(const XmlElement& element, const std::string& type) const {
+  E57Field field_of(pugi::xml_node element, const std::string& type) const {
     E57Field field;
-    field.name = element.name;
+    field.name = element.name();
     if (type == "Integer" || type == "ScaledInteger") {
       field.codec = E57Codec::integer;
       using Limits = std::numeric_limits<std::int64_t>;
@@ -118,10 +218,10 @@ class ScanReader {
         if (field.scale == 0) throw error(field.name + " has the scale 0");
       }
     } else if (type == "Float") {
-      const std::string* const precision = element.attribute("precision");
-      const bool is_single = precision != nullptr && *precision == "single";
-      if (precision != nullptr && !is_single && *precision != "double")
-        throw error(field.name + " has the precision " + shown(*precision) +
+      const std::string_view precision = element.attribute("precision").as_string("double");
+      const bool is_single = precision == "single";
+      if (!is_single && precision != "double")
+        throw error(field.name + " has the precision " + shown(precision) +
                     ", expected single or double");
       field.codec = is_single ? E57Codec::f32 : E57Codec::f64;
       field.bits = is_single ? 32 : 64;
@@ -132,56 +232,53 @@ class ScanReader {
     return field;
   }
 
-  /// None where they bound nothing: writers put 0 and 0 for what they do not know.
+  /// Nothing for an empty range: writers put 0 and 0 for unknown limits.
   std::optional<std::pair<double, double>> intensity_limits() const {
-    const XmlElement* const limits = element_.child("intensityLimits");
+    const pugi::xml_node limits = element_.child("intensityLimits");
     const auto limit = [&](const char* name) {
-      const XmlElement* const one = limits == nullptr ? nullptr : limits->child(name);
-      if (one == nullptr) return std::numeric_limits<double>::quiet_NaN();
+      const pugi::xml_node element = limits.child(name);
+      if (!element) return std::numeric_limits<double>::quiet_NaN();
       const double stored =
-          parsed<double>(std::string(name) + " of its intensityLimits", one->text);
-      const std::string* const type = one->attribute("type");
-      if (type == nullptr || *type != "ScaledInteger") return stored;
-      return stored * number_or(*one, "scale", 1.0) + number_or(*one, "offset", 0.0);
+          parsed<double>(std::string(name) + " of its intensityLimits", text_of(element));
+      if (std::string_view(element.attribute("type").value()) != "ScaledInteger") return stored;
+      return stored * number_or(element, "scale", 1.0) + number_or(element, "offset", 0.0);
     };
-    const double least = limit("intensityMinimum"), most = limit("intensityMaximum");
-    if (!(least < most)) return std::nullopt;
-    return std::pair(least, most);
+    const double minimum = limit("intensityMinimum"), maximum = limit("intensityMaximum");
+    if (!(minimum < maximum)) return std::nullopt;
+    return std::pair(minimum, maximum);
   }
 
-  void take_pose(E57Scan& scan) const {
-    const XmlElement* const pose = element_.child("pose");
-    const XmlElement* const rotation = pose == nullptr ? nullptr : pose->child("rotation");
-    const XmlElement* const translation = pose == nullptr ? nullptr : pose->child("translation");
-    if (rotation != nullptr) scan.world_from_scanner.rotation = rotation_of(*rotation);
-    for (int axis = 0; translation != nullptr && axis < 3; ++axis)
+  void set_pose(E57Scan& scan) const {
+    const pugi::xml_node pose = element_.child("pose");
+    const pugi::xml_node rotation = pose.child("rotation"), translation = pose.child("translation");
+    if (rotation) scan.world_from_scanner.rotation = rotation_of(rotation);
+    for (int axis = 0; translation && axis < 3; ++axis)
       scan.world_from_scanner.translation[axis] =
-          part_of(*translation, std::string(1, "xyz"[axis]));
-    const bool has_pose = rotation != nullptr || translation != nullptr;
+          component(translation, std::string(1, "xyz"[axis]));
     const bool has_ranges =
         scan.field("sphericalRange") != nullptr && scan.field("cartesianX") == nullptr;
-    const XmlElement* const sources = element_.child("originalGuids");
-    const bool is_merged = sources != nullptr && sources->children.size() > 1;
-    scan.has_scanner = (has_pose || has_ranges) && !is_merged;
+    const bool is_merged = elements_of(element_.child("originalGuids")).size() > 1;
+    scan.has_scanner = (rotation || translation || has_ranges) && !is_merged;
   }
 
-  Mat3d rotation_of(const XmlElement& element) const {
-    const double w = part_of(element, "w"), x = part_of(element, "x"), y = part_of(element, "y"),
-                 z = part_of(element, "z");
+  Mat3d rotation_of(pugi::xml_node element) const {
+    const double w = component(element, "w"), x = component(element, "x"),
+                 y = component(element, "y"), z = component(element, "z");
     const double norm = std::sqrt(w * w + x * x + y * y + z * z);
     if (!(std::fabs(norm - 1) <= kE57NormTolerance))
       throw error("the norm of its pose's quaternion is " + exact_text(norm) + ", expected 1");
     return rotation_from_quaternion(w / norm, x / norm, y / norm, z / norm);
   }
 
-  double part_of(const XmlElement& element, const std::string& name) const {
-    const XmlElement* const part = element.child(name);
-    if (part == nullptr) throw error("the " + element.name + " of its pose has no " + name);
-    return parsed<double>(name + " of its pose's " + element.name, part->text);
+  double component(pugi::xml_node element, const std::string& name) const {
+    const std::string parent = element.name();
+    const pugi::xml_node value = element.child(name.c_str());
+    if (!value) throw error("the " + parent + " of its pose has no " + name);
+    return parsed<double>(name + " of its pose's " + parent, text_of(value));
   }
 
   const std::filesystem::path& path_;
-  const XmlElement& element_;
+  pugi::xml_node element_;
   std::string name_;
 };
 
@@ -199,18 +296,16 @@ E57Content read_e57_content(PagedFile& file) {
                                                 " are read");
   std::string text(file.xml_bytes(), '\0');
   file.read(file.xml_offset(), std::as_writable_bytes(std::span(text)));
-  const XmlElement root = parse_xml(file.path(), text);
-  if (root.name != "e57Root")
+  pugi::xml_document document;
+  const pugi::xml_node root = parse_xml(file.path(), text, document);
+  if (std::string_view(root.name()) != "e57Root")
     throw data_error({file.path(), {}, {}},
-                     "its XML is of " + shown(root.name) + ", expected 'e57Root'");
+                     "the root of its XML is " + shown(root.name()) + ", expected 'e57Root'");
   E57Content content;
-  if (const XmlElement* const system = root.child("coordinateMetadata"))
-    content.coordinate_system = system->text;
-  if (const XmlElement* const images = root.child("images2D"))
-    content.images = images->children.size();
-  if (const XmlElement* const scans = root.child("data3D"))
-    for (const XmlElement& scan : scans->children)
-      content.scans.push_back(ScanReader(file.path(), scan, content.scans.size()).read());
+  content.coordinate_system = text_of(root.child("coordinateMetadata"));
+  content.images = elements_of(root.child("images2D")).size();
+  for (const pugi::xml_node scan : elements_of(root.child("data3D")))
+    content.scans.push_back(ScanReader(file.path(), scan, content.scans.size()).read());
   return content;
 }
 

@@ -84,7 +84,7 @@ TEST(E57Errors, TheHeader) {
   expect_refused(with(24, ~std::uint64_t{0}), {"the XML section"});
   expect_refused(with(24, std::uint64_t{1021}), {"byte 1021", "within a page's checksum"});
   expect_refused(with(32, ~std::uint64_t{0}), {"bytes of XML, the file has room for"});
-  expect_refused(with(32, std::uint64_t{0}), {"no element"});
+  expect_refused(with(32, std::uint64_t{0}), {"line 1 of its XML: No document element"});
 }
 
 // Bytes behind those of the header are not the file's.
@@ -96,7 +96,7 @@ TEST(E57Errors, MoreBytesThanTheHeaderSays) {
 TEST(E57Errors, WhatTheXmlSays) {
   E57Composer empty;
   expect_refused(empty.file(), {"the file has no scans"});
-  expect_refused(empty.file_of_xml("<a/>"), {"'a', expected 'e57Root'"});
+  expect_refused(empty.file_of_xml("<a/>"), {"the root of its XML is 'a', expected 'e57Root'"});
   expect_refused(empty.file_of_xml("<e57Root><data3D><vectorChild/></data3D></e57Root>"),
                  {"scan 0: has no points"});
   expect_refused(
@@ -124,6 +124,17 @@ TEST(E57Errors, WhatTheXmlSays) {
   std::string fields;
   for (int k = 0; k < 1001; ++k) fields += float_field("a" + std::to_string(k));
   expect_refused(one_point(fields).file(), {"more than 1000 fields"});
+  std::string nested = xyz_fields();
+  for (int k = 0; k < 65; ++k) nested = "<a type=\"Structure\">" + nested + "</a>";
+  expect_refused(one_point(nested).file(), {"nested more than 64 deep"});
+}
+
+TEST(E57Errors, XmlThatIsNotWellFormed) {
+  const E57Composer empty;
+  for (const char* const xml : {"", "no", "<", "<a", "<a>", "<a></b>", "<a b></a>", "<a b=c></a>",
+                                "<a b=\"c></a>", "<a><!-- </a>", "<a><![CDATA[ </a>"})
+    expect_refused(empty.file_of_xml(xml), {"line 1 of its XML: "});
+  expect_refused(empty.file_of_xml("<a>\n\n<b></a>"), {"line 3 of its XML: "});
 }
 
 TEST(E57Errors, Poses) {

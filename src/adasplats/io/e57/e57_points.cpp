@@ -9,14 +9,22 @@
 #include <optional>
 #include <utility>
 
-#include "adasplats/io/e57/e57_columns.h"
-
 namespace adasplats {
 namespace {
 
 using FieldNames = std::array<std::string_view, 3>;
 constexpr FieldNames kCartesian = {"cartesianX", "cartesianY", "cartesianZ"};
 constexpr FieldNames kSpherical = {"sphericalRange", "sphericalAzimuth", "sphericalElevation"};
+
+/// A field that marks others of the point as invalid by a value other than 0.
+struct E57Flag {
+  std::string_view field;
+  std::string_view columns[3];  ///< empty: none
+};
+
+constexpr E57Flag kE57Flags[] = {{"isIntensityInvalid", {"intensity", "", ""}},
+                                 {"isColorInvalid", {"red", "green", "blue"}},
+                                 {"isTimeStampInvalid", {"timestamp", "", ""}}};
 
 /// Range in metres; azimuth from x to y, elevation from the plane of x and y up, in radians.
 Vec3d from_spherical(Vec3d p) {
