@@ -16,7 +16,7 @@
 #include "adasplats/io/base/base64.h"
 #include "adasplats/io/las/copc_file_test.h"
 #include "adasplats/io/packets/capture_samples_test.h"
-#include "adasplats/io/pickle/data_frame_writer.h"
+#include "adasplats/io/pickle/data_frame.h"
 #include "adasplats/io/pickle/gzip.h"
 #include "adasplats/io/pickle/pickle_samples_test.h"
 #include "adasplats/io/small_files_test.h"

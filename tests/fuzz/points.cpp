@@ -8,7 +8,7 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/wkt_units.h"
+#include "adasplats/io/base/wkt.h"
 #include "adasplats/io/e57/e57_file_test.h"
 #include "adasplats/io/pickle/data_frame.h"
 #include "adasplats/io/pickle/gzip.h"

@@ -15,7 +15,7 @@
 #include "adasplats/calibrate/plane_system.h"
 #include "adasplats/calibrate/trajectory_fit.h"
 #include "adasplats/core/maths/median.h"
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
 
 namespace adasplats {

@@ -8,9 +8,8 @@
 
 #include "adasplats/calibrate/robust_weight.h"
 #include "adasplats/calibrate/scan_planes.h"
-#include "adasplats/core/maths/small_cholesky.h"
-#include "adasplats/core/maths/small_eigen.h"
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/core/maths/small_matrix.h"
 
 namespace adasplats {
 namespace {

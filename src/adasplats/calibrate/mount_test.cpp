@@ -14,7 +14,7 @@
 #include "adasplats/calibrate/calibrate.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/maths/random.h"
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
 
 namespace adasplats {
 namespace {

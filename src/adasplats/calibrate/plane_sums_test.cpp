@@ -14,7 +14,7 @@
 #include "adasplats/calibrate/recorded_hall_test.h"
 #include "adasplats/calibrate/robust_weight.h"
 #include "adasplats/core/maths/random.h"
-#include "adasplats/core/maths/small_cholesky.h"
+#include "adasplats/core/maths/small_matrix.h"
 
 namespace adasplats {
 namespace {

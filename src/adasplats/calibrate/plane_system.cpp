@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "adasplats/core/maths/small_cholesky.h"
+#include "adasplats/core/maths/small_matrix.h"
 
 namespace adasplats {
 namespace {

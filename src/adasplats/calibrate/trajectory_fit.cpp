@@ -9,7 +9,7 @@
 
 #include "adasplats/calibrate/robust_weight.h"
 #include "adasplats/core/maths/median.h"
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
 
 namespace adasplats {

@@ -11,7 +11,7 @@
 #include "adasplats/calibrate/robust_weight.h"
 #include "adasplats/calibrate/trajectory_fit.h"
 #include "adasplats/core/maths/median.h"
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
 
 namespace adasplats {
 namespace {

@@ -15,7 +15,7 @@
 #include "adasplats/calibrate/trajectory_fit.h"
 #include "adasplats/calibrate/window_gauges.h"
 #include "adasplats/core/maths/random.h"
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/core/recorded_progress_test.h"
 
 namespace adasplats {

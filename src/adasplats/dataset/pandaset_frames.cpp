@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adasplats/dataset/tree_names.h"
-#include "adasplats/io/pickle/data_frame_writer.h"
+#include "adasplats/io/pickle/data_frame.h"
 #include "adasplats/io/pickle/gzip.h"
 
 namespace adasplats {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "adasplats/core/maths/median.h"
-#include "adasplats/core/maths/small_cholesky.h"
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/core/maths/small_matrix.h"
 #include "adasplats/core/maths/symmetric_eigen.h"
 #include "adasplats/evaluate/beam_accuracy_internal.h"
 #include "adasplats/evaluate/registration_sums.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "adasplats/core/maths/random.h"
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
 
 namespace adasplats::point_fit {
 namespace {

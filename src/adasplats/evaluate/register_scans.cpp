@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/core/maths/small_cholesky.h"
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/core/maths/small_matrix.h"
 #include "adasplats/evaluate/beam_accuracy_internal.h"
 #include "adasplats/evaluate/registration_sums.h"
 

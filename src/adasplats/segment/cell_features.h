@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "adasplats/core/host_device.h"
-#include "adasplats/core/maths/exponential.h"
+#include "adasplats/core/maths/elementary.h"
 #include "adasplats/segment/network/network.h"
 
 namespace adasplats {

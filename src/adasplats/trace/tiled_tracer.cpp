@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/core/sparse_array.h"
+#include "adasplats/core/memory.h"
 #include "adasplats/trace/clear_hits.h"
 #include "adasplats/trace/wide_bvh.h"
 #include "adasplats/trace/wide_kernel.h"

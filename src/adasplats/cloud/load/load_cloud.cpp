@@ -20,7 +20,7 @@
 #include "adasplats/cloud/vehicle/driven_path.h"
 #include "adasplats/cloud/vehicle/own_body.h"
 #include "adasplats/core/error.h"
-#include "adasplats/core/large_vector.h"
+#include "adasplats/core/memory.h"
 #include "adasplats/core/stopwatch.h"
 #include "adasplats/io/base/point_files.h"
 

@@ -11,7 +11,7 @@
 #include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/recording.h"
-#include "adasplats/io/base/box_text.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/io/packets/capture_reader.h"
 

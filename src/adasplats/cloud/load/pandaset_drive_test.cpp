@@ -14,7 +14,7 @@
 #include "adasplats/cloud/poses/rotation.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/base/atomic_file.h"
-#include "adasplats/io/pickle/data_frame_writer.h"
+#include "adasplats/io/pickle/data_frame.h"
 #include "adasplats/io/pickle/gzip.h"
 #include "adasplats/sensors/lidar_model.h"
 

@@ -11,7 +11,7 @@
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/error.h"
-#include "adasplats/core/large_vector.h"
+#include "adasplats/core/memory.h"
 
 namespace adasplats {
 

@@ -5,8 +5,8 @@
 #include <array>
 
 #include "adasplats/core/maths/random.h"
-#include "adasplats/core/maths/small_cholesky.h"
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/core/maths/small_matrix.h"
 
 namespace adasplats {
 namespace {

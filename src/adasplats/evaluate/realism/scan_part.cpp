@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "adasplats/core/maths/median.h"
-#include "adasplats/core/maths/small_cholesky.h"
+#include "adasplats/core/maths/small_matrix.h"
 
 namespace adasplats {
 namespace {

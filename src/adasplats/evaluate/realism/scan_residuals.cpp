@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "adasplats/core/maths/small_cholesky.h"
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
+#include "adasplats/core/maths/small_matrix.h"
 #include "adasplats/evaluate/realism/scan_part.h"
 #include "adasplats/neighbors/point_index.h"
 #include "adasplats/surface/local_shape.h"

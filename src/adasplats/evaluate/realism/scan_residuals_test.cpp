@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/evaluate/realism/drawn_scan_test.h"
 
 namespace adasplats {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "adasplats/core/maths/median.h"
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
 
 namespace adasplats {
 namespace {

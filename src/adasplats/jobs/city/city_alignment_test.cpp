@@ -8,7 +8,7 @@
 
 #include "adasplats/city/small_city_test.h"
 #include "adasplats/core/maths/random.h"
-#include "adasplats/core/maths/small_motion.h"
+#include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats::city_alignment {

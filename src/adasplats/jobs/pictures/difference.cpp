@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "adasplats/core/error.h"
-#include "adasplats/io/base/box_text.h"
+#include "adasplats/io/base/number_text.h"
 #include "adasplats/simulate/captions/color_bar.h"
 #include "adasplats/simulate/image/color_map.h"
 #include "adasplats/simulate/image/developing.h"

@@ -12,7 +12,7 @@
 
 #include "adasplats/city/city_manifest.h"
 #include "adasplats/core/error.h"
-#include "adasplats/core/sparse_array.h"
+#include "adasplats/core/memory.h"
 #include "adasplats/jobs/session/inputs.h"
 #include "adasplats/simulate/world/world_file.h"
 #include "adasplats/trace/tiled_tracer.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/core/sparse_array.h"
+#include "adasplats/core/memory.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/core/maths/small_eigen.h"
+#include "adasplats/core/maths/small_matrix.h"
 
 #include <gtest/gtest.h>
 
