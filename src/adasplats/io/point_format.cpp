@@ -9,7 +9,7 @@
 
 #include "adasplats/io/base/input_file.h"
 #include "adasplats/io/base/number_text.h"
-#include "adasplats/io/las/las_records_at_random.h"
+#include "adasplats/io/las/las.h"
 #include "adasplats/io/ply/ply.h"
 
 namespace adasplats {

@@ -3,16 +3,28 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "adasplats/core/error.h"
+#include "adasplats/io/bags/recording.h"
 
 namespace adasplats {
+
+/// "FILE: byte OFFSET: the WHAT", the start of messages.
+inline std::string place_in_file(const std::filesystem::path& path, std::uint64_t offset,
+                                 const char* what) {
+  return path.string() + ": byte " + std::to_string(offset) + ": the " + what;
+}
 
 /// Reads values one behind the other out of bytes in memory; every access is checked.
 class ByteReader {
@@ -49,6 +61,44 @@ class ByteReader {
   std::string_view bytes_;
   std::string what_;
   std::size_t place_ = 0;
+};
+
+/// The last few chunks that were unpacked, for several threads.
+class ChunkCache {
+ public:
+  /// A message in a chunk of the file `path`; unpack() returns the chunk if it is not in the cache.
+  /// Errors: those of unpack(); data (the chunk changed since the message was found in it).
+  template <class F>
+  std::string message(const std::filesystem::path& path, const MessagePlace& place, F&& unpack) {
+    const auto chunk = get(place.chunk, unpack);
+    const auto begin = static_cast<std::size_t>(place.offset);
+    if (begin > chunk->size() || place.size > chunk->size() - begin)
+      throw data_error({path, place.chunk, {}}, "the chunk changed while it was read");
+    return chunk->substr(begin, static_cast<std::size_t>(place.size));
+  }
+
+ private:
+  template <class F>
+  std::shared_ptr<const std::string> get(std::uint64_t place, F&& unpack) {
+    {
+      const std::lock_guard lock(mutex_);
+      for (const Entry& entry : entries_)
+        if (entry.chunk && entry.place == place) return entry.chunk;
+    }
+    auto chunk = std::make_shared<const std::string>(unpack());
+    const std::lock_guard lock(mutex_);
+    entries_[next_] = {place, chunk};
+    next_ = (next_ + 1) % entries_.size();
+    return chunk;
+  }
+
+  struct Entry {
+    std::uint64_t place = 0;
+    std::shared_ptr<const std::string> chunk;
+  };
+  std::mutex mutex_;
+  std::array<Entry, 4> entries_;
+  std::size_t next_ = 0;
 };
 
 }  // namespace adasplats

@@ -12,7 +12,6 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/byte_reader.h"
-#include "adasplats/io/bags/chunk_cache.h"
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/bags/unpack.h"
 #include "adasplats/io/base/input_file.h"
@@ -36,10 +35,6 @@ enum class McapOpcode : std::uint8_t {
 
 std::string_view view_of(std::span<const std::byte> bytes, std::size_t count) {
   return {reinterpret_cast<const char*>(bytes.data()), count};
-}
-
-std::string at_byte(const std::filesystem::path& path, std::uint64_t offset, const char* what) {
-  return path.string() + ": byte " + std::to_string(offset) + ": the " + what;
 }
 
 /// The fields of a chunk in front of its records.
@@ -116,7 +111,7 @@ class McapRecording final : public RecordingFile {
       file.skip(place.offset);
       return std::string(content_here(file, place.offset, place.size));
     }
-    const auto chunk = cache_.get(place.chunk, [&] {
+    return cache_.message(path_, place, [&] {
       InputFile file(path_);
       file.skip(place.chunk + 1);
       const auto length =
@@ -124,10 +119,6 @@ class McapRecording final : public RecordingFile {
       file.skip(8);
       return unpacked(content_here(file, place.chunk, length), place.chunk);
     });
-    const auto begin = static_cast<std::size_t>(place.offset);
-    if (begin > chunk->size() || place.size > chunk->size() - begin)
-      throw data_error({path_, place.chunk, {}}, "the chunk changed while it was read");
-    return chunk->substr(begin, static_cast<std::size_t>(place.size));
   }
 
  private:
@@ -151,7 +142,7 @@ class McapRecording final : public RecordingFile {
   }
 
   std::string unpacked(std::string_view content, std::uint64_t offset) const {
-    const std::string where = at_byte(path_, offset, "chunk");
+    const std::string where = place_in_file(path_, offset, "chunk");
     const McapChunk chunk = chunk_of(ByteReader(content, where));
     std::string records = unpack(chunk.packing, chunk.packed, chunk.size, where);
     const auto crc = static_cast<std::uint32_t>(
@@ -165,7 +156,7 @@ class McapRecording final : public RecordingFile {
   void visit_chunk(std::string_view content, std::uint64_t offset, Channels& channels,
                    MessageVisitor visit) const {
     const std::string records = unpacked(content, offset);
-    ByteReader reader(records, at_byte(path_, offset, "chunk"));
+    ByteReader reader(records, place_in_file(path_, offset, "chunk"));
     while (reader.remaining() > 0) {
       const auto kind = static_cast<McapOpcode>(reader.number<McapOpcodeNumber>());
       const auto length = reader.number<std::uint64_t>();
@@ -180,7 +171,7 @@ class McapRecording final : public RecordingFile {
                     Channels& channels, MessageVisitor visit) const {
     const std::uint64_t offset = place.chunk == MessagePlace::kNoChunk ? place.offset : place.chunk;
     if (kind == McapOpcode::message) {
-      ByteReader reader(content, at_byte(path_, offset, "message"));
+      ByteReader reader(content, place_in_file(path_, offset, "message"));
       const auto channel = reader.number<std::uint16_t>();
       const auto topic = channels.topics.find(channel);
       if (topic == channels.topics.end())
@@ -193,11 +184,11 @@ class McapRecording final : public RecordingFile {
       place.size = reader.remaining();
       visit({topic->second, time_ns, place, reader.take(place.size)});
     } else if (kind == McapOpcode::schema) {
-      ByteReader reader(content, at_byte(path_, offset, "schema"));
+      ByteReader reader(content, place_in_file(path_, offset, "schema"));
       const auto number = reader.number<std::uint16_t>();
       channels.types.insert_or_assign(number, short_type_name(reader.text()));
     } else {
-      add_channel(ByteReader(content, at_byte(path_, offset, "channel")), channels);
+      add_channel(ByteReader(content, place_in_file(path_, offset, "channel")), channels);
     }
   }
 

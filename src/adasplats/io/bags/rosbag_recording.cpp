@@ -11,7 +11,6 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/byte_reader.h"
-#include "adasplats/io/bags/chunk_cache.h"
 #include "adasplats/io/bags/recording.h"
 #include "adasplats/io/bags/unpack.h"
 #include "adasplats/io/base/input_file.h"
@@ -26,10 +25,6 @@ constexpr std::uint64_t kNanosecondsOfBagSecond = 1'000'000'000;
 
 constexpr std::uint8_t kBagMessage = 0x02, kBagHeader = 0x03, kBagChunk = 0x05,
                        kBagConnection = 0x07;
-
-std::string bag_place(const std::filesystem::path& path, std::uint64_t offset, const char* what) {
-  return path.string() + ": byte " + std::to_string(offset) + ": the " + what;
-}
 
 /// The fields "name=value" of a record's header. Errors: data.
 class BagFields {
@@ -80,7 +75,7 @@ class RosbagRecording final : public RecordingFile {
     while (file.remaining() > 0) {
       const std::uint64_t offset = file.offset();
       const std::string header(sized(file, offset));
-      const BagFields fields(ByteReader(header, bag_place(path_, offset, "record")));
+      const BagFields fields(ByteReader(header, place_in_file(path_, offset, "record")));
       const auto op = fields.number<std::uint8_t>("op");
       const std::uint64_t data_offset = file.offset() + sizeof(std::uint32_t);
       const std::string_view data = peek_sized(file, offset);
@@ -109,17 +104,13 @@ class RosbagRecording final : public RecordingFile {
       file.skip(place.offset);
       return std::string(view(file, place.size));
     }
-    const auto chunk = cache_.get(place.chunk, [&] {
+    return cache_.message(path_, place, [&] {
       InputFile file(path_);
       file.skip(place.chunk);
       const std::string header(sized(file, place.chunk));
-      const BagFields fields(ByteReader(header, bag_place(path_, place.chunk, "chunk")));
+      const BagFields fields(ByteReader(header, place_in_file(path_, place.chunk, "chunk")));
       return unpacked(fields, peek_sized(file, place.chunk), place.chunk);
     });
-    const auto begin = static_cast<std::size_t>(place.offset);
-    if (begin > chunk->size() || place.size > chunk->size() - begin)
-      throw data_error({path_, place.chunk, {}}, "the chunk changed while it was read");
-    return chunk->substr(begin, static_cast<std::size_t>(place.size));
   }
 
  private:
@@ -168,14 +159,14 @@ class RosbagRecording final : public RecordingFile {
 
   std::string unpacked(const BagFields& fields, std::string_view data, std::uint64_t offset) const {
     return unpack(fields.text("compression"), data, fields.number<std::uint32_t>("size"),
-                  bag_place(path_, offset, "chunk"));
+                  place_in_file(path_, offset, "chunk"));
   }
 
   void visit_chunk(const std::string& records, std::uint64_t offset, Connections& connections,
                    MessageVisitor visit) const {
-    ByteReader reader(records, bag_place(path_, offset, "chunk"));
+    ByteReader reader(records, place_in_file(path_, offset, "chunk"));
     while (reader.remaining() > 0) {
-      const BagFields fields(ByteReader(reader.text(), bag_place(path_, offset, "chunk")));
+      const BagFields fields(ByteReader(reader.text(), place_in_file(path_, offset, "chunk")));
       const std::string_view data = reader.text();
       visit_record(fields.number<std::uint8_t>("op"), fields, data,
                    {0, offset, reader.place() - data.size(), data.size()}, connections, visit);
@@ -187,7 +178,7 @@ class RosbagRecording final : public RecordingFile {
                     const MessagePlace& place, Connections& connections,
                     MessageVisitor visit) const {
     if (op == kBagConnection) {
-      const std::string where = bag_place(
+      const std::string where = place_in_file(
           path_, place.chunk == MessagePlace::kNoChunk ? place.offset : place.chunk, "connection");
       const BagFields described(ByteReader(data, where));
       RecordedTopic topic{std::string(fields.text("topic")),

@@ -34,34 +34,43 @@ const char* kind_of_file(mode_t mode) {
 
 }  // namespace
 
-InputDescriptor::InputDescriptor(const std::filesystem::path& path)
-    : descriptor_(open_or_throw(path)) {
+InputDescriptor::InputDescriptor(std::filesystem::path path)
+    : path_(std::move(path)), descriptor_(open_or_throw(path_)) {
   struct stat status {};
-  const bool known = ::fstat(descriptor_, &status) == 0;
+  const bool has_status = ::fstat(descriptor_, &status) == 0;
   const int error = errno;
-  if (known && S_ISREG(status.st_mode)) {
+  if (has_status && S_ISREG(status.st_mode)) {
     size_bytes_ = static_cast<std::uint64_t>(status.st_size);
     return;
   }
   ::close(descriptor_);
-  if (!known) throw system_error(ErrorKind::no_input, path, "cannot be examined", error);
-  throw Error(ErrorKind::no_input, path.string() + ": is " + kind_of_file(status.st_mode) +
-                                       ", a regular file was expected");
+  if (!has_status) throw system_error(ErrorKind::no_input, path_, "cannot be examined", error);
+  throw Error(ErrorKind::no_input, path_.string() + ": is " + kind_of_file(status.st_mode) +
+                                       ", expected a regular file");
 }
 
 InputDescriptor::~InputDescriptor() { ::close(descriptor_); }
 
-InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)), file_(path_) {
-  if (size_bytes() == 0) throw data_error({path_, {}, {}}, "the file is empty");
+void InputDescriptor::read_at(std::uint64_t offset, std::span<std::byte> to) const {
+  for (std::size_t done = 0; done < to.size();) {
+    const ssize_t got =
+        ::pread(descriptor_, to.data() + done, to.size() - done, static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw system_error(ErrorKind::io, path_, "cannot be read", errno);
+    if (got == 0)
+      throw Error(ErrorKind::io, path_.string() + ": byte " + std::to_string(offset + done) +
+                                     ": the file became shorter while it was read");
+    done += static_cast<std::size_t>(got);
+  }
+}
+
+InputFile::InputFile(std::filesystem::path path) : file_(std::move(path)) {
+  if (size_bytes() == 0) throw data_error({file_.path(), {}, {}}, "the file is empty");
   buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kReadBytes, size_bytes())));
 }
 
 void InputFile::skip(std::uint64_t bytes) {
-  if (bytes > remaining()) {
-    throw data_error(
-        {path_, size_bytes(), {}},
-        "the file ends here, " + std::to_string(bytes - remaining()) + " more bytes were expected");
-  }
+  require(bytes);
   const std::uint64_t buffered = end_ - begin_;
   if (bytes < buffered) {
     begin_ += static_cast<std::size_t>(bytes);
@@ -72,32 +81,26 @@ void InputFile::skip(std::uint64_t bytes) {
 }
 
 Error InputFile::error_here(const std::string& message) const {
-  return data_error({path_, offset_, {}}, message);
+  return data_error({path(), offset_, {}}, message);
+}
+
+void InputFile::require(std::uint64_t bytes) const {
+  if (bytes <= remaining()) return;
+  throw data_error(
+      {path(), size_bytes(), {}},
+      "the file ends here, " + std::to_string(bytes - remaining()) + " more bytes were expected");
 }
 
 void InputFile::fill(std::size_t bytes) {
-  if (bytes > remaining()) {
-    throw data_error(
-        {path_, size_bytes(), {}},
-        "the file ends here, " + std::to_string(bytes - remaining()) + " more bytes were expected");
-  }
+  require(bytes);
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
   if (bytes > buffer_.size()) buffer_.resize(bytes);
-  while (end_ < bytes) {
-    const ssize_t got = ::pread(file_.get(), buffer_.data() + end_, buffer_.size() - end_,
-                                static_cast<off_t>(offset_ + end_));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw system_error(ErrorKind::io, path_, "cannot be read", errno);
-    if (got == 0) {
-      throw Error(ErrorKind::io, path_.string() + ": byte " + std::to_string(offset_ + end_) +
-                                     ": the file became shorter while it was read");
-    }
-    end_ += static_cast<std::size_t>(got);
-  }
   // A file that grows while it is read ends where it ended when it was opened.
-  end_ = static_cast<std::size_t>(std::min<std::uint64_t>(end_, remaining()));
+  const auto end = static_cast<std::size_t>(std::min<std::uint64_t>(buffer_.size(), remaining()));
+  file_.read_at(offset_ + end_, std::span(buffer_).subspan(end_, end - end_));
+  end_ = end;
 }
 
 }  // namespace adasplats

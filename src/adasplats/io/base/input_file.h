@@ -18,15 +18,19 @@ class InputDescriptor {
  public:
   /// Opens a regular file; a FIFO or a device is refused without blocking on it.
   /// Errors: ErrorKind::no_input.
-  explicit InputDescriptor(const std::filesystem::path& path);
+  explicit InputDescriptor(std::filesystem::path path);
   ~InputDescriptor();
   InputDescriptor(const InputDescriptor&) = delete;
   InputDescriptor& operator=(const InputDescriptor&) = delete;
 
   int get() const { return descriptor_; }
+  const std::filesystem::path& path() const { return path_; }
   std::uint64_t size_bytes() const { return size_bytes_; }
+  /// Fills `to` with the bytes from `offset` on. Errors: io (also a file that became shorter).
+  void read_at(std::uint64_t offset, std::span<std::byte> to) const;
 
  private:
+  std::filesystem::path path_;
   int descriptor_ = -1;
   std::uint64_t size_bytes_ = 0;
 };
@@ -38,7 +42,7 @@ class InputFile {
   /// Errors: no_input (missing, a folder, a FIFO), data (empty).
   explicit InputFile(std::filesystem::path path);
 
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return file_.path(); }
   std::uint64_t size_bytes() const { return file_.size_bytes(); }
   std::uint64_t offset() const { return offset_; }  ///< of the next byte
   std::uint64_t remaining() const { return size_bytes() - offset_; }
@@ -57,8 +61,8 @@ class InputFile {
 
  private:
   void fill(std::size_t bytes);
+  void require(std::uint64_t bytes) const;
 
-  std::filesystem::path path_;
   InputDescriptor file_;
   std::vector<std::byte> buffer_;
   std::size_t begin_ = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 namespace adasplats {
@@ -66,6 +67,16 @@ std::string decimal_text(double value) {
                                  std::chars_format::general, std::numeric_limits<double>::digits10)
                        .ptr;
   return {buffer.data(), end};
+}
+
+std::string box_text(Vec3d low, Vec3d high) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(low[axis]) && !std::isfinite(high[axis])) continue;
+    text += (text.empty() ? "" : ", ") + std::string(1, "xyz"[axis]) + " " +
+            decimal_text(low[axis]) + " .. " + decimal_text(high[axis]);
+  }
+  return text;
 }
 
 }  // namespace adasplats

@@ -12,6 +12,8 @@
 #include <system_error>
 #include <type_traits>
 
+#include "adasplats/core/maths/vec3.h"
+
 namespace adasplats {
 
 /// The rare spellings of a real number that std::from_chars refuses: a leading plus, underflow
@@ -60,5 +62,8 @@ std::string decimal_text(double value);
 
 /// `text` with ASCII letters in lower case, whatever the locale.
 std::string lower_case(std::string_view text);
+
+/// A box in a message: "x 1 .. 2, y 3 .. 4, z 5 .. 6", without axes that have no bounds.
+std::string box_text(Vec3d low, Vec3d high);
 
 }  // namespace adasplats

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace adasplats {
 namespace {
 
@@ -20,4 +22,18 @@ TEST(NumberText, DecimalsAreWithoutTheLastBitsOfArithmetic) {
 }
 
 }  // namespace
+
+namespace {
+
+// Oracle: by hand.
+TEST(BoxText, NamesTheAxesThatHaveBounds) {
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(box_text({1, -2.5, 652000.25}, {1, 0, 652001}),
+            "x 1 .. 1, y -2.5 .. 0, z 652000.25 .. 652001");
+  EXPECT_EQ(box_text({1, -kAny, -kAny}, {2, kAny, 3}), "x 1 .. 2, z -inf .. 3");
+  EXPECT_EQ(box_text({-kAny, -kAny, -kAny}, {kAny, kAny, kAny}), "");
+}
+
+}  // namespace
+
 }  // namespace adasplats

@@ -11,7 +11,6 @@
 #include "adasplats/core/maths/extent.h"
 #include "adasplats/core/maths/vec3.h"
 #include "adasplats/io/base/crs.h"
-#include "adasplats/io/base/record_span.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {

@@ -19,24 +19,6 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr std::size_t kChunkBytes = std::size_t{128} << 10;
 
-/// Calls `f` with a value of the C++ type that `type` stands for.
-template <class F>
-auto with_type(ColumnType type, F&& f) {
-  switch (type) {
-    case ColumnType::i8: return f(std::int8_t{});
-    case ColumnType::u8: return f(std::uint8_t{});
-    case ColumnType::i16: return f(std::int16_t{});
-    case ColumnType::u16: return f(std::uint16_t{});
-    case ColumnType::i32: return f(std::int32_t{});
-    case ColumnType::u32: return f(std::uint32_t{});
-    case ColumnType::i64: return f(std::int64_t{});
-    case ColumnType::u64: return f(std::uint64_t{});
-    case ColumnType::f32: return f(float{});
-    case ColumnType::f64: return f(double{});
-  }
-  throw std::logic_error("no such ColumnType");
-}
-
 template <std::size_t kBytes>
 void gather_sized(const std::byte* from, std::size_t stride_bytes, bool swap_bytes,
                   std::size_t rows, std::byte* to) {

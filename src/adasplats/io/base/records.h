@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +14,24 @@
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {
+
+/// Calls `f` with a value of the C++ type that `type` stands for.
+template <class F>
+auto with_type(ColumnType type, F&& f) {
+  switch (type) {
+    case ColumnType::i8: return f(std::int8_t{});
+    case ColumnType::u8: return f(std::uint8_t{});
+    case ColumnType::i16: return f(std::int16_t{});
+    case ColumnType::u16: return f(std::uint16_t{});
+    case ColumnType::i32: return f(std::int32_t{});
+    case ColumnType::u32: return f(std::uint32_t{});
+    case ColumnType::i64: return f(std::int64_t{});
+    case ColumnType::u64: return f(std::uint64_t{});
+    case ColumnType::f32: return f(float{});
+    case ColumnType::f64: return f(double{});
+  }
+  throw std::logic_error("no such ColumnType");
+}
 
 std::size_t type_bytes(ColumnType type);
 
@@ -56,5 +76,18 @@ class TextColumn {
 
 /// "f32" and so on, for messages.
 std::string_view type_name(ColumnType type);
+
+/// A value of a point record, at any place.
+template <class T>
+T load_value(const std::byte* from) {
+  T value;
+  std::memcpy(&value, from, sizeof(T));
+  return value;
+}
+
+template <class T>
+void store_value(std::byte* to, T value) {
+  std::memcpy(to, &value, sizeof(T));
+}
 
 }  // namespace adasplats

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,5 +27,16 @@ struct WktNode {
 /// comes before; nodes more than 32 deep are left out. Blanks outside of quotes and the kind of
 /// brackets do not matter.
 WktNode parse_wkt(std::string_view text);
+
+/// Which coordinates of a projected or vertical system, in words (OGC 01-009, ISO 19162), have
+/// another unit than metres, such as "z in foot (0.3048 m), by the WKT"; nothing where all are in
+/// metres or the text does not say. Units of angles, of ellipsoids and of a projection's parameters
+/// are not those of coordinates.
+std::optional<std::string> foreign_units_of_wkt(std::string_view text);
+
+/// How the text begins, up to its first comma, where it is a system of longitudes and latitudes;
+/// nothing where it is a projected one (which names its base, too), one of Cartesian coordinates
+/// about the earth's centre, or something else.
+std::optional<std::string> geographic_system_of_wkt(std::string_view text);
 
 }  // namespace adasplats

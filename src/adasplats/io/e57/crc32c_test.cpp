@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/io/e57/crc32c.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "adasplats/io/e57/e57_file_test.h"
+#include "adasplats/io/e57/paged_file.h"
 
 namespace adasplats {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/base/wkt_units.h"
+#include "adasplats/io/base/wkt.h"
 #include "adasplats/io/e57/e57_content.h"
 #include "adasplats/io/e57/e57_points.h"
 #include "adasplats/io/e57/e57_section.h"

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <optional>
 #include <span>
 #include <string>
 
+#include "adasplats/io/base/records.h"
 #include "adasplats/io/e57/field_decoder.h"
 
 namespace adasplats {
@@ -18,13 +18,6 @@ constexpr std::size_t kSectionHeaderBytes = 32;
 constexpr std::size_t kPacketStartBytes = 4;  // kind, flags, length: the same in all packets
 constexpr std::size_t kDataHeaderBytes = 6;
 constexpr std::uint8_t kIndexPacket = 0, kDataPacket = 1, kIgnoredPacket = 2;
-
-template <class T>
-T packet_value(std::span<const std::byte> bytes, std::size_t offset) {
-  T value;
-  std::memcpy(&value, bytes.subspan(offset, sizeof(T)).data(), sizeof(T));
-  return value;
-}
 
 /// The fewest bits that a record can have, each field one: that bounds what is allocated, where
 /// fields that are the same in all points take none.
@@ -76,11 +69,11 @@ class PacketReader {
     std::array<std::byte, kPacketStartBytes> start{};
     if (end_ - place_ < start.size()) throw error("found no room for a packet");
     file_.read(place_, start);
-    const std::size_t bytes = std::size_t{1} + packet_value<std::uint16_t>(start, 2);
+    const std::size_t bytes = std::size_t{1} + load_value<std::uint16_t>(&start[2]);
     if (bytes < start.size() || bytes > end_ - place_)
       throw error("found a packet of " + std::to_string(bytes) + " bytes, the section has " +
                   std::to_string(end_ - place_) + " more");
-    const auto kind = packet_value<std::uint8_t>(start, 0);
+    const auto kind = load_value<std::uint8_t>(&start[0]);
     if (kind == kDataPacket) {
       packet_.resize(bytes);
       file_.read(place_, packet_);
@@ -95,7 +88,7 @@ class PacketReader {
   void take_data() {
     const std::size_t fields = decoders_.size();
     const std::size_t streams =
-        packet_.size() < kDataHeaderBytes ? 0 : packet_value<std::uint16_t>(packet_, 4);
+        packet_.size() < kDataHeaderBytes ? 0 : load_value<std::uint16_t>(&packet_[4]);
     if (streams != fields)
       throw error("found a packet of " + std::to_string(streams) + " fields, the points have " +
                   std::to_string(fields));
@@ -104,7 +97,7 @@ class PacketReader {
       const std::size_t length_place = kDataHeaderBytes + 2 * k;
       const std::size_t bytes = length_place + 2 > packet_.size()
                                     ? packet_.size()
-                                    : packet_value<std::uint16_t>(packet_, length_place);
+                                    : load_value<std::uint16_t>(&packet_[length_place]);
       if (from > packet_.size() || bytes > packet_.size() - from)
         throw error("the fields of a packet are longer than the packet");
       if (decoders_[k]) decoders_[k]->take(std::span(packet_).subspan(from, bytes));
@@ -130,16 +123,16 @@ E57Section read_e57_section(PagedFile& file, const E57Scan& scan) {
   const auto refuse = [&](const std::string& message) {
     throw file.error_at(section.begin, scan.name + ": " + message);
   };
-  const auto kind = packet_value<std::uint8_t>(header, 0);
+  const auto kind = load_value<std::uint8_t>(&header[0]);
   if (kind != 1)
     refuse("found a section of kind " + std::to_string(kind) + ", expected 1 (points)");
-  const auto bytes = packet_value<std::uint64_t>(header, 8);
+  const auto bytes = load_value<std::uint64_t>(&header[8]);
   if (bytes < header.size() || bytes > file.size_bytes() - section.begin)
     refuse("found a section of " + std::to_string(bytes) + " bytes, the file has " +
            std::to_string(file.size_bytes() - section.begin) + " from here on");
   section.end = section.begin + bytes;
-  section.packets = file.logical_offset(packet_value<std::uint64_t>(header, 16),
-                                        scan.name + ": its first packet");
+  section.packets =
+      file.logical_offset(load_value<std::uint64_t>(&header[16]), scan.name + ": its first packet");
   if (section.packets < section.begin + header.size() || section.packets > section.end)
     refuse("its first packet lies outside of the section");
   const std::uint64_t room = 8 * (section.end - section.packets) / min_record_bits(scan);

@@ -2,16 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/io/e57/paged_file.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <utility>
 
-#include "adasplats/io/e57/crc32c.h"
+#include "adasplats/io/base/records.h"
 
 namespace adasplats {
 namespace {
@@ -24,13 +21,6 @@ constexpr std::uint64_t kMinPageBytes = 64;
 constexpr std::uint64_t kMaxPageBytes = std::uint64_t{1} << 20;
 constexpr std::uint64_t kE57BufferBytes = std::uint64_t{256} << 10;
 
-template <class T>
-T header_value(std::span<const std::byte> bytes, std::size_t offset) {
-  T value;
-  std::memcpy(&value, bytes.subspan(offset, sizeof(T)).data(), sizeof(T));
-  return value;
-}
-
 std::string hexadecimal(std::uint32_t value) {
   std::array<char, 8> digits{};
   const auto end = std::to_chars(digits.begin(), digits.end(), value, 16).ptr;
@@ -39,64 +29,64 @@ std::string hexadecimal(std::uint32_t value) {
 
 }  // namespace
 
-PagedFile::PagedFile(std::filesystem::path path) : path_(std::move(path)), file_(path_) {
-  if (file_.size_bytes() == 0) throw data_error({path_, {}, {}}, "the file is empty");
+PagedFile::PagedFile(std::filesystem::path path) : file_(std::move(path)) {
+  if (file_.size_bytes() == 0) throw data_error({file_.path(), {}, {}}, "the file is empty");
   read_header();
 }
 
 void PagedFile::read_header() {
   std::array<std::byte, kE57HeaderBytes> header{};
   if (file_.size_bytes() < header.size())
-    throw data_error({path_, file_.size_bytes(), {}}, "the file ends within its header");
-  read_physical(0, header);
+    throw data_error({path(), file_.size_bytes(), {}}, "the file ends within its header");
+  file_.read_at(0, header);
   if (std::memcmp(header.data(), kE57Signature.data(), kE57Signature.size()) != 0)
-    throw data_error({path_, 0, {}}, "does not begin with 'ASTM-E57'");
-  const auto major = header_value<std::uint32_t>(header, 8);
+    throw data_error({path(), 0, {}}, "does not begin with 'ASTM-E57'");
+  const auto major = load_value<std::uint32_t>(&header[8]);
   if (major != 1)
-    throw data_error({path_, 8, {}}, "is version " + std::to_string(major) + "." +
-                                         std::to_string(header_value<std::uint32_t>(header, 12)) +
-                                         " of E57, version 1 is understood");
-  page_bytes_ = header_value<std::uint64_t>(header, 40);
+    throw data_error({path(), 8, {}}, "is version " + std::to_string(major) + "." +
+                                          std::to_string(load_value<std::uint32_t>(&header[12])) +
+                                          " of E57, version 1 is understood");
+  page_bytes_ = load_value<std::uint64_t>(&header[40]);
   if (page_bytes_ < kMinPageBytes || page_bytes_ > kMaxPageBytes)
-    throw data_error({path_, 40, {}}, "the header has pages of " + std::to_string(page_bytes_) +
-                                          " bytes, expected 1024");
+    throw data_error({path(), 40, {}}, "the header has pages of " + std::to_string(page_bytes_) +
+                                           " bytes, expected 1024");
   pages_ = 1;
   if (file_.size_bytes() < page_bytes_)
-    throw data_error({path_, file_.size_bytes(), {}}, "the file ends within its first page");
+    throw data_error({path(), file_.size_bytes(), {}}, "the file ends within its first page");
   checked_page(0, 1);
-  const auto length = header_value<std::uint64_t>(header, 16);
+  const auto length = load_value<std::uint64_t>(&header[16]);
   if (length == 0 || length % page_bytes_ != 0)
-    throw data_error({path_, 16, {}}, "the header says " + std::to_string(length) +
-                                          " bytes, which are no whole pages of " +
-                                          std::to_string(page_bytes_));
+    throw data_error({path(), 16, {}}, "the header says " + std::to_string(length) +
+                                           " bytes, which are no whole pages of " +
+                                           std::to_string(page_bytes_));
   if (length > file_.size_bytes())
-    throw data_error({path_, file_.size_bytes(), {}},
+    throw data_error({path(), file_.size_bytes(), {}},
                      "the file ends here, its header says " + std::to_string(length) + " bytes");
   pages_ = length / page_bytes_;
-  xml_offset_ = logical_offset(header_value<std::uint64_t>(header, 24), "the XML section");
-  xml_bytes_ = header_value<std::uint64_t>(header, 32);
+  xml_offset_ = logical_offset(load_value<std::uint64_t>(&header[24]), "the XML section");
+  xml_bytes_ = load_value<std::uint64_t>(&header[32]);
   if (xml_bytes_ > size_bytes() - xml_offset_)
-    throw data_error({path_, 32, {}}, "the header says " + std::to_string(xml_bytes_) +
-                                          " bytes of XML, the file has room for " +
-                                          std::to_string(size_bytes() - xml_offset_));
+    throw data_error({path(), 32, {}}, "the header says " + std::to_string(xml_bytes_) +
+                                           " bytes of XML, the file has room for " +
+                                           std::to_string(size_bytes() - xml_offset_));
 }
 
 std::uint64_t PagedFile::logical_offset(std::uint64_t physical, std::string_view what) const {
   const std::uint64_t page = physical / page_bytes_;
   const std::uint64_t within = physical % page_bytes_;
   if (page >= pages_)
-    throw data_error({path_, {}, {}}, std::string(what) + " is said to begin at byte " +
-                                          std::to_string(physical) + " of " +
-                                          std::to_string(pages_ * page_bytes_));
+    throw data_error({path(), {}, {}}, std::string(what) + " is said to begin at byte " +
+                                           std::to_string(physical) + " of " +
+                                           std::to_string(pages_ * page_bytes_));
   if (within >= payload_bytes())
-    throw data_error({path_, physical, {}},
+    throw data_error({path(), physical, {}},
                      std::string(what) + " is said to begin here, within a page's checksum");
   return page * payload_bytes() + within;
 }
 
 void PagedFile::read(std::uint64_t offset, std::span<std::byte> to) {
   if (offset > size_bytes() || to.size() > size_bytes() - offset)
-    throw data_error({path_, pages_ * page_bytes_, {}},
+    throw data_error({path(), pages_ * page_bytes_, {}},
                      "the file ends here, more bytes were expected");
   while (!to.empty()) {
     const std::uint64_t page = offset / payload_bytes();
@@ -112,20 +102,7 @@ void PagedFile::read(std::uint64_t offset, std::span<std::byte> to) {
 
 Error PagedFile::error_at(std::uint64_t offset, const std::string& message) const {
   const std::uint64_t page = offset / payload_bytes();
-  return data_error({path_, page * page_bytes_ + offset % payload_bytes(), {}}, message);
-}
-
-void PagedFile::read_physical(std::uint64_t offset, std::span<std::byte> to) const {
-  for (std::size_t done = 0; done < to.size();) {
-    const ssize_t got =
-        ::pread(file_.get(), to.data() + done, to.size() - done, static_cast<off_t>(offset + done));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw system_error(ErrorKind::io, path_, "cannot be read", errno);
-    if (got == 0)
-      throw Error(ErrorKind::io, path_.string() + ": byte " + std::to_string(offset + done) +
-                                     ": the file became shorter while it was read");
-    done += static_cast<std::size_t>(got);
-  }
+  return data_error({path(), page * page_bytes_ + offset % payload_bytes(), {}}, message);
 }
 
 /// The bytes of a page; where it is not buffered it is read with those that are wanted behind it.
@@ -137,7 +114,7 @@ const std::byte* PagedFile::checked_page(std::uint64_t page, std::uint64_t wante
   std::vector<std::byte> bytes = std::move(buffer_);
   buffer_.clear();  // stays so if a page is damaged
   bytes.resize(count * page_bytes_);
-  read_physical(page * page_bytes_, bytes);
+  file_.read_at(page * page_bytes_, bytes);
   for (std::uint64_t k = 0; k < count; ++k)
     check_page(page + k, std::span(bytes).subspan(k * page_bytes_, page_bytes_));
   buffer_ = std::move(bytes);
@@ -148,12 +125,53 @@ const std::byte* PagedFile::checked_page(std::uint64_t page, std::uint64_t wante
 void PagedFile::check_page(std::uint64_t page, std::span<const std::byte> bytes) const {
   // Unlike all other numbers of the file, the checksum has its highest byte first.
   const std::uint32_t said =
-      __builtin_bswap32(header_value<std::uint32_t>(bytes, bytes.size() - kE57ChecksumBytes));
+      __builtin_bswap32(load_value<std::uint32_t>(&bytes[bytes.size() - kE57ChecksumBytes]));
   const std::uint32_t found = crc32c(bytes.first(bytes.size() - kE57ChecksumBytes));
   if (said == found) return;
-  throw data_error({path_, page * page_bytes_, {}},
+  throw data_error({path(), page * page_bytes_, {}},
                    "page " + std::to_string(page) + " (from 0) is damaged: its checksum is " +
                        hexadecimal(said) + ", its bytes have " + hexadecimal(found));
+}
+
+namespace {
+
+constexpr std::uint32_t kCastagnoliReversed = 0x82f63b78;
+constexpr std::size_t kCrcStep = 8;  // bytes that are taken at once
+
+/// kCrcTables[k][b]: what the byte b does to the remainder when k zero bytes follow it.
+constexpr std::array<std::array<std::uint32_t, 256>, kCrcStep> make_crc_tables() {
+  std::array<std::array<std::uint32_t, 256>, kCrcStep> tables{};
+  for (std::uint32_t byte = 0; byte < 256; ++byte) {
+    std::uint32_t rest = byte;
+    for (int bit = 0; bit < 8; ++bit)
+      rest = (rest >> 1) ^ ((rest & 1) != 0 ? kCastagnoliReversed : 0);
+    tables[0][byte] = rest;
+  }
+  for (std::size_t k = 1; k < kCrcStep; ++k)
+    for (std::size_t byte = 0; byte < 256; ++byte) {
+      const std::uint32_t rest = tables[k - 1][byte];
+      tables[k][byte] = (rest >> 8) ^ tables[0][rest & 0xff];
+    }
+  return tables;
+}
+
+constexpr auto kCrcTables = make_crc_tables();
+
+}  // namespace
+
+std::uint32_t crc32c(std::span<const std::byte> bytes) {
+  std::uint32_t rest = 0xffffffff;
+  for (; bytes.size() >= kCrcStep; bytes = bytes.subspan(kCrcStep)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data(), kCrcStep);
+    word ^= rest;
+    rest = 0;
+    for (std::size_t k = 0; k < kCrcStep; ++k)
+      rest ^= kCrcTables[kCrcStep - 1 - k][(word >> (8 * k)) & 0xff];
+  }
+  for (const std::byte byte : bytes)
+    rest = (rest >> 8) ^ kCrcTables[0][(rest ^ std::to_integer<std::uint32_t>(byte)) & 0xff];
+  return ~rest;
 }
 
 }  // namespace adasplats

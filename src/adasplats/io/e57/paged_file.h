@@ -23,7 +23,7 @@ class PagedFile {
   /// Reads the header. Errors: no_input; data (no E57 file, another version, truncated).
   explicit PagedFile(std::filesystem::path path);
 
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return file_.path(); }
   std::uint64_t size_bytes() const { return pages_ * payload_bytes(); }  ///< logical
   std::uint64_t xml_offset() const { return xml_offset_; }               ///< logical
   std::uint64_t xml_bytes() const { return xml_bytes_; }
@@ -42,11 +42,9 @@ class PagedFile {
  private:
   std::uint64_t payload_bytes() const { return page_bytes_ - 4; }
   void read_header();
-  void read_physical(std::uint64_t offset, std::span<std::byte> to) const;
   const std::byte* checked_page(std::uint64_t page, std::uint64_t wanted_pages);
   void check_page(std::uint64_t page, std::span<const std::byte> bytes) const;
 
-  std::filesystem::path path_;
   InputDescriptor file_;
   std::uint64_t page_bytes_ = 0;
   std::uint64_t pages_ = 0;
@@ -55,5 +53,8 @@ class PagedFile {
   std::vector<std::byte> buffer_;    ///< checked pages, one behind the other
   std::uint64_t buffered_from_ = 0;  ///< the first of them
 };
+
+/// CRC-32C (Castagnoli's polynomial, RFC 3720 appendix B.4), as pages of E57 files have it.
+std::uint32_t crc32c(std::span<const std::byte> bytes);
 
 }  // namespace adasplats

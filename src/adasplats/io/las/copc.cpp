@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "adasplats/io/laz/record_values.h"
+#include "adasplats/io/base/records.h"
 
 namespace adasplats {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
+#include "adasplats/io/las/las.h"
+
 #include <algorithm>
 #include <string>
 
 #include "adasplats/io/base/point_files.h"
 #include "adasplats/io/las/las_header.h"
-#include "adasplats/io/las/las_records_at_random.h"
 #include "adasplats/io/las/las_table.h"
 #include "adasplats/io/las/las_vlrs.h"
-#include "adasplats/io/las/laz.h"
 #include "adasplats/io/las/laz_layout.h"
 
 namespace adasplats {

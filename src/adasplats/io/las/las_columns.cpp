@@ -11,10 +11,9 @@
 #include <variant>
 
 #include "adasplats/core/executor.h"
-#include "adasplats/core/large_vector.h"
+#include "adasplats/core/memory.h"
 #include "adasplats/io/base/records.h"
-#include "adasplats/io/las/las_records.h"
-#include "adasplats/io/laz/record_values.h"
+#include "adasplats/io/las/las_header.h"
 
 namespace adasplats {
 namespace {

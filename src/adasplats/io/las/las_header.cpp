@@ -3,13 +3,13 @@
 #include "adasplats/io/las/las_header.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <string_view>
 
 #include "adasplats/io/base/number_text.h"
-#include "adasplats/io/las/las_records.h"
+#include "adasplats/io/base/records.h"
 
 namespace adasplats {
 namespace {
@@ -27,9 +27,7 @@ class HeaderBytes {
 
   template <class T>
   T at(std::size_t offset) const {
-    T value;
-    std::memcpy(&value, bytes_.subspan(offset, sizeof(T)).data(), sizeof(T));
-    return value;
+    return load_value<T>(&bytes_[offset]);
   }
   Vec3d vector_at(std::size_t offset) const {
     return {at<double>(offset), at<double>(offset + 8), at<double>(offset + 16)};
@@ -152,6 +150,21 @@ LasHeader read_las_header(InputFile& file) {
   check_layout(file, bytes, header);
   check_transform(bytes, header);
   return header;
+}
+
+const LasFormat& las_format(std::size_t number) {
+  static constexpr std::array<LasFormat, kLasFormatCount> kFormats = {{{20, false, 0, 0},
+                                                                       {28, false, 20, 0},
+                                                                       {26, false, 0, 20},
+                                                                       {34, false, 20, 28},
+                                                                       {57, false, 20, 0},
+                                                                       {63, false, 20, 28},
+                                                                       {30, true, 22, 0},
+                                                                       {36, true, 22, 30},
+                                                                       {38, true, 22, 30},
+                                                                       {59, true, 22, 0},
+                                                                       {67, true, 22, 30}}};
+  return kFormats.at(number);
 }
 
 }  // namespace adasplats

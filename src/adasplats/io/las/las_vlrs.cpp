@@ -10,8 +10,8 @@
 
 #include "adasplats/io/base/epsg_units.h"
 #include "adasplats/io/base/records.h"
-#include "adasplats/io/base/wkt_units.h"
-#include "adasplats/io/las/las_records.h"
+#include "adasplats/io/base/wkt.h"
+#include "adasplats/io/las/las_header.h"
 
 namespace adasplats {
 namespace {

@@ -18,7 +18,6 @@
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/record_writer.h"
 #include "adasplats/io/las/las_header.h"
-#include "adasplats/io/las/las_records.h"
 #include "adasplats/io/las/laz_writer.h"
 
 namespace adasplats {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/io/las/laz.h"
-
 #include <algorithm>
 #include <cstring>
 #include <deque>
@@ -12,12 +10,13 @@
 
 #include "adasplats/core/executor.h"
 #include "adasplats/core/maths/extent.h"
+#include "adasplats/io/base/records.h"
 #include "adasplats/io/las/copc.h"
+#include "adasplats/io/las/las.h"
 #include "adasplats/io/las/las_columns.h"
 #include "adasplats/io/las/las_table.h"
 #include "adasplats/io/las/laz_layout.h"
 #include "adasplats/io/laz/packed_chunk.h"
-#include "adasplats/io/laz/record_values.h"
 
 namespace adasplats {
 namespace {

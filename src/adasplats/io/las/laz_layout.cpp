@@ -3,12 +3,13 @@
 #include "adasplats/io/las/laz_layout.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 
-#include "adasplats/io/las/laz_packing.h"
-#include "adasplats/io/laz/chunk_table.h"
+#include "adasplats/io/base/records.h"
+#include "adasplats/io/laz/integer_model.h"
 #include "adasplats/io/laz/packed_chunk.h"
-#include "adasplats/io/laz/record_values.h"
+#include "adasplats/io/laz/range_decoder.h"
 
 namespace adasplats {
 namespace {
@@ -19,6 +20,37 @@ T value_in_file(const std::filesystem::path& path, std::uint64_t offset) {
   file.skip(offset);
   return load_value<T>(file.peek(sizeof(T)).data());
 }
+
+/// Unpacks the table of chunks, entry by entry.
+class ChunkTable {
+ public:
+  struct Entry {
+    std::uint32_t points = 0;  ///< 0 where all chunks have the same number
+    std::uint32_t bytes = 0;
+  };
+
+  /// `bytes` follow the number of chunks, and have to outlive this.
+  ChunkTable(std::span<const std::byte> bytes, bool has_points)
+      : has_points_(has_points), decoder_(bytes, is_broken_) {}
+  ChunkTable(const ChunkTable&) = delete;
+  ChunkTable& operator=(const ChunkTable&) = delete;
+
+  /// The next chunk's; nonsense once is_broken().
+  Entry next() {
+    if (has_points_) last_.points = integers_.decode(decoder_, last_.points, 0);
+    last_.bytes = integers_.decode(decoder_, last_.bytes, 1);
+    return last_;
+  }
+  /// Whether the bytes have ended before the entries.
+  bool is_broken() const { return is_broken_; }
+
+ private:
+  bool has_points_;
+  bool is_broken_ = false;
+  RangeDecoder decoder_;
+  IntegerModel integers_{32, 2};
+  Entry last_;
+};
 
 /// Where the table of chunks begins; 0: its writer was interrupted before it wrote one.
 std::uint64_t place_of_table(const InputFile& file, const LazLayout& layout) {

@@ -7,7 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "adasplats/io/base/record_span.h"
+#include "adasplats/io/base/input_file.h"
+#include "adasplats/io/base/table.h"
 #include "adasplats/io/las/las_header.h"
 #include "adasplats/io/laz/laz_item.h"
 
@@ -35,5 +36,10 @@ struct LazLayout {
 /// Reads the header, LASzip's record and the table of chunks. With `salvage` a broken table of
 /// chunks of a fixed number of points is as none. Errors: data.
 LazLayout read_laz_layout(const std::filesystem::path& path, bool salvage);
+
+/// Looks for LASzip's record among the variable length records of a LAZ file, and checks that it
+/// describes items of the header's point format in versions that are known. `file` stands at its
+/// beginning. Errors: data.
+LazPacking read_laz_packing(InputFile& file, const LasHeader& header);
 
 }  // namespace adasplats

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/io/las/laz_packing.h"
-
 #include <string>
 #include <string_view>
 
+#include "adasplats/io/base/records.h"
 #include "adasplats/io/las/las_vlrs.h"
+#include "adasplats/io/las/laz_layout.h"
 #include "adasplats/io/las/laz_writer.h"
-#include "adasplats/io/laz/record_values.h"
 
 namespace adasplats {
 namespace {

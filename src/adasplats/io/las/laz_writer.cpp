@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "adasplats/io/las/las_records.h"
+#include "adasplats/io/las/las_header.h"
 #include "adasplats/io/laz/layered_writer.h"
 #include "adasplats/io/laz/laz_item.h"
 

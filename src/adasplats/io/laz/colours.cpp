@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "adasplats/io/base/records.h"
 #include "adasplats/io/laz/integer_model.h"
 #include "adasplats/io/laz/pointwise_item.h"
-#include "adasplats/io/laz/record_values.h"
 
 namespace adasplats {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <optional>
 
+#include "adasplats/io/base/records.h"
 #include "adasplats/io/laz/pointwise_item.h"
 #include "adasplats/io/laz/range_encoder.h"
-#include "adasplats/io/laz/record_values.h"
 
 namespace adasplats {
 namespace {

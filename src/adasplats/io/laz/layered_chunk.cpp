@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
+#include "adasplats/io/base/records.h"
 #include "adasplats/io/laz/layered_item.h"
 #include "adasplats/io/laz/packed_chunk.h"
 #include "adasplats/io/laz/point14.h"
-#include "adasplats/io/laz/record_values.h"
 
 namespace adasplats {
 namespace {

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "adasplats/io/base/records.h"
 #include "adasplats/io/laz/colours.h"
-#include "adasplats/io/laz/record_values.h"
 #include "adasplats/io/laz/wave_packets.h"
 
 namespace adasplats {

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "adasplats/io/base/records.h"
 #include "adasplats/io/laz/integer_model.h"
 #include "adasplats/io/laz/pointwise_item.h"
-#include "adasplats/io/laz/record_values.h"
-#include "adasplats/io/laz/return_groups.h"
-#include "adasplats/io/laz/running_median.h"
+#include "adasplats/io/laz/predictions.h"
 
 namespace adasplats {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "adasplats/io/base/records.h"
 #include "adasplats/io/laz/point14_channel.h"
-#include "adasplats/io/laz/record_values.h"
-#include "adasplats/io/laz/return_groups.h"
+#include "adasplats/io/laz/predictions.h"
 
 namespace adasplats {
 namespace {

@@ -12,8 +12,8 @@
 #include "adasplats/io/laz/gps_times.h"
 #include "adasplats/io/laz/integer_model.h"
 #include "adasplats/io/laz/layered_item.h"
+#include "adasplats/io/laz/predictions.h"
 #include "adasplats/io/laz/range_decoder.h"
-#include "adasplats/io/laz/running_median.h"
 
 namespace adasplats {
 

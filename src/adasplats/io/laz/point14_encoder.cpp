@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "adasplats/io/laz/point14_channel.h"
-#include "adasplats/io/laz/return_groups.h"
+#include "adasplats/io/laz/predictions.h"
 
 namespace adasplats {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adasplats/io/laz/plain_encoder_test.h"
-#include "adasplats/io/laz/running_median.h"
+#include "adasplats/io/laz/predictions.h"
 
 namespace adasplats {
 namespace {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "adasplats/io/laz/wave_packets.h"
 
+#include "adasplats/io/base/records.h"
 #include "adasplats/io/laz/pointwise_item.h"
-#include "adasplats/io/laz/record_values.h"
 
 namespace adasplats {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/io/pickle/data_frame_writer.h"
-
 #include <bit>
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
+
+#include "adasplats/io/pickle/data_frame.h"
 
 namespace adasplats {
 namespace {

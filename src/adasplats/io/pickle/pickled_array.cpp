@@ -10,6 +10,7 @@
 
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/records.h"
 
 namespace adasplats {
 namespace {
@@ -30,28 +31,6 @@ constexpr std::array<std::pair<std::string_view, ColumnType>, 12> kArrayTypes = 
 
 Error array_fault(const PickledValues& pickle, const std::string& what) {
   return {ErrorKind::data, pickle.file().string() + ": " + what};
-}
-
-/// Calls body(T()) with the type's T.
-template <class Body>
-auto with_type(ColumnType type, Body&& body) {
-  switch (type) {
-    case ColumnType::i8: return body(std::int8_t{});
-    case ColumnType::u8: return body(std::uint8_t{});
-    case ColumnType::i16: return body(std::int16_t{});
-    case ColumnType::u16: return body(std::uint16_t{});
-    case ColumnType::i32: return body(std::int32_t{});
-    case ColumnType::u32: return body(std::uint32_t{});
-    case ColumnType::i64: return body(std::int64_t{});
-    case ColumnType::u64: return body(std::uint64_t{});
-    case ColumnType::f32: return body(float{});
-    case ColumnType::f64: break;
-  }
-  return body(double{});
-}
-
-std::size_t bytes_of_type(ColumnType type) {
-  return with_type(type, [](auto value) { return sizeof(value); });
 }
 
 /// "<f8", "f8", "|b1" or "O8".
@@ -108,7 +87,7 @@ void take_content(const PickledValues& pickle, const PickleValue& content, Pickl
     array.objects = &content.items;
     return;
   }
-  const std::size_t size = bytes_of_type(array.type);
+  const std::size_t size = type_bytes(array.type);
   if (content.kind != PickleKind::bytes || content.text.size() % size != 0 ||
       content.text.size() / size != count)
     throw array_fault(pickle, "an array of " + std::to_string(count) + " values of " +
@@ -169,7 +148,7 @@ PickledArray pickled_array(const PickledValues& pickle, const PickleValue& value
   if (maker != "numpy.frombuffer") throw array_fault(pickle, "expected an array of NumPy");
   take_type(pickle, argument(1).text, array);
   if (array.is_objects) throw array_fault(pickle, "objects cannot be in a buffer");
-  array.length = argument(0).text.size() / bytes_of_type(array.type);
+  array.length = argument(0).text.size() / type_bytes(array.type);
   take_content(pickle, argument(0), array);
   return array;
 }

@@ -11,7 +11,6 @@
 
 #include "adasplats/io/base/byte_sink.h"
 #include "adasplats/io/base/crs.h"
-#include "adasplats/io/base/record_span.h"
 #include "adasplats/io/base/table.h"
 
 namespace adasplats {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "adasplats/io/base/line_reader.h"
-#include "adasplats/io/base/record_span.h"
 #include "adasplats/io/base/table.h"
 #include "adasplats/io/ply/ply_header.h"
 

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/io/text/ptx.h"
-
 #include <array>
 #include <cmath>
 #include <optional>
@@ -12,6 +10,7 @@
 #include "adasplats/core/maths/rigid_transform.h"
 #include "adasplats/io/base/line_reader.h"
 #include "adasplats/io/base/number_text.h"
+#include "adasplats/io/base/point_files.h"
 
 namespace adasplats {
 namespace {

@@ -11,7 +11,6 @@
 #include "adasplats/io/base/line_reader.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/base/point_files.h"
-#include "adasplats/io/text/ptx.h"
 
 namespace adasplats {
 namespace {
