@@ -109,7 +109,7 @@ class CoordinateSystems(ProgramTest):
         (tiles / "b.las").rename(self.folder / "b.las")
         a = tiles / "a.las"
         result = self.run_warned("model", a, silent, "-o", model)
-        self.assertIn("silent.las of 2 inputs say no coordinate system", result.stderr)
+        self.assertIn(f"no coordinate system in 1 of 2 inputs ({silent})", result.stderr)
         self.assertTrue(self.facts(model)["crs"].startswith("EPSG:32632"))
         self.run_bad(65, "evaluate", "presence", model, b, says=["EPSG:32632", "EPSG:32633"])
 

@@ -33,7 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kShortestPoll_s = 0.002, kLongestPoll_s = 0.05;
-constexpr double kPollShare = 0.05;  // of the time so far: short steps are measured as well
+constexpr double kPollShare = 0.05;  // of the elapsed time, so that short steps are timed well, too
 constexpr int kSignalBase = 128;
 constexpr int kMessageLength = 300;
 
@@ -42,7 +42,7 @@ bool is_program(const fs::path& path) {
   return fs::is_regular_file(path, failure) && access(path.c_str(), X_OK) == 0;
 }
 
-/// What exec takes.
+/// Arguments of exec.
 struct ExecCall {
   char* const* arguments;
   char* const* environment;
@@ -50,25 +50,25 @@ struct ExecCall {
   bool own_group;
 };
 
-/// What happens in the new process: only calls that are safe between fork and exec.
+/// Runs in the new process: only calls that are safe between fork and exec.
 [[noreturn]] void become(const ExecCall& call, pid_t parent) {
   if (call.own_group) setpgid(0, 0);
-  // It must not go on where we are killed: nobody would count its time, and the next run would meet
-  // it in the same folder.
+  // The child must not outlive us: its time would not count, and the next run would find it at work
+  // in the same folder.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(kCannotStart);  // it has died meanwhile
+  if (getppid() != parent) _exit(kCannotStart);  // the parent has died meanwhile
   const int in = open("/dev/null", O_RDONLY);
   dup2(in, STDIN_FILENO);
   dup2(call.log, STDOUT_FILENO);
   dup2(call.log, STDERR_FILENO);
-  // What we ignore would stay ignored.
+  // Signals that we ignore would stay ignored.
   std::signal(SIGPIPE, SIG_DFL);
   std::signal(SIGXFSZ, SIG_DFL);
   execve(call.arguments[0], call.arguments, call.environment);
   _exit(kCannotStart);
 }
 
-/// exec takes char* for historical reasons and changes nothing.
+/// exec expects char* for historical reasons and changes nothing.
 std::vector<char*> pointers_to(const std::vector<std::string>& texts) {
   std::vector<char*> pointers;
   pointers.reserve(texts.size() + 1);
@@ -77,7 +77,7 @@ std::vector<char*> pointers_to(const std::vector<std::string>& texts) {
   return pointers;
 }
 
-/// Ours with changes.
+/// The environment of this process with changes.
 std::vector<std::string> environment_with(const std::vector<std::string>& changes) {
   std::vector<std::string> variables = changes;
   for (char** variable = environ; *variable != nullptr; ++variable) {
@@ -90,7 +90,7 @@ std::vector<std::string> environment_with(const std::vector<std::string>& change
   return variables;
 }
 
-/// Starts the program; its group's number is its process number.
+/// Starts the program. With limits the number of its group is its process number.
 pid_t start(const ChildProgram& child) {
   const std::vector<std::string> environment = environment_with(child.environment);
   const std::vector<char*> argv = pointers_to(child.arguments), envp = pointers_to(environment);
@@ -104,16 +104,16 @@ pid_t start(const ChildProgram& child) {
   close(log);
   if (process < 0)
     throw system_error(ErrorKind::unavailable, child.arguments[0], "cannot be started", error);
-  if (call.own_group) setpgid(process, process);  // whoever of the two is first
+  if (call.own_group) setpgid(process, process);  // in both processes: either may be first
   return process;
 }
 
-/// Resident memory of a process, given as its folder in /proc; 0 where it is of another group.
+/// Resident memory of a process, given as its folder in /proc; 0 if it is in another group.
 std::uint64_t resident_bytes(const fs::path& process, pid_t group) {
   std::ifstream stat(process / "stat");
   std::string line;
   if (!std::getline(stat, line)) return 0;  // it has ended meanwhile
-  // The name in brackets may hold anything: fields are counted from the last bracket.
+  // The name in brackets may contain anything: count fields from the last bracket.
   std::istringstream fields(line.substr(line.rfind(')') + 1));
   std::string state;
   long parent = 0, process_group = 0;
@@ -146,7 +146,7 @@ std::string last_line(const fs::path& log) {
   return last.substr(0, kMessageLength);
 }
 
-/// Why a child did not do its work, for people.
+/// Why a child failed, for users.
 std::string message_of(const ChildResult& result, const ChildProgram& child) {
   std::array<char, 96> text{};
   if (result.end == ChildEnd::timeout) {
@@ -159,17 +159,17 @@ std::string message_of(const ChildResult& result, const ChildProgram& child) {
                   static_cast<double>(child.limits->memory_bytes) / kBytesPerGiB);
     return text.data();
   }
-  std::string said = last_line(child.log);
+  std::string output = last_line(child.log);
   if (result.signalled) {
     return "was ended by signal " + std::to_string(result.exit_code - kSignalBase) +
-           (said.empty() ? "" : ": " + said);
+           (output.empty() ? "" : ": " + output);
   }
-  if (!said.empty()) return said;
+  if (!output.empty()) return output;
   return result.exit_code == kCannotStart ? "cannot be started"
                                           : "exit code " + std::to_string(result.exit_code);
 }
 
-/// A child, with limits all that it starts, too; none of them outlives this object.
+/// A child and, with limits, all processes that it starts. None outlives this object.
 class Process {
  public:
   explicit Process(const ChildProgram& child)
@@ -180,16 +180,16 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  /// Whether the child has ended. It is not waited for: its number stays its own until end().
+  /// Whether the child has ended. Does not reap it, so that its number stays reserved until end().
   bool has_ended() {
     siginfo_t info{};
     const auto id = static_cast<id_t>(number_);
-    // It fails where SIGCHLD is ignored and the child is gone.
+    // Fails if SIGCHLD is ignored and the child is gone.
     is_gone_ = waitid(P_PID, id, &info, WEXITED | WNOHANG | WNOWAIT) != 0;
     return is_gone_ || info.si_pid == number_;
   }
 
-  /// The limit that it has passed, where it has; notes its memory.
+  /// The limit that it exceeds, if any; updates the peak memory.
   std::optional<ChildEnd> passed(const ChildLimits& limits, double seconds,
                                  std::uint64_t& peak_memory_bytes) const {
     peak_memory_bytes = std::max(peak_memory_bytes, group_memory_bytes(number_));
@@ -207,7 +207,7 @@ class Process {
   Ending end() {
     int status = kCannotStart << 8;  // of a child that cannot be waited for
     struct rusage usage {};
-    // Where it is gone already its number may be another's.
+    // After it is gone its number may belong to another process.
     if (is_group_ || !is_gone_) kill(is_group_ ? -number_ : number_, SIGKILL);
     while (wait4(number_, &status, 0, &usage) < 0 && errno == EINTR) {
     }
@@ -264,7 +264,7 @@ ChildResult run_child(const ChildProgram& child, ProgressSink& progress) {
   if (!passed) result.exit_code = ending.exit_code;
   result.signalled = !passed && ending.signalled;
   result.end = passed.value_or(ending.exit_code == 0 ? ChildEnd::done : ChildEnd::failed);
-  // A signal to all processes (Ctrl-C, the machine shuts down) is no failure of the child.
+  // A signal to all processes (Ctrl-C, shutdown) is not a failure of the child: let it cancel us.
   if (result.end == ChildEnd::failed) progress.advance(0);
   if (result.end != ChildEnd::done) result.message = message_of(result, child);
   return result;

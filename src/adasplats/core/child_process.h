@@ -10,16 +10,16 @@
 
 #include "adasplats/core/progress.h"
 
-// Programs that do work for us.
+// Runs other programs.
 namespace adasplats {
 
 /// The first executable file of that name in the folders of PATH.
 std::optional<std::filesystem::path> find_on_path(const std::string& name);
 
-/// A program of that name beside the one that runs.
+/// A program of that name in the folder of the running program.
 std::optional<std::filesystem::path> find_beside_own(const std::string& name);
 
-/// What a child may use, with all the processes it starts itself.
+/// Limits of a child and all processes that it starts.
 struct ChildLimits {
   double seconds = 3600;
   std::uint64_t memory_bytes = 0;  ///< resident; 0: no limit
@@ -27,30 +27,30 @@ struct ChildLimits {
 
 struct ChildProgram {
   std::vector<std::string> arguments;      ///< the first is the program's file
-  std::vector<std::string> environment;    ///< "NAME=VALUE", in place of what this process has
+  std::vector<std::string> environment;    ///< "NAME=VALUE", overrides this process's
   std::filesystem::path log;               ///< of stdout and stderr
-  std::optional<ChildLimits> limits = {};  ///< with them it is a process group of its own
+  std::optional<ChildLimits> limits = {};  ///< limits make it a process group
 };
 
-/// Exit code of a program that cannot be started, as shells have it.
+/// Exit code of a program that cannot be started, as in shells.
 inline constexpr int kCannotStart = 127;
 
 enum class ChildEnd { done, failed, timeout, out_of_memory };
 
 struct ChildResult {
   ChildEnd end = ChildEnd::failed;
-  int exit_code = 0;       ///< as shells have it: 128 + the number of a signal
-  bool signalled = false;  ///< a signal that is no limit's ended it
+  int exit_code = 0;       ///< as in shells: 128 + the number of a signal
+  bool signalled = false;  ///< ended by a signal, but not by a limit
   double seconds = 0;
-  /// The child's, or with limits the largest sum seen over the child and its children.
+  /// Of the child; with limits the largest observed sum over the child and its children.
   std::uint64_t peak_memory_bytes = 0;
-  /// The last line of its output, or which limit or signal ended it; empty where it went well.
+  /// The last line of its output, or the limit or signal that ended it; empty on success.
   std::string message;
 };
 
-/// Runs a program to its end. It (with limits: its whole group) is killed where a limit is passed,
-/// where `progress`, which hears again and again that it goes on, throws to cancel, and where this
-/// process is killed. Errors: unavailable (no new process), cannot_create (the log).
+/// Runs a program to its end. Kills it (with limits: its process group) if a limit is exceeded, if
+/// `progress`, which is called repeatedly, throws to cancel, and if this process is killed.
+/// Errors: unavailable (no new process), cannot_create (the log).
 ChildResult run_child(const ChildProgram& child, ProgressSink& progress);
 
 }  // namespace adasplats

@@ -14,8 +14,8 @@
 
 namespace adasplats {
 
-/// Where steps over elements run and what they keep is: the threads and the memory of the CPU.
-/// gpu::GpuBackend is its twin; steps are written once, as templates on the place.
+/// Runs steps over elements on the threads of the CPU and owns their arrays. gpu::GpuBackend has
+/// the same members; steps are written once, as templates on the backend.
 class CpuArrays {
  public:
   template <class T>
@@ -27,46 +27,46 @@ class CpuArrays {
 
   const Executor& executor() const { return executor_; }
 
-  /// To be held while a step runs.
+  /// Held while a step runs.
   struct Entered {};
   Entered enter() const { return {}; }
-  /// Until all that was begun is done; errors name what is being done.
+  /// Waits for all work that was started; errors name the work.
   void wait(const char* /*doing*/) const {}
 
   template <class T>
   std::vector<T> array(std::size_t size) const {
     return std::vector<T>(size);
   }
-  /// Likewise, all of their bytes 0.
+  /// An array of zero bytes.
   template <class T>
   std::vector<T> zeros(std::size_t size) const {
     return std::vector<T>(size);
   }
-  /// Makes an array one of `size` values, whatever they are, in the memory that it has if it can.
+  /// Resizes an array, in its own memory if possible; its values are undefined afterwards.
   template <class T>
   void resize(std::vector<T>& values, std::size_t size) const {
     values.resize(size);
   }
-  /// Values of the host where the steps find them.
+  /// Host values in the memory of the backend.
   template <class T>
   static const std::vector<T>& copied(const std::vector<T>& values) {
     return values;
   }
-  /// Likewise, of values that outlive what is given.
+  /// The same for values that outlive the result.
   template <class T>
   static std::span<const T> lent(const std::vector<T>& values) {
     return values;
   }
-  /// Calls step(i) for i in [0, count), in any order. A step that is long work says how many of it
-  /// are a chunk: `kGrain`.
+  /// Calls step(i) for i in [0, count), in any order. An expensive step has its chunk size as
+  /// `kGrain`.
   template <class Step>
   void for_each(std::size_t count, const char* /*doing*/, const Step& step) const {
     executor_.for_chunks(count, grain_of<Step>(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) step(i);
     });
   }
-  /// What step(i, sums) adds for i in [0, count) to `Sums`, whose += must give the same in any
-  /// order.
+  /// Calls step(i, sums) for i in [0, count) and returns the total. += of `Sums` must give the same
+  /// result in any order.
   template <class Sums, class Step>
   Sums sum(std::size_t count, const char* /*doing*/, const Step& step) const {
     return executor_.sum_chunks(count, kCoarseGrain, Sums{},
@@ -85,7 +85,7 @@ class CpuArrays {
     return std::move(values);
   }
 
-  /// Values of these indices; none give none.
+  /// The values at these indices; an empty array gives an empty one.
   template <class T>
   std::vector<T> gather(const std::vector<T>& values, std::span<const std::uint32_t> at) const {
     std::vector<T> result;
@@ -94,17 +94,17 @@ class CpuArrays {
     for (const std::uint32_t i : at) result.push_back(values[i]);
     return result;
   }
-  /// Sorts keys and gives their order, as Executor::sort_keys().
+  /// Sorts keys and returns their order, as Executor::sort_keys().
   std::vector<std::uint32_t> sort(std::vector<std::uint64_t>& keys) const {
     std::vector<std::uint32_t> order;
     executor_.sort_keys(keys, order);
     return order;
   }
-  /// Likewise, in the memory that `order` has if it can.
+  /// The same, in the memory of `order` if possible.
   void sort(std::vector<std::uint64_t>& keys, std::vector<std::uint32_t>& order) const {
     executor_.sort_keys(keys, order);
   }
-  /// Where runs of equal keys begin in sorted keys, ascending, and their number behind the last.
+  /// Where runs of equal keys begin in sorted keys, ascending, followed by the number of keys.
   static std::vector<std::uint32_t> run_begins(const std::vector<std::uint64_t>& sorted_keys) {
     std::vector<std::uint32_t> begins;
     for (std::size_t i = 0; i < sorted_keys.size(); ++i)
@@ -120,7 +120,7 @@ class CpuArrays {
                         std::uint64_t{0});
     return sums;
   }
-  /// The indices of flags that are not zero, ascending.
+  /// The indices of nonzero flags, ascending.
   std::vector<std::uint32_t> flagged(const std::vector<std::uint8_t>& flags) const {
     std::vector<std::uint32_t> counts((flags.size() + kCoarseGrain - 1) / kCoarseGrain);
     executor_.for_chunks(flags.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {

@@ -52,7 +52,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-/// Letters and digits, small: "OS-1_64" and "os1-64" are the same name to who types it.
+/// Lower-case letters and digits: "OS-1_64" and "os1-64" mean the same name.
 std::string bare(const std::string& word) {
   std::string letters;
   for (const char c : word) {
@@ -68,7 +68,7 @@ std::string bare(const std::string& word) {
 std::vector<std::string> words_containing(const std::string& word,
                                           const std::vector<std::string>& candidates) {
   constexpr std::size_t kMinLetters = 2;
-  constexpr std::size_t kMaxWords = 6;  // of a line that a person reads
+  constexpr std::size_t kMaxWords = 6;  // that a user reads on one line
   const std::string part = bare(word);
   std::vector<std::string> found;
   if (part.size() < kMinLetters) return found;
@@ -84,7 +84,7 @@ std::vector<std::string> words_containing(const std::string& word,
 std::vector<std::string> similar_words(const std::string& word,
                                        const std::vector<std::string>& candidates) {
   std::optional<std::string> best;
-  // More edits than half the word's letters is another word, not a slip.
+  // More edits than half the letters of the word make another word, not a typo.
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 2) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(word, candidate);

@@ -11,24 +11,24 @@
 
 namespace adasplats {
 
-/// What went wrong, one kind for each exit code of sysexits(3) that the program uses.
+/// Kinds of errors, one for each exit code of sysexits(3) that the program uses.
 enum class ErrorKind : std::uint8_t {
   usage,          ///< 64: wrong arguments or parameters
-  data,           ///< 65: the content of an input is wrong
+  data,           ///< 65: invalid content of an input
   no_input,       ///< 66: an input is missing or cannot be opened
-  unavailable,    ///< 69: a program or library that the work needs is not on this machine
-  software,       ///< 70: a bug of ours
+  unavailable,    ///< 69: a required program, library or resource is missing
+  software,       ///< 70: a bug in this software
   cannot_create,  ///< 73: an output cannot be created
   io,             ///< 74: reading or writing failed
-  config,         ///< 78: a configuration file is wrong
+  config,         ///< 78: invalid configuration file
 };
 
 /// The exit code of sysexits(3) for a kind of error.
 int exit_code(ErrorKind kind);
 
-/// Every error that a user can cause or mend. what() is one complete sentence fragment without a
-/// final full stop; it names the file, place, field, found and expected where they are known.
-/// Bugs of ours are asserts or std::logic_error instead.
+/// An error that a user can cause or fix. what() is one sentence without a final full stop; it
+/// names the file, position, field, and the found and expected values, where these exist. Bugs are
+/// asserts or std::logic_error instead.
 class Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
@@ -38,7 +38,7 @@ class Error : public std::runtime_error {
   ErrorKind kind_;
 };
 
-/// Where in a file something was found.
+/// A position in a file.
 struct FilePlace {
   std::filesystem::path file;
   std::optional<std::uint64_t> byte_offset;
@@ -52,9 +52,9 @@ Error data_error(const FilePlace& place, const std::string& message);
 Error system_error(ErrorKind kind, const std::filesystem::path& file, const std::string& message,
                    int errno_value);
 
-/// The candidates that `word` may stand for: the nearest by edit distance; where none is close,
-/// those that contain it, shortest first, for "vlp-16" of "velodyne-vlp-16" (letters and digits
-/// alone, of any case). None where more than six contain it: it says too little.
+/// The candidates that the user may have meant by `word`: the nearest by edit distance; if none is
+/// close, those that contain it, shortest first, such as "velodyne-vlp-16" for "vlp-16" (only
+/// letters and digits count, in any case). None if more than six contain it: too ambiguous.
 std::vector<std::string> similar_words(const std::string& word,
                                        const std::vector<std::string>& candidates);
 
@@ -65,7 +65,7 @@ std::optional<std::string> nearest_word(const std::string& word,
 /// ", did you mean 'x'?" or ", did you mean 'x', 'y' or 'z'?" of similar_words(); "" for none.
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
 
-/// "what 'x' is not known, did you mean 'y'?" or a list of all that are known.
+/// "WHAT 'x' is not known, did you mean 'y'?", or with a list of all known words.
 std::string unknown_word(const std::string& what, const std::string& word,
                          const std::vector<std::string>& known);
 

@@ -21,7 +21,7 @@ namespace {
 
 using oneapi::tbb::global_control;
 
-/// TBB runs no more threads than cores unless asked to: 3 threads on 2 cores are to be 3.
+/// TBB runs at most one thread a core unless this raises the limit.
 std::unique_ptr<global_control> allow(int threads) {
   if (threads <= oneapi::tbb::info::default_concurrency()) return nullptr;
   return std::make_unique<global_control>(global_control::max_allowed_parallelism,
@@ -69,7 +69,7 @@ ProgressMeter* Executor::meter() const { return impl_->meter; }
 void Executor::check_interruption() const {
   if (inside_loop) return;
   if (impl_->interruption) impl_->interruption();
-  if (impl_->meter != nullptr && impl_->meter->hears()) impl_->meter->tell();
+  if (impl_->meter != nullptr && impl_->meter->is_step_thread()) impl_->meter->report();
 }
 
 void Executor::for_chunks(std::size_t count, std::size_t grain,
@@ -79,8 +79,9 @@ void Executor::for_chunks(std::size_t count, std::size_t grain,
   const bool is_outermost = !inside_loop;
   const std::thread::id caller = std::this_thread::get_id();
   ProgressMeter* const meter =
-      is_outermost && impl_->meter != nullptr && impl_->meter->hears() ? impl_->meter : nullptr;
-  // TBB gives a thread many chunks at once, which it would all do after another one has thrown.
+      is_outermost && impl_->meter != nullptr && impl_->meter->is_step_thread() ? impl_->meter
+                                                                                : nullptr;
+  // TBB hands a thread many chunks at once, and would run them all after another one has thrown.
   std::atomic<bool> stopped = false;
   const auto run_chunk = [&](std::size_t chunk) {
     if (stopped.load(std::memory_order_relaxed)) return;
@@ -109,7 +110,7 @@ void Executor::run(FunctionRef<void()> body) const {
 
 namespace {
 
-/// Memory whose pages are first touched by the threads that use them.
+/// Uninitialized memory: its pages are first touched by the threads that use them.
 template <class T>
 std::unique_ptr<T[]> untouched(std::size_t size) {
   return std::make_unique_for_overwrite<T[]>(size);
@@ -143,14 +144,14 @@ void Executor::sort_keys(std::vector<std::uint64_t>& keys,
   std::uint32_t *order_in = order.data(), *order_out = other_order.get();
   std::vector<std::array<std::uint32_t, kDigits>> counts(blocks);
   for (int shift = 0; shift < 64; shift += kDigitBits) {
-    if ((differs >> shift & (kDigits - 1)) == 0) continue;  // it would move nothing
+    if ((differs >> shift & (kDigits - 1)) == 0) continue;  // this digit would move nothing
     const auto digit = [shift](std::uint64_t key) { return (key >> shift) & (kDigits - 1); };
     for_chunks(n, grain, [&](std::size_t begin, std::size_t end) {
       auto& count = counts[begin / grain];
       count.fill(0);
       for (std::size_t i = begin; i < end; ++i) ++count[digit(keys_in[i])];
     });
-    // Where each block's run of each digit starts.
+    // Start of each block's run of each digit.
     std::uint32_t start = 0;
     for (std::size_t d = 0; d < kDigits; ++d) {
       for (auto& count : counts) {

@@ -9,8 +9,8 @@
 
 namespace adasplats {
 
-/// Adds to a whole number that elements of a loop share, and gives what it was before: the sum is
-/// the same in every order, what it was before is not. Numbers wrap.
+/// Adds to an integer that elements of a loop share and returns its previous value. The sum does
+/// not depend on the order, the previous value does. Overflow wraps.
 ADASPLATS_HD inline std::uint32_t fetch_add(std::uint32_t& number, std::uint32_t addend) {
 #if defined(__CUDA_ARCH__)
   return atomicAdd(&number, addend);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Functions marked ADASPLATS_HD are compiled for the host and, under nvcc, for the device: the
-// maths of one element is written once and every backend runs the same text.
+// Functions marked ADASPLATS_HD are compiled for the host and, under nvcc, for the device, so that
+// the maths of one element is written once for all backends.
 #if defined(__CUDACC__)
 #define ADASPLATS_HD __host__ __device__
 #else

@@ -21,8 +21,8 @@ std::uint64_t peak_memory_bytes() {
 
 void prefer_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_HUGEPAGE
-  // Of x86 and most ARM; elsewhere the system refuses, which changes nothing. Arrays of less than
-  // eight would lose more to the ends that fill no page.
+  // The size on x86 and most ARM; elsewhere the call fails without effect. Arrays of less than
+  // eight pages would lose too much at the ends.
   constexpr std::size_t kPage = std::size_t{2} << 20U;
   if (bytes < 8 * kPage) return;
   void* first = memory;
@@ -38,8 +38,8 @@ ReservedMemory::ReservedMemory(std::size_t bytes) : bytes_(bytes) {
                             MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (data == MAP_FAILED)
     throw Error(ErrorKind::unavailable,
-                "the system gives no range of " + std::to_string(bytes >> 30U) +
-                    " GiB of addresses (ulimit -v, or vm.overcommit_memory = 2, limits them)");
+                "cannot reserve " + std::to_string(bytes >> 30U) +
+                    " GiB of address space (check ulimit -v and vm.overcommit_memory)");
   data_ = static_cast<std::byte*>(data);
 }
 

@@ -13,11 +13,11 @@ namespace adasplats {
 /// Largest resident memory of this process so far, in bytes (VmHWM).
 std::uint64_t peak_memory_bytes();
 
-/// Asks the system for large pages where it has them to give (Linux' madvise); a page fault less
-/// for every 4 KiB. Changes no value, and nothing where `bytes` are less than a few such pages.
+/// Asks the system for large pages (madvise of Linux), which saves a page fault for every 4 KiB.
+/// Does nothing if `bytes` is less than a few large pages.
 void prefer_large_pages(void* memory, std::size_t bytes);
 
-/// `values` with another size, as std::vector::resize() does it, on large pages where it grows.
+/// std::vector::resize(), on large pages if it grows.
 template <class T>
 void resize_large(std::vector<T>& values, std::size_t size) {
   if (size > values.capacity()) {
@@ -27,11 +27,11 @@ void resize_large(std::vector<T>& values, std::size_t size) {
   values.resize(size);
 }
 
-/// Addresses without memory behind them until they are written to.
+/// A range of addresses that takes no memory until it is written to.
 class ReservedMemory {
  public:
   ReservedMemory() = default;
-  /// Errors: unavailable (the system has no such range of addresses).
+  /// Errors: unavailable (no such range of addresses).
   explicit ReservedMemory(std::size_t bytes);
   ~ReservedMemory();
   ReservedMemory(ReservedMemory&& other) noexcept { swap(other); }
@@ -41,7 +41,7 @@ class ReservedMemory {
   }
 
   std::byte* data() const { return data_; }
-  /// Gives back the memory of the pages that lie in [begin, end); they read as zeros.
+  /// Returns the memory of the pages within [begin, end) to the system; they then read as zeros.
   void release(std::size_t begin, std::size_t end);
 
  private:
@@ -54,23 +54,23 @@ class ReservedMemory {
   std::size_t bytes_ = 0;
 };
 
-/// An array with a place for every element of something larger than memory: only what was written
-/// takes some, until it is released. Elements are zeros at first. Parts that do not overlap may be
-/// written, read and released by several threads.
+/// An array that may be larger than memory: only elements that were written and not released take
+/// memory. Elements are zero at first. Several threads may write, read and release parts that do
+/// not overlap.
 template <class T>
 class SparseArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
   SparseArray() = default;
-  /// Errors: unavailable (more than the address space has).
+  /// Errors: unavailable (more than the address space).
   explicit SparseArray(std::size_t size) : memory_(size * sizeof(T)), size_(size) {}
 
   T* data() const { return reinterpret_cast<T*>(memory_.data()); }
   std::size_t size() const { return size_; }
   T& operator[](std::size_t i) const { return data()[i]; }
-  /// Elements [begin, end) are not needed any more. Of pages that others share nothing is given
-  /// back: some keep their values.
+  /// Releases elements [begin, end). Pages shared with other elements stay, so some elements keep
+  /// their values.
   void release(std::size_t begin, std::size_t end) {
     memory_.release(begin * sizeof(T), end * sizeof(T));
   }

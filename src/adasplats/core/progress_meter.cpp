@@ -29,7 +29,7 @@ void ProgressMeter::end_step() {
 }
 
 bool ProgressMeter::begin_pass(std::uint64_t elements) {
-  if (elements == 0 || elements_ != 0 || !hears()) return false;
+  if (elements == 0 || elements_ != 0 || !is_step_thread()) return false;
   done_elements_ = 0;
   elements_ = elements;
   return true;
@@ -40,13 +40,13 @@ void ProgressMeter::end_pass() {
   done_ += kPassUnits;
 }
 
-void ProgressMeter::tell() {
-  // A chunk on another thread may be reporting its own: this figure can wait.
+void ProgressMeter::report() {
+  // Another thread may be reporting: skip this figure.
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;
   const std::uint64_t elements = elements_;
   const std::uint64_t done = std::min<std::uint64_t>(done_elements_, elements);
-  // In double: a product of elements and units may pass 64 bits.
+  // In double: a product of elements and units may exceed 64 bits.
   const double share =
       elements == 0 ? 0 : static_cast<double>(done) / static_cast<double>(elements);
   sink_.advance(done_ + static_cast<std::uint64_t>(share * static_cast<double>(kPassUnits)));

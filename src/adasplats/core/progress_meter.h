@@ -14,13 +14,13 @@ namespace adasplats {
 
 class Executor;
 
-/// What a pass adds to the `done` of a step: a step of n passes has n times as much as its total.
+/// What one pass adds to the `done` of a step: a step of n passes has n times this as its total.
 inline constexpr std::uint64_t kPassUnits = 1000;
 
-/// Passes steps on to a sink and adds how far the loops of an Executor are. A step that consists of
-/// passes over many elements begins with `passes * kPassUnits` as its total; where each pass is a
-/// ProgressPass, the sink hears of every chunk in between. Outside of passes the sink hears the
-/// last figure again, so that it knows that work goes on.
+/// Forwards steps to a sink and adds the progress of an Executor's loops. A step that consists of
+/// passes over many elements begins with `passes * kPassUnits` as its total. If each pass is a
+/// ProgressPass, the sink receives the progress of every chunk. Outside of passes it receives the
+/// last figure again as a sign of life.
 class ProgressMeter final : public ProgressSink {
  public:
   explicit ProgressMeter(ProgressSink& sink) : sink_(sink) {}
@@ -34,26 +34,26 @@ class ProgressMeter final : public ProgressSink {
   friend class Executor;
   friend class ProgressPass;
 
-  /// Whether loops of this thread belong to the step: it has begun the step.
-  bool hears() const { return step_thread_.load() == std::this_thread::get_id(); }
+  /// Whether this thread began the step, so that its loops belong to it.
+  bool is_step_thread() const { return step_thread_.load() == std::this_thread::get_id(); }
   bool begin_pass(std::uint64_t elements);
   void end_pass();
   void add(std::uint64_t elements) {
     done_elements_.fetch_add(elements, std::memory_order_relaxed);
   }
-  /// Of the thread that hears().
-  void tell();
+  /// Reports the progress of the pass; called on the step thread.
+  void report();
 
   ProgressSink& sink_;
-  std::mutex mutex_;  ///< calls of the sink come one after the other
+  std::mutex mutex_;  ///< serializes calls of the sink
   std::atomic<std::thread::id> step_thread_;
   std::atomic<std::uint64_t> done_ = 0;      ///< of the step, before the pass
-  std::atomic<std::uint64_t> elements_ = 0;  ///< of the pass; 0: there is none
+  std::atomic<std::uint64_t> elements_ = 0;  ///< of the pass; 0: no pass
   std::atomic<std::uint64_t> done_elements_ = 0;
 };
 
-/// One pass of a step, as long as it lives: the loops that its thread runs on `executor` visit
-/// `elements` in all (those of every loop counted). A pass within a pass counts as part of it.
+/// One pass of a step, during its lifetime: the loops of its thread on `executor` visit `elements`
+/// in total. A nested pass counts as part of the outer one.
 class ProgressPass {
  public:
   ProgressPass(const Executor& executor, std::uint64_t elements);

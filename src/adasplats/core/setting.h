@@ -13,9 +13,9 @@
 
 namespace adasplats {
 
-/// One setting as users meet it: an option of the command line, a keyword of Python, a key of
-/// configurations, reports and messages. The settings of a subject stand in one table beside its
-/// struct,
+/// One setting as users see it: an option of the command line, a keyword of Python, a key of
+/// configurations, reports and messages. The settings of a struct are listed in one table next to
+/// it,
 ///
 ///     template <class Visit>
 ///     void visit_settings(BeamOptions& beam, Visit&& visit) {
@@ -24,27 +24,28 @@ namespace adasplats {
 ///             beam.sub_rays);
 ///     }
 ///
-/// and everything that takes, reports or checks settings walks it: cli/options/setting_options,
-/// jobs/session/settings_json, python/src/values/keywords, check_settings(). A new setting is
-/// one entry. Members are truth values, numbers, vectors, either of them optional, texts, paths,
-/// enumerations that have words (words_of(), found beside the enumeration) and GroupScale.
+/// and all code that reads, reports or checks settings iterates over it:
+/// cli/options/setting_options, jobs/session/settings_json, python/src/values/keywords,
+/// check_settings(). A new setting is one entry. Members are bool, numbers, vectors, optionals of
+/// these, texts, paths, enumerations with words (words_of(), next to the enumeration) and
+/// GroupScale.
 struct Setting {
-  const char* name;           ///< in snake_case; the option is that with dashes
+  const char* name;           ///< in snake_case; the option has dashes
   const char* help;           ///< one line, no full stop
-  const char* value = "";     ///< word for the value in help: "M", "N"
+  const char* value = "";     ///< placeholder of the value in help: "M", "N"
   const char* key = name;     ///< in JSON, with the unit: "separation_m"
-  const char* opposite = "";  ///< of a truth value: options that turn it off; "": "no-NAME"
+  const char* opposite = "";  ///< of bool: options that turn it off; "": "no-NAME"
   const char* group = "";     ///< heading in help
   double min = -std::numeric_limits<double>::max();
   double max = std::numeric_limits<double>::max();
-  bool exclusive_min = false;  ///< the least is out of range itself
+  bool exclusive_min = false;  ///< whether `min` itself is out of range
 };
 
 /// "--sub-rays".
 std::string option_of(const Setting& setting);
 
-/// Messages of the library name settings in backquotes, "`max_distance` keeps them", for who shows
-/// a message to name them as its users do: word(name) is what stands there instead.
+/// Replaces each setting name in backquotes by word(name). Messages of the library name settings
+/// so, "`max_distance` keeps them", and each user interface shows them in its own form.
 std::string with_settings_as(std::string_view message,
                              const std::function<std::string(std::string name)>& word);
 /// "--max-distance keeps them".
@@ -57,8 +58,7 @@ std::string range_text(const Setting& setting);
 /// Errors: usage ("`sub_rays` is 65, expected 1 to 64").
 void check_setting(const Setting& setting, double value);
 
-/// Checks the ranges of all settings of a subject. Errors: usage, of the first that is out of
-/// range.
+/// Checks the ranges of all settings of a struct. Errors: usage, for the first out of range.
 template <class Settings>
 void check_settings(const Settings& settings) {
   Settings copy = settings;
@@ -75,7 +75,7 @@ void check_settings(const Settings& settings) {
   });
 }
 
-/// The settings of a subject, in the order of its table.
+/// The settings of a struct, in the order of its table.
 template <class Settings>
 std::vector<Setting> settings_of() {
   Settings settings;

@@ -13,8 +13,7 @@
 
 namespace adasplats {
 
-/// The words that stand for the values of an enumeration, for users of the command line, of files
-/// and of Python.
+/// The names of the values of an enumeration on the command line, in files and in Python.
 template <class T>
 using Words = std::span<const std::pair<std::string_view, T>>;
 
@@ -34,7 +33,7 @@ T value_of(std::string_view word, const std::pair<std::string_view, T> (&words)[
   throw std::invalid_argument("no such word: " + std::string(word));
 }
 
-/// The words alone, in their order.
+/// The words, in order.
 template <class T>
 std::vector<std::string> list_of(Words<T> words) {
   std::vector<std::string> list;

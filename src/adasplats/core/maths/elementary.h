@@ -11,9 +11,9 @@
 
 namespace adasplats {
 
-// Elementary functions of doubles with the same bits on CPU and GPU (libraries' differ in the
-// last): sums and products of polynomials alone. Errors are a few units in the last place, which
-// the tests measure against the library.
+// Elementary functions with the same bits on CPU and GPU (those of the libraries differ in the last
+// bit): only sums and products of polynomials. Errors are a few units in the last place; the tests
+// measure them against the standard library.
 
 /// 2^k for k of a normal number, -1022 to 1023.
 ADASPLATS_HD inline double power_of_two(int k) {
@@ -39,25 +39,25 @@ ADASPLATS_HD inline double exp_series(double x) {
   return sum * x + 1.0;
 }
 
-/// e^x. Below -708, where results are no normal numbers: 0; above 709: infinity. NaN stays NaN.
+/// e^x. Below -708, where results are subnormal: 0; above 709: infinity. NaN stays NaN.
 ADASPLATS_HD inline double exp_of(double x) {
   if (!(x >= -708.0)) return x < 0 ? 0.0 : x;
   if (x > 709.0) return std::numeric_limits<double>::infinity();
   constexpr double kLog2E = 1.4426950408889634;
-  // fdlibm's e_exp.c (Sun 1993): the high part has few bits, so that k times it is exact.
+  // fdlibm, e_exp.c (Sun 1993): the high part has few bits, so that its product with k is exact.
   constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
   const double k = std::floor(x * kLog2E + 0.5);
   const double rest = (x - k * kLn2High) - k * kLn2Low;
   return (1.0 + rest * exp_series(rest)) * power_of_two(static_cast<int>(k));
 }
 
-/// e^x - 1, small x without loss.
+/// e^x - 1, without loss for small x.
 ADASPLATS_HD inline double expm1_of(double x) {
   return std::fabs(x) < 0.35 ? x * exp_series(x) : exp_of(x) - 1.0;
 }
 
-/// How many of the standard normal numbers are below x, 0..1, within 1e-7 (Abramowitz and Stegun
-/// 1964, 26.2.17).
+/// Cumulative distribution of the standard normal at x, within 1e-7 (Abramowitz and Stegun 1964,
+/// 26.2.17).
 ADASPLATS_HD inline double normal_share(double x) {
   const double size = std::fabs(x);
   const double t = 1.0 / (1.0 + 0.2316419 * size);
@@ -80,7 +80,7 @@ ADASPLATS_HD inline double log_of(double x) {
     mantissa *= 0.5;
     ++exponent;
   }
-  // fdlibm's e_log.c (Sun 1993): log(1 + f) = 2 s + s R(s^2), s = f / (2 + f).
+  // fdlibm, e_log.c (Sun 1993): log(1 + f) = 2 s + s R(s^2), s = f / (2 + f).
   const double f = mantissa - 1.0;
   const double s = f / (2.0 + f);
   const double z = s * s;
@@ -97,8 +97,8 @@ ADASPLATS_HD inline double log_of(double x) {
   return k * kLn2High - ((half_square - (s * (half_square + z * sum) + k * kLn2Low)) - f);
 }
 
-/// At most log_of(x), and less by at most kLogFloorError, of normal positive x: the exponent, and
-/// the mantissa as a straight line.
+/// A lower bound of log_of(x) for normal positive x, at most kLogFloorError below it: the exponent,
+/// and a straight line for the mantissa.
 inline constexpr double kLogFloorError = 0.0597;
 ADASPLATS_HD inline double log_floor_of(double x) {
   constexpr double kLn2 = 0.6931471805599453;
@@ -136,9 +136,8 @@ ADASPLATS_HD inline double cos_of_turns(double turns) {
   return q == 1 || q == 2 ? -value : value;
 }
 
-/// e to the power of x, for x <= 0, to two units in the last place, with the same bits on CPU and
-/// GPU (libraries' differ): 2^k times a polynomial of what is left (Cephes, expf; Moshier 1989).
-/// Below -87, where results are no normal floats: 0. NaN stays NaN.
+/// e^x for x <= 0, within two units in the last place: 2^k times a polynomial of the rest (Cephes,
+/// expf; Moshier 1989). Below -87, where results are subnormal: 0. NaN stays NaN.
 ADASPLATS_HD inline float exp_of_negative(float x) {
   if (!(x >= -87.0F)) return x < 0 ? 0.0F : x;
   constexpr float kLog2E = 1.44269504F;

@@ -9,7 +9,7 @@
 
 namespace adasplats {
 
-/// A box along the axes in world coordinates, m, with its faces; all of space by default.
+/// An axis-aligned closed box in world coordinates, m; all of space by default.
 struct Extent {
   static constexpr double kFar = std::numeric_limits<double>::infinity();
   Vec3d low = {-kFar, -kFar, -kFar};
@@ -28,7 +28,7 @@ struct Extent {
   bool operator==(const Extent&) const = default;
 };
 
-/// Of x_min, y_min, x_max, y_max and, as far as they are there, z_min, z_max.
+/// The extent of {x_min, y_min, x_max, y_max} or {x_min, y_min, x_max, y_max, z_min, z_max}.
 inline Extent extent_of(std::span<const double> n) {
   Extent extent;
   extent.low.x = n[0];

@@ -9,8 +9,8 @@
 
 namespace adasplats {
 
-/// The value in the middle of at least one by size, none of them NaN; of an even number the larger
-/// of the middle two, so that it is one of them. Reorders them.
+/// The median of at least one value, none of them NaN; of an even number of values the larger of
+/// the middle two, so that the result is one of the values. Reorders them.
 template <class T>
 T upper_median_of(std::vector<T>& values) {
   const auto middle = std::next(values.begin(), static_cast<std::ptrdiff_t>(values.size() / 2));

@@ -10,8 +10,8 @@
 
 namespace adasplats {
 
-/// Random numbers by name, not by sequence: the value depends on (seed, stream, index, counter)
-/// alone, so results do not depend on threads or device. Each draw is a 64-bit mix
+/// Counter-based random numbers: a value depends only on (seed, stream, index, counter), so results
+/// do not depend on threads or device. Each draw is a 64-bit mix
 /// (Steele, Lea, Flood 2014, "Fast splittable pseudorandom number generators", finaliser of
 /// Stafford's variant 13) of a key built the same way.
 class Random {
@@ -30,7 +30,7 @@ class Random {
   ADASPLATS_HD constexpr double uniform(double low, double high) {
     return low + (high - low) * uniform();
   }
-  /// Standard normal (Box-Muller; two uniforms a draw, the second value is not kept).
+  /// Standard normal (Box-Muller; two uniforms a draw, the second normal is dropped).
   ADASPLATS_HD double normal() {
     const double u = 1.0 - uniform();  // in (0, 1]: the logarithm is finite
     const double v = uniform();

@@ -19,7 +19,7 @@ struct Ray {
 };
 static_assert(sizeof(Ray) == 32);
 
-/// What a ray met: distance and primitive. Splats have the indices [0, splats), triangles follow.
+/// A hit: distance and primitive. Splats have the indices [0, splats), triangles follow.
 struct Hit {
   static constexpr std::uint32_t kNone = 0xffffffffU;
   float t = std::numeric_limits<float>::infinity();

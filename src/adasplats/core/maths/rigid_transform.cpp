@@ -16,7 +16,7 @@ Mat3d rotation_from_yaw_pitch_roll(double yaw_rad, double pitch_rad, double roll
 
 double angle_between(const Mat3d& a, const Mat3d& b) {
   const Mat3d turn = a.transposed() * b;
-  // By the sine, which holds for small angles: half the length of the antisymmetric part.
+  // Twice the sine, which is accurate for small angles: the length of the antisymmetric part.
   const Vec3d axis = {turn.rows[2].y - turn.rows[1].z, turn.rows[0].z - turn.rows[2].x,
                       turn.rows[1].x - turn.rows[0].y};
   const double trace = turn.rows[0].x + turn.rows[1].y + turn.rows[2].z;

@@ -61,10 +61,10 @@ ADASPLATS_HD constexpr Mat3d rotation_from_quaternion(double w, double x, double
 /// pitch turns +x *down* (towards -z).
 Mat3d rotation_from_yaw_pitch_roll(double yaw_rad, double pitch_rad, double roll_rad);
 
-/// Of the turn from rotation a to rotation b, in radians, from 0 to pi; exact for small ones, too.
+/// The angle between two rotations, radians, 0 to pi; accurate for small angles, too.
 double angle_between(const Mat3d& a, const Mat3d& b);
 
-/// Rotation by a vector: its direction is the axis, its length the angle, rad.
+/// Rotation by a rotation vector: its direction is the axis, its length the angle, rad.
 inline Mat3d rotation_by(Vec3d vector) {
   const double angle = length(vector);
   if (!(angle > 0)) return {};
@@ -73,7 +73,7 @@ inline Mat3d rotation_by(Vec3d vector) {
   return rotation_from_quaternion(std::cos(half), axis.x, axis.y, axis.z);
 }
 
-/// The vector of a rotation by less than pi.
+/// The rotation vector of a rotation by less than pi, rad.
 inline Vec3d rotation_vector(const Mat3d& r) {
   const Vec3d twice_sine = {r.rows[2].y - r.rows[1].z, r.rows[0].z - r.rows[2].x,
                             r.rows[1].x - r.rows[0].y};
@@ -83,7 +83,7 @@ inline Vec3d rotation_vector(const Mat3d& r) {
   return (0.5 * std::atan2(sine, cosine) / sine) * twice_sine;
 }
 
-/// A rotation about `pivot`, and then a shift.
+/// A rotation about `pivot`, followed by a shift.
 inline RigidTransform moved_about(Vec3d pivot, Vec3d rotation_rad, Vec3d shift) {
   const Mat3d rotation = rotation_by(rotation_rad);
   return {rotation, pivot + shift - rotation * pivot};

@@ -9,11 +9,11 @@
 
 namespace adasplats {
 
-/// Eigenvalues of a symmetric matrix of a few rows, in no order, with unit eigenvectors.
+/// Eigenvalues of a small symmetric matrix, in no particular order, with unit eigenvectors.
 template <std::size_t N>
 struct SmallEigen {
   std::array<double, N> values{};
-  std::array<std::array<double, N>, N> vectors{};  ///< one a value
+  std::array<std::array<double, N>, N> vectors{};  ///< one for each value
 };
 
 /// Cyclic Jacobi (Golub and Van Loan, "Matrix computations", 8.5). `a` by rows.
@@ -26,7 +26,7 @@ SmallEigen<N> small_eigen(std::array<double, N * N> a) {
     x = c * before - s * y;
     y = s * before + c * y;
   };
-  constexpr int kMaxSweeps = 20;  // it converges quadratically: six or so are enough
+  constexpr int kMaxSweeps = 20;  // convergence is quadratic: about six suffice
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     for (std::size_t p = 0; p < N; ++p) {
       for (std::size_t q = p + 1; q < N; ++q) {
@@ -45,8 +45,8 @@ SmallEigen<N> small_eigen(std::array<double, N * N> a) {
   return result;
 }
 
-/// Factors a symmetric matrix of a few rows, a = L L^T: L takes the place of its lower half. A
-/// matrix that is not positive definite is made so by the least that helps.
+/// Cholesky factorization of a small symmetric matrix, a = L L^T; L replaces its lower half. Raises
+/// diagonal entries that are not positive.
 template <std::size_t N>
 void factor(std::array<double, N * N>& a) {
   for (std::size_t row = 0; row < N; ++row) {
@@ -59,7 +59,7 @@ void factor(std::array<double, N * N>& a) {
   }
 }
 
-/// The x of L L^T x = `right`.
+/// Solves L L^T x = `right`.
 template <std::size_t N>
 std::array<double, N> solved(const std::array<double, N * N>& l, std::array<double, N> right) {
   for (std::size_t row = 0; row < N; ++row) {

@@ -20,7 +20,7 @@ constexpr std::size_t kWriteBytes = std::size_t{64} << 10;
 // One system call moves at most about 2 GiB; see write(2).
 constexpr std::size_t kLargestCallBytes = std::size_t{1} << 30;
 
-/// Where the bytes go in the end: a symbolic link stays one, its target is replaced.
+/// The file to replace: of a symbolic link its target, so that the link stays.
 std::filesystem::path target_of(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_symlink(path, error)) return path;
@@ -35,7 +35,7 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
 
 void flush_folder(const std::filesystem::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  // A folder that may be written but not read cannot be opened for fsync; the file itself is safe.
+  // A folder with write but no read permission cannot be opened for fsync; the file itself is safe.
   if (descriptor < 0) return;
   const bool failed = ::fsync(descriptor) != 0;
   const int error = errno;
@@ -56,7 +56,7 @@ void write_all(int descriptor, const std::filesystem::path& path, const char* da
   }
 }
 
-/// Closes a descriptor that an exception passes by.
+/// Closes a descriptor when an exception is thrown.
 struct OpenDescriptor {
   int number;
   ~OpenDescriptor() {
@@ -70,7 +70,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(target_of(path
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path_, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    // rename() over /dev/null, say, would replace the device.
+    // rename() over /dev/null would replace the device.
     throw Error(ErrorKind::cannot_create, path_.string() + ": exists and is not a regular file");
   }
   for (int attempt = 0; descriptor_ < 0; ++attempt) {
@@ -141,7 +141,7 @@ void write_file_in_place(const std::filesystem::path& path, std::string_view con
 
 std::string read_file(const std::filesystem::path& path) {
   const InputDescriptor file(path);
-  // One byte more than the size, so that a file that did not grow ends in one more call.
+  // One byte more than the size, so that the second call of read() finds the end of the file.
   std::string content(static_cast<std::size_t>(file.size_bytes()) + 1, '\0');
   std::size_t used = 0;
   while (true) {

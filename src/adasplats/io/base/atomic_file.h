@@ -11,11 +11,11 @@
 
 namespace adasplats {
 
-/// An output file that appears whole or not at all: written beside its place under a temporary
-/// name, then fsync, rename, fsync of the folder. Without commit() (an exception, say) the
-/// temporary is removed and an older file of that name stays as it was. Small writes are buffered.
-/// A symbolic link is followed; anything else that is not a regular file is refused.
-/// Errors: ErrorKind::cannot_create (no such folder, no permission), ErrorKind::io (disk full).
+/// An output file that appears complete or not at all: it is written to a temporary file in the
+/// same folder, then flushed and renamed, and the folder is flushed. Without commit() (e.g. after
+/// an exception) the temporary file is removed and an older file of that name is unchanged. Small
+/// writes are buffered. Follows symbolic links; rejects anything else that is not a regular file.
+/// Errors: cannot_create (no such folder, no permission), io (disk full).
 class AtomicFile final : public ByteSink {
  public:
   explicit AtomicFile(const std::filesystem::path& path);
@@ -30,20 +30,20 @@ class AtomicFile final : public ByteSink {
   void write_through(const char* data, std::size_t bytes);
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;  ///< empty once it is renamed
+  std::filesystem::path temporary_;  ///< empty after the rename
   std::string buffer_;
   int descriptor_ = -1;
 };
 
-/// Writes a whole file at once, as AtomicFile does.
+/// Writes a file through AtomicFile.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-/// Writes a whole file at once under its own name, without waiting for the disk: for folders that
-/// get their name when they are whole. What was there is replaced; an error or a kill can leave the
-/// file half written. Errors: as AtomicFile's.
+/// Writes a file directly under its own name, without flushing it: for folders that are renamed
+/// when complete. Replaces an older file; an error or a kill can leave the file incomplete. Errors:
+/// as AtomicFile.
 void write_file_in_place(const std::filesystem::path& path, std::string_view content);
 
-/// A whole file's bytes. Errors: no_input (missing, a folder, not a regular file), io.
+/// The content of a file. Errors: no_input (missing, a folder, not a regular file), io.
 std::string read_file(const std::filesystem::path& path);
 
 }  // namespace adasplats

@@ -9,7 +9,7 @@
 
 namespace adasplats {
 
-/// Where the bytes of a file go, one after another: encoders do not know whether it is a disk.
+/// Destination of the bytes of a file, on disk or in memory.
 class ByteSink {
  public:
   ByteSink() = default;
@@ -24,7 +24,7 @@ class ByteSink {
 /// The bytes of a file in memory.
 class ByteBuffer final : public ByteSink {
  public:
-  /// `expected_bytes`: room that is taken at once.
+  /// `expected_bytes` are reserved.
   explicit ByteBuffer(std::size_t expected_bytes = 0) { bytes_.reserve(expected_bytes); }
 
   using ByteSink::write;

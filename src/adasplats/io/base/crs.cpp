@@ -31,12 +31,12 @@ constexpr std::uint16_t kDoublesRecord = 34736, kAsciiRecord = 34737;
 constexpr std::uint16_t kUserDefined = 32767;
 constexpr std::size_t kKeyNumbers = 4;
 
-/// One of the two parts of a system, over the ground or in height.
+/// One of the two parts of a system, horizontal or vertical.
 struct Part {
-  bool is_said = false;
+  bool is_defined = false;
   std::string code;             ///< "EPSG:32632"; empty: none
   std::string name;             ///< empty: none
-  std::vector<double> numbers;  ///< of projection and ellipsoid, ascending
+  std::vector<double> numbers;  ///< parameters of projection and ellipsoid, ascending
   bool is_of_keys = false;
 };
 
@@ -44,15 +44,15 @@ struct Parts {
   Part ground, height;
 };
 
-/// Names that stand for none.
+/// Names without a meaning.
 bool is_placeholder(std::string_view name) {
   const std::string lower = lower_case(name);
   return lower.empty() || lower == "unknown" || lower == "unnamed" || lower == "undefined" ||
          lower == "user-defined" || lower == "custom";
 }
 
-/// A name for comparing: small letters and digits, and years without their century, so that ESRI's
-/// WGS_1984_UTM_Zone_32N is EPSG's WGS 84 / UTM zone 32N.
+/// A name for comparison: lower-case letters and digits, and years without the century, so that
+/// ESRI's WGS_1984_UTM_Zone_32N equals EPSG's WGS 84 / UTM zone 32N.
 std::string plain_name(std::string_view name) {
   std::string plain;
   for (const char c : lower_case(name))
@@ -62,7 +62,7 @@ std::string plain_name(std::string_view name) {
   return plain;
 }
 
-/// EPSG's code of a UTM zone by its name: 326zz and 327zz (WGS 84), 258zz (ETRS89), 269zz (NAD83).
+/// EPSG code of a UTM zone by its name: 326zz and 327zz (WGS 84), 258zz (ETRS89), 269zz (NAD83).
 std::string code_of_utm(std::string_view name) {
   struct Family {
     std::string_view prefix;
@@ -98,12 +98,11 @@ std::string code_of(const WktNode& system) {
   return upper_case(id->values[0]) + ":" + id->values[1];
 }
 
-/// The numbers that define a projection: its parameters and the two of the ellipsoid; zeros, which
-/// one dialect writes and another leaves out, are none.
+/// The parameters of projection and ellipsoid. Zeros are skipped: some dialects leave them out.
 void add_numbers(const WktNode& node, std::vector<double>& numbers) {
-  const auto add = [&](std::size_t place) {
-    if (node.values.size() <= place) return;
-    const auto number = parse_number<double>(node.values[place]);
+  const auto add = [&](std::size_t k) {
+    if (node.values.size() <= k) return;
+    const auto number = parse_number<double>(node.values[k]);
     if (number && *number != 0) numbers.push_back(*number);
   };
   if (node.is_one_of({"parameter"})) add(1);
@@ -116,7 +115,7 @@ void add_numbers(const WktNode& node, std::vector<double>& numbers) {
 
 Part part_of(const WktNode& system) {
   Part part;
-  part.is_said = true;
+  part.is_defined = true;
   if (!system.values.empty() && !is_placeholder(system.values[0])) part.name = system.values[0];
   part.code = code_of(system);
   if (part.code.empty()) part.code = code_of_utm(part.name);
@@ -132,12 +131,12 @@ Parts parts_of_wkt(const WktNode& system) {
   if (system.is_one_of({"compd_cs", "compoundcrs"})) {
     for (const WktNode& inner : system.nodes) {
       const Parts of_inner = parts_of_wkt(inner);
-      if (of_inner.ground.is_said && !parts.ground.is_said) parts.ground = of_inner.ground;
-      if (of_inner.height.is_said) parts.height = of_inner.height;
+      if (of_inner.ground.is_defined && !parts.ground.is_defined) parts.ground = of_inner.ground;
+      if (of_inner.height.is_defined) parts.height = of_inner.height;
     }
     return parts;
   }
-  // All keywords of systems end so; CS itself is a part of one.
+  // All keywords of systems end in these; CS itself is a part of a system.
   const bool is_system = system.keyword.ends_with("cs") || system.keyword.ends_with("crs");
   if (system.is_one_of({"vert_cs", "vertcs", "vertcrs", "verticalcrs"}))
     parts.height = part_of(system);
@@ -146,7 +145,7 @@ Parts parts_of_wkt(const WktNode& system) {
   return parts;
 }
 
-/// A key's four numbers; nothing where the directory lacks it.
+/// The four numbers of a key; nothing if the directory lacks it.
 std::optional<std::array<std::uint16_t, kKeyNumbers>> find_key(const GeoKeys& keys,
                                                                std::uint16_t number) {
   for (std::size_t k = kKeyNumbers; k + kKeyNumbers <= keys.directory.size(); k += kKeyNumbers)
@@ -156,7 +155,7 @@ std::optional<std::array<std::uint16_t, kKeyNumbers>> find_key(const GeoKeys& ke
   return std::nullopt;
 }
 
-/// The value of a key that has one in the directory; 0: none, or one that the file defines itself.
+/// The value of a key in the directory itself; 0: none, or user-defined.
 std::uint16_t code_of(const GeoKeys& keys, std::uint16_t number) {
   const auto key = find_key(keys, number);
   return key && (*key)[1] == 0 && (*key)[3] != kUserDefined ? (*key)[3] : std::uint16_t{0};
@@ -170,24 +169,24 @@ std::string text_of(const GeoKeys& keys, std::uint16_t number) {
   return is_placeholder(text) ? std::string() : text;
 }
 
-/// GeoTIFF 1.0 (6.3.4.1) numbers some systems of heights as EPSG does their datums: 5103, NAVD88,
-/// is EPSG:5703.
+/// GeoTIFF 1.0 (6.3.4.1) gives some vertical systems the EPSG code of their datum: 5103, NAVD88, is
+/// EPSG:5703.
 std::uint16_t epsg_of_height(std::uint16_t code) {
   constexpr std::uint16_t kFirstDatum = 5101, kLastDatum = 5106, kFromDatum = 600;
   const bool is_datum = code >= kFirstDatum && code <= kLastDatum;
   return is_datum ? static_cast<std::uint16_t>(code + kFromDatum) : code;
 }
 
-bool tells_no_system(std::uint16_t key) {
-  constexpr std::array<std::uint16_t, 8> kOfKinds = {0,
-                                                     kModelTypeKey,
-                                                     kRasterTypeKey,
-                                                     kGeogUnitsKey,
-                                                     kGeogAngularUnitsKey,
-                                                     kAzimuthUnitsKey,
-                                                     kLinearUnitsKey,
-                                                     kVerticalUnitsKey};
-  return std::ranges::find(kOfKinds, key) != kOfKinds.end();
+bool defines_no_system(std::uint16_t key) {
+  constexpr std::array<std::uint16_t, 8> kGeneralKeys = {0,
+                                                         kModelTypeKey,
+                                                         kRasterTypeKey,
+                                                         kGeogUnitsKey,
+                                                         kGeogAngularUnitsKey,
+                                                         kAzimuthUnitsKey,
+                                                         kLinearUnitsKey,
+                                                         kVerticalUnitsKey};
+  return std::ranges::find(kGeneralKeys, key) != kGeneralKeys.end();
 }
 
 bool is_projected(const GeoKeys& keys) {
@@ -199,7 +198,7 @@ bool is_projected(const GeoKeys& keys) {
   return false;
 }
 
-/// As add_numbers() finds them in a text.
+/// The same parameters as add_numbers() finds in a text.
 std::vector<double> numbers_of(const GeoKeys& keys) {
   std::vector<double> numbers;
   for (std::size_t k = kKeyNumbers; k + kKeyNumbers <= keys.directory.size(); k += kKeyNumbers) {
@@ -220,7 +219,7 @@ Parts parts_of_keys(const GeoKeys& keys) {
   const auto epsg = [](std::uint16_t code) {
     return code == 0 ? std::string() : "EPSG:" + std::to_string(code);
   };
-  parts.ground.is_said = true;
+  parts.ground.is_defined = true;
   parts.ground.is_of_keys = true;
   parts.ground.numbers = numbers_of(keys);
   parts.ground.code =
@@ -230,16 +229,16 @@ Parts parts_of_keys(const GeoKeys& keys) {
   if (parts.ground.code.empty()) parts.ground.code = code_of_utm(parts.ground.name);
   parts.height.code = epsg(epsg_of_height(code_of(keys, kVerticalTypeKey)));
   parts.height.name = text_of(keys, kVerticalCitationKey);
-  parts.height.is_said = !parts.height.code.empty() || !parts.height.name.empty();
+  parts.height.is_defined = !parts.height.code.empty() || !parts.height.name.empty();
   return parts;
 }
 
 Parts parts_of(const Crs& crs) {
   if (crs.wkt.empty()) return parts_of_keys(crs.keys);
   Parts parts = parts_of_wkt(parse_wkt(crs.wkt));
-  if (parts.ground.is_said || parts.height.is_said) return parts;
-  // No system of a text: "EPSG:25832", or what only the very same text is equal to.
-  parts.ground.is_said = true;
+  if (parts.ground.is_defined || parts.height.is_defined) return parts;
+  // Not a WKT: "EPSG:25832", or a text that equals only itself.
+  parts.ground.is_defined = true;
   const std::size_t colon = crs.wkt.find(':');
   if (colon != std::string::npos && parse_number<unsigned>(crs.wkt.substr(colon + 1)))
     parts.ground.code = upper_case(crs.wkt);
@@ -247,7 +246,7 @@ Parts parts_of(const Crs& crs) {
 }
 
 bool are_equal(const std::vector<double>& a, const std::vector<double>& b) {
-  constexpr double kTolerance = 1e-9;  // what texts of 10 digits and more keep
+  constexpr double kTolerance = 1e-9;  // texts have at least 10 digits
   return std::ranges::equal(a, b, [](double x, double y) {
     return std::fabs(x - y) <= kTolerance * std::max(std::fabs(x), std::fabs(y));
   });
@@ -255,7 +254,7 @@ bool are_equal(const std::vector<double>& a, const std::vector<double>& b) {
 
 std::string authority_of(const std::string& code) { return code.substr(0, code.find(':')); }
 
-/// Whether two parts that are said are one; nothing where neither codes nor names tell.
+/// Whether two defined parts are the same; nothing if neither codes nor names decide.
 std::optional<bool> are_same(const Part& a, const Part& b) {
   if (!a.code.empty() && !b.code.empty() && authority_of(a.code) == authority_of(b.code))
     return a.code == b.code;
@@ -264,7 +263,7 @@ std::optional<bool> are_same(const Part& a, const Part& b) {
   return a.is_of_keys != b.is_of_keys || are_equal(a.numbers, b.numbers);
 }
 
-/// Whether the definitions are the same, however they are set.
+/// Whether the definitions are the same, regardless of their layout.
 bool have_one_definition(const Crs& a, const Crs& b) {
   if (a == b) return true;
   if (a.wkt.empty() || b.wkt.empty()) return false;
@@ -272,7 +271,7 @@ bool have_one_definition(const Crs& a, const Crs& b) {
   return !of_a.keyword.empty() && of_a == parse_wkt(b.wkt);
 }
 
-/// On one line, as a comment has to be.
+/// The text on one line, as comments require.
 std::string one_line(std::string_view text) {
   std::string line(text);
   for (char& c : line)
@@ -285,13 +284,13 @@ constexpr std::string_view kKeysComment = "adasplats.crs_keys ";
 constexpr std::string_view kDoublesComment = "adasplats.crs_key_doubles ";
 constexpr std::string_view kAsciiComment = "adasplats.crs_key_text ";
 
-/// Adds `text` in lines that every reader takes: rply, which CloudCompare and Open3D have, refuses
-/// those of 1024 bytes and more.
+/// Adds `text` in lines that every reader accepts: rply, in CloudCompare and Open3D, rejects lines
+/// of 1024 bytes and more.
 void add_parts(std::string_view key, std::string_view text, std::vector<std::string>& comments) {
   constexpr std::size_t kPartBytes = 900;
   while (!text.empty()) {
     std::size_t size = std::min(kPartBytes, text.size());
-    // Readers drop blanks at the ends of a comment.
+    // Readers strip blanks at the ends of a comment.
     while (size > 1 && size < text.size() && (text[size - 1] == ' ' || text[size] == ' ')) --size;
     comments.push_back(std::string(key) + std::string(text.substr(0, size)));
     text.remove_prefix(size);
@@ -305,17 +304,16 @@ std::vector<T> numbers_of(const std::filesystem::path& path, const std::string& 
   for (std::string word; words >> word;) {
     const std::optional<T> number = parse_number<T>(word);
     if (!number)
-      throw data_error({path, {}, {}}, "the keys of the coordinate system have " + shown(word) +
+      throw data_error({path, {}, {}}, "the coordinate system has the key value " + shown(word) +
                                            ", expected a number");
     numbers.push_back(*number);
   }
   return numbers;
 }
 
-std::string places_of(std::span<const std::filesystem::path> files, std::size_t of) {
-  return files.front().string() +
-         (files.size() == 1 ? "" : " and " + std::to_string(files.size() - 1) + " more") + " of " +
-         std::to_string(of) + " inputs";
+std::string files_text(std::span<const std::filesystem::path> files, std::size_t of) {
+  return std::to_string(files.size()) + " of " + std::to_string(of) + " inputs (" +
+         files.front().string() + (files.size() == 1 ? ")" : ", ...)");
 }
 
 }  // namespace
@@ -323,7 +321,7 @@ std::string places_of(std::span<const std::filesystem::path> files, std::size_t 
 bool Crs::empty() const {
   if (!wkt.empty()) return false;
   for (std::size_t k = kKeyNumbers; k + kKeyNumbers <= keys.directory.size(); k += kKeyNumbers)
-    if (!tells_no_system(keys.directory[k])) return false;
+    if (!defines_no_system(keys.directory[k])) return false;
   return true;
 }
 
@@ -351,15 +349,15 @@ CrsMatch match(const Crs& a, const Crs& b) {
   if (a.empty() && b.empty()) return CrsMatch::same;
   if (a.empty() || b.empty()) return CrsMatch::unclear;
   const Parts of_a = parts_of(a), of_b = parts_of(b);
-  if (of_a.ground.is_said && of_b.ground.is_said) {
+  if (of_a.ground.is_defined && of_b.ground.is_defined) {
     const std::optional<bool> same = are_same(of_a.ground, of_b.ground);
     if (!same) return have_one_definition(a, b) ? CrsMatch::same : CrsMatch::different;
     if (!*same) return CrsMatch::different;
-  } else if (of_a.ground.is_said != of_b.ground.is_said) {
+  } else if (of_a.ground.is_defined != of_b.ground.is_defined) {
     return CrsMatch::unclear;
   }
-  if (of_a.height.is_said != of_b.height.is_said) return CrsMatch::unclear;
-  if (!of_a.height.is_said) return CrsMatch::same;
+  if (of_a.height.is_defined != of_b.height.is_defined) return CrsMatch::unclear;
+  if (!of_a.height.is_defined) return CrsMatch::same;
   const bool same = are_same(of_a.height, of_b.height).value_or(have_one_definition(a, b));
   return same ? CrsMatch::same : CrsMatch::different;
 }
@@ -382,7 +380,7 @@ std::vector<std::string> crs_comments(const Crs& crs) {
     doubles.pop_back();
     add_parts(kDoublesComment, doubles, comments);
   }
-  // Keys count from the text's beginning: no blank of it may go, hence the quotes.
+  // Keys refer to offsets in the text, so its blanks must stay: hence the quotes.
   if (!text.empty()) add_parts(kAsciiComment, '"' + text + '"', comments);
   return comments;
 }
@@ -406,34 +404,34 @@ Crs crs_of_comments(const std::filesystem::path& path, std::span<const std::stri
 void SharedCrs::add(const std::filesystem::path& file, const Crs& crs) {
   ++files_;
   if (crs.empty()) {
-    silent_.push_back(file);
+    without_crs_.push_back(file);
     return;
   }
   const CrsMatch found = match(crs_, crs);
   if (found == CrsMatch::different)
     throw Error(ErrorKind::data,
-                file.string() + ": its coordinates are in " + crs.name() + ", those of " +
-                    said_by_.string() + " in " + crs_.name() +
-                    ": two systems (or two definitions of one that cannot be told to be the same) "
-                    "make no place; bring them to one first ('pdal translate IN OUT reprojection "
-                    "--filters.reprojection.out_srs=...', say)");
-  const bool has_height = parts_of(crs).height.is_said;
-  if (!has_height) heightless_.push_back(file);
+                file.string() + ": coordinate system " + crs.name() + ", but " + source_.string() +
+                    " has " + crs_.name() +
+                    "; the systems differ or cannot be recognized as the same: reproject the "
+                    "inputs to one (e.g. 'pdal translate IN OUT reprojection "
+                    "--filters.reprojection.out_srs=...')");
+  const bool has_height = parts_of(crs).height.is_defined;
+  if (!has_height) without_heights_.push_back(file);
   if (crs_.empty() || (found == CrsMatch::unclear && has_height)) {
     crs_ = crs;
-    said_by_ = file;
+    source_ = file;
   }
 }
 
 std::string SharedCrs::warning() const {
   if (crs_.empty()) return {};
   std::string text;
-  const std::string taken = crs_.name() + ", as " + said_by_.string() + " says";
-  if (!silent_.empty())
-    text = places_of(silent_, files_) + " say no coordinate system, taken to be in " + taken;
-  if (parts_of(crs_).height.is_said && !heightless_.empty())
-    text += (text.empty() ? "" : "; ") + places_of(heightless_, files_) +
-            " do not say what their heights are above, taken to be in " + taken;
+  const std::string assumed = "; assumed " + crs_.name() + " of " + source_.string();
+  if (!without_crs_.empty())
+    text = "no coordinate system in " + files_text(without_crs_, files_) + assumed;
+  if (parts_of(crs_).height.is_defined && !without_heights_.empty())
+    text += (text.empty() ? "" : "; ") + std::string("no vertical coordinate system in ") +
+            files_text(without_heights_, files_) + assumed;
   return text;
 }
 

@@ -171,16 +171,16 @@ TEST(CoordinateSystem, CommentsBringItBack) {
   expect_error(ErrorKind::data, {"a.ply", "x"}, [&] { crs_of_comments("a.ply", broken); });
 }
 
-TEST(SharedCoordinateSystem, RefusesMixesAndSaysWhatIsMissing) {
+TEST(SharedCoordinateSystem, RejectsMixesAndReportsMissingSystems) {
   SharedCrs one;
   one.add("a.las", kZone32);
   one.add("b.las", kKeys32);
   EXPECT_EQ(one.warning(), "");
   one.add("c.ply", {});
-  EXPECT_NE(one.warning().find("c.ply of 3 inputs say no coordinate system"), std::string::npos);
+  EXPECT_NE(one.warning().find("no coordinate system in 1 of 3 inputs (c.ply)"), std::string::npos);
   EXPECT_NE(one.warning().find("EPSG:32632"), std::string::npos);
   one.add("d.laz", wkt(with_heights(kZone32, kEgm96)));
-  EXPECT_NE(one.warning().find("a.las and 1 more of 4 inputs do not say what their heights"),
+  EXPECT_NE(one.warning().find("no vertical coordinate system in 2 of 4 inputs (a.las, ...)"),
             std::string::npos);
   EXPECT_EQ(one.crs().name(), "EPSG:32632+5773 (WGS 84 / UTM zone 32N + EGM96 height)");
   expect_error(ErrorKind::data, {"e.laz", "d.laz", "EPSG:32632+5703", "EPSG:32632+5773"},

@@ -10,7 +10,7 @@ namespace adasplats {
 namespace {
 
 std::optional<std::uint16_t> unit_of(std::uint16_t system, std::span<const EpsgUnitRange> ranges) {
-  constexpr std::uint16_t kOtherBlocks = 20000;  // UTM zones and the like, which are complete
+  constexpr std::uint16_t kOtherBlocks = 20000;  // UTM zones and others, which are complete
   if (system > kNewestEpsgSystem && system < kOtherBlocks) return std::nullopt;
   for (const EpsgUnitRange& range : ranges)
     if (system >= range.first && system <= range.last) return range.unit;
@@ -20,7 +20,7 @@ std::optional<std::uint16_t> unit_of(std::uint16_t system, std::span<const EpsgU
 }  // namespace
 
 std::optional<std::string> foreign_length_of(std::uint16_t unit) {
-  constexpr std::uint16_t kFirst = 9000, kLast = 9099;  // lengths, but for the chain of 9301
+  constexpr std::uint16_t kFirst = 9000, kLast = 9099;  // lengths, except the chain of 9301
   constexpr std::uint16_t kTruncatedChain = 9301;
   const bool is_length = (unit >= kFirst && unit <= kLast) || unit == kTruncatedChain;
   if (unit == kEpsgMetre || !is_length) return std::nullopt;

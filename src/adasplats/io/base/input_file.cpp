@@ -16,11 +16,11 @@ namespace {
 
 static_assert(sizeof(std::size_t) == 8, "sizes of files are held in std::size_t");
 
-// Small enough to stay in the L2 cache, so that spreading it over columns reads no memory twice.
+// Small enough for the L2 cache, so that spreading it over columns reads memory only once.
 constexpr std::size_t kReadBytes = std::size_t{256} << 10;
 
 int open_or_throw(const std::filesystem::path& path) {
-  // O_NONBLOCK: opening a FIFO that nobody writes returns at once; regular files ignore it.
+  // O_NONBLOCK: opening a FIFO without a writer returns at once; regular files ignore it.
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (descriptor < 0) throw system_error(ErrorKind::no_input, path, "cannot be opened", errno);
   return descriptor;
@@ -97,7 +97,7 @@ void InputFile::fill(std::size_t bytes) {
   end_ -= begin_;
   begin_ = 0;
   if (bytes > buffer_.size()) buffer_.resize(bytes);
-  // A file that grows while it is read ends where it ended when it was opened.
+  // A file that grows while it is read counts with its size at opening.
   const auto end = static_cast<std::size_t>(std::min<std::uint64_t>(buffer_.size(), remaining()));
   file_.read_at(offset_ + end_, std::span(buffer_).subspan(end_, end - end_));
   end_ = end;

@@ -13,10 +13,10 @@
 
 namespace adasplats {
 
-/// An open file descriptor and the size that the file had when it was opened.
+/// A file open for reading, with its size at that time.
 class InputDescriptor {
  public:
-  /// Opens a regular file; a FIFO or a device is refused without blocking on it.
+  /// Opens a regular file; rejects a FIFO or a device without blocking on it.
   /// Errors: ErrorKind::no_input.
   explicit InputDescriptor(std::filesystem::path path);
   ~InputDescriptor();
@@ -35,8 +35,8 @@ class InputDescriptor {
   std::uint64_t size_bytes_ = 0;
 };
 
-/// Reads a file from front to back through a small buffer. Every access is checked against the
-/// file's size; a file that shrinks while it is read is an error, never a crash.
+/// Reads a file sequentially through a small buffer. Every access is checked against the size of
+/// the file; a file that shrinks while it is read is an error, never a crash.
 class InputFile {
  public:
   /// Errors: no_input (missing, a folder, a FIFO), data (empty).
@@ -47,16 +47,16 @@ class InputFile {
   std::uint64_t offset() const { return offset_; }  ///< of the next byte
   std::uint64_t remaining() const { return size_bytes() - offset_; }
 
-  /// The buffered bytes from offset() on: at least `bytes` of them, else a data error. The view
-  /// holds until the next call that reads or skips.
+  /// The buffered bytes from offset() on, at least `bytes` of them, else a data error. The view is
+  /// valid until the next call that reads or skips.
   std::span<const std::byte> peek(std::size_t bytes) {
     if (end_ - begin_ < bytes) fill(bytes);
     return {buffer_.data() + begin_, end_ - begin_};
   }
-  /// Moves on by `bytes`; a data error where the file has fewer.
+  /// Skips `bytes`; a data error if the file has fewer.
   void skip(std::uint64_t bytes);
 
-  /// A data error at the next byte.
+  /// A data error at offset().
   Error error_here(const std::string& message) const;
 
  private:

@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 Json parse_json_rows(std::string_view text, std::string_view key,
                      FunctionRef<void(const Json& row)> take) {
   using Event = Json::parse_event_t;
-  bool is_named = false;  // the value at the top that is being read
+  bool is_named = false;  // the current top-level value
   bool is_inside = false;
   const auto keep = [&](int depth, Event event, const Json& parsed) {
     if (event == Event::key && depth == 1) is_named = parsed.get_ref<const std::string&>() == key;
@@ -23,7 +23,7 @@ Json parse_json_rows(std::string_view text, std::string_view key,
     return false;
   };
   Json rest = Json::parse(text.data(), text.data() + text.size(), keep);
-  // What is no object is no row of anybody's: `take` says so.
+  // Rows that are not objects are still in the array: `take` reports them.
   for (const Json& row : rest.at(std::string(key)).get_ref<const Json::array_t&>()) take(row);
   return rest;
 }

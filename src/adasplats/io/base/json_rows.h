@@ -9,10 +9,10 @@
 
 namespace adasplats {
 
-/// Parses a JSON object whose array `key` has many rows: each goes to `take` when it has been read,
-/// and none is kept, so that memory holds one of them. Gives the object without the rows. They may
-/// come before what stands behind them is known to be there, or to be JSON. Errors:
-/// nlohmann::json::exception (no JSON, no object, no array `key`); those of `take`.
+/// Parses a JSON object with a long array `key`: each row is passed to `take` and dropped, so that
+/// memory holds one row at a time. Returns the object without the rows. Rows are passed on before
+/// the text after them has been parsed. Errors: nlohmann::json::exception (not JSON, not an object,
+/// no array `key`); those of `take`.
 nlohmann::ordered_json parse_json_rows(std::string_view text, std::string_view key,
                                        FunctionRef<void(const nlohmann::ordered_json& row)> take);
 

@@ -12,16 +12,16 @@
 
 namespace adasplats {
 
-/// Lines of a text, or of a binary file's header, that end in LF, CR LF or (where the first line
-/// does) a lone CR. Leaves `file` at the first byte after the line, so that a binary body which
-/// begins with a newline is not eaten.
+/// Reads lines of a text, or of a binary file's header, that end in LF, CR LF or (if the first line
+/// does) a lone CR. Leaves `file` at the first byte after the line, so that a binary body may begin
+/// with a newline.
 class LineReader {
  public:
   /// Recognises the line ends from the first line. `file` must outlive the reader.
   explicit LineReader(InputFile& file);
 
-  /// The next line without its end; nothing at the end of the file. The view holds until the next
-  /// call. Errors: data (a line above 16 MiB: not a text).
+  /// The next line without its end; nothing at the end of the file. The view is valid until the
+  /// next call. Errors: data (a line of more than 16 MiB: not a text).
   std::optional<std::string_view> next();
   /// The next line that is not blank.
   std::optional<std::string_view> next_filled();
@@ -50,7 +50,7 @@ class BlankTokens {
     text_.remove_prefix(end);
     return token;
   }
-  /// What follows the tokens taken so far, without blanks around it.
+  /// The text after the last token, without blanks around it.
   std::string_view rest() const;
 
  private:

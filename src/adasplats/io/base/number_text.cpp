@@ -11,7 +11,7 @@
 namespace adasplats {
 namespace {
 
-/// Whether a number that is out of double's range is too small rather than too large.
+/// Whether a number out of the range of double is too small rather than too large.
 bool is_underflow(std::string_view digits) {
   const std::size_t exponent = digits.find_first_of("eE");
   if (exponent != std::string_view::npos) return digits.substr(exponent + 1).starts_with('-');
@@ -56,7 +56,7 @@ std::string lower_case(std::string_view text) {
 
 std::string exact_text(double value) {
   std::array<char, 32> buffer;
-  // Adding zero makes a 0 of -0.
+  // Adding zero turns -0 into 0.
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0).ptr;
   return {buffer.data(), end};
 }

@@ -16,12 +16,12 @@
 
 namespace adasplats {
 
-/// The rare spellings of a real number that std::from_chars refuses: a leading plus, underflow
-/// (gives 0), and the "1.#QNAN", "-1.#INF" of old C libraries.
+/// Parses rare spellings of a real number that std::from_chars rejects: a leading plus, underflow
+/// (gives 0), and "1.#QNAN", "-1.#INF" of old C libraries.
 std::optional<double> parse_unusual_double(std::string_view token);
 
-/// The number that the whole token spells, independent of the locale; nothing where it is not a
-/// number or out of T's range. Integers may be written as reals without a fraction ("255.0").
+/// The number in a token, independent of the locale; nothing if the token is not a number or out of
+/// T's range. Integers may be written as reals without a fraction ("255.0").
 template <class T>
 std::optional<T> parse_number(std::string_view token) {
   T value{};
@@ -49,21 +49,20 @@ std::optional<T> parse_number(std::string_view token) {
   }
 }
 
-/// The token in quotes for a message: at most 40 characters, what cannot be printed as '?'.
+/// The token in quotes for a message: at most 40 characters, unprintable ones as '?'.
 std::string shown(std::string_view token);
 
 /// The shortest text that reads back as the same number; a zero has no sign.
 std::string exact_text(double value);
 
-/// The shortest text that is the same number to 15 digits, as many as every decimal number keeps in
-/// a double: what a file or a person meant, without the last bits of arithmetic (848899.7, not
-/// 848899.7000000001).
+/// The shortest text of the number rounded to 15 digits, which every decimal number keeps in a
+/// double: the number as it was written, without rounding errors (848899.7, not 848899.7000000001).
 std::string decimal_text(double value);
 
-/// `text` with ASCII letters in lower case, whatever the locale.
+/// `text` with ASCII letters in lower case, independent of the locale.
 std::string lower_case(std::string_view text);
 
-/// A box in a message: "x 1 .. 2, y 3 .. 4, z 5 .. 6", without axes that have no bounds.
+/// A box for a message: "x 1 .. 2, y 3 .. 4, z 5 .. 6", without unbounded axes.
 std::string box_text(Vec3d low, Vec3d high);
 
 }  // namespace adasplats

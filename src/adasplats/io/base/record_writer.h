@@ -14,7 +14,8 @@
 
 namespace adasplats {
 
-/// Copies one value of `rows` rows of `column`, from `first_row` on, to `to`, `record_bytes` apart.
+/// Copies the values of `rows` rows of `column`, from `first_row` on, to `to`, `record_bytes`
+/// apart.
 inline void spread_column(const ColumnView& column, std::size_t first_row, std::size_t rows,
                           std::size_t record_bytes, char* to) {
   const char* const from = static_cast<const char*>(column.data) + first_row * column.stride_bytes;
@@ -30,7 +31,7 @@ inline void spread_column(const ColumnView& column, std::size_t first_row, std::
   }
 }
 
-/// Writes `rows` records: `prefix_bytes` that `fill_prefix(row, place)` fills, then the columns,
+/// Writes `rows` records: `prefix_bytes` filled by `fill_prefix(row, bytes)`, then the columns,
 /// without gaps.
 template <class FillPrefix>
 void write_records(ByteSink& file, std::size_t rows, std::span<const ColumnView> columns,

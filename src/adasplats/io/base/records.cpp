@@ -80,9 +80,9 @@ void check_room(const InputFile& file, std::uint64_t count, std::uint64_t record
                 std::string_view what) {
   const std::uint64_t room = file.remaining() / std::max<std::uint64_t>(1, record_bytes);
   if (count <= room) return;
-  throw file.error_here("found room for " + std::to_string(room) + " " + std::string(what) +
-                        " of at least " + std::to_string(record_bytes) +
-                        " bytes, the header says " + std::to_string(count));
+  throw file.error_here("the header states " + std::to_string(count) + " " + std::string(what) +
+                        ", but the file has room for " + std::to_string(room) + " of at least " +
+                        std::to_string(record_bytes) + " bytes");
 }
 
 std::vector<Column> read_records(InputFile& file, std::uint64_t count, std::size_t record_bytes,

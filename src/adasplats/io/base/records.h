@@ -15,7 +15,7 @@
 
 namespace adasplats {
 
-/// Calls `f` with a value of the C++ type that `type` stands for.
+/// Calls `f` with a value of the C++ type of `type`.
 template <class F>
 auto with_type(ColumnType type, F&& f) {
   switch (type) {
@@ -41,24 +41,24 @@ Column make_column(std::string name, ColumnType type, std::size_t rows);
 /// The bytes of a column's values, to be filled by layout.
 std::byte* column_bytes(Column& column);
 
-/// One value of every record of a file: where in the record and of what type.
+/// A value of every record of a file: its type and offset in the record.
 struct RecordField {
   std::string name;
   ColumnType type;
   std::size_t offset_bytes;
 };
 
-/// Copies one value each from `rows` places, `stride_bytes` apart, into `to`, densely.
-/// `swap_bytes` turns the byte order of each value round.
+/// Copies one value of each of `rows` records, `stride_bytes` apart, densely into `to`.
+/// `swap_bytes` reverses the byte order of each value.
 void gather_values(const std::byte* from, std::size_t stride_bytes, std::size_t value_bytes,
                    bool swap_bytes, std::size_t rows, std::byte* to);
 
-/// Reads `count` records of `record_bytes` from where `file` stands. The count is checked against
-/// the file's size before anything is allocated. Errors: data.
+/// Reads `count` records of `record_bytes` at the current offset of `file`. Checks the count
+/// against the size of the file before it allocates. Errors: data.
 std::vector<Column> read_records(InputFile& file, std::uint64_t count, std::size_t record_bytes,
                                  const std::vector<RecordField>& fields, bool swap_bytes);
 
-/// A data error unless `count` records of at least `record_bytes` can follow where `file` stands.
+/// A data error unless the rest of `file` can hold `count` records of at least `record_bytes`.
 void check_room(const InputFile& file, std::uint64_t count, std::uint64_t record_bytes,
                 std::string_view what);
 
@@ -66,7 +66,7 @@ void check_room(const InputFile& file, std::uint64_t count, std::uint64_t record
 class TextColumn {
  public:
   TextColumn(Column& column, ColumnType type);
-  /// Whether the token is a number of the column's type; then it is the value of `row`.
+  /// Stores the token as the value of `row`; false if it is not a number of the column's type.
   bool store(std::size_t row, std::string_view token) const { return store_(data_, row, token); }
 
  private:
@@ -77,7 +77,7 @@ class TextColumn {
 /// "f32" and so on, for messages.
 std::string_view type_name(ColumnType type);
 
-/// A value of a point record, at any place.
+/// A value at any address, in the byte order of this machine.
 template <class T>
 T load_value(const std::byte* from) {
   T value;

@@ -16,7 +16,7 @@
 
 namespace adasplats {
 
-/// One named field of all records of a file, in the type the file has it.
+/// One named field of all records of a file, in its type in the file.
 struct Column {
   using Values =
       std::variant<std::vector<std::int8_t>, std::vector<std::uint8_t>, std::vector<std::int16_t>,
@@ -27,7 +27,7 @@ struct Column {
   Values values;
 
   std::size_t size() const;
-  /// Value of one record as a double (64-bit integers beyond 2^53 are rounded).
+  /// The value of one record as a double (64-bit integers beyond 2^53 are rounded).
   double as_double(std::size_t row) const;
 };
 
@@ -64,20 +64,20 @@ struct Table {
   const Column* find(std::string_view name) const;  ///< nullptr if there is none
 };
 
-/// Leaves the rows that have a flag.
+/// Keeps only the flagged rows.
 void keep_rows(const std::vector<bool>& kept, Table& table);
 
-/// Triangles as a file holds them: `vertices` (x, y, z, ...) and three vertex indices a triangle;
-/// `faces` has the properties of each triangle (e.g. class); polygons are fanned.
+/// The triangles of a file: `vertices` (x, y, z, ...) and three vertex indices for each triangle;
+/// `faces` has the properties of each triangle (e.g. class). Polygons become fans of triangles.
 struct MeshTable {
   Table vertices;
-  std::vector<std::uint32_t> triangle_vertices;  ///< 3 a triangle
+  std::vector<std::uint32_t> triangle_vertices;  ///< 3 for each triangle
   Table faces;                                   ///< rows = triangles
 };
 
 enum class ColumnType : std::uint8_t { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
 
-/// Of numbers as C++ has them, and of enums by their numbers.
+/// The type of a C++ number, or of the numbers of an enumeration.
 template <class T>
 constexpr ColumnType column_type() {
   if constexpr (std::is_enum_v<T>) {
@@ -96,7 +96,7 @@ constexpr ColumnType column_type() {
   }
 }
 
-/// A column to be written: values of one type at a fixed stride, wherever they are.
+/// A column to write: values of one type at a fixed stride in memory.
 struct ColumnView {
   std::string_view name;
   ColumnType type;
@@ -109,7 +109,7 @@ struct RecordSpan {
   std::uint64_t first = 0;
   std::uint64_t count = 0;
 
-  /// Its part of a file with so many.
+  /// The part of it in a file with `records` records.
   RecordSpan within(std::uint64_t records) const {
     const std::uint64_t begin = std::min(first, records);
     return {begin, std::min(count, records - begin)};

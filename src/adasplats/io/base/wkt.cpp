@@ -16,7 +16,7 @@ namespace {
 // WKT 2 needs about 10.
 constexpr std::size_t kMaxWktDepth = 32;
 
-/// Takes a text apart, character by character.
+/// Parses a text character by character.
 class WktParser {
  public:
   WktNode parse(std::string_view text) {
@@ -99,7 +99,7 @@ WktNode parse_wkt(std::string_view text) { return WktParser().parse(text); }
 
 namespace {
 
-/// What a unit says that is another than the metre.
+/// The description of a unit other than the metre.
 std::optional<std::string> foreign_unit(const WktNode& unit, std::string_view coordinates) {
   constexpr double kTolerance = 1e-9;
   if (unit.values.size() < 2) return std::nullopt;
@@ -109,7 +109,7 @@ std::optional<std::string> foreign_unit(const WktNode& unit, std::string_view co
          " m), by the WKT";
 }
 
-/// Of the units in a system, or of its axes, the first that is no metre.
+/// The first unit of a system or its axes that is not the metre.
 std::optional<std::string> foreign_unit_of(const WktNode& system, std::string_view coordinates) {
   for (const WktNode& node : system.nodes) {
     std::optional<std::string> unit;
