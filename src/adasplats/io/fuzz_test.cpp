@@ -77,7 +77,7 @@ void fuzz(const std::vector<Seed>& seeds, int rounds, std::uint64_t random_seed)
       const std::string& other =
           seeds[(k + static_cast<std::size_t>(round)) % seeds.size()].content;
       std::string content = mutator.mutate(seeds[k].content, other);
-      // Its checksums tell all that is broken; what lies behind them must stand it, too.
+      // Checksums detect all damage; the code after them must survive it, too.
       if (seeds[k].name == "a.e57" && round % 4 != 0) content = io_test::sealed_e57(content);
       ASSERT_NO_THROW(was_read +=
                       reads_or_throws_error(folder.path() / seeds[k].name, content) ? 1 : 0)

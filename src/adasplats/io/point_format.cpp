@@ -66,7 +66,7 @@ constexpr PointFormat kFormats[] = {
      .read = [](const Path& path, const Options&) { return read_text_points(path); }},
     {.name = "PTX",
      .extensions = kPtx,
-     .read = [](const Path& path, const Options&) { return read_text_points(path); }},
+     .read = [](const Path& path, const Options&) { return read_ptx(path); }},
 };
 
 const PointFormat* format_of_first_bytes(const Path& path) {
@@ -80,7 +80,7 @@ const PointFormat* format_of_first_bytes(const Path& path) {
 }
 
 /// ".ply, .pcd and .ptx".
-std::string understood_extensions() {
+std::string supported_extensions() {
   std::vector<std::string> words;
   for (const PointFormat& format : kFormats) {
     for (const std::string_view extension : format.extensions) words.emplace_back(extension);
@@ -92,14 +92,14 @@ std::string understood_extensions() {
   return text;
 }
 
-/// Columns of coordinates have their names in any case.
+/// Finds the columns of coordinates in any case.
 void keep_rows_within(const Extent& extent, const Path& path, Table& table) {
   std::array<const Column*, 3> axes{};
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     for (const Column& column : table.columns)
       if (lower_case(column.name) == std::string_view("xyz").substr(axis, 1)) axes[axis] = &column;
     if (axes[axis] == nullptr)
-      throw data_error({path, {}, {}}, "has no columns x, y and z, which `extent` is about");
+      throw data_error({path, {}, {}}, "has no columns x, y and z for `extent`");
   }
   std::vector<bool> kept(table.rows);
   for (std::size_t row = 0; row < table.rows; ++row)
@@ -125,11 +125,12 @@ const PointFormat& format_of_file(const Path& path) {
   const PointFormat* const by_extension = format_of_extension(path);
   if (by_bytes != nullptr && by_extension != nullptr && by_bytes != by_extension)
     throw data_error({path, 0, {}}, "begins like " + std::string(by_bytes->name) +
-                                        ", its extension says " + std::string(by_extension->name));
+                                        ", but has the extension of " +
+                                        std::string(by_extension->name));
   if (by_extension != nullptr) return *by_extension;
   if (by_bytes != nullptr) return *by_bytes;
   throw data_error({path, {}, {}}, "unknown format " + shown(path.extension().string()) +
-                                       ", understood are " + understood_extensions());
+                                       ", supported are " + supported_extensions());
 }
 
 std::string point_format_names() {
@@ -153,16 +154,16 @@ std::optional<std::uint64_t> records_at_random(const Path& path, bool salvage) {
 }
 
 void require_no_levels(const Path& path, const PointSelection& selection) {
-  if (!selection.asks_levels()) return;
-  throw Error(ErrorKind::usage, path.string() + ": `" + (selection.level ? "level" : "resolution") +
-                                    "` is for files with levels of detail (COPC), this one has "
-                                    "none");
+  if (!selection.has_levels()) return;
+  throw Error(ErrorKind::usage,
+              path.string() + ": `" + (selection.level ? "level" : "resolution") +
+                  "` needs a file with levels of detail (COPC), this one has none");
 }
 
 Table read_points(const Path& path, const LasReadOptions& options) {
   const PointFormat& format = format_of_file(path);
   if (options.selection.records && format.records == nullptr)
-    throw std::logic_error("read_points: records of a format that has them not at random");
+    throw std::logic_error("read_points: records of a format without random access");
   if (format.read == &read_las) return read_las(path, options);
   require_no_levels(path, options.selection);
   Table table = format.read(path, options);

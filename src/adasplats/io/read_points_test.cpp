@@ -43,13 +43,13 @@ TEST(ReadPoints, ByFirstBytesWhereTheExtensionSaysNothing) {
 
 TEST(ReadPoints, ExtensionAndFirstBytesMustAgree) {
   const TemporaryFolder folder;
-  expect_error(ErrorKind::data, {"begins like PLY", "says LAS"},
+  expect_error(ErrorKind::data, {"begins like PLY", "extension of LAS"},
                [&] { read_points(folder.file("a.las", kPly)); });
-  expect_error(ErrorKind::data, {"begins like LAS", "says KITTI"},
+  expect_error(ErrorKind::data, {"begins like LAS", "extension of KITTI"},
                [&] { read_points(folder.file("a.bin", "LASF" + std::string(28, 'x'))); });
   expect_error(ErrorKind::data, {"'1 2 3'", "'ply'"},
                [&] { read_points(folder.file("a.ply", "1 2 3\n")); });
-  expect_error(ErrorKind::data, {"begins like E57", "says PLY"},
+  expect_error(ErrorKind::data, {"begins like E57", "extension of PLY"},
                [&] { read_points(folder.file("a.ply", "ASTM-E57")); });
 }
 

@@ -187,7 +187,7 @@ TEST(KittiBin, FiveFloatsInASequenceAreToBeConverted) {
   const TemporaryFolder folder;
   for (const char* name : {"b.bin", "b.pcd.bin"})
     for (const int points : {20, 51})
-      expect_error(ErrorKind::data, {name, "nuScenes", "leave the ring out"},
+      expect_error(ErrorKind::data, {name, "nuScenes", "remove the ring"},
                    [&] { read_kitti_bin(folder.file(name, circle(points, 5))); });
 }
 

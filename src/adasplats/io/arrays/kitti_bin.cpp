@@ -16,9 +16,9 @@ namespace {
 
 constexpr std::size_t kKittiFloats = 4;
 constexpr std::size_t kNuScenesFloats = 5;
-// Sensors and file formats give intensities as shares of 1, in bytes or in 16 bits.
+// Sensors and file formats scale intensities to 1, 8 bits or 16 bits.
 constexpr float kMaxIntensity = 65535;
-// No sensor has more beams; the whole numbers of a column of rings lie below it.
+// No sensor has more beams; rings are integers below it.
 constexpr float kMaxRings = 256;
 
 Table read_floats(InputFile& file, std::initializer_list<const char*> names) {
@@ -36,7 +36,7 @@ const std::vector<float>& floats(const Table& table, std::size_t column) {
   return std::get<std::vector<float>>(table.columns[column].values);
 }
 
-/// All floats of a table as they lie in its file.
+/// All floats of a table, in file order.
 std::vector<float> flat(const Table& table) {
   std::vector<float> values;
   values.reserve(table.columns.size() * table.rows);
@@ -46,7 +46,7 @@ std::vector<float> flat(const Table& table) {
   return values;
 }
 
-/// Intensities that are not finite are not known.
+/// Intensities that are not finite are unknown.
 bool can_be_intensity(float value) {
   return !std::isfinite(value) || (value >= 0 && value <= kMaxIntensity);
 }
@@ -63,8 +63,8 @@ bool has_rings(const Table& table) {
   return true;
 }
 
-/// Whether the file holds five floats a point: every fifth is a ring, though the coordinates that
-/// it would be among as a file of four are no whole numbers.
+/// Whether the file has five floats a point: every fifth is a ring, and no coordinate of the points
+/// read as four floats is an integer throughout.
 bool looks_like_five(const Table& four) {
   if (four.rows % kNuScenesFloats != 0 || four.rows == 0) return false;
   const auto is_whole = [](float value) { return value == std::trunc(value); };
@@ -74,18 +74,18 @@ bool looks_like_five(const Table& four) {
 }
 
 constexpr const char* kFiveFloats =
-    "has 5 floats a point (x, y, z, intensity, ring), as nuScenes has them";
+    "has 5 floats a point (x, y, z, intensity, ring), as in nuScenes";
 
-// What to do with five floats: a file on its own can be read by its name, a sequence's cannot.
-constexpr const char* kNameIt = "; name it *.pcd.bin to have it read so";
+// Advice for five floats: a single file can be read by its name, one of a sequence cannot.
+constexpr const char* kNameIt = "; rename it to *.pcd.bin to read it so";
 constexpr const char* kConvertIt =
-    "; a sequence has scans of 4 (float32 x, y, z, intensity): leave the ring out";
+    "; a sequence needs 4 (float32 x, y, z, intensity): remove the ring";
 
-/// A file of four floats a point says nothing of itself: its values must be possible.
+/// Checks that the values are possible, since the format has no header.
 void require_kitti_values(const std::filesystem::path& path, const Table& table,
-                          const char* cure_of_five) {
+                          const char* advice_for_five) {
   if (looks_like_five(table))
-    throw data_error({path, {}, {}}, std::string(kFiveFloats) + cure_of_five);
+    throw data_error({path, {}, {}}, std::string(kFiveFloats) + advice_for_five);
   const std::vector<float>& intensities = floats(table, 3);
   const auto wrong = std::ranges::find_if_not(intensities, can_be_intensity);
   if (wrong == intensities.end()) return;
@@ -101,13 +101,13 @@ bool is_nuscenes_name(const std::filesystem::path& path) {
   return lower_case(path.filename().string()).ends_with(".pcd.bin");
 }
 
-/// CloudCompare's own files have the same extension.
-void refuse_cloud_compare(InputFile& file) {
+/// Rejects files of CloudCompare, which have the same extension.
+void reject_cloud_compare(InputFile& file) {
   constexpr std::string_view kSignature = "CCB";
   if (file.size_bytes() < kSignature.size()) return;
   if (std::memcmp(file.peek(kSignature.size()).data(), kSignature.data(), kSignature.size()) == 0)
     throw data_error({file.path(), 0, {}},
-                     "is a file of CloudCompare's own format; save it as PLY or LAS there");
+                     "is in CloudCompare's own format; save it as PLY or LAS there");
 }
 
 void require_whole_points(const InputFile& file, std::size_t floats_a_point,
@@ -119,16 +119,17 @@ void require_whole_points(const InputFile& file, std::size_t floats_a_point,
                    what + ", found " + std::to_string(left) + " bytes after the last whole point");
 }
 
-Table read_four_floats(const std::filesystem::path& path, const char* cure_of_five) {
+Table read_four_floats(const std::filesystem::path& path, const char* advice_for_five) {
   InputFile file(path);
-  refuse_cloud_compare(file);
+  reject_cloud_compare(file);
   const bool five = file.size_bytes() % (kNuScenesFloats * sizeof(float)) == 0;
   require_whole_points(
       file, kKittiFloats,
       "a KITTI scan has 16 bytes a point (float32 x, y, z, intensity)" +
-          (five ? std::string("; this one may be of nuScenes, which has 20") + cure_of_five : ""));
+          (five ? std::string("; this file may be from nuScenes, which has 20") + advice_for_five
+                : ""));
   Table table = read_floats(file, {"x", "y", "z", "intensity"});
-  require_kitti_values(path, table, cure_of_five);
+  require_kitti_values(path, table, advice_for_five);
   return table;
 }
 
@@ -136,24 +137,25 @@ Table read_four_floats(const std::filesystem::path& path, const char* cure_of_fi
 
 Table read_kitti_bin(const std::filesystem::path& path) {
   if (is_nuscenes_name(path))
-    throw data_error({path, {}, {}}, "is named as a nuScenes sweep, which has 5 floats a point" +
-                                         std::string(kConvertIt));
+    throw data_error(
+        {path, {}, {}},
+        "has the name of a nuScenes sweep, which has 5 floats a point" + std::string(kConvertIt));
   return read_four_floats(path, kConvertIt);
 }
 
 Table read_bin(const std::filesystem::path& path) {
   if (!is_nuscenes_name(path)) return read_four_floats(path, kNameIt);
   InputFile file(path);
-  refuse_cloud_compare(file);
+  reject_cloud_compare(file);
   require_whole_points(file, kNuScenesFloats,
                        "a nuScenes sweep (*.pcd.bin) has 20 bytes a point (float32 x, y, z, "
                        "intensity, ring)");
   Table table = read_floats(file, {"x", "y", "z", "intensity", "ring"});
   if (!has_rings(table))
     throw data_error({path, {}, {}},
-                     "is named as a nuScenes sweep (float32 x, y, z, intensity, ring), but its "
-                     "fifth column holds no rings (whole numbers from 0 to 255) or its fourth no "
-                     "intensities");
+                     "has the name of a nuScenes sweep (float32 x, y, z, intensity, ring), but its "
+                     "fifth column is not a ring (integers from 0 to 255) or its fourth not an "
+                     "intensity");
   return table;
 }
 

@@ -14,7 +14,7 @@
 
 namespace adasplats {
 
-/// A view of numbers in C order, dense and little-endian, with as many values as `shape` says.
+/// A view of an array in C order, dense and little-endian.
 struct NpyArray {
   ColumnType type;
   std::vector<std::size_t> shape;  ///< at least one dimension; dimensions may be 0
@@ -23,11 +23,11 @@ struct NpyArray {
   std::size_t size_bytes() const;
 };
 
-/// What stands before the values in a NumPy .npy 1.0. Throws std::logic_error without a dimension
-/// and where the size overflows.
+/// The header of a NumPy .npy 1.0. Throws std::logic_error without a dimension and if the size
+/// overflows.
 std::string npy_header(const NpyArray& array);
 
-/// The bytes of a .npy 1.0.
+/// Writes the bytes of a .npy 1.0.
 void put_npy(ByteSink& file, const NpyArray& array);
 
 /// Writes an array of any shape as NumPy .npy 1.0.

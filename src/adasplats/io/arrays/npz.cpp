@@ -22,7 +22,7 @@ constexpr std::uint32_t kLocalHeader = 0x04034b50;
 constexpr std::uint32_t kCentralHeader = 0x02014b50;
 constexpr std::uint32_t kEndOfCentral = 0x06054b50;
 constexpr std::size_t kLocalHeaderBytes = 30;
-constexpr std::uint16_t kVersion = 20;              // stored files need no more than 2.0
+constexpr std::uint16_t kVersion = 20;              // stored files need only 2.0
 constexpr std::uint16_t kFirstDay = 1 << 5 | 1;     // 1 January 1980
 constexpr std::uint64_t kZipLimit = 0xffffffffULL;  // larger sizes and offsets need Zip64
 
@@ -63,7 +63,7 @@ std::uint32_t crc_of(const std::string& header, const NpyArray& array) {
   return static_cast<std::uint32_t>(crc);
 }
 
-/// What the local header and the directory say alike.
+/// The common part of the local header and the directory.
 void put_common(Bytes& bytes, const Member& member) {
   bytes.u16(kVersion).u16(0).u16(0);  // no flags, stored
   bytes.u16(0).u16(kFirstDay).u32(member.crc).u32(member.bytes).u32(member.bytes);
@@ -96,7 +96,7 @@ void check_names(std::span<const NamedArray> arrays) {
   }
   std::ranges::sort(names);
   if (std::ranges::adjacent_find(names) != names.end())
-    throw std::logic_error("write_npz: a name comes twice");
+    throw std::logic_error("write_npz: duplicate name");
 }
 
 std::vector<Member> members_of(const std::filesystem::path& path,
@@ -109,8 +109,8 @@ std::vector<Member> members_of(const std::filesystem::path& path,
     offset += kLocalHeaderBytes + member.name.size() + member.bytes;
     if (offset > kZipLimit)
       throw Error(ErrorKind::data, path.string() +
-                                       ": arrays of 4 GiB or more do not fit into an "
-                                       ".npz; write them as single .npy");
+                                       ": arrays of 4 GiB or more exceed the limit of .npz; "
+                                       "write them as single .npy files");
     member.crc = crc_of(member.header, named.array);
     members.push_back(std::move(member));
   }

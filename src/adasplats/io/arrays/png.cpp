@@ -18,7 +18,7 @@ std::size_t values_of(int width, int height, std::size_t channels) {
   return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * channels;
 }
 
-/// `bytes`: of all pixels, in `format`.
+/// `bytes`: size of all pixels in `format`.
 std::string encoded_image(int width, int height, png_uint_32 format, std::size_t bytes,
                           const void* pixels, PngEffort effort) {
   png_image image{};
@@ -27,8 +27,8 @@ std::string encoded_image(int width, int height, png_uint_32 format, std::size_t
   image.height = static_cast<png_uint_32>(height);
   image.format = format;
   if (effort == PngEffort::fast) image.flags = PNG_IMAGE_FLAG_FAST;
-  // What deflate adds to noise (5 bytes each 16 KiB) and the chunk frames (12 bytes each 8 KiB)
-  // are below 1/64; libpng fails cleanly where that should ever not be enough.
+  // The overhead of deflate for noise (5 bytes for 16 KiB) and of chunks (12 bytes for 8 KiB) is
+  // below 1/64; libpng fails cleanly if the buffer is too small.
   const std::size_t raw_bytes = bytes + static_cast<std::size_t>(height);
   std::string encoded(raw_bytes + raw_bytes / 64 + 4096, '\0');
   png_alloc_size_t encoded_bytes = encoded.size();

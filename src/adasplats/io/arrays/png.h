@@ -9,11 +9,11 @@
 
 namespace adasplats {
 
-/// What a picture is compressed with: filters that suit photographs, or none, which takes a quarter
-/// of the time, and for range images and classes no more bytes.
+/// Effort of compression: filters for photographs, or none, which takes a quarter of the time and
+/// for range images and classes no more bytes.
 enum class PngEffort : bool { small, fast };
 
-/// The bytes of the files below.
+/// The bytes of the images below.
 std::string png_bytes(int width, int height, std::span<const std::uint8_t> pixels,
                       PngEffort effort = PngEffort::small);
 std::string png16_bytes(int width, int height, std::span<const std::uint16_t> levels,

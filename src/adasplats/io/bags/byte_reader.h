@@ -26,10 +26,10 @@ inline std::string place_in_file(const std::filesystem::path& path, std::uint64_
   return path.string() + ": byte " + std::to_string(offset) + ": the " + what;
 }
 
-/// Reads values one behind the other out of bytes in memory; every access is checked.
+/// Reads consecutive values from bytes in memory; every access is checked.
 class ByteReader {
  public:
-  /// `what` is named in errors, "drive.mcap: byte 17: schema" say.
+  /// `what` begins error messages, e.g. "drive.mcap: byte 17: the schema".
   ByteReader(std::string_view bytes, std::string what) : bytes_(bytes), what_(std::move(what)) {}
 
   template <class T>
@@ -50,7 +50,7 @@ class ByteReader {
     place_ += part.size();
     return part;
   }
-  /// Bytes behind their number, 32 bits.
+  /// Bytes after their number, 32 bits.
   std::string_view text() { return take(number<std::uint32_t>()); }
 
   std::size_t place() const { return place_; }
@@ -63,7 +63,7 @@ class ByteReader {
   std::size_t place_ = 0;
 };
 
-/// The last few chunks that were unpacked, for several threads.
+/// The last few decompressed chunks, for several threads.
 class ChunkCache {
  public:
   /// A message in a chunk of the file `path`; unpack() returns the chunk if it is not in the cache.

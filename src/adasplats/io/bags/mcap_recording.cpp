@@ -37,10 +37,10 @@ std::string_view view_of(std::span<const std::byte> bytes, std::size_t count) {
   return {reinterpret_cast<const char*>(bytes.data()), count};
 }
 
-/// The fields of a chunk in front of its records.
+/// The fields of a chunk before its records.
 struct McapChunk {
-  std::uint64_t size = 0;  ///< unpacked
-  std::uint32_t crc = 0;   ///< of what is unpacked; 0: none
+  std::uint64_t size = 0;  ///< decompressed
+  std::uint32_t crc = 0;   ///< of the decompressed records; 0: none
   std::string_view packing, packed;
 };
 
@@ -54,12 +54,12 @@ McapChunk chunk_of(ByteReader reader) {
   return chunk;
 }
 
-/// The content of a record in the file. Errors: data (more than the file or a chunk may have).
+/// The content of a record in the file. Errors: data (larger than the file or the limit of chunks).
 std::string_view content_here(InputFile& file, std::uint64_t offset, std::uint64_t length) {
   if (length > kMaxChunkBytes)
     throw data_error({file.path(), offset, {}}, "a record of " + std::to_string(length) +
-                                                    " bytes, at most " +
-                                                    std::to_string(kMaxChunkBytes) + " are taken");
+                                                    " bytes, expected at most " +
+                                                    std::to_string(kMaxChunkBytes));
   const auto size = static_cast<std::size_t>(length);
   return size == 0 ? std::string_view() : view_of(file.peek(size), size);
 }
@@ -70,7 +70,7 @@ class McapRecording final : public RecordingFile {
     InputFile file(path_);
     const bool begins = file.size_bytes() >= kMcapMagic.size() &&
                         view_of(file.peek(kMcapMagic.size()), kMcapMagic.size()) == kMcapMagic;
-    if (!begins) throw data_error({path_, 0, {}}, "does not begin as MCAP does");
+    if (!begins) throw data_error({path_, 0, {}}, "is not an MCAP file (wrong first bytes)");
   }
 
   void for_each_message(MessageVisitor visit) const override {
@@ -85,24 +85,26 @@ class McapRecording final : public RecordingFile {
       const auto length = head.number<std::uint64_t>();
       file.skip(kRecordHeadBytes);
       if (length > file.remaining())
-        throw data_error({path_, offset, {}},
-                         "a record of " + std::to_string(length) + " bytes, but " +
-                             std::to_string(file.remaining()) +
-                             " follow: the file is damaged, or the recording was cut off (`mcap "
-                             "recover` mends that)");
+        throw data_error(
+            {path_, offset, {}},
+            "a record of " + std::to_string(length) + " bytes, but " +
+                std::to_string(file.remaining()) +
+                " follow: the file is damaged, or the recording was cut off (repair it with "
+                "`mcap recover`)");
       const auto kind = static_cast<McapOpcode>(opcode);
       if (kind == McapOpcode::data_end) return require_end();
       if (kind == McapOpcode::footer) break;
       if (kind == McapOpcode::chunk)
         visit_chunk(content_here(file, offset, length), offset, channels, visit);
-      else if (is_for_us(kind))
+      else if (is_relevant(kind))
         visit_record(kind, content_here(file, offset, length),
                      {0, MessagePlace::kNoChunk, offset + kRecordHeadBytes, 0}, channels, visit);
       file.skip(length);
     }
-    throw data_error({path_, file.size_bytes(), {}},
-                     "ends without the record that closes its data: the recording was cut off "
-                     "(`mcap recover` mends it)");
+    throw data_error(
+        {path_, file.size_bytes(), {}},
+        "has no record that closes its data: the recording was cut off (repair it with "
+        "`mcap recover`)");
   }
 
   std::string message(const MessagePlace& place) const override {
@@ -129,7 +131,7 @@ class McapRecording final : public RecordingFile {
     std::map<std::uint16_t, RecordedTopic> topics;
   };
 
-  static bool is_for_us(McapOpcode kind) {
+  static bool is_relevant(McapOpcode kind) {
     return kind == McapOpcode::schema || kind == McapOpcode::channel || kind == McapOpcode::message;
   }
 
@@ -138,7 +140,7 @@ class McapRecording final : public RecordingFile {
     file.skip(file.size_bytes() - kMcapMagic.size());
     if (view_of(file.peek(kMcapMagic.size()), kMcapMagic.size()) != kMcapMagic)
       throw data_error({path_, file.offset(), {}},
-                       "does not end as MCAP does: the file is damaged or cut off");
+                       "does not end like MCAP: the file is damaged or cut off");
   }
 
   std::string unpacked(std::string_view content, std::uint64_t offset) const {
@@ -148,8 +150,7 @@ class McapRecording final : public RecordingFile {
     const auto crc = static_cast<std::uint32_t>(
         crc32_z(0, reinterpret_cast<const Bytef*>(records.data()), records.size()));
     if (chunk.crc != 0 && crc != chunk.crc)
-      throw Error(ErrorKind::data,
-                  where + " is damaged: its content does not have the checksum that it says");
+      throw Error(ErrorKind::data, where + " is damaged: wrong checksum");
     return records;
   }
 
@@ -162,11 +163,11 @@ class McapRecording final : public RecordingFile {
       const auto length = reader.number<std::uint64_t>();
       const std::size_t begin = reader.place();
       const std::string_view record = reader.take(length);
-      if (is_for_us(kind)) visit_record(kind, record, {0, offset, begin, 0}, channels, visit);
+      if (is_relevant(kind)) visit_record(kind, record, {0, offset, begin, 0}, channels, visit);
     }
   }
 
-  /// `place` is that of the record's content.
+  /// `place` is the position of the record's content.
   void visit_record(McapOpcode kind, std::string_view content, MessagePlace place,
                     Channels& channels, MessageVisitor visit) const {
     const std::uint64_t offset = place.chunk == MessagePlace::kNoChunk ? place.offset : place.chunk;
@@ -176,7 +177,7 @@ class McapRecording final : public RecordingFile {
       const auto topic = channels.topics.find(channel);
       if (topic == channels.topics.end())
         throw reader.error("is of channel " + std::to_string(channel) +
-                           ", which no record before it describes");
+                           ", which no earlier record describes");
       reader.take(4);  // sequence
       const auto time_ns = reader.number<std::uint64_t>();
       reader.take(8);  // when it was published
@@ -204,9 +205,9 @@ class McapRecording final : public RecordingFile {
     const auto type = channels.types.find(schema);
     if (schema != 0 && type == channels.types.end())
       throw reader.error("is of schema " + std::to_string(schema) +
-                         ", which no record before it describes");
+                         ", which no earlier record describes");
     if (schema != 0) topic.type = type->second;
-    // Written again in other chunks; messages hold on to the first.
+    // Repeated in other chunks; messages refer to the first.
     channels.topics.try_emplace(number, std::move(topic));
   }
 

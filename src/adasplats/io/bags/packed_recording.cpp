@@ -21,23 +21,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kAlwaysTaken = std::uint64_t{1} << 30;
-constexpr std::uint64_t kMaxRatio = 256;  // recordings pack to a half or a tenth
-constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
+constexpr std::uint64_t kMinLimitBytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMaxRatio = 256;  // recordings compress to a half or a tenth
+constexpr std::size_t kPartBytes = std::size_t{1} << 20;
 
-/// A folder beside those of others that goes with this object.
+/// A unique temporary folder, removed with this object.
 class UnpackedFolder {
  public:
   UnpackedFolder() {
     std::error_code problem;
     const fs::path parent = fs::temp_directory_path(problem);
     if (problem)
-      throw Error(
-          ErrorKind::cannot_create,
-          "there is no folder for temporary files to unpack a recording in; TMPDIR names one");
+      throw Error(ErrorKind::cannot_create,
+                  "no folder for temporary files to decompress a recording into; set TMPDIR");
     std::string pattern = (parent / "adasplats-unpacked-XXXXXX").string();
     if (mkdtemp(pattern.data()) == nullptr)
-      throw system_error(ErrorKind::cannot_create, pattern, "cannot create the folder", errno);
+      throw system_error(ErrorKind::cannot_create, pattern, "the folder cannot be created", errno);
     path_ = pattern;
   }
   ~UnpackedFolder() {
@@ -53,29 +52,30 @@ class UnpackedFolder {
   fs::path path_;
 };
 
-/// Takes unpacked bytes into a file, as long as there is room.
-class RoomyFile {
+/// Writes decompressed bytes to a file, up to a limit and as long as the disk has space.
+class LimitedFile {
  public:
-  RoomyFile(const fs::path& packed, std::uint64_t packed_bytes, fs::path to)
+  LimitedFile(const fs::path& packed, std::uint64_t packed_bytes, fs::path to)
       : packed_(packed.string()),
-        most_(kAlwaysTaken + kMaxRatio * packed_bytes),
+        max_bytes_(kMinLimitBytes + kMaxRatio * packed_bytes),
         to_(std::move(to)),
         file_(to_, std::ios::binary) {}
 
   void add(std::string_view bytes) {
     written_ += bytes.size();
-    if (written_ > most_)
-      throw Error(ErrorKind::data, packed_ + ": unpacks to more than " + std::to_string(most_) +
-                                       " bytes, " + std::to_string(kMaxRatio) +
-                                       " times its size, as no recording does");
+    if (written_ > max_bytes_)
+      throw Error(ErrorKind::data, packed_ + ": decompresses to more than " +
+                                       std::to_string(max_bytes_) + " bytes, " +
+                                       std::to_string(kMaxRatio) +
+                                       " times its size, which is implausible for a recording");
     unchecked_ += bytes.size();
     if (unchecked_ >= kCheckedEvery) require_disk_space();
     file_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (!file_) throw no_room();
+    if (!file_) throw no_space();
   }
   void finish() {
     file_.close();
-    if (!file_) throw no_room();
+    if (!file_) throw no_space();
   }
 
  private:
@@ -85,21 +85,21 @@ class RoomyFile {
     unchecked_ = 0;
     std::error_code problem;
     const fs::space_info space = fs::space(to_.parent_path(), problem);
-    if (!problem && space.available < space.capacity / 20) throw no_room();
+    if (!problem && space.available < space.capacity / 20) throw no_space();
   }
-  Error no_room() const {
-    return {ErrorKind::io, packed_ + ": no room to unpack it to " + to_.parent_path().string() +
-                               " (after " + std::to_string(written_) +
-                               " bytes); TMPDIR names a folder with more"};
+  Error no_space() const {
+    return {ErrorKind::io, packed_ + ": not enough disk space in " + to_.parent_path().string() +
+                               " to decompress it (after " + std::to_string(written_) +
+                               " bytes); set TMPDIR to a folder with more"};
   }
 
   std::string packed_;
-  std::uint64_t most_, written_ = 0, unchecked_ = 0;
+  std::uint64_t max_bytes_, written_ = 0, unchecked_ = 0;
   fs::path to_;
   std::ofstream file_;
 };
 
-/// Says of errors what file they are about: nobody knows the unpacked one.
+/// Replaces the name of the temporary file in errors by that of the compressed file.
 template <class Do>
 auto with_packed_name(const fs::path& unpacked, const fs::path& packed, const Do& act) {
   try {
@@ -109,7 +109,8 @@ auto with_packed_name(const fs::path& unpacked, const fs::path& packed, const Do
     const std::string name = unpacked.string();
     const std::size_t place = text.find(name);
     if (place == std::string::npos) throw;
-    throw Error(error.kind(), text.replace(place, name.size(), packed.string() + " (unpacked)"));
+    throw Error(error.kind(),
+                text.replace(place, name.size(), packed.string() + " (decompressed)"));
   }
 }
 
@@ -118,13 +119,13 @@ class UnpackedRecording final : public RecordingFile {
   UnpackedRecording(const fs::path& path, const OpenRecordingFile& open)
       : packed_(path), unpacked_(folder_.path() / without_packing(path).filename()) {
     InputFile input(path);
-    RoomyFile file(path, input.size_bytes(), unpacked_);
+    LimitedFile file(path, input.size_bytes(), unpacked_);
     unpack_zstd_stream(
         [&](std::size_t done) -> std::string_view {
           input.skip(done);
           if (input.remaining() == 0) return {};
           const auto bytes = input.peek(
-              static_cast<std::size_t>(std::min<std::uint64_t>(kPieceBytes, input.remaining())));
+              static_cast<std::size_t>(std::min<std::uint64_t>(kPartBytes, input.remaining())));
           return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
         },
         [&](std::string_view bytes) { file.add(bytes); }, path.string());
@@ -139,7 +140,7 @@ class UnpackedRecording final : public RecordingFile {
   }
 
  private:
-  UnpackedFolder folder_;  // goes last
+  UnpackedFolder folder_;  // removed last
   fs::path packed_, unpacked_;
   std::unique_ptr<RecordingFile> file_;
 };

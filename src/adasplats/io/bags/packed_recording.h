@@ -11,22 +11,22 @@
 
 namespace adasplats {
 
-/// "drive.mcap" of "drive.mcap.zstd" (or .zst), a file that is packed as a whole, as ROS 2 bags
-/// with `compression_mode: file` are; another path as it is.
+/// "drive.mcap" for "drive.mcap.zstd" (or .zst), a file that is compressed as a whole, as by ROS 2
+/// bags with `compression_mode: file`; other paths unchanged.
 std::filesystem::path without_packing(const std::filesystem::path& path);
 
 using OpenRecordingFile =
     std::function<std::unique_ptr<RecordingFile>(const std::filesystem::path& path)>;
 
-/// Opens a file that is packed with zstd as a whole: it is unpacked piece by piece into a temporary
-/// folder (the system's, or that of TMPDIR), which goes with the result. Errors: those of `open`,
-/// which name the packed file; data (broken, or unpacking to more than 256 times its size and a
-/// gigabyte), io (no room, of which a twentieth is left free), unavailable (no zstd).
+/// Opens a file that is compressed with zstd as a whole: decompresses it into a temporary folder
+/// (TMPDIR or the system's), which is removed with the result. Errors: those of `open`, naming the
+/// compressed file; data (damaged, or larger than 256 times its size and a gigabyte), io (the disk
+/// is full but for a twentieth), unavailable (no zstd).
 std::unique_ptr<RecordingFile> open_packed_recording(const std::filesystem::path& path,
                                                      const OpenRecordingFile& open);
 
-/// A file whose messages are packed one by one, as ROS 2 bags with `compression_mode: message` are.
-/// Errors of its calls: data (a message that is broken or does not say its size), unavailable.
+/// A file with individually compressed messages, as in ROS 2 bags with `compression_mode: message`.
+/// Errors of its calls: data (a message that is damaged or has no size), unavailable.
 std::unique_ptr<RecordingFile> with_packed_messages(std::unique_ptr<RecordingFile> file,
                                                     std::string packing,
                                                     const std::filesystem::path& path);

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr const char* kMetadataName = "metadata.yaml";
 constexpr std::string_view kMetadataKey = "rosbag2_bagfile_information";
 
-/// The way to open each kind, by the extension.
+/// A kind of recording, by the extension.
 struct RecordingKind {
   std::string_view name, extension;
   std::unique_ptr<RecordingFile> (*open)(const fs::path& path);
@@ -48,10 +48,10 @@ std::unique_ptr<RecordingFile> open_recording_file(const fs::path& path) {
     return open_packed_recording(path, kind->open);
   if (kind != nullptr) return kind->open(path);
   throw data_error({path, {}, {}}, "unknown kind of recording " + shown(path.extension().string()) +
-                                       ", understood are " + list_of(recording_extensions()));
+                                       ", supported are " + list_of(recording_extensions()));
 }
 
-/// "value" of "  key: value", also in quotes; nothing of lines of other keys.
+/// "value" of "  key: value", also in quotes; nothing for lines with other keys.
 std::optional<std::string> yaml_value(std::string_view line, std::string_view key) {
   line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
   if (!line.starts_with(key)) return std::nullopt;
@@ -77,31 +77,30 @@ Ros2Bag ros2_bag_in(const fs::path& folder) {
       mode = lower_case(*packed);
       if (!mode.empty() && mode != "none" && mode != "file" && mode != "message")
         throw data_error({metadata, {}, reader.line()},
-                         "the bag is packed by " + shown(*packed) +
-                             ", which is not read: unpack it with `ros2 bag convert`");
+                         "unsupported compression mode " + shown(*packed) +
+                             "; decompress the bag with `ros2 bag convert`");
     }
     const auto file = in_list ? yaml_value(*line, "- ") : std::nullopt;
     if (file) {
       const fs::path name = *file;
-      // Up to version 3 of the format the name of the folder is before that of the file; beyond its
-      // folder a bag has no business.
+      // Up to version 3 of the format names include the folder. Files outside the folder are
+      // rejected.
       const fs::path above = name.parent_path();
       if (!name.has_filename() || name.filename() == ".." ||
           !(above.empty() || above == fs::absolute(folder / "").parent_path().filename()))
         throw data_error({metadata, {}, reader.line()},
-                         "expected the name of a file beside it, found " + shown(*file));
+                         "expected the name of a file in the same folder, found " + shown(*file));
       files.push_back(folder / name.filename());
     }
     in_list = file || yaml_value(*line, "relative_file_paths:");
   }
   if (files.empty())
-    throw Error(
-        ErrorKind::data,
-        metadata.string() + ": lists no files (relative_file_paths), expected .mcap or .db3");
+    throw Error(ErrorKind::data,
+                metadata.string() + ": no files in relative_file_paths, expected .mcap or .db3");
   if (mode != "message")
     packing.clear();
   else if (packing.empty())
-    packing = "zstd";  // the only one that ROS 2 comes with
+    packing = "zstd";  // the only one in ROS 2
   return {std::move(files), std::move(packing)};
 }
 

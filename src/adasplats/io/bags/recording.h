@@ -17,19 +17,19 @@ namespace adasplats {
 /// How the messages of a topic are serialized.
 enum class MessageEncoding : std::uint8_t { ros1, cdr, other };
 
-/// What the messages of one topic are.
+/// A topic and the type of its messages.
 struct RecordedTopic {
   std::string name;
-  std::string type;  ///< as ROS 1 writes it: "sensor_msgs/PointCloud2", without "msg/"
+  std::string type;  ///< in the form of ROS 1: "sensor_msgs/PointCloud2", without "msg/"
   MessageEncoding encoding = MessageEncoding::other;
 };
 
-/// Where a message lies in a recording.
+/// Position of a message in a recording.
 struct MessagePlace {
   static constexpr std::uint64_t kNoChunk = ~std::uint64_t{0};
   std::uint32_t file = 0;
   std::uint64_t chunk = kNoChunk;  ///< byte of the file where the chunk's record begins
-  std::uint64_t offset = 0;        ///< in the unpacked chunk, else in the file; of db3 the row
+  std::uint64_t offset = 0;        ///< in the decompressed chunk, else in the file; of db3 the row
   std::uint64_t size = 0;
 };
 
@@ -48,17 +48,17 @@ class RecordingFile {
   virtual ~RecordingFile() = default;
   /// All messages in the order of the file. Errors: data (damaged, not closed), io, unavailable.
   virtual void for_each_message(MessageVisitor visit) const = 0;
-  /// One of them again. Several threads may call it at once. Errors: as above.
+  /// Reads one message. Several threads may call it at once. Errors: as above.
   virtual std::string message(const MessagePlace& place) const = 0;
 };
 
-/// Messages by topics, as robots record them: MCAP (Foxglove's specification, version 0), ROS 1
-/// bags (format 2.0), and ROS 2 bags: a folder with metadata.yaml and files of MCAP or SQLite, or
-/// one such file, packed as a whole or not (packed_recording.h). It is read from front to back; a
-/// chunk is in memory at a time, and of message() the last four (kMaxChunkBytes each at most).
+/// A recording of messages by topic: MCAP (Foxglove's specification, version 0), ROS 1 bags (format
+/// 2.0), and ROS 2 bags: a folder with metadata.yaml and MCAP or SQLite files, or one such file,
+/// optionally compressed (packed_recording.h). Read sequentially; memory holds one chunk, and for
+/// message() the last four (at most kMaxChunkBytes each).
 class Recording {
  public:
-  /// Errors: no_input, data (none of these formats; a folder whose files are not all there).
+  /// Errors: no_input, data (none of these formats; missing files of a folder).
   explicit Recording(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return path_; }
@@ -70,8 +70,8 @@ class Recording {
   std::vector<std::unique_ptr<RecordingFile>> files_;
 };
 
-/// Whether a path is a recording by its name: .mcap, .bag, .db3, these with .zstd or .zst behind
-/// it, a folder with the metadata.yaml of a ROS 2 bag.
+/// Whether a path is a recording by its name: .mcap, .bag, .db3, optionally followed by .zstd or
+/// .zst, or a folder with the metadata.yaml of a ROS 2 bag.
 bool is_recording(const std::filesystem::path& path);
 
 /// ".mcap", ".bag", ".db3".
@@ -80,20 +80,20 @@ std::vector<std::string> recording_extensions();
 /// "MCAP, ROS 1 bag, ROS 2 bag", for help.
 std::string recording_format_names();
 
-/// "sensor_msgs/PointCloud2" of "sensor_msgs/msg/PointCloud2".
+/// "sensor_msgs/PointCloud2" for "sensor_msgs/msg/PointCloud2".
 std::string short_type_name(std::string_view type);
 
-// One each of the formats (recording.cpp chooses).
+// One for each format (recording.cpp chooses).
 std::unique_ptr<RecordingFile> open_mcap(const std::filesystem::path& path);
 std::unique_ptr<RecordingFile> open_rosbag(const std::filesystem::path& path);
 std::unique_ptr<RecordingFile> open_sqlite(const std::filesystem::path& path);
 
-/// What a ROS 2 bag consists of by its metadata.yaml.
+/// The parts of a ROS 2 bag by its metadata.yaml.
 struct Ros2Bag {
-  std::vector<std::filesystem::path> files;  ///< in their order
-  std::string message_packing;               ///< of single messages, "zstd"; empty: none
+  std::vector<std::filesystem::path> files;  ///< in order
+  std::string message_packing;  ///< compression of single messages, "zstd"; empty: none
 };
-/// Errors: data (no such list, a packing of another kind than file or message).
+/// Errors: data (no list of files, a compression mode other than file or message).
 Ros2Bag ros2_bag_in(const std::filesystem::path& folder);
 
 }  // namespace adasplats

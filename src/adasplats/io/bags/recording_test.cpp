@@ -98,7 +98,7 @@ TEST(McapRecording, DamageIsAnError) {
   const std::string records = mcap_records(kSaid, topics);
   expect_error(ErrorKind::data, {"checksum"},
                read(mcap_file(mcap_chunk("", records, records.size(), 12345))));
-  expect_error(ErrorKind::data, {"says"},
+  expect_error(ErrorKind::data, {"expected"},
                read(mcap_file(mcap_chunk("", records, records.size() + 1))));
   expect_error(ErrorKind::data, {"'snappy'", "zstd"},
                read(mcap_file(mcap_chunk("snappy", records, records.size()))));
@@ -134,7 +134,7 @@ TEST(RosbagRecording, DamageIsAnError) {
   expect_error(ErrorKind::data, {"not closed"}, read(bags_test::bag_file("", 0)));
   std::vector<std::string> topics;
   const std::string records = bags_test::bag_records(kSaid, topics);
-  expect_error(ErrorKind::data, {"says"},
+  expect_error(ErrorKind::data, {"expected"},
                read(bags_test::bag_file(bags_test::bag_chunk("none", records, 5))));
   const auto none = [](const char* op, const std::string& name) {
     return bags_test::bag_file(bags_test::bag_record({{"op", op}, {name, "12345678"}}, ""));
@@ -248,10 +248,10 @@ TEST(Ros2Bag, FilesThatArePackedAsAWholeLeaveNothingBehind) {
     const std::string whole = zstd_frame(plain);
     refused(whole.substr(0, whole.size() - 1), {"end early"});
     refused(whole.substr(0, 3), {"end early"});
-    refused("this is not zstd but some text", {"zstd is broken"});
-    refused(whole + "more", {"broken"});
+    refused("this is not zstd but some text", {"damaged zstd data"});
+    refused(whole + "more", {"damaged"});
     // What is wrong within is said of the file that the user has.
-    refused(zstd_frame(plain.substr(0, plain.size() / 2)), {"(unpacked)"});
+    refused(zstd_frame(plain.substr(0, plain.size() / 2)), {"(decompressed)"});
   });
   EXPECT_TRUE(std::filesystem::is_empty(unpacked.path()));
   ASSERT_EQ(setenv("TMPDIR", (unpacked.path() / "absent").c_str(), 1), 0);
@@ -279,7 +279,7 @@ TEST(Ros2Bag, MessagesThatArePackedOneByOne) {
     expect_error(ErrorKind::data, {"drive.mcap", "/b", "end early"},
                  [&] { contents_of(folder.path()); });
     folder.file("drive.mcap", mcap_of(kSaid));
-    expect_error(ErrorKind::data, {"drive.mcap", "/a", "broken"},
+    expect_error(ErrorKind::data, {"drive.mcap", "/a", "damaged"},
                  [&] { contents_of(folder.path()); });
     describe("lz4");
     expect_error(ErrorKind::data, {"drive.mcap", "lz4", "zstd"},

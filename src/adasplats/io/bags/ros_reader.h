@@ -13,18 +13,18 @@
 
 namespace adasplats {
 
-/// Reads the values of one ROS message in their order.
-/// - ROS 1 ("msg" of the ROS wiki): little-endian, nothing between values.
-/// - CDR (OMG DDS-XTypes 1.3, 7.4, versions 1 and 2 of final types): behind 4 bytes that tell the
-///   byte order, each value at a multiple of its size (of 4 at most in version 2); texts end with
-///   a zero that counts.
+/// Reads the values of one ROS message in order.
+/// - ROS 1 ("msg" of the ROS wiki): little-endian, without padding.
+/// - CDR (OMG DDS-XTypes 1.3, 7.4, versions 1 and 2 of final types): after 4 bytes with the byte
+///   order, each value at a multiple of its size (at most 4 in version 2); the length of texts
+///   includes a final zero.
 class RosReader {
  public:
   RosReader(std::string_view bytes, MessageEncoding encoding, const std::string& what)
       : reader_(bytes, what), is_cdr_(encoding == MessageEncoding::cdr) {
     static_assert(std::endian::native == std::endian::little);
     if (encoding == MessageEncoding::other)
-      throw reader_.error("is not serialized as ROS does (cdr, ros1)");
+      throw reader_.error("has an unsupported serialization, expected cdr or ros1");
     if (!is_cdr_) return;
     const auto high = reader_.number<std::uint8_t>();
     const auto low = reader_.number<std::uint8_t>();
@@ -56,11 +56,11 @@ class RosReader {
     const std::uint32_t size = number<std::uint32_t>();
     return reader_.take(size);
   }
-  /// How many elements follow, of `min_bytes` each at least.
+  /// The number of elements that follow, of at least `min_bytes` each.
   std::uint32_t count(std::size_t min_bytes) {
     const std::uint32_t count = number<std::uint32_t>();
     if (count > reader_.remaining() / min_bytes)
-      throw reader_.error("says " + std::to_string(count) + " elements, but has " +
+      throw reader_.error("states " + std::to_string(count) + " elements, but has " +
                           std::to_string(reader_.remaining()) + " bytes");
     return count;
   }

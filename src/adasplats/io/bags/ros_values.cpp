@@ -16,7 +16,7 @@ constexpr std::int64_t kNanosecondsOfSecond = 1'000'000'000;
 
 RosHeader read_header(RosReader& reader) {
   if (reader.is_ros1()) reader.number<std::uint32_t>();  // seq
-  // ROS 1 has them without a sign, which tells only from 2038 on.
+  // Unsigned in ROS 1, which matters from 2038 on.
   const std::int64_t seconds = reader.is_ros1()
                                    ? static_cast<std::int64_t>(reader.number<std::uint32_t>())
                                    : static_cast<std::int64_t>(reader.number<std::int32_t>());
@@ -50,21 +50,21 @@ constexpr std::array kPointFieldTypes = {ColumnType::i8,  ColumnType::u8,  Colum
 
 std::vector<RecordField> read_point_fields(RosReader& reader) {
   constexpr std::size_t kMinBytes = 4 + 4 + 1 + 4;
-  constexpr std::size_t kMaxValues = 4096;  // of one point, so that lying counts take no memory
+  constexpr std::size_t kMaxValues = 4096;  // of one point, so that wrong counts take no memory
   std::vector<RecordField> fields;
   const std::uint32_t count = reader.count(kMinBytes);
   for (std::uint32_t k = 0; k < count; ++k) {
     const std::string name = reader.text();
     const auto offset = reader.number<std::uint32_t>();
     const auto type = reader.number<std::uint8_t>();
-    // As the Point Cloud Library has it, 0 is one, too.
+    // 0 means one, too, as in the Point Cloud Library.
     const std::uint32_t values = std::max(std::uint32_t{1}, reader.number<std::uint32_t>());
     if (type == 0 || type > kPointFieldTypes.size())
       throw reader.error("has a field " + shown(name) + " of datatype " + std::to_string(type) +
                          ", expected 1 (INT8) to 8 (FLOAT64)");
     if (values > kMaxValues - fields.size())
       throw reader.error("has a field " + shown(name) + " of " + std::to_string(values) +
-                         " values, at most 4096 a point are taken");
+                         " values, expected at most 4096 for a point");
     const ColumnType column = kPointFieldTypes[type - 1];
     for (std::uint32_t v = 0; v < values; ++v)
       fields.push_back({values == 1 ? name : name + "_" + std::to_string(v), column,
@@ -73,7 +73,7 @@ std::vector<RecordField> read_point_fields(RosReader& reader) {
   return fields;
 }
 
-/// Whether all fields lie in a point, and overlap no more than is sensible.
+/// Requires that all fields are within a point and do not overlap more than twice.
 void require_fields_within(const RosReader& reader, const std::vector<RecordField>& fields,
                            std::size_t step) {
   std::size_t bytes = 0;

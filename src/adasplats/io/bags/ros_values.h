@@ -14,18 +14,18 @@
 namespace adasplats {
 
 // Messages of ROS 1 and 2 (common_msgs/common_interfaces, geometry2) that hold points and poses.
-// `what` begins the messages of errors; all functions throw data for what is no such message.
+// `what` begins error messages; all functions throw data for anything that is not such a message.
 
 /// std_msgs/Header.
 struct RosHeader {
-  std::int64_t stamp_ns = 0;  ///< since whatever epoch the recording's clock has
+  std::int64_t stamp_ns = 0;  ///< since the epoch of the recording's clock
   std::string frame;          ///< without the leading '/' of old ROS 1
 };
 
-/// A place and a rotation in a frame, as stored: the quaternion's norm is not checked.
+/// A position and rotation in a frame, as stored: the norm of the quaternion is not checked.
 struct RosPose {
-  RosHeader header;         ///< its frame is that which the pose is in
-  std::string child_frame;  ///< whose pose it is; empty where the message does not say
+  RosHeader header;         ///< its frame is the one that the pose is in
+  std::string child_frame;  ///< the frame with this pose; empty if not stated
   Vec3d position;
   double qx = 0, qy = 0, qz = 0, qw = 0;
 };
@@ -37,10 +37,10 @@ inline constexpr std::string_view kRosOdometry = "nav_msgs/Odometry";
 inline constexpr std::string_view kRosPose = "geometry_msgs/PoseStamped";
 inline constexpr std::string_view kRosTransform = "geometry_msgs/TransformStamped";
 
-/// Whether such messages hold poses, of a type that ros_poses() reads.
+/// Whether ros_poses() reads messages of this type.
 bool holds_poses(std::string_view type);
 
-/// What a sensor_msgs/PointCloud2 says before its points.
+/// The head of a sensor_msgs/PointCloud2.
 struct RosCloudHead {
   RosHeader header;
   std::uint64_t points = 0;
@@ -52,9 +52,9 @@ RosCloudHead ros_cloud_head(std::string_view bytes, MessageEncoding encoding,
 std::vector<RosPose> ros_poses(std::string_view bytes, std::string_view type,
                                MessageEncoding encoding, const std::string& what);
 
-/// The points of a sensor_msgs/PointCloud2: a column a field, in its type and byte order; COUNT
-/// above 1 becomes name_0, name_1, ... Memory: at most 2x the message, since fields that overlap
-/// more than twice are an error.
+/// The points of a sensor_msgs/PointCloud2, a column for each field in its type; COUNT above 1
+/// becomes name_0, name_1, ... Memory: at most 2x the message, since fields that overlap more than
+/// twice are an error.
 Table ros_points(std::string_view bytes, MessageEncoding encoding, const std::string& what);
 
 }  // namespace adasplats

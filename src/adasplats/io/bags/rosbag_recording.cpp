@@ -64,14 +64,14 @@ class RosbagRecording final : public RecordingFile {
   explicit RosbagRecording(const std::filesystem::path& path) : path_(path) {
     InputFile file(path_);
     if (view(file, std::min<std::uint64_t>(kBagMagic.size(), file.size_bytes())) != kBagMagic)
-      throw data_error({path_, 0, {}}, "does not begin as a ROS bag of format 2.0 does");
+      throw data_error({path_, 0, {}}, "is not a ROS bag of format 2.0 (wrong first bytes)");
   }
 
   void for_each_message(MessageVisitor visit) const override {
     InputFile file(path_);
     file.skip(kBagMagic.size());
     Connections connections;
-    std::optional<std::uint32_t> chunks_left;  // as the header says
+    std::optional<std::uint32_t> chunks_left;  // as in the header
     while (file.remaining() > 0) {
       const std::uint64_t offset = file.offset();
       const std::string header(sized(file, offset));
@@ -94,8 +94,8 @@ class RosbagRecording final : public RecordingFile {
     if (!chunks_left) throw data_error({path_, {}, {}}, "has no bag header");
     if (*chunks_left != 0)
       throw data_error({path_, file.size_bytes(), {}},
-                       "has another number of chunks than its header says: the bag is damaged or "
-                       "cut off (`rosbag reindex` mends that)");
+                       "has another number of chunks than its header states: the bag is damaged or "
+                       "cut off (repair it with `rosbag reindex`)");
   }
 
   std::string message(const MessagePlace& place) const override {
@@ -122,28 +122,29 @@ class RosbagRecording final : public RecordingFile {
     return {reinterpret_cast<const char*>(file.peek(count).data()), count};
   }
 
-  /// How many bytes follow their number; `record` is where their record begins.
+  /// The size that precedes the next bytes; `record` is the offset of their record.
   static std::uint32_t size_here(InputFile& file, std::uint64_t record) {
     const auto size =
         ByteReader(view(file, sizeof(std::uint32_t)), file.path().string()).number<std::uint32_t>();
     if (size > file.remaining() - sizeof(std::uint32_t))
-      throw data_error({file.path(), record, {}},
-                       "a record of " + std::to_string(size) + " bytes, but " +
-                           std::to_string(file.remaining() - sizeof(std::uint32_t)) +
-                           " follow: the bag is damaged, or the recording was cut off (`rosbag "
-                           "reindex` mends that)");
+      throw data_error(
+          {file.path(), record, {}},
+          "a record of " + std::to_string(size) + " bytes, but " +
+              std::to_string(file.remaining() - sizeof(std::uint32_t)) +
+              " follow: the bag is damaged, or the recording was cut off (repair it with "
+              "`rosbag reindex`)");
     if (size > kMaxChunkBytes)
-      throw data_error({file.path(), record, {}},
-                       "a record of " + std::to_string(size) + " bytes, at most " +
-                           std::to_string(kMaxChunkBytes) + " are taken");
+      throw data_error({file.path(), record, {}}, "a record of " + std::to_string(size) +
+                                                      " bytes, expected at most " +
+                                                      std::to_string(kMaxChunkBytes));
     return size;
   }
-  /// Bytes behind their number, while the file stays where it is.
+  /// Bytes after their number, without moving on in the file.
   static std::string_view peek_sized(InputFile& file, std::uint64_t record) {
     const std::uint32_t size = size_here(file, record);
     return view(file, sizeof(std::uint32_t) + std::uint64_t{size}).substr(sizeof(std::uint32_t));
   }
-  /// The same, and moves on.
+  /// The same, moving on.
   static std::string sized(InputFile& file, std::uint64_t record) {
     std::string bytes(peek_sized(file, record));
     file.skip(sizeof(std::uint32_t) + bytes.size());
@@ -153,8 +154,8 @@ class RosbagRecording final : public RecordingFile {
   void require_closed(const BagFields& header) const {
     if (header.number<std::uint64_t>("index_pos") == 0)
       throw data_error({path_, {}, {}},
-                       "the recording was not closed, its end may be missing (`rosbag reindex` "
-                       "mends it)");
+                       "the recording was not closed, its end may be missing (repair it with "
+                       "`rosbag reindex`)");
   }
 
   std::string unpacked(const BagFields& fields, std::string_view data, std::uint64_t offset) const {
@@ -173,7 +174,7 @@ class RosbagRecording final : public RecordingFile {
     }
   }
 
-  /// `place` is that of the data.
+  /// `place` is the position of the data.
   void visit_record(std::uint8_t op, const BagFields& fields, std::string_view data,
                     const MessagePlace& place, Connections& connections,
                     MessageVisitor visit) const {
@@ -183,7 +184,7 @@ class RosbagRecording final : public RecordingFile {
       const BagFields described(ByteReader(data, where));
       RecordedTopic topic{std::string(fields.text("topic")),
                           short_type_name(described.text("type")), MessageEncoding::ros1};
-      // Written again behind the data; messages hold on to the first.
+      // Repeated after the data; messages refer to the first.
       connections.try_emplace(fields.number<std::uint32_t>("conn"), std::move(topic));
     } else if (op == kBagMessage) {
       const auto number = fields.number<std::uint32_t>("conn");
@@ -192,7 +193,7 @@ class RosbagRecording final : public RecordingFile {
         throw data_error(
             {path_, place.chunk == MessagePlace::kNoChunk ? place.offset : place.chunk, {}},
             "a message of connection " + std::to_string(number) +
-                ", which no record before it describes");
+                ", which no earlier record describes");
       const auto time = fields.number<std::uint64_t>("time");  // seconds, then nanoseconds
       const std::uint64_t time_ns = (time & 0xffffffff) * kNanosecondsOfBagSecond + (time >> 32);
       visit({topic->second, time_ns, place, data});

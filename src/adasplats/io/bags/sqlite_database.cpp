@@ -26,7 +26,7 @@ using PageBytes = std::span<const unsigned char>;
 
 // "Database File Format", 1.6: the first byte of a page of a tree.
 constexpr unsigned char kIndexInterior = 2, kIndexLeaf = 10, kTableLeaf = 13;
-constexpr std::size_t kFileHeader = 100;  // on the first page, ahead of that of the tree
+constexpr std::size_t kFileHeader = 100;  // on the first page, before that of the tree
 constexpr std::uint64_t kCutOff = std::numeric_limits<std::uint64_t>::max();
 constexpr std::size_t kMinPage = 512, kMaxPage = 65536;
 
@@ -34,8 +34,8 @@ std::size_t number_of_16_bits(PageBytes page, std::size_t at) {
   return std::size_t{page[at]} << 8 | page[at + 1];
 }
 
-/// The size of a record that stands at the beginning of its cell: seven bits a byte, the last one
-/// below 128; kCutOff where the page ends first, behind which SQLite would read on.
+/// The size of a record at the beginning of its cell: seven bits in each byte, the last one below
+/// 128; kCutOff if the page ends first, where SQLite would read on.
 std::uint64_t record_bytes(PageBytes cell) {
   constexpr std::size_t kMaxBytes = 9;
   std::uint64_t value = 0;
@@ -46,11 +46,11 @@ std::uint64_t record_bytes(PageBytes cell) {
   return kCutOff;
 }
 
-/// The largest record of a page; 0 where the page is of no tree, or has none.
+/// The largest record of a page; 0 if the page is not of a tree, or has no records.
 std::uint64_t largest_record(PageBytes page, std::size_t header) {
   const unsigned char kind = page[header];
   if (kind != kIndexInterior && kind != kIndexLeaf && kind != kTableLeaf) return 0;
-  // Cells of inner pages begin with the number of the page below them, their header ends with one.
+  // Cells of inner pages begin with the number of the page below; so ends their header.
   const std::size_t child = kind == kIndexInterior ? 4 : 0;
   const std::size_t cells = number_of_16_bits(page, header + 3);
   const std::size_t pointers = header + 8 + child;
@@ -65,7 +65,7 @@ std::uint64_t largest_record(PageBytes page, std::size_t header) {
 
 }  // namespace
 
-/// The methods of an open file, where reading a page also looks at its records.
+/// The methods of an open file; reading a page also checks its records.
 struct SqliteDatabase::PageCheck : sqlite3_io_methods {
   const sqlite3_io_methods* own = nullptr;
   std::uint64_t file_bytes = 0;
@@ -83,7 +83,7 @@ void SqliteDatabase::PageCheck::watch(sqlite3_file& file) {
   own = file.pMethods;
   static_cast<sqlite3_io_methods&>(*this) = *own;
   xRead = &PageCheck::read;
-  if (iVersion >= 3)  // no page in memory that was not read
+  if (iVersion >= 3)  // pages in memory must be read, too
     xFetch = [](sqlite3_file*, sqlite3_int64, int, void** page) {
       *page = nullptr;
       return SQLITE_OK;
@@ -92,8 +92,8 @@ void SqliteDatabase::PageCheck::watch(sqlite3_file& file) {
 }
 
 bool SqliteDatabase::PageCheck::holds(PageBytes page, std::uint64_t offset) const {
-  // Pages that hold the rest of a record begin with the number of the next one: with 0 or 1, where
-  // there are less than 2^25 of them. In larger files such a list is no burden.
+  // Overflow pages begin with the number of the next page, i.e. with 0 or 1 if there are less than
+  // 2^25 pages. In larger files the list of pages does not matter.
   constexpr std::uint64_t kMaxPages = 1ULL << 25;
   const bool is_page = std::has_single_bit(page.size()) && page.size() >= kMinPage &&
                        page.size() <= kMaxPage && offset % page.size() == 0;
@@ -117,12 +117,12 @@ SqliteDatabase::SqliteDatabase(std::filesystem::path path)
     : path_(std::move(path)),
       check_(std::make_unique<PageCheck>()),
       database_(nullptr, &sqlite3_close) {
-  const InputFile file(path_);  // what is missing, empty or no file is said as everywhere
+  const InputFile file(path_);  // reports missing, empty and irregular files as usual
   sqlite3* made = nullptr;
   const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_FULLMUTEX;
   const int result = sqlite3_open_v2(path_.c_str(), &made, flags, nullptr);
   database_.reset(made);
-  if (result != SQLITE_OK) throw broken();
+  if (result != SQLITE_OK) throw damaged();
   sqlite3_db_config(made, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(made, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_limit(made, SQLITE_LIMIT_LENGTH,
@@ -131,20 +131,20 @@ SqliteDatabase::SqliteDatabase(std::filesystem::path path)
   sqlite3_file* opened = nullptr;
   if (sqlite3_file_control(made, "main", SQLITE_FCNTL_FILE_POINTER, &opened) != SQLITE_OK ||
       opened == nullptr || opened->pMethods == nullptr)
-    throw std::logic_error("SQLite does not tell the file of a database");
+    throw std::logic_error("SQLite does not give access to the file of a database");
   check_->watch(*opened);
 }
 
 SqliteDatabase::~SqliteDatabase() = default;
 
-Error SqliteDatabase::broken() const {
-  const std::string what = "as an SQLite database it is broken: ";
+Error SqliteDatabase::damaged() const {
+  const std::string what = "damaged SQLite database: ";
   if (!check_->fault)
     return data_error({path_, std::nullopt, std::nullopt},
                       what + (database_ ? sqlite3_errmsg(database_.get()) : "no memory"));
   const auto [offset, bytes] = *check_->fault;
   const std::string size =
-      bytes == kCutOff ? "whose size is cut off" : "of " + std::to_string(bytes) + " bytes";
+      bytes == kCutOff ? "with a truncated size" : "of " + std::to_string(bytes) + " bytes";
   return data_error({path_, offset, std::nullopt}, what + "a record " + size +
                                                        " on this page, in a file of " +
                                                        std::to_string(check_->file_bytes));

@@ -12,10 +12,9 @@ struct sqlite3;
 
 namespace adasplats {
 
-/// Private to io/bags: an SQLite file, to be read, that is no more trusted than any other: what is
-/// in its schema runs nothing, and no record is larger than the file. SQLite itself believes the
-/// size that a page states of a record, up to 4 GiB: for a file of 1 kB, whose record says so, it
-/// makes a list of 72 MB of the pages that such a record would have.
+/// Private to io/bags: an untrusted SQLite file, open for reading. Its schema cannot run code, and
+/// no record is larger than the file. SQLite itself trusts the size of a record, up to 4 GiB: for a
+/// damaged file of 1 kB it may allocate a list of pages of 72 MB.
 class SqliteDatabase {
  public:
   /// Errors: no_input, io, data.
@@ -26,8 +25,8 @@ class SqliteDatabase {
 
   sqlite3* get() const { return database_.get(); }
   const std::filesystem::path& path() const { return path_; }
-  /// What SQLite said last, as a data error.
-  Error broken() const;
+  /// The last error of SQLite, as a data error.
+  Error damaged() const;
 
  private:
   struct PageCheck;

@@ -81,7 +81,7 @@ TEST(SqliteDatabase, PagesOfEveryKindAreRead) {
       }
 }
 
-/// Where the last page of a kind is, of those that hold messages: its first byte tells.
+/// Offset of the last page of a kind, given by its first byte, among those with messages.
 std::size_t page_of_kind(const std::string& bytes, std::size_t page_bytes, char kind) {
   std::size_t found = bytes.size();
   for (std::size_t page = page_bytes; page < bytes.size(); page += page_bytes)
@@ -137,7 +137,7 @@ TEST(SqliteDatabase, RecordsAtTheEndOfAPageAreRefused) {
   std::string bytes = bags_test::small_db3();
   constexpr std::size_t kTopics = 512, kPage = 512, kFirstPointer = 8;
   bytes.replace(kTopics + kFirstPointer, 2, "\x03\xfe");  // 510 and once the size of the page
-  for (const auto& [size, said] : {std::pair("\xff\xff", "a record whose size is cut off"),
+  for (const auto& [size, said] : {std::pair("\xff\xff", "a record with a truncated size"),
                                    std::pair("\xff\x7f", "a record of 16383 bytes")}) {
     bytes.replace(kTopics + kPage - 2, 2, size);
     io_test::expect_error(ErrorKind::data, {"byte 512:", said},

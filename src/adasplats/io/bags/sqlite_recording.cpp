@@ -30,14 +30,14 @@ class Query {
       : database_(database), statement_(nullptr, &sqlite3_finalize) {
     sqlite3_stmt* made = nullptr;
     if (sqlite3_prepare_v2(database.get(), text, -1, &made, nullptr) != SQLITE_OK)
-      throw database_.broken();
+      throw database_.damaged();
     statement_.reset(made);
   }
   void bind(std::int64_t value) { sqlite3_bind_int64(statement_.get(), 1, value); }
   /// Whether there is another row.
   bool next() {
     const int result = sqlite3_step(statement_.get());
-    if (result != SQLITE_ROW && result != SQLITE_DONE) throw database_.broken();
+    if (result != SQLITE_ROW && result != SQLITE_DONE) throw database_.damaged();
     return result == SQLITE_ROW;
   }
   std::int64_t number(int column) const { return sqlite3_column_int64(statement_.get(), column); }
@@ -71,12 +71,11 @@ class SqliteRecording final : public RecordingFile {
     Query messages(database_, "SELECT id, topic_id, timestamp, data FROM messages ORDER BY id");
     std::optional<std::int64_t> before;
     while (messages.next()) {
-      // Broken pages give rows twice or out of order, and would give others when asked by number.
+      // Damaged pages give rows twice or out of order, and other rows by number.
       if (before && messages.number(0) <= *before)
-        throw Error(ErrorKind::data, database_.path().string() +
-                                         ": as an SQLite database it is broken: row " +
+        throw Error(ErrorKind::data, database_.path().string() + ": damaged SQLite database: row " +
                                          std::to_string(messages.number(0)) +
-                                         " of messages behind " + std::to_string(*before));
+                                         " of messages after " + std::to_string(*before));
       before = messages.number(0);
       const auto topic = topics_.find(messages.number(1));
       if (topic == topics_.end())
@@ -104,14 +103,14 @@ class SqliteRecording final : public RecordingFile {
     const std::string_view bytes = query.bytes(0);
     if (bytes.size() != place.size)
       throw Error(ErrorKind::data,
-                  database_.path().string() + ": as an SQLite database it is broken: message " +
+                  database_.path().string() + ": damaged SQLite database: message " +
                       std::to_string(place.offset) + " has " + std::to_string(bytes.size()) +
-                      " bytes, and had " + std::to_string(place.size));
+                      " bytes instead of " + std::to_string(place.size));
     return std::string(bytes);
   }
 
  private:
-  /// Views could compute without end.
+  /// Rejects views, which could compute forever.
   void require_tables() const {
     Query tables(database_,
                  "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND sql NOT LIKE "
@@ -119,7 +118,7 @@ class SqliteRecording final : public RecordingFile {
     constexpr std::int64_t kTables = 2;
     if (!tables.next() || tables.number(0) != kTables)
       throw Error(ErrorKind::data, database_.path().string() +
-                                       ": has no tables 'topics' and 'messages', as ROS 2 bags do");
+                                       ": is not a ROS 2 bag: no tables 'topics' and 'messages'");
   }
 
   SqliteDatabase database_;
@@ -136,9 +135,8 @@ std::unique_ptr<RecordingFile> open_sqlite(const std::filesystem::path& path) {
 #else
 
 std::unique_ptr<RecordingFile> open_sqlite(const std::filesystem::path& path) {
-  throw Error(
-      ErrorKind::unavailable,
-      path.string() + ": is an SQLite file, which this program was built without (libsqlite3-dev)");
+  throw Error(ErrorKind::unavailable,
+              path.string() + ": this program was built without SQLite (libsqlite3-dev)");
 }
 
 #endif

@@ -16,14 +16,14 @@
 namespace adasplats {
 namespace {
 
-/// The columns beside coordinates of several scans.
+/// The columns of several scans other than coordinates.
 struct SharedColumns {
   std::vector<std::string> names;              ///< in the order of the first scan that has them
-  std::map<std::string, std::size_t> dropped;  ///< and how many of the scans have them
+  std::map<std::string, std::size_t> dropped;  ///< and the number of scans that have them
 };
 
-/// A column is of all points or of none, but for the intensity, which may be not known. That also
-/// bounds the table: scans with a column each would make one of scans x points.
+/// Keeps the columns that all scans have, and the intensity, which may be unknown. That also bounds
+/// the size of the table, which scans with different columns would multiply.
 SharedColumns shared_columns(const std::vector<E57Scan>& scans) {
   std::map<std::string, std::size_t> scans_with;
   std::vector<std::string> order;
@@ -41,7 +41,7 @@ SharedColumns shared_columns(const std::vector<E57Scan>& scans) {
   return columns;
 }
 
-/// Sections that share bytes would be read again and again.
+/// Reads the sections and rejects overlapping ones, which would be read repeatedly.
 std::vector<E57Section> sections_of(PagedFile& file, const std::vector<E57Scan>& scans) {
   std::vector<E57Section> sections;
   sections.reserve(scans.size());
@@ -53,7 +53,7 @@ std::vector<E57Section> sections_of(PagedFile& file, const std::vector<E57Scan>&
     if (sections[order[k]].begin < sections[order[k - 1]].end)
       throw file.error_at(
           sections[order[k]].begin,
-          scans[order[k]].name + ": its points lie within those of " + scans[order[k - 1]].name);
+          scans[order[k]].name + ": its points overlap those of " + scans[order[k - 1]].name);
   return sections;
 }
 
@@ -64,7 +64,7 @@ void append(std::vector<double>& to, std::vector<double>&& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
-/// The table, as scans come.
+/// Builds the table scan by scan.
 class E57Table {
  public:
   explicit E57Table(SharedColumns columns)
@@ -113,7 +113,7 @@ class E57Table {
   std::uint64_t without_return_ = 0;
 };
 
-/// Times of points count from their scan's start: with it they are of one clock.
+/// Adds the start of the scan to times, which count from it, so that all scans have one clock.
 void add_starts(const E57Scan& scan, const std::vector<std::string>& columns, E57Points& points) {
   const auto found = std::ranges::find(columns, "timestamp");
   if (found == columns.end()) return;
@@ -121,24 +121,24 @@ void add_starts(const E57Scan& scan, const std::vector<std::string>& columns, E5
     time_s += *scan.start_gps_s;
 }
 
-/// Whether the scans say of all intensities what they are between.
+/// Whether all scans with intensities have limits for them.
 bool have_intensity_limits(const std::vector<E57Scan>& scans) {
   return std::ranges::all_of(scans, [](const E57Scan& scan) {
     return scan.field("intensity") == nullptr || scan.intensity_limits;
   });
 }
 
-/// Brings the intensities of a scan to 0..1 by its limits, so that those of all scans are of one
-/// scale. Gives how many are beyond the limits by more than a thousandth of their distance.
+/// Scales the intensities of a scan to 0..1 by its limits, so that all scans have one scale.
+/// Returns how many exceed the limits by more than a thousandth of the range.
 std::size_t scale_intensities(const E57Scan& scan, const std::vector<std::string>& columns,
                               E57Points& points) {
   constexpr double kBeyond = 1e-3;
   const auto found = std::ranges::find(columns, "intensity");
   if (found == columns.end() || !scan.intensity_limits) return 0;
-  const auto [least, most] = *scan.intensity_limits;
+  const auto [minimum, maximum] = *scan.intensity_limits;
   std::size_t beyond = 0;
   for (double& value : points.columns[static_cast<std::size_t>(found - columns.begin())]) {
-    value = (value - least) / (most - least);
+    value = (value - minimum) / (maximum - minimum);
     if (value < -kBeyond || value > 1 + kBeyond) ++beyond;
   }
   return beyond;

@@ -25,10 +25,10 @@ constexpr std::string_view kE57Namespace = "http://www.astm.org/COMMIT/E57/2010-
 
 struct StandardField {
   std::string_view field;
-  std::string_view column;  ///< empty: no column of its own
+  std::string_view column;  ///< empty: none
 };
 
-// ASTM E2807-11, table of the fields of a point record; columns as the other readers call them.
+// ASTM E2807-11, table of the fields of a point record; columns as in the other readers.
 constexpr StandardField kStandardFields[] = {{"cartesianX", ""},
                                              {"cartesianY", ""},
                                              {"cartesianZ", ""},
@@ -50,7 +50,7 @@ constexpr StandardField kStandardFields[] = {{"cartesianX", ""},
                                              {"returnCount", "number_of_returns"},
                                              {"timeStamp", "timestamp"}};
 
-/// What the table has of its own.
+/// Names that the table uses itself.
 constexpr std::string_view kOwnColumns[] = {"x", "y", "z", "sensor_x", "sensor_y", "sensor_z"};
 
 /// Sets E57Field::column of all fields of a scan: "intensity", "red", ... for the standard ones
@@ -292,8 +292,8 @@ const E57Field* E57Scan::field(std::string_view field_name) const {
 E57Content read_e57_content(PagedFile& file) {
   if (file.xml_bytes() > kMaxXmlBytes)
     throw data_error({file.path(), {}, {}}, "its XML has " + std::to_string(file.xml_bytes()) +
-                                                " bytes, at most " + std::to_string(kMaxXmlBytes) +
-                                                " are read");
+                                                " bytes, expected at most " +
+                                                std::to_string(kMaxXmlBytes));
   std::string text(file.xml_bytes(), '\0');
   file.read(file.xml_offset(), std::as_writable_bytes(std::span(text)));
   pugi::xml_document document;

@@ -25,8 +25,8 @@ enum class E57Codec : std::uint8_t {
 
 /// One entry of a scan's prototype: a value that every point has.
 struct E57Field {
-  std::string name;    ///< as in the file: "cartesianX", "las:classification"
-  std::string column;  ///< what the table calls it; empty: coordinates, flags and what is not read
+  std::string name;    ///< in the file: "cartesianX", "las:classification"
+  std::string column;  ///< name in the table; empty: coordinates, flags and unread fields
   E57Codec codec = E57Codec::other;
   std::int64_t minimum = 0;
   unsigned bits = 0;  ///< of a stored value, 0 to 64
@@ -38,29 +38,28 @@ struct E57Field {
 struct E57Scan {
   std::string name;  ///< for messages: "scan 0 'hall'"
   RigidTransform world_from_scanner;
-  /// Whether the frame's origin is where the scanner stood: the file has a pose for it, or ranges
-  /// from it; of a cloud made of several scans it is not.
+  /// Whether the origin of the frame is the position of the scanner: the file has a pose or ranges,
+  /// and the cloud is not merged from several scans.
   bool has_scanner = false;
   std::optional<double> start_gps_s;  ///< acquisitionStart, s since 1980-01-06
-  /// Least and greatest intensity that the scanner can give (intensityLimits), the one below the
-  /// other.
+  /// Minimum and maximum intensity of the scanner (intensityLimits), minimum < maximum.
   std::optional<std::pair<double, double>> intensity_limits;
   std::vector<E57Field> fields;
   std::uint64_t points = 0;
-  std::uint64_t section_offset = 0;  ///< physical; means nothing where there are no points
+  std::uint64_t section_offset = 0;  ///< physical; undefined without points
 
-  const E57Field* field(std::string_view field_name) const;  ///< nullptr where there is none
+  const E57Field* field(std::string_view field_name) const;  ///< nullptr if there is none
 };
 
-/// What an E57 file says in its XML section.
+/// The content of the XML section of an E57 file.
 struct E57Content {
   std::vector<E57Scan> scans;
   std::size_t images = 0;
-  std::string coordinate_system;  ///< WKT; empty: not said
+  std::string coordinate_system;  ///< WKT; empty: not stated
 };
 
-/// Memory: at most 64 times the XML. Errors: data (not well-formed, what a scan needs is missing,
-/// numbers that are none, a field of no known type, quaternions that are no rotations), io.
+/// Memory: at most 64 times the XML. Errors: data (XML that is not well-formed, missing elements,
+/// invalid numbers, fields of unknown type, quaternions that are not rotations), io.
 E57Content read_e57_content(PagedFile& file);
 
 }  // namespace adasplats

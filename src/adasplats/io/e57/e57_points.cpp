@@ -54,7 +54,7 @@ class ScanPoints {
     for (std::size_t k = 0; k < wanted.size(); ++k)
       if (std::ranges::find(columns, scan_.fields[k].column) != columns.end()) wanted[k] = true;
     values_ = read_e57_fields(file_, scan_, section, wanted);
-    clear_what_is_not_known();
+    clear_invalid_values();
     return finished(columns);
   }
 
@@ -74,7 +74,7 @@ class ScanPoints {
     return is_spherical_ ? "sphericalInvalidState" : "cartesianInvalidState";
   }
 
-  void clear_what_is_not_known() {
+  void clear_invalid_values() {
     for (const E57Flag& flag : kE57Flags) {
       const auto flags = number_of(flag.field);
       if (!flags) continue;
@@ -89,7 +89,7 @@ class ScanPoints {
     }
   }
 
-  /// Brings the points into the world in place; which of them have a return.
+  /// Transforms the points to the world in place; returns which of them have a return.
   std::vector<bool> place_points(E57Points& points) const {
     const auto state = number_of(state_field());
     std::vector<bool> has_return(points.x.size(), true);

@@ -19,12 +19,12 @@ constexpr std::size_t kPacketStartBytes = 4;  // kind, flags, length: the same i
 constexpr std::size_t kDataHeaderBytes = 6;
 constexpr std::uint8_t kIndexPacket = 0, kDataPacket = 1, kIgnoredPacket = 2;
 
-/// The fewest bits that a record can have, each field one: that bounds what is allocated, where
-/// fields that are the same in all points take none.
+/// The minimum bits of a record, at least one for each field: that bounds the memory for fields
+/// that take no bits since they are equal in all points.
 std::uint64_t min_record_bits(const E57Scan& scan) {
   std::uint64_t bits = 0;
   for (const E57Field& field : scan.fields)
-    bits += field.codec == E57Codec::other ? 8 : field.bits;  // a text has its length in a byte
+    bits += field.codec == E57Codec::other ? 8 : field.bits;  // a text has a length byte
   return std::max<std::uint64_t>({1, bits, scan.fields.size()});
 }
 
@@ -33,7 +33,7 @@ class PacketReader {
  public:
   PacketReader(PagedFile& file, const E57Scan& scan, const E57Section& section,
                const std::vector<bool>& wanted)
-      : file_(file), scan_(scan), place_(section.packets), end_(section.end) {
+      : file_(file), scan_(scan), offset_(section.packets), end_(section.end) {
     for (std::size_t k = 0; k < scan.fields.size(); ++k) {
       decoders_.emplace_back();
       if (wanted[k]) decoders_.back().emplace(scan.fields[k], scan.points);
@@ -41,7 +41,7 @@ class PacketReader {
   }
 
   std::vector<std::vector<double>> read() {
-    while (place_ < end_ && !is_complete()) take_packet();
+    while (offset_ < end_ && !is_complete()) take_packet();
     std::vector<std::vector<double>> values;
     for (std::size_t k = 0; k < decoders_.size(); ++k) {
       auto& decoder = decoders_[k];
@@ -49,7 +49,7 @@ class PacketReader {
         throw file_.error_at(end_ - 1, scan_.name + ": the section of its points ends here, with " +
                                            std::to_string(decoder->values().size()) +
                                            " values of " + scan_.fields[k].name +
-                                           ", recordCount says " + std::to_string(scan_.points));
+                                           ", recordCount is " + std::to_string(scan_.points));
       values.push_back(decoder ? decoder->take_values() : std::vector<double>());
     }
     return values;
@@ -62,27 +62,27 @@ class PacketReader {
   }
 
   Error error(const std::string& message) const {
-    return file_.error_at(place_, scan_.name + ": " + message);
+    return file_.error_at(offset_, scan_.name + ": " + message);
   }
 
   void take_packet() {
     std::array<std::byte, kPacketStartBytes> start{};
-    if (end_ - place_ < start.size()) throw error("found no room for a packet");
-    file_.read(place_, start);
+    if (end_ - offset_ < start.size()) throw error("no room for another packet");
+    file_.read(offset_, start);
     const std::size_t bytes = std::size_t{1} + load_value<std::uint16_t>(&start[2]);
-    if (bytes < start.size() || bytes > end_ - place_)
+    if (bytes < start.size() || bytes > end_ - offset_)
       throw error("found a packet of " + std::to_string(bytes) + " bytes, the section has " +
-                  std::to_string(end_ - place_) + " more");
+                  std::to_string(end_ - offset_) + " more");
     const auto kind = load_value<std::uint8_t>(&start[0]);
     if (kind == kDataPacket) {
       packet_.resize(bytes);
-      file_.read(place_, packet_);
+      file_.read(offset_, packet_);
       take_data();
     } else if (kind != kIndexPacket && kind != kIgnoredPacket) {
       throw error("found a packet of kind " + std::to_string(kind) +
                   ", expected 0 (index), 1 (data) or 2 (ignored)");
     }
-    place_ += bytes;
+    offset_ += bytes;
   }
 
   void take_data() {
@@ -94,10 +94,10 @@ class PacketReader {
                   std::to_string(fields));
     std::size_t from = kDataHeaderBytes + 2 * streams;
     for (std::size_t k = 0; k < streams; ++k) {
-      const std::size_t length_place = kDataHeaderBytes + 2 * k;
-      const std::size_t bytes = length_place + 2 > packet_.size()
+      const std::size_t length_at = kDataHeaderBytes + 2 * k;
+      const std::size_t bytes = length_at + 2 > packet_.size()
                                     ? packet_.size()
-                                    : load_value<std::uint16_t>(&packet_[length_place]);
+                                    : load_value<std::uint16_t>(&packet_[length_at]);
       if (from > packet_.size() || bytes > packet_.size() - from)
         throw error("the fields of a packet are longer than the packet");
       if (decoders_[k]) decoders_[k]->take(std::span(packet_).subspan(from, bytes));
@@ -107,7 +107,7 @@ class PacketReader {
 
   PagedFile& file_;
   const E57Scan& scan_;
-  std::uint64_t place_;
+  std::uint64_t offset_;
   std::uint64_t end_;
   std::vector<std::optional<FieldDecoder>> decoders_;  ///< none: not wanted
   std::vector<std::byte> packet_;
@@ -120,24 +120,24 @@ E57Section read_e57_section(PagedFile& file, const E57Scan& scan) {
   section.begin = file.logical_offset(scan.section_offset, scan.name + ": the section of points");
   std::array<std::byte, kSectionHeaderBytes> header{};
   file.read(section.begin, header);
-  const auto refuse = [&](const std::string& message) {
+  const auto reject = [&](const std::string& message) {
     throw file.error_at(section.begin, scan.name + ": " + message);
   };
   const auto kind = load_value<std::uint8_t>(&header[0]);
   if (kind != 1)
-    refuse("found a section of kind " + std::to_string(kind) + ", expected 1 (points)");
+    reject("found a section of kind " + std::to_string(kind) + ", expected 1 (points)");
   const auto bytes = load_value<std::uint64_t>(&header[8]);
   if (bytes < header.size() || bytes > file.size_bytes() - section.begin)
-    refuse("found a section of " + std::to_string(bytes) + " bytes, the file has " +
+    reject("found a section of " + std::to_string(bytes) + " bytes, the file has " +
            std::to_string(file.size_bytes() - section.begin) + " from here on");
   section.end = section.begin + bytes;
   section.packets =
       file.logical_offset(load_value<std::uint64_t>(&header[16]), scan.name + ": its first packet");
   if (section.packets < section.begin + header.size() || section.packets > section.end)
-    refuse("its first packet lies outside of the section");
+    reject("its first packet is outside the section");
   const std::uint64_t room = 8 * (section.end - section.packets) / min_record_bits(scan);
   if (scan.points > room)
-    refuse("found room for at most " + std::to_string(room) + " points, recordCount says " +
+    reject("found room for at most " + std::to_string(room) + " points, recordCount is " +
            std::to_string(scan.points));
   return section;
 }

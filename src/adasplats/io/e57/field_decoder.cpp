@@ -10,7 +10,7 @@
 namespace adasplats {
 namespace {
 
-// A value of 64 bits that begins within a byte ends in the ninth.
+// A value of 64 bits that begins within a byte ends in the ninth byte.
 constexpr std::size_t kWordRoom = 9;
 
 }  // namespace
@@ -37,7 +37,7 @@ void FieldDecoder::take(std::span<const std::byte> bytes) {
   first_bit_ %= 8;
 }
 
-/// The lowest bit of a value comes first, in the lowest bit of a byte that is free.
+/// Values begin with their lowest bit, in the lowest free bit of a byte.
 std::uint64_t FieldDecoder::stored_at(std::size_t bit) const {
   const std::byte* const from = bytes_.data() + bit / 8;
   const std::size_t shift = bit % 8;

@@ -12,15 +12,15 @@
 
 namespace adasplats {
 
-/// The values of one field, from the bytes of its stream, which come in pieces: a value may begin
-/// in one and end in the next.
+/// Decodes the values of one field from its byte stream, which comes in parts: a value may begin in
+/// one part and end in the next.
 class FieldDecoder {
  public:
-  /// The caller has checked `rows` against the size of the scan's section. A field without bits has
-  /// all its values at once.
+  /// The caller has checked `rows` against the size of the scan's section. A field without bits is
+  /// complete at once.
   FieldDecoder(const E57Field& field, std::size_t rows);
 
-  /// The stream's next bytes; those behind the last value are padding.
+  /// Decodes the next bytes of the stream; those after the last value are padding.
   void take(std::span<const std::byte> bytes);
 
   bool is_complete() const { return values_.size() == rows_; }
@@ -34,7 +34,7 @@ class FieldDecoder {
   E57Field field_;
   std::size_t rows_;
   std::vector<double> values_;
-  std::vector<std::byte> bytes_;  ///< what is not decoded yet, and room to load whole words
+  std::vector<std::byte> bytes_;  ///< undecoded bytes, and room to load words
   std::size_t first_bit_ = 0;     ///< of the next value, in bytes_
 };
 

@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kE57Signature = "ASTM-E57";
 constexpr std::size_t kE57HeaderBytes = 48;
 constexpr std::size_t kE57ChecksumBytes = 4;
-// The standard has 1024 alone and says so in the header; others are read, within reason.
+// The standard allows only 1024, stated in the header; other sizes are read, within limits.
 constexpr std::uint64_t kMinPageBytes = 64;
 constexpr std::uint64_t kMaxPageBytes = std::uint64_t{1} << 20;
 constexpr std::uint64_t kE57BufferBytes = std::uint64_t{256} << 10;
@@ -43,9 +43,9 @@ void PagedFile::read_header() {
     throw data_error({path(), 0, {}}, "does not begin with 'ASTM-E57'");
   const auto major = load_value<std::uint32_t>(&header[8]);
   if (major != 1)
-    throw data_error({path(), 8, {}}, "is version " + std::to_string(major) + "." +
+    throw data_error({path(), 8, {}}, "has version " + std::to_string(major) + "." +
                                           std::to_string(load_value<std::uint32_t>(&header[12])) +
-                                          " of E57, version 1 is understood");
+                                          " of E57, expected version 1");
   page_bytes_ = load_value<std::uint64_t>(&header[40]);
   if (page_bytes_ < kMinPageBytes || page_bytes_ > kMaxPageBytes)
     throw data_error({path(), 40, {}}, "the header has pages of " + std::to_string(page_bytes_) +
@@ -56,17 +56,17 @@ void PagedFile::read_header() {
   checked_page(0, 1);
   const auto length = load_value<std::uint64_t>(&header[16]);
   if (length == 0 || length % page_bytes_ != 0)
-    throw data_error({path(), 16, {}}, "the header says " + std::to_string(length) +
-                                           " bytes, which are no whole pages of " +
+    throw data_error({path(), 16, {}}, "the header states " + std::to_string(length) +
+                                           " bytes, expected a multiple of the page size " +
                                            std::to_string(page_bytes_));
   if (length > file_.size_bytes())
     throw data_error({path(), file_.size_bytes(), {}},
-                     "the file ends here, its header says " + std::to_string(length) + " bytes");
+                     "the file ends here, its header states " + std::to_string(length) + " bytes");
   pages_ = length / page_bytes_;
   xml_offset_ = logical_offset(load_value<std::uint64_t>(&header[24]), "the XML section");
   xml_bytes_ = load_value<std::uint64_t>(&header[32]);
   if (xml_bytes_ > size_bytes() - xml_offset_)
-    throw data_error({path(), 32, {}}, "the header says " + std::to_string(xml_bytes_) +
+    throw data_error({path(), 32, {}}, "the header states " + std::to_string(xml_bytes_) +
                                            " bytes of XML, the file has room for " +
                                            std::to_string(size_bytes() - xml_offset_));
 }
@@ -75,12 +75,12 @@ std::uint64_t PagedFile::logical_offset(std::uint64_t physical, std::string_view
   const std::uint64_t page = physical / page_bytes_;
   const std::uint64_t within = physical % page_bytes_;
   if (page >= pages_)
-    throw data_error({path(), {}, {}}, std::string(what) + " is said to begin at byte " +
+    throw data_error({path(), {}, {}}, std::string(what) + " begins at byte " +
                                            std::to_string(physical) + " of " +
                                            std::to_string(pages_ * page_bytes_));
   if (within >= payload_bytes())
     throw data_error({path(), physical, {}},
-                     std::string(what) + " is said to begin here, within a page's checksum");
+                     std::string(what) + " begins here, within the checksum of a page");
   return page * payload_bytes() + within;
 }
 
@@ -105,14 +105,14 @@ Error PagedFile::error_at(std::uint64_t offset, const std::string& message) cons
   return data_error({path(), page * page_bytes_ + offset % payload_bytes(), {}}, message);
 }
 
-/// The bytes of a page; where it is not buffered it is read with those that are wanted behind it.
+/// The bytes of a page. If it is not buffered, reads it and the wanted pages after it.
 const std::byte* PagedFile::checked_page(std::uint64_t page, std::uint64_t wanted_pages) {
   if (page >= buffered_from_ && page - buffered_from_ < buffer_.size() / page_bytes_)
     return buffer_.data() + (page - buffered_from_) * page_bytes_;
-  const std::uint64_t most = std::max<std::uint64_t>(1, kE57BufferBytes / page_bytes_);
-  const std::uint64_t count = std::min({wanted_pages, most, pages_ - page});
+  const std::uint64_t max_pages = std::max<std::uint64_t>(1, kE57BufferBytes / page_bytes_);
+  const std::uint64_t count = std::min({wanted_pages, max_pages, pages_ - page});
   std::vector<std::byte> bytes = std::move(buffer_);
-  buffer_.clear();  // stays so if a page is damaged
+  buffer_.clear();  // stays empty if a page is damaged
   bytes.resize(count * page_bytes_);
   file_.read_at(page * page_bytes_, bytes);
   for (std::uint64_t k = 0; k < count; ++k)
@@ -123,22 +123,22 @@ const std::byte* PagedFile::checked_page(std::uint64_t page, std::uint64_t wante
 }
 
 void PagedFile::check_page(std::uint64_t page, std::span<const std::byte> bytes) const {
-  // Unlike all other numbers of the file, the checksum has its highest byte first.
-  const std::uint32_t said =
+  // Unlike all other numbers of the file, the checksum is big-endian.
+  const std::uint32_t stated =
       __builtin_bswap32(load_value<std::uint32_t>(&bytes[bytes.size() - kE57ChecksumBytes]));
   const std::uint32_t found = crc32c(bytes.first(bytes.size() - kE57ChecksumBytes));
-  if (said == found) return;
+  if (stated == found) return;
   throw data_error({path(), page * page_bytes_, {}},
                    "page " + std::to_string(page) + " (from 0) is damaged: its checksum is " +
-                       hexadecimal(said) + ", its bytes have " + hexadecimal(found));
+                       hexadecimal(stated) + ", computed " + hexadecimal(found));
 }
 
 namespace {
 
 constexpr std::uint32_t kCastagnoliReversed = 0x82f63b78;
-constexpr std::size_t kCrcStep = 8;  // bytes that are taken at once
+constexpr std::size_t kCrcStep = 8;  // bytes at a time
 
-/// kCrcTables[k][b]: what the byte b does to the remainder when k zero bytes follow it.
+/// kCrcTables[k][b]: the remainder of byte b followed by k zero bytes.
 constexpr std::array<std::array<std::uint32_t, 256>, kCrcStep> make_crc_tables() {
   std::array<std::array<std::uint32_t, 256>, kCrcStep> tables{};
   for (std::uint32_t byte = 0; byte < 256; ++byte) {

@@ -15,12 +15,12 @@
 
 namespace adasplats {
 
-/// An E57 file as its bytes without the checksums (ASTM E2807-11, section 6, "binary file layout"):
-/// pages, each with a CRC-32C in its last four bytes. Offsets without them are "logical", those of
-/// the file "physical". Every page whose bytes are read is checked.
+/// An E57 file without its checksums (ASTM E2807-11, section 6, "binary file layout"): it consists
+/// of pages with a CRC-32C in their last four bytes. Logical offsets exclude the checksums,
+/// physical offsets are those of the file. Every page that is read is checked.
 class PagedFile {
  public:
-  /// Reads the header. Errors: no_input; data (no E57 file, another version, truncated).
+  /// Reads the header. Errors: no_input; data (not E57, another version, truncated).
   explicit PagedFile(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return file_.path(); }
@@ -28,12 +28,12 @@ class PagedFile {
   std::uint64_t xml_offset() const { return xml_offset_; }               ///< logical
   std::uint64_t xml_bytes() const { return xml_bytes_; }
 
-  /// Where a physical offset lies; `what` is for messages. Errors: data (behind the file's end, or
-  /// in a checksum).
+  /// The logical offset of a physical one; `what` is for messages. Errors: data (beyond the end of
+  /// the file, or in a checksum).
   std::uint64_t logical_offset(std::uint64_t physical, std::string_view what) const;
 
-  /// Fills `to` with the logical bytes from `offset` on. Errors: data (beyond the file's end, a
-  /// page with a wrong checksum), io.
+  /// Fills `to` with the logical bytes from `offset` on. Errors: data (beyond the end of the file,
+  /// a page with a wrong checksum), io.
   void read(std::uint64_t offset, std::span<std::byte> to);
 
   /// A data error at a logical offset.
@@ -50,11 +50,11 @@ class PagedFile {
   std::uint64_t pages_ = 0;
   std::uint64_t xml_offset_ = 0;
   std::uint64_t xml_bytes_ = 0;
-  std::vector<std::byte> buffer_;    ///< checked pages, one behind the other
+  std::vector<std::byte> buffer_;    ///< consecutive checked pages
   std::uint64_t buffered_from_ = 0;  ///< the first of them
 };
 
-/// CRC-32C (Castagnoli's polynomial, RFC 3720 appendix B.4), as pages of E57 files have it.
+/// CRC-32C (Castagnoli's polynomial, RFC 3720 appendix B.4), as in pages of E57.
 std::uint32_t crc32c(std::span<const std::byte> bytes);
 
 }  // namespace adasplats

@@ -18,11 +18,11 @@
 namespace adasplats {
 namespace {
 
-// "COPC specification 1.0": the record of its facts comes first behind the header.
+// "COPC specification 1.0": the info record comes first after the header.
 constexpr std::size_t kInfoBytes = 160;
 constexpr std::uint16_t kInfoRecordId = 1;
 constexpr std::size_t kEntryBytes = 32;
-// A cube of the earth's size is cut down to a centimetre on level 30.
+// Level 30 divides a cube of the size of the earth into centimetres.
 constexpr std::int32_t kMaxLevel = 30;
 
 struct CopcInfo {
@@ -32,7 +32,7 @@ struct CopcInfo {
   std::uint64_t root_page_bytes_at = 0, root_page_bytes = 0;
 };
 
-/// A node of the octree: its level from 0 and where it lies among the 2^level cubes of each axis.
+/// A node of the octree: its level from 0 and its index among the 2^level cubes of each axis.
 struct NodeKey {
   std::int32_t level = 0;
   std::array<std::int32_t, 3> at = {};
@@ -42,11 +42,11 @@ struct NodeKey {
     return std::to_string(level) + "-" + std::to_string(at[0]) + "-" + std::to_string(at[1]) + "-" +
            std::to_string(at[2]);
   }
-  bool is_sound() const {
-    const auto is_there = [this](std::int32_t place) { return place >= 0 && place >> level == 0; };
+  bool is_valid() const {
+    const auto is_there = [this](std::int32_t k) { return k >= 0 && k >> level == 0; };
     return level >= 0 && level <= kMaxLevel && std::ranges::all_of(at, is_there);
   }
-  /// Whether it is `other` or lies in it.
+  /// Whether it is `other` or inside it.
   bool is_in(const NodeKey& other) const {
     if (level < other.level) return false;
     for (std::size_t axis = 0; axis < at.size(); ++axis)
@@ -55,12 +55,12 @@ struct NodeKey {
   }
 };
 
-/// What a page says of a node.
+/// An entry of a hierarchy page.
 struct Entry {
   NodeKey key;
   std::uint64_t offset_bytes = 0;
   std::int32_t bytes = 0;
-  std::int32_t points = 0;  ///< kIsPage: at the offset is a page
+  std::int32_t points = 0;  ///< kIsPage: the offset is that of a page
 };
 constexpr std::int32_t kIsPage = -1;
 
@@ -75,7 +75,7 @@ Entry entry_at(const std::byte* bytes) {
   return entry;
 }
 
-/// Nothing where the file is no COPC.
+/// Nothing if the file is not COPC.
 std::optional<CopcInfo> read_info(const std::filesystem::path& path, const LasHeader& header) {
   InputFile file(path);
   file.skip(header.header_bytes);
@@ -98,17 +98,17 @@ std::optional<CopcInfo> read_info(const std::filesystem::path& path, const LasHe
   info.spacing_m = load_value<double>(bytes + 32);
   info.root_page_bytes_at = load_value<std::uint64_t>(bytes + 40);
   info.root_page_bytes = load_value<std::uint64_t>(bytes + 48);
-  constexpr double kLargest_m = 1e12;  // as coordinates in headers of LAS
+  constexpr double kLargest_m = 1e12;  // as for coordinates in LAS headers
   const auto is_length = [](double v) { return v > 0 && v <= kLargest_m; };
   const double farthest_m =
       std::max({std::fabs(info.center.x), std::fabs(info.center.y), std::fabs(info.center.z)});
   if (!is_finite(info.center) || farthest_m > kLargest_m || !is_length(info.half_m) ||
       !is_length(info.spacing_m))
-    throw file.error_here("COPC: the cube or the spacing of its points is none");
+    throw file.error_here("COPC: the cube or the spacing of its points is invalid");
   return info;
 }
 
-/// Goes down the octree as far as the selection wants.
+/// Traverses the octree as far as the selection needs.
 class OctreeReader {
  public:
   OctreeReader(const std::filesystem::path& path, const CopcInfo& info,
@@ -120,7 +120,7 @@ class OctreeReader {
         layout_(layout),
         is_taken_(layout.chunks.size()) {}
 
-  /// The chunks of the nodes that are wanted, in the order of the file.
+  /// The chunks of the selected nodes, in file order.
   std::vector<LazChunk> read() {
     pages_.push_back({{}, info_.root_page_bytes_at, info_.root_page_bytes});
     while (!pages_.empty()) {
@@ -172,10 +172,10 @@ class OctreeReader {
         page.bytes > file.size_bytes() - page.offset_bytes)
       throw error(page.offset_bytes, "the page of node " + page.key.text() + " has " +
                                          std::to_string(page.bytes) +
-                                         " bytes there, which are no entries of " +
-                                         std::to_string(kEntryBytes) + " bytes in the file");
+                                         " bytes there, expected entries of " +
+                                         std::to_string(kEntryBytes) + " bytes within the file");
     if (!read_pages_.insert(page.offset_bytes).second)
-      throw error(page.offset_bytes, "the page of node " + page.key.text() + " is there twice");
+      throw error(page.offset_bytes, "the page of node " + page.key.text() + " occurs twice");
     file.skip(page.offset_bytes);
     for (std::uint64_t at = 0; at < page.bytes; at += kEntryBytes) {
       const Entry entry = entry_at(file.peek(kEntryBytes).data());
@@ -187,14 +187,14 @@ class OctreeReader {
 
   void check(const Page& page, const Entry& entry, std::uint64_t offset) {
     const std::string name = "node " + entry.key.text();
-    if (!entry.key.is_sound() || !entry.key.is_in(page.key))
-      throw error(offset, name + " is none, or not in node " + page.key.text() + " of its page");
+    if (!entry.key.is_valid() || !entry.key.is_in(page.key))
+      throw error(offset, name + " is invalid, or not in node " + page.key.text() + " of its page");
     if (entry.points < kIsPage || entry.bytes < 0)
       throw error(offset, name + " has " + std::to_string(entry.points) + " points in " +
                               std::to_string(entry.bytes) + " bytes");
     const bool is_new = entry.points == kIsPage ? page_keys_.insert(entry.key).second
                                                 : nodes_.insert(entry.key).second;
-    if (!is_new) throw error(offset, name + " is there twice");
+    if (!is_new) throw error(offset, name + " occurs twice");
   }
 
   void take(const Entry& entry) {
@@ -206,7 +206,7 @@ class OctreeReader {
       take_chunk(entry);
   }
 
-  /// A node's points are one of the file's chunks, of which the table tells the same.
+  /// The points of a node are one chunk, which the chunk table must confirm.
   void take_chunk(const Entry& entry) {
     const auto found =
         std::ranges::lower_bound(layout_.chunks, entry.offset_bytes, {}, &LazChunk::offset_bytes);
@@ -214,9 +214,9 @@ class OctreeReader {
     const auto points = static_cast<std::uint64_t>(entry.points);
     if (found == layout_.chunks.end() || found->offset_bytes != entry.offset_bytes ||
         found->bytes != static_cast<std::uint64_t>(entry.bytes) || found->points != points)
-      throw error(entry.offset_bytes, name + " is said to have " + std::to_string(points) +
-                                          " points in " + std::to_string(entry.bytes) +
-                                          " bytes there, which the table of chunks does not say");
+      throw error(entry.offset_bytes, name + " has " + std::to_string(points) + " points in " +
+                                          std::to_string(entry.bytes) +
+                                          " bytes there, but the chunk table has no such chunk");
     const auto k = static_cast<std::size_t>(found - layout_.chunks.begin());
     if (is_taken_[k]) throw error(entry.offset_bytes, name + " has the points of another node");
     is_taken_[k] = true;
@@ -228,13 +228,13 @@ class OctreeReader {
   std::int32_t last_level_;
   const LazLayout& layout_;
   std::vector<bool> is_taken_;  ///< of the chunks
-  std::vector<Page> pages_;     ///< to be read
+  std::vector<Page> pages_;     ///< still to read
   std::set<std::uint64_t> read_pages_;
   std::set<NodeKey> nodes_, page_keys_;
 };
 
-/// Whether all points lie beyond the extent, by the header's box, which those of a LAZ file are
-/// checked against; a box of zeros was never filled in.
+/// Whether all points are outside the extent by the header's box, which the reader checks the
+/// points of LAZ against. A box of zeros was never set.
 bool is_beyond(const LasHeader& header, const Extent& extent) {
   if (header.box_min == Vec3d{} && header.box_max == Vec3d{}) return false;
   return !Extent{header.plausible_low(), header.plausible_high()}.meets(extent);
@@ -244,7 +244,7 @@ bool is_beyond(const LasHeader& header, const Extent& extent) {
 
 void choose_chunks(const std::filesystem::path& path, const PointSelection& selection,
                    LazLayout& layout) {
-  if ((!selection.extent && !selection.asks_levels()) || layout.header.points == 0) return;
+  if ((!selection.extent && !selection.has_levels()) || layout.header.points == 0) return;
   const std::optional<CopcInfo> info = read_info(path, layout.header);
   if (!info) {
     require_no_levels(path, selection);

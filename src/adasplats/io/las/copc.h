@@ -9,12 +9,12 @@
 
 namespace adasplats {
 
-/// Leaves in `layout` those chunks of a LAZ file that can have points of the selection, and in its
-/// header how many points they have: of a COPC file ("COPC specification 1.0") those of the nodes
-/// of its octree whose cubes meet the extent, down to the level that is asked for; only the pages
-/// of the hierarchy that lead there are read. Of another file all chunks, or none where the
-/// header's box is beyond the extent. Errors: usage (levels are asked for, and the file has none),
-/// data (an octree that contradicts itself or the table of chunks).
+/// Reduces `layout` to the chunks of a LAZ file that can have points of the selection, and the
+/// number of points in its header to theirs. Of a COPC file ("COPC specification 1.0") these are
+/// the octree nodes whose cubes overlap the extent, down to the requested level; only the hierarchy
+/// pages on the way are read. Of another file all chunks, or none if the header's box is outside
+/// the extent. Errors: usage (levels of a file without), data (an octree that contradicts itself or
+/// the chunk table).
 void choose_chunks(const std::filesystem::path& path, const PointSelection& selection,
                    LazLayout& layout);
 

@@ -24,8 +24,8 @@ inline std::string entry(std::array<std::int32_t, 4> key, std::uint64_t offset, 
 }
 
 /// A COPC of the sample "layers, variable chunks": its first chunk is the root's, its second that
-/// of node 1-0-0-0, its third, which another page tells, that of node 2-3-0-0. Written by the
-/// specification: the record of facts first, pages at the end.
+/// of node 1-0-0-0, its third, on another page, that of node 2-3-0-0. Written after the
+/// specification: the info record first, pages at the end.
 class CopcFile {
  public:
   static constexpr std::size_t kInfoAt = 375 + 54;

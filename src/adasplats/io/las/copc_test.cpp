@@ -132,23 +132,23 @@ TEST(Copc, OctreesThatContradictThemselvesAreErrors) {
   expect_broken(root + 4, std::int32_t{1}, {"node 0-1-0-0"});
   expect_broken(root + 4, std::int32_t{-1}, {"node 0--1-0-0"});
   expect_broken(inner + 32 + 4, std::int32_t{1}, {"node 2-1-0-0", "not in node 1-1-0-0"});
-  expect_broken(root + 32, std::int32_t{0}, {"node 0-0-0-0 is there twice"});
+  expect_broken(root + 32, std::int32_t{0}, {"node 0-0-0-0 occurs twice"});
   // Points: fewer than none, a chunk that is none, another's size, the points of another.
   expect_broken(root + 28, std::int32_t{-2}, {"-2 points"});
   expect_broken(root + 24, std::int32_t{-5}, {"-5 bytes"});
-  expect_broken(root + 16, std::uint64_t{7}, {"node 0-0-0-0", "table of chunks"});
-  expect_broken(root + 24, std::int32_t{100}, {"in 100 bytes", "table of chunks"});
-  expect_broken(root + 28, std::int32_t{1}, {"1 points", "table of chunks"});
+  expect_broken(root + 16, std::uint64_t{7}, {"node 0-0-0-0", "chunk table"});
+  expect_broken(root + 24, std::int32_t{100}, {"in 100 bytes", "chunk table"});
+  expect_broken(root + 28, std::int32_t{1}, {"1 points", "chunk table"});
   std::string twice = sound.bytes();
   twice.replace(root + 32 + 16, 16, twice.substr(root + 16, 16));
   expect_error(ErrorKind::data, {"node 1-0-0-0", "another node"}, [&] { read(twice, all); });
   // A page that leads to itself, for its own node and for another.
   std::string cycle = sound.bytes();
   cycle.replace(inner + 16, 16, cycle.substr(root + 64 + 16, 16));
-  expect_error(ErrorKind::data, {"node 1-1-0-0 is there twice"}, [&] { read(cycle, all); });
+  expect_error(ErrorKind::data, {"node 1-1-0-0 occurs twice"}, [&] { read(cycle, all); });
   cycle = sound.bytes();
   cycle.replace(inner + 32 + 16, 16, cycle.substr(root + 64 + 16, 16));
-  expect_error(ErrorKind::data, {"page of node 2-3-0-0 is there twice"}, [&] { read(cycle, all); });
+  expect_error(ErrorKind::data, {"page of node 2-3-0-0 occurs twice"}, [&] { read(cycle, all); });
   // None of it matters to whoever reads all points.
   EXPECT_EQ(read(cycle).rows, 40U);
 }
@@ -236,7 +236,7 @@ TEST(Extents, FilesBeyondAreNotUnpacked) {
   put(file, points_at + 8 + 8, std::int32_t{2000000000});  // z of the first point, as it is
   EXPECT_EQ(read(file, {.extent = far}).rows, 0U);
   far.low.y = 900;
-  expect_error(ErrorKind::data, {"broken LAZ"}, [&] { read(file, {.extent = far}); });
+  expect_error(ErrorKind::data, {"damaged LAZ"}, [&] { read(file, {.extent = far}); });
 }
 
 }  // namespace

@@ -16,14 +16,15 @@ namespace {
 
 constexpr std::size_t kLasChunkBytes = std::size_t{128} << 10;
 
-/// How many records to read: all that the header says, or with `salvage` those that are there.
+/// The number of records to read: as in the header, or with `salvage` those within the file.
 std::uint64_t records_to_read(const InputFile& file, const LasHeader& header, bool salvage) {
   const std::uint64_t room = file.remaining() / header.record_bytes;
   if (header.points <= room) return header.points;
   if (salvage) return room;
-  throw file.error_here("found room for " + std::to_string(room) + " point records of " +
-                        std::to_string(header.record_bytes) + " bytes, the header says " +
-                        std::to_string(header.points) + " (salvage reads what is there)");
+  throw file.error_here("the file holds " + std::to_string(room) + " of " +
+                        std::to_string(header.points) + " point records of " +
+                        std::to_string(header.record_bytes) +
+                        " bytes; the option salvage reads them");
 }
 
 }  // namespace

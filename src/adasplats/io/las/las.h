@@ -13,7 +13,7 @@ namespace adasplats {
 /// Reads a LAZ file as read_las() describes.
 Table read_laz(const std::filesystem::path& path, const LasReadOptions& options);
 
-/// The records of a LAS file, and of LAZ with a table of chunks, as records_at_random() has it.
+/// records_at_random() of LAS, and of LAZ with a chunk table.
 std::optional<std::uint64_t> las_records_at_random(const std::filesystem::path& path, bool salvage);
 
 }  // namespace adasplats

@@ -22,14 +22,14 @@ namespace {
 constexpr std::size_t kIntensityAt = 12, kReturnsAt = 14, kUserDataAt = 17;
 constexpr std::size_t kClassAt = 15, kSourceAt = 18;
 constexpr std::size_t kExtendedFlagsAt = 15, kExtendedClassAt = 16, kExtendedSourceAt = 20;
-// Of formats 0 to 5 the upper three bits of the class are flags (synthetic, key point, withheld).
+// In formats 0 to 5 the upper three bits of the class are flags (synthetic, key point, withheld).
 constexpr unsigned kWithheld = 1U << 7, kClassBits = 0x1f;
 
 std::int32_t step_of(const std::byte* record, int axis) {
   return load_value<std::int32_t>(record + 4 * static_cast<std::size_t>(axis));
 }
 
-/// Sets one value a row from `first` on, of records that are `stride` bytes apart.
+/// Sets the values of rows from `first` on, from records that are `stride` bytes apart.
 template <class Get>
 void set_values(Column& column, std::size_t first, const std::byte* records, std::size_t stride,
                 std::size_t count, Get get) {
@@ -114,7 +114,7 @@ void LasColumns::add_rows(std::size_t rows, const Executor* executor) {
     for (std::size_t k = begin; k < end; ++k)
       std::visit([rows](auto& values) { values.resize(values.size() + rows); }, columns_[k].values);
   };
-  // Most of it is that the system gives the memory.
+  // Most of the time goes into page faults.
   if (executor != nullptr)
     executor->for_chunks(columns_.size(), 1, add);
   else
@@ -122,7 +122,7 @@ void LasColumns::add_rows(std::size_t rows, const Executor* executor) {
 }
 
 void LasColumns::fill(std::size_t first, const std::byte* records, std::size_t count) {
-  // Every column reads the records again: few enough to stay in the cache.
+  // Every column reads the records again: a block fits into the cache.
   constexpr std::size_t kBlockRows = 1024;
   for (std::size_t row = 0; row < count; row += kBlockRows)
     fill_block(first + row, records + row * schema_.header.record_bytes,

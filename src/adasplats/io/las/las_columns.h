@@ -15,23 +15,23 @@ namespace adasplats {
 
 class Executor;
 
-/// How the records of a file are read, and which points of it are wanted.
+/// How to read the records of a file, and the points to read.
 struct LasSchema {
   LasHeader header;
   LasDescription description;
-  std::optional<Extent> extent;  ///< none: all
+  std::optional<Extent> extent;  ///< nothing: all
 };
 
-/// How many of some records stay, and how many were withheld.
+/// Numbers of records that are kept and that are withheld.
 struct KeptRecords {
   std::size_t rows = 0, withheld = 0;
 };
 
-/// Moves the records that stay, neither withheld nor beyond the extent, to the front.
+/// Moves the records to keep, neither withheld nor outside the extent, to the front.
 KeptRecords keep_wanted(const LasSchema& schema, std::byte* records, std::size_t count);
 
-/// Point records as the columns that read_las() describes. Rows are made first and filled then, so
-/// that threads can fill some each.
+/// Point records as the columns that read_las() describes. Rows are added first and filled later,
+/// so that several threads can fill them.
 class LasColumns {
  public:
   /// The schema has to outlive this.
@@ -39,11 +39,11 @@ class LasColumns {
 
   void reserve(std::size_t rows);
   std::size_t rows() const { return columns_.front().size(); }
-  /// As many rows more, on the threads of `executor` where there is one.
+  /// Adds rows, on the threads of `executor` if there is one.
   void add_rows(std::size_t rows, const Executor* executor);
-  /// Fills rows from `first` on; other threads may fill others.
+  /// Fills rows from `first` on; other threads may fill other rows.
   void fill(std::size_t first, const std::byte* records, std::size_t count);
-  /// The columns; leaves this empty.
+  /// Moves the columns out.
   Table take_table();
 
  private:

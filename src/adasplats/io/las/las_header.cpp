@@ -19,7 +19,7 @@ constexpr std::size_t kMinHeaderBytes14 = 375;  // 1.4: 64-bit counts
 // No coordinate on Earth, in any unit that surveys use, is larger.
 constexpr double kLargestCoordinate = 1e12;
 
-/// Fields of the header by their offset; the file has them all.
+/// Fields of the header by their offset, which is within `bytes`.
 class HeaderBytes {
  public:
   HeaderBytes(const InputFile& file, std::span<const std::byte> bytes)
@@ -32,7 +32,7 @@ class HeaderBytes {
   Vec3d vector_at(std::size_t offset) const {
     return {at<double>(offset), at<double>(offset + 8), at<double>(offset + 16)};
   }
-  /// Up to the first zero; what is no printed letter of ASCII is '?'.
+  /// Text up to the first zero; characters other than printable ASCII become '?'.
   std::string text_at(std::size_t offset, std::size_t bytes) const {
     std::string text(reinterpret_cast<const char*>(bytes_.subspan(offset, bytes).data()), bytes);
     text.erase(std::min(text.find('\0'), text.size()));
@@ -86,19 +86,19 @@ void check_layout(const InputFile& file, const HeaderBytes& bytes, const LasHead
 
 void check_transform(const HeaderBytes& bytes, const LasHeader& header) {
   for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t place = 8 * static_cast<std::size_t>(axis);
+    const std::size_t shift = 8 * static_cast<std::size_t>(axis);
     const double scale = header.scale[axis];
     const double offset = header.offset[axis];
     const std::string name(1, "xyz"[axis]);
     // 2^31 steps of the scale reach the largest coordinate. NaN fails the comparison too.
     if (!(scale > 0.0 && std::ldexp(scale, 31) <= kLargestCoordinate)) {
-      throw bytes.error(131 + place, "found the " + name + " scale " + std::to_string(scale) +
+      throw bytes.error(131 + shift, "found the " + name + " scale " + std::to_string(scale) +
                                          ", expected a positive number below 400");
     }
     if (!(std::fabs(offset) <= kLargestCoordinate)) {
-      throw bytes.error(155 + place, "the " + name +
-                                         " offset is not a number or above 1e12, no coordinate "
-                                         "is so large");
+      throw bytes.error(155 + shift, "the " + name +
+                                         " offset is not a number or above 1e12, more than any "
+                                         "coordinate");
     }
   }
 }
@@ -141,7 +141,7 @@ LasHeader read_las_header(InputFile& file) {
   header.format = format & 0x3f;
   header.record_bytes = bytes.at<std::uint16_t>(105);
   header.points = bytes.at<std::uint32_t>(107);
-  // The 64-bit count of LAS 1.4 rules; the old field is 0 where it cannot hold it.
+  // The 64-bit count of LAS 1.4 has precedence; the old field is 0 if it cannot hold the count.
   if (minor == 4 && bytes.at<std::uint64_t>(247) != 0) header.points = bytes.at<std::uint64_t>(247);
   header.scale = bytes.vector_at(131);
   header.offset = bytes.vector_at(155);

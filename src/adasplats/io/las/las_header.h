@@ -13,15 +13,15 @@ namespace adasplats {
 
 /// Bytes of a variable length record before its content.
 inline constexpr std::size_t kVlrHeaderBytes = 54;
-/// Likewise of an extended one.
+/// The same for an extended one.
 inline constexpr std::size_t kEvlrHeaderBytes = 60;
 
 /// The public header block of a LAS or LAZ file (ASPRS, "LAS specification 1.4 - R15", table 3).
 struct LasHeader {
   unsigned minor_version = 0;  ///< of version 1
   std::size_t format = 0;      ///< point data record format, 0-10
-  std::string software;        ///< that wrote the file; empty: not said
-  /// Times are adjusted GPS time (less 1e9 s), else seconds of the GPS week: bit 0 of the global
+  std::string software;        ///< that wrote the file; empty: not stated
+  /// Times are adjusted GPS time (minus 1e9 s), else seconds of the GPS week: bit 0 of the global
   /// encoding.
   bool has_adjusted_times = false;
   /// The coordinate system is a well-known text, else GeoTIFF keys: bit 4 of the global encoding.
@@ -30,8 +30,8 @@ struct LasHeader {
   std::size_t record_bytes = 0;
   std::size_t header_bytes = 0;
   std::uint64_t vlr_count = 0;   ///< variable length records between the header and the points
-  std::uint64_t evlr_count = 0;  ///< extended ones, as a rule behind the points...
-  std::uint64_t evlrs_offset_bytes = 0;  ///< ...from here on
+  std::uint64_t evlr_count = 0;  ///< extended ones, usually after the points
+  std::uint64_t evlrs_offset_bytes = 0;
   std::uint64_t points_offset_bytes = 0;
   std::uint64_t points = 0;
   Vec3d scale;
@@ -39,8 +39,7 @@ struct LasHeader {
   Vec3d box_min;
   Vec3d box_max;
 
-  /// Where points can lie: the box with a hundredth of it and ten steps to spare, since writers
-  /// round.
+  /// Bounds of valid points: the box enlarged by a hundredth and ten steps, since writers round.
   Vec3d plausible_low() const { return box_min - slack(); }
   Vec3d plausible_high() const { return box_max + slack(); }
   Vec3d slack() const { return 0.01 * (box_max - box_min) + 10.0 * scale; }
@@ -50,12 +49,12 @@ struct LasHeader {
   }
 };
 
-/// Reads the header at the file's start and checks all that the reader relies on but the number of
-/// points. Errors: data with the byte offset.
+/// Reads the header at the start of the file and checks everything that the reader relies on except
+/// the number of points. Errors: data with the byte offset.
 LasHeader read_las_header(InputFile& file);
 
-/// Where a point data record format (0-10) keeps what not every format has (ASPRS, "LAS
-/// specification 1.4 - R15", tables 7 to 17).
+/// Layout of the optional parts of a point data record format, 0-10 (ASPRS, "LAS specification 1.4
+/// - R15", tables 7 to 17).
 struct LasFormat {
   std::size_t min_bytes = 0;
   bool is_extended = false;         ///< formats 6-10: wider bit fields
@@ -68,7 +67,7 @@ inline constexpr std::size_t kLasFormatCount = 11;
 /// `number` below kLasFormatCount.
 const LasFormat& las_format(std::size_t number);
 
-/// The bit of the flags in formats 6-10 that marks a point as withheld.
+/// The flag of formats 6-10 that marks a point as withheld.
 inline constexpr unsigned kLasExtendedWithheld = 1U << 2;
 
 }  // namespace adasplats

@@ -14,29 +14,29 @@
 
 namespace adasplats {
 
-/// Records of which those that stay stand in front.
+/// Records with those to keep in front.
 struct WantedRecords {
   const std::byte* records = nullptr;
-  std::size_t count = 0;  ///< of all
+  std::size_t count = 0;  ///< of all records
   KeptRecords kept;
 };
 
-/// Makes the table that read_las() describes of point records as LAS files have them.
+/// Builds the table that read_las() describes from point records of LAS.
 class LasTable {
  public:
-  /// `expected_rows` is what memory is taken for at once, where all points are wanted.
+  /// Reserves memory for `expected_rows` if all points are read.
   LasTable(const std::filesystem::path& path, const LasHeader& header,
            const std::optional<Extent>& extent, std::size_t expected_rows);
   LasTable(const LasTable&) = delete;  // columns look into the schema
   LasTable& operator=(const LasTable&) = delete;
 
   const LasSchema& schema() const { return schema_; }
-  /// Takes the next `count` records of header.record_bytes.
+  /// Adds the next `count` records of header.record_bytes.
   void take(const std::byte* records, std::size_t count);
-  /// Takes the next records, which keep_wanted() has looked at already.
+  /// Adds the next records, already sorted by keep_wanted().
   void add(std::span<const WantedRecords> parts, const Executor* executor);
-  std::size_t records() const { return records_; }  ///< that were taken
-  /// The table; says so where it is of fewer records than the header has points. Leaves this empty.
+  std::size_t records() const { return records_; }  ///< that were added
+  /// Moves the table out, with a note if it has fewer records than the header has points.
   Table finish();
 
  private:

@@ -361,7 +361,7 @@ TEST(Las, FewerRecordsThanTheHeaderSays) {
   for (const std::uint32_t points : {3U, 0xffffffffU}) {
     const std::string content =
         las_header(2, 0, 20, points) + las_record(20, 1, 0, 0) + las_record(20, 2, 0, 0) + "short";
-    expect_data_error(content, {"byte 227", "room for 2", std::to_string(points)});
+    expect_data_error(content, {"byte 227", "holds 2 of " + std::to_string(points)});
     const Table table = read(content, true);
     EXPECT_EQ(values_of(table, "x"), (Doubles{0.01, 0.02}));
     EXPECT_EQ(table.notes,
@@ -400,7 +400,7 @@ TEST(Las, CountsOf64Bits) {
   EXPECT_EQ(read(header + records).rows, 2U);
   // 2^32 + 2 must not be taken for 2, nor 2^64 - 1 wrap.
   put(header, 247, (std::uint64_t{1} << 32) + 2);
-  expect_data_error(header + records, {"4294967298", "room for 2"});
+  expect_data_error(header + records, {"holds 2 of 4294967298"});
   put(header, 247, ~std::uint64_t{0});
   expect_data_error(header + records, {"18446744073709551615"});
   EXPECT_EQ(read(header + records, true).rows, 2U);

@@ -32,18 +32,18 @@ T value_at(std::string_view bytes, std::size_t offset) {
   return value;
 }
 
-/// A text that ends at the first zero or with its field.
+/// A text up to the first zero or the end of its field.
 std::string text_at(std::string_view bytes, std::size_t offset, std::size_t length) {
   const std::string_view field = bytes.substr(offset, length);
   return std::string(field.substr(0, field.find('\0')));
 }
 
-/// Bytes of a type of table 24, 1 to 30: scalars, and the old arrays of two and of three.
+/// Types 1 to 10 of table 24; 11 to 30 are old arrays of two and three of them.
 constexpr std::array<ColumnType, 10> kExtraTypes = {
     ColumnType::u8,  ColumnType::i8,  ColumnType::u16, ColumnType::i16, ColumnType::u32,
     ColumnType::i32, ColumnType::u64, ColumnType::i64, ColumnType::f32, ColumnType::f64};
 
-/// The attributes that a record of table 24 describes.
+/// The attributes in an extra bytes record (table 24).
 std::vector<LasExtraField> extra_fields_of(std::string_view record, const LasHeader& header) {
   constexpr std::size_t kDescriptorBytes = 192;
   constexpr std::uint8_t kHasScale = 1 << 3, kHasOffset = 1 << 4;
@@ -53,7 +53,7 @@ std::vector<LasExtraField> extra_fields_of(std::string_view record, const LasHea
     const auto type = value_at<std::uint8_t>(record, 2);
     const auto options = value_at<std::uint8_t>(record, 3);
     if (type > 3 * kExtraTypes.size()) break;
-    if (type == 0) {  // bytes without a meaning; the options are their number
+    if (type == 0) {  // bytes without a meaning, counted by the options
       place += options;
       continue;
     }
@@ -71,7 +71,7 @@ std::vector<LasExtraField> extra_fields_of(std::string_view record, const LasHea
   return fields;
 }
 
-/// Whether a GeoTIFF key directory says that coordinates are angles.
+/// Whether a GeoTIFF key directory states that coordinates are angles.
 bool is_geographic_directory(std::string_view record) {
   constexpr std::size_t kKeyBytes = 8;
   for (; record.size() >= kKeyBytes; record.remove_prefix(kKeyBytes))
@@ -81,7 +81,7 @@ bool is_geographic_directory(std::string_view record) {
   return false;
 }
 
-/// What a GeoTIFF key directory says of the lengths of the coordinates.
+/// Units of lengths in a GeoTIFF key directory.
 struct DirectoryUnits {
   std::optional<std::string> not_metres, unknown;
 };
@@ -93,7 +93,7 @@ struct UnitKeys {
   std::optional<std::uint16_t> (*unit_of_system)(std::uint16_t);
 };
 
-/// A unit that is stated comes before that of a system that is known by its code alone.
+/// A stated unit has precedence over that of the system.
 void add_units(std::string_view record, const UnitKeys& keys, DirectoryUnits& units) {
   constexpr std::size_t kKeyBytes = 8;
   constexpr std::uint16_t kUserDefined = 32767;
@@ -132,13 +132,13 @@ std::vector<T> values_of(std::string_view record) {
   return values;
 }
 
-/// Collects what records say.
+/// Collects the content of records.
 class Descriptor {
  public:
   Descriptor(const LasHeader& header, LasDescription& description)
       : header_(header), description_(description) {}
 
-  /// Whether a record says something of the points.
+  /// Whether a record concerns the points.
   static bool is_wanted(std::string_view user, std::uint16_t number) {
     if (user == "LASF_Spec") return number == kExtraBytesRecord;
     return user == "LASF_Projection" && (number == kWktRecord || number == kGeoKeysRecord ||
@@ -168,13 +168,13 @@ class Descriptor {
   }
 
   void finish() {
-    // The directory says how many keys it has; what follows them is none.
+    // The directory states its number of keys; the rest is padding.
     constexpr std::size_t kCountAt = 3, kKeyNumbers = 4;
     std::vector<std::uint16_t>& directory = keys_.directory;
     if (directory.size() > kCountAt)
       directory.resize(std::min(directory.size() / kKeyNumbers * kKeyNumbers,
                                 kKeyNumbers + kKeyNumbers * directory[kCountAt]));
-    // Writers end the text with zeros, too.
+    // Some writers end the text with zeros.
     keys_.ascii.erase(keys_.ascii.find_last_not_of('\0') + 1);
     const Crs keys = {{}, std::move(keys_)};
     const bool takes_wkt = header_.has_wkt ? !wkt_.empty() : keys.empty();
@@ -191,7 +191,7 @@ class Descriptor {
   GeoKeys keys_;
 };
 
-/// What a record is, of the ordinary kind or an extended one.
+/// The start of an ordinary or extended record.
 struct RecordStart {
   std::string user;
   std::uint16_t number = 0;
@@ -208,9 +208,9 @@ RecordStart record_start(InputFile& file, bool is_extended) {
   return record;
 }
 
-/// Takes the record where `file` stands, and moves on behind it.
+/// Reads the record at the current offset of `file`, and skips it.
 void take_record(InputFile& file, const RecordStart& record, Descriptor& descriptor) {
-  // The longest text that there is has some 10 kB; of extra bytes there are less than 64 kB.
+  // The longest coordinate systems have about 10 kB, extra bytes records less than 64 kB.
   constexpr std::uint64_t kMaxBytes = std::uint64_t{16} << 20;
   if (record.bytes > 0 && Descriptor::is_wanted(record.user, record.number)) {
     if (record.bytes > kMaxBytes)
@@ -234,7 +234,7 @@ void read_vlrs(const std::filesystem::path& path, const LasHeader& header, Descr
   }
 }
 
-/// Gives whether all of them are in the file.
+/// Returns whether all of them are within the file.
 bool read_evlrs(const std::filesystem::path& path, const LasHeader& header,
                 Descriptor& descriptor) {
   if (header.evlr_count == 0) return true;

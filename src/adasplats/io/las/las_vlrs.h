@@ -14,7 +14,7 @@
 
 namespace adasplats {
 
-/// An attribute of points that the file describes itself, behind what their format has.
+/// An attribute in the extra bytes of points, described by the file.
 struct LasExtraField {
   std::string name;
   ColumnType type = ColumnType::u8;
@@ -24,30 +24,29 @@ struct LasExtraField {
   double offset = 0;
 };
 
-/// What the variable length records of a file say of its points.
+/// The content of the variable length records of a file, as far as it concerns the points.
 struct LasDescription {
-  /// Scalar attributes ("LAS specification 1.4 - R15", table 24); what is not described, arrays and
-  /// what does not fit the record are left out.
+  /// Scalar attributes ("LAS specification 1.4 - R15", table 24), without undescribed bytes, arrays
+  /// and attributes beyond the record.
   std::vector<LasExtraField> extra_fields;
-  /// Where x and y are longitude and latitude: what says so.
+  /// If x and y are longitude and latitude: where the file states it.
   std::optional<std::string> geographic;
-  /// Where a length of the coordinates is no metre: which, its unit and what says so.
+  /// If a coordinate is not in metres: which one, its unit and where the file states it.
   std::optional<std::string> not_metres;
-  /// Where a length's unit is that of a system which is too new to be known here: which.
+  /// A coordinate and a system that is too new to look up its unit.
   std::optional<std::string> unknown_unit;
-  bool has_adjusted_times = false;  ///< as LasHeader has it
-  /// What the coordinates are in: the text, or the keys, by what the header says where there are
-  /// both.
+  bool has_adjusted_times = false;  ///< as in LasHeader
+  /// The text or the keys; if the file has both, the header decides.
   Crs crs;
-  /// Whether extended records reach beyond the file's end, and were not read.
+  /// Whether extended records reach beyond the end of the file and were not read.
   bool is_cut = false;
 
   /// Adds what a user of the points has to know.
   void add_notes(std::vector<ReaderNote>& notes) const;
 };
 
-/// Reads the records between the header and the points, and the extended ones, as far as they are
-/// whole. Errors: io; data (a coordinate system that is longer than any).
+/// Reads the records between the header and the points and the extended ones, as far as they are
+/// complete. Errors: io; data (an implausibly long coordinate system).
 LasDescription read_las_description(const std::filesystem::path& path, const LasHeader& header);
 
 }  // namespace adasplats

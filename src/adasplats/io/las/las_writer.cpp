@@ -40,12 +40,12 @@ void put(char* record, std::size_t offset, T value) {
   std::memcpy(record + offset, &value, sizeof(T));
 }
 
-/// Text without a terminator; the rest of its field is zero already.
+/// Text without a terminator; the rest of its field is already zero.
 void put_text(char* record, std::size_t offset, std::string_view text) {
   std::ranges::copy(text, record + offset);
 }
 
-/// A field of point format 6 that is copied as it is (table 16).
+/// A field of point format 6 that is copied unchanged (table 16).
 struct CopiedField {
   std::string_view name;
   ColumnType type;
@@ -58,7 +58,7 @@ constexpr std::array<CopiedField, 5> kCopiedFields = {{{"intensity", ColumnType:
                                                        {"gps_time", ColumnType::f64, 22}}};
 constexpr std::size_t kReturnsOffset = 14;
 
-/// The columns by what becomes of them.
+/// The columns by their use.
 class PointColumns {
  public:
   explicit PointColumns(std::span<const ColumnView> columns) {
@@ -127,19 +127,19 @@ class PointColumns {
   }
 
   std::array<ColumnView, 3> axes_ = {};
-  std::array<ColumnView, kCopiedFields.size()> copied_ = {};  ///< nameless: not there
+  std::array<ColumnView, kCopiedFields.size()> copied_ = {};  ///< without a name: absent
   ColumnView return_number_ = {};
   ColumnView returns_ = {};
   std::vector<ColumnView> extras_;
 };
 
-/// What the header says of all points.
+/// Header fields computed from all points.
 struct Summary {
   std::array<std::int32_t, 3> low, high;
   std::array<std::uint64_t, kMaxReturns> by_return = {};
 };
 
-/// Coordinates as they are stored.
+/// Conversion of coordinates to integers.
 class Grid {
  public:
   Grid(const std::filesystem::path& path, const LasWriteOptions& options)
@@ -150,11 +150,11 @@ class Grid {
     for (int axis = 0; axis < 3; ++axis) {
       const double step =
           std::nearbyint((position[axis] - options_.offset_m[axis]) / options_.scale_m);
-      // Fails for NaN, too.
+      // Also rejects NaN.
       if (!(std::fabs(step) <= std::numeric_limits<std::int32_t>::max()))
         throw Error(ErrorKind::data, path_.string() + ": point " + std::to_string(row) + ": " +
                                          "xyz"[axis] + " = " + exact_text(position[axis]) +
-                                         " does not fit into LAS with the offset " +
+                                         " is out of range of LAS with the offset " +
                                          exact_text(options_.offset_m[axis]) + " and the scale " +
                                          exact_text(options_.scale_m));
       steps[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(step);
@@ -191,7 +191,7 @@ Summary summary_of(const PointColumns& columns, std::size_t rows, const Grid& gr
     if (number < 1 || number > of || of > kMaxReturns)
       throw Error(ErrorKind::data, grid.path().string() + ": point " + std::to_string(row) +
                                        ": return " + std::to_string(number) + " of " +
-                                       std::to_string(of) + ", LAS has 1 to 15");
+                                       std::to_string(of) + ", LAS allows 1 to 15");
     ++summary.by_return[number - 1];
   }
   if (rows == 0) summary.low = summary.high = {};
@@ -215,7 +215,7 @@ std::uint8_t extra_type(ColumnType type) {
   throw std::logic_error("write_las: no such type");
 }
 
-/// Variable length records, one behind the other.
+/// Consecutive variable length records.
 struct Records {
   std::string bytes;
   std::uint32_t count = 0;
@@ -226,7 +226,7 @@ struct Records {
       throw Error(ErrorKind::data, path.string() + ": record " + std::to_string(number) + " of '" +
                                        std::string(user) + "' has " +
                                        std::to_string(content.size()) +
-                                       " bytes, LAS has room for 65535");
+                                       " bytes, LAS allows at most 65535");
     std::string start(kVlrHeaderBytes, '\0');
     put_text(start.data(), 2, user);
     put(start.data(), 18, number);
@@ -237,7 +237,7 @@ struct Records {
   }
 };
 
-/// What describes the extra bytes.
+/// Descriptions of the extra bytes.
 std::string extra_descriptions(std::span<const ColumnView> extras) {
   std::string record(extras.size() * kExtraRecordBytes, '\0');
   for (std::size_t k = 0; k < extras.size(); ++k) {
@@ -264,7 +264,7 @@ void add_crs(const std::filesystem::path& path, const Crs& crs, Records& records
   if (!crs.keys.ascii.empty()) add(kGeoTextId, {crs.keys.ascii.c_str(), crs.keys.ascii.size() + 1});
 }
 
-/// All that stands between the header and the points.
+/// All records between the header and the points.
 Records records_of(const std::filesystem::path& path, std::span<const ColumnView> extras,
                    std::size_t record_bytes, const LasWriteOptions& options) {
   Records records;

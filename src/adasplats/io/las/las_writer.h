@@ -14,34 +14,33 @@
 namespace adasplats {
 
 struct LasWriteOptions {
-  double scale_m = 0.001;  ///< of the whole numbers that coordinates are stored as
+  double scale_m = 0.001;  ///< of the integers that store coordinates
   Vec3d offset_m;          ///< coordinates within 2^31 * scale of it can be stored
-  /// What the coordinates are in. A text is written as record 2112, as the specification wants it
-  /// of point format 6; GeoTIFF keys, which cannot be made one, as they came (records 34735 to
-  /// 34737, bit 4 of the global encoding 0), which readers take all the same.
+  /// A text is written as record 2112, as the specification requires for point format 6. GeoTIFF
+  /// keys, which cannot be converted to a text, are written unchanged (records 34735 to 34737, bit
+  /// 4 of the global encoding 0), which readers accept.
   Crs crs;
-  /// LAZ: the same points, packed as LASzip packs them (layers, chunks of 50000 points), which
-  /// takes memory for what is packed.
+  /// Write LAZ with the bytes of LASzip (layers, chunks of 50000 points). Takes memory for the
+  /// compressed points.
   bool is_packed = false;
 };
 
-/// Whether the name of a file to write says LAZ: `.laz` in any case.
+/// Whether the name of an output file means LAZ: `.laz` in any case.
 bool is_laz_name(const std::filesystem::path& path);
 
 /// Writes LAS or LAZ 1.4, point format 6 (ASPRS, "LAS specification 1.4 - R15"). Columns by name:
-/// - x, y, z (f32 or f64, must be there), rounded to the scale;
-/// - intensity, point_source_id (u16), return_number, number_of_returns (u8, 1 to 15; 1 where the
-///   column is not there), classification, user_data (u8), gps_time (f64), as far as they are
-///   there;
-/// - any other is an attribute of its own in "extra bytes", in its type, with a record that
-///   describes it (table 24); names of at most 31 bytes.
+/// - x, y, z (f32 or f64, required), rounded to the scale;
+/// - optional: intensity, point_source_id (u16), return_number, number_of_returns (u8, 1 to 15;
+///   default 1), classification, user_data (u8), gps_time (f64);
+/// - any other column becomes an attribute in "extra bytes", in its type, with a record that
+///   describes it (table 24); names have at most 31 bytes.
 /// The same columns give the same bytes: no date is written. Atomic. Throws std::logic_error for a
-/// column of a wrong type or name. Errors: data (a coordinate that is not finite or out of reach, a
+/// column of a wrong type or name. Errors: data (a coordinate that is not finite or out of range, a
 /// return number out of range, with the point's number; a coordinate system of 64 KiB or more).
 void write_las(const std::filesystem::path& path, std::size_t rows,
                std::span<const ColumnView> columns, const LasWriteOptions& options = {});
 
-/// The bytes of that file; errors name `path`.
+/// Writes the bytes of that file; errors name `path`.
 void put_las(ByteSink& file, const std::filesystem::path& path, std::size_t rows,
              std::span<const ColumnView> columns, const LasWriteOptions& options = {});
 

@@ -21,14 +21,14 @@
 namespace adasplats {
 namespace {
 
-// Records that one chunk has unpacked at once: all of an ordinary chunk (50,000 points).
+// Decompressed records of one chunk at a time: all of an ordinary chunk (50,000 points).
 constexpr std::size_t kUnpackedBytes = std::size_t{4} << 20;
-// Of all chunks that are unpacked at a time; a byte of a record has a model of its own at most.
+// Models of all chunks in work; at most one model for each byte of a record.
 constexpr std::size_t kModelBytes = std::size_t{256} << 20;
 constexpr std::size_t kBytesPerModel = 2560;
 
-/// How many records from the first lie in the header's box, with something to spare: broken data
-/// decode to anything. A box of zeros was never filled in.
+/// Counts the leading records within the enlarged box of the header: damaged data decode to random
+/// points. A box of zeros was never set.
 class PlausibleRecords {
  public:
   explicit PlausibleRecords(const LasHeader& header)
@@ -55,21 +55,21 @@ class PlausibleRecords {
   Extent box_;
 };
 
-/// A chunk that is being unpacked.
+/// A chunk in work.
 struct OpenChunk {
   LazChunk place;
   std::vector<std::byte> packed;
   std::unique_ptr<PackedChunk> decoder;
-  std::uint64_t left = 0;             // points that are still packed
-  std::uint64_t next_record = 0;      // number of the next of them
-  std::vector<std::byte> records;     // the next of them, unpacked
-  std::size_t wanted = 0, sound = 0;  // how many those should be, and are from the first
-  std::size_t taken = 0;              // how many of the sound ones are in the span, in front
-  bool is_cut_short = false;          // the packed bytes end too early
+  std::uint64_t left = 0;             // points still compressed
+  std::uint64_t next_record = 0;      // number of the next one
+  std::vector<std::byte> records;     // the next ones, decompressed
+  std::size_t wanted = 0, sound = 0;  // expected and valid leading ones
+  std::size_t taken = 0;              // valid ones within the span, in front
+  bool is_cut_short = false;          // the compressed bytes end too early
   KeptRecords kept;                   // of the records
 };
 
-/// Gives the file's records in their order; unpacks some chunks at a time, in parallel.
+/// Reads the records in order; decompresses several chunks in parallel.
 class LazReader {
  public:
   LazReader(const std::filesystem::path& path, const LazLayout& layout, const Executor* executor,
@@ -88,7 +88,7 @@ class LazReader {
                                         std::max<std::size_t>(1, affordable));
   }
 
-  /// Hands all records to the table, until there is a fault.
+  /// Passes all records to the table, up to the first fault.
   void read() {
     while (fault_.empty() && (unread_ > 0 || !open_.empty())) {
       while (unread_ > 0 && open_.size() < max_open_) open_next();
@@ -97,7 +97,7 @@ class LazReader {
     }
   }
 
-  /// What ended the records before their number in the header; empty: nothing.
+  /// The reason why records are missing; empty if none are.
   const std::string& fault() const { return fault_; }
 
  private:
@@ -106,7 +106,7 @@ class LazReader {
     LazChunk place{next_offset_, file_.size_bytes() - next_offset_,
                    std::min<std::uint64_t>(unread_, layout_.packing.chunk_points)};
     if (layout_.packing.chunk_points == kVariableChunks) place.points = unread_;
-    // Packed points are hardly ever larger than unpacked ones.
+    // Compressed points are hardly ever larger than uncompressed ones.
     const std::uint64_t largest =
         (std::uint64_t{1} << 16) + 2 * place.points * layout_.packing.record_bytes;
     if (place.points < (std::uint64_t{1} << 32)) place.bytes = std::min(place.bytes, largest);
@@ -127,7 +127,7 @@ class LazReader {
     unread_ -= chunk.left;
   }
 
-  /// Unpacks records of the open chunks that have none.
+  /// Decompresses the next records of open chunks that have none.
   void unpack() {
     const auto unpack_one = [this](std::size_t k, std::size_t) {
       OpenChunk& chunk = open_[k];
@@ -147,7 +147,7 @@ class LazReader {
       for (std::size_t k = 0; k < open_.size(); ++k) unpack_one(k, k + 1);
   }
 
-  /// Moves those of the sound records that are in the span to the front.
+  /// Moves the valid records within the span to the front.
   void take_span(OpenChunk& chunk) const {
     const std::uint64_t begin = chunk.next_record, end = begin + chunk.sound;
     chunk.next_record += chunk.wanted;
@@ -163,7 +163,7 @@ class LazReader {
                    chunk.taken * bytes);
   }
 
-  /// Hands over what is unpacked without a gap before it.
+  /// Passes on the decompressed records up to the first gap.
   void hand_over() {
     std::vector<WantedRecords> parts;
     for (const OpenChunk& chunk : open_) {
@@ -173,7 +173,7 @@ class LazReader {
         fault_ = "the chunk at byte " + std::to_string(chunk.place.offset_bytes) +
                  (chunk.is_cut_short ? " ends within a point"
                                      : " has a point far outside the header's box");
-      if (chunk.left > 0) break;  // its next records come first
+      if (chunk.left > 0) break;  // its next records precede those of later chunks
     }
     table_.add(parts, executor_);
     for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -193,24 +193,24 @@ class LazReader {
   std::size_t rows_at_once_;
   std::size_t max_open_ = 1;
   std::deque<OpenChunk> open_;
-  std::uint64_t unread_;  // points of chunks that are not open yet
+  std::uint64_t unread_;  // points of chunks that are not yet open
   std::size_t next_chunk_ = 0;
-  std::uint64_t next_offset_;  // of the next chunk, where no table says so
+  std::uint64_t next_offset_;  // of the next chunk, without a table
   std::string fault_;
 };
 
-/// Leaves the chunks with points of a span; gives how many points of it they have.
+/// Keeps only the chunks with points of a span; returns the number of their points in it.
 std::uint64_t choose_span(RecordSpan span, LazLayout& layout) {
   if (!layout.has_table)
-    throw std::logic_error("read_laz: records of a file that has them not at random");
+    throw std::logic_error("read_laz: records of a file without random access");
   std::uint64_t wanted = 0;
-  const auto is_beside = [&](const LazChunk& chunk) {
+  const auto is_outside = [&](const LazChunk& chunk) {
     const std::uint64_t begin = std::max(span.first, chunk.first_record);
     const std::uint64_t end = std::min(span.first + span.count, chunk.first_record + chunk.points);
     wanted += begin < end ? end - begin : 0;
     return begin >= end;
   };
-  std::erase_if(layout.chunks, is_beside);
+  std::erase_if(layout.chunks, is_outside);
   layout.span = span;
   layout.header.points = 0;
   for (const LazChunk& chunk : layout.chunks) layout.header.points += chunk.points;
@@ -228,15 +228,15 @@ Table read_laz(const std::filesystem::path& path, const LasReadOptions& options)
     points = choose_span(options.selection.records->within(all), layout);
   LasHeader header = layout.header;
   header.points = points;
-  // The count is not to be believed before the points are there; a point of a sensor takes two
-  // bytes or more.
+  // The count is not trusted before the points are read; a point of a sensor takes at least two
+  // bytes.
   InputFile file(path);
   LasTable table(path, header, options.selection.extent,
                  static_cast<std::size_t>(std::min(points, file.size_bytes() / 2)));
   LazReader reader(path, layout, options.executor, table);
   reader.read();
   if (!reader.fault().empty() && !options.salvage) {
-    throw data_error({path, {}, {}}, "broken LAZ at point " + std::to_string(table.records()) +
+    throw data_error({path, {}, {}}, "damaged LAZ at point " + std::to_string(table.records()) +
                                          " of " + std::to_string(points) + ": " + reader.fault());
   }
   return table.finish();

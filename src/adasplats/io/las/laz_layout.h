@@ -14,7 +14,7 @@
 
 namespace adasplats {
 
-/// Where a chunk of packed points is, and how many it has.
+/// Position and size of a chunk of compressed points.
 struct LazChunk {
   std::uint64_t offset_bytes = 0;  ///< in the file
   std::uint64_t bytes = 0;
@@ -22,24 +22,24 @@ struct LazChunk {
   std::uint64_t first_record = 0;  ///< number of its first point in the file
 };
 
-/// What a LAZ file says of itself, checked as far as that goes without unpacking points.
+/// Layout of a LAZ file, checked as far as possible without decompressing points.
 struct LazLayout {
   LasHeader header;
   LazPacking packing;
   std::uint64_t first_chunk_bytes = 0;  ///< its offset in the file
-  /// False: where a chunk begins is known once the one before has been unpacked.
+  /// False: a chunk begins where decompression of the previous one ends.
   bool has_table = false;
   std::vector<LazChunk> chunks;    ///< of a file that has a table
-  std::optional<RecordSpan> span;  ///< of which records are wanted; nothing: all of the chunks
+  std::optional<RecordSpan> span;  ///< of the records to read; nothing: all of the chunks
 };
 
-/// Reads the header, LASzip's record and the table of chunks. With `salvage` a broken table of
-/// chunks of a fixed number of points is as none. Errors: data.
+/// Reads the header, LASzip's record and the chunk table. With `salvage` a damaged table of chunks
+/// with a fixed number of points is ignored. Errors: data.
 LazLayout read_laz_layout(const std::filesystem::path& path, bool salvage);
 
-/// Looks for LASzip's record among the variable length records of a LAZ file, and checks that it
-/// describes items of the header's point format in versions that are known. `file` stands at its
-/// beginning. Errors: data.
+/// Finds LASzip's record among the variable length records of a LAZ file, and checks that it
+/// describes items of the header's point format in known versions. `file` is at its beginning.
+/// Errors: data.
 LazPacking read_laz_packing(InputFile& file, const LasHeader& header);
 
 }  // namespace adasplats

@@ -16,8 +16,8 @@ constexpr std::size_t kLaszipBytes = 34;
 constexpr std::size_t kItemBytes = 6;
 constexpr std::size_t kCoderAt = 2, kChunkPointsAt = 12, kItemCountAt = 32;
 
-/// The items of a point format in their order, of unknown version; what is left of the record are
-/// extra bytes.
+/// The items of a point format in their order, without versions; the rest of the record is extra
+/// bytes.
 std::vector<LazItem> expected_items(const LasHeader& header) {
   using Type = LazItemType;
   const std::size_t format = header.format;
@@ -49,13 +49,13 @@ bool is_known_version(LazItemType type, unsigned version) {
     case LazItemType::point14:
     case LazItemType::rgb14:
     case LazItemType::rgb_nir14:
-    // 2 is what LASzip's prototype wrote, and the same.
+    // LASzip's prototype wrote 2 for the same format.
     case LazItemType::extra_bytes14: return version >= 2 && version <= 4;
     default: return version == 1 || version == 2;
   }
 }
 
-/// What LASzip's record says, as far as it can be unpacked; `file` stands at its content.
+/// Reads LASzip's record; `file` is at its content.
 class PackingReader {
  public:
   PackingReader(const InputFile& file, std::span<const std::byte> record, const LasHeader& header)
@@ -69,7 +69,7 @@ class PackingReader {
     if (coder != 0)
       throw file_.error_here("LAZ: found coder " + std::to_string(coder) + ", expected 0");
     packing.chunk_points = at<std::uint32_t>(kChunkPointsAt);
-    // LASzip takes both for chunks of any size.
+    // LASzip uses both for chunks of variable size.
     if (packing.chunk_points == 0) packing.chunk_points = kVariableChunks;
     packing.record_bytes = header_.record_bytes;
     packing.items = items();
@@ -83,9 +83,10 @@ class PackingReader {
   }
 
   Error broken() const {
-    return file_.error_here("LAZ: the record 'laszip encoded' is broken or not of point format " +
-                            std::to_string(header_.format) + " with " +
-                            std::to_string(header_.record_bytes) + " bytes");
+    return file_.error_here(
+        "LAZ: the record 'laszip encoded' is damaged or does not match point format " +
+        std::to_string(header_.format) + " with " + std::to_string(header_.record_bytes) +
+        " bytes");
   }
 
   LazCompressor compressor() const {
@@ -117,7 +118,7 @@ class PackingReader {
         throw broken();
       if (!is_known_version(items[k].type, items[k].version)) {
         throw file_.error_here("LAZ: found version " + std::to_string(items[k].version) +
-                               " of item " + std::to_string(type) + ", which is not known");
+                               " of item " + std::to_string(type) + ", which is unknown");
       }
     }
     return items;
@@ -149,7 +150,7 @@ LazPacking read_laz_packing(InputFile& file, const LasHeader& header) {
     if (is_laszip) packing = PackingReader(file, file.peek(bytes).first(bytes), header).read();
     file.skip(bytes);
   }
-  if (!packing) throw file.error_here("marked as LAZ, but no record 'laszip encoded'");
+  if (!packing) throw file.error_here("marked as LAZ, but without a record 'laszip encoded'");
   return *packing;
 }
 

@@ -77,7 +77,7 @@ TEST(Laz, PointsOutsideTheBoxAreAFault) {
   }
   EXPECT_EQ(read_bytes(file).rows, 40U);
   put(file, 179, 20.0);  // x
-  expect_broken(file, {"broken LAZ at point ", "of 40", "outside the header's box"});
+  expect_broken(file, {"damaged LAZ at point ", "of 40", "outside the header's box"});
   const Table salvaged = read_bytes(file, {.salvage = true});
   EXPECT_LT(salvaged.rows, 40U);
   EXPECT_GT(salvaged.rows, 0U);
@@ -89,7 +89,7 @@ TEST(Laz, TheTableOfChunksMayBeNamedAtTheEnd) {
     const std::uint64_t table = table_at(file);
     put(file, points_at(file), ~std::uint64_t{0});
     expect_equal_columns(read_bytes(file + io_test::bytes_of(table)), read_bytes(las_file(sample)));
-    expect_broken(file + io_test::bytes_of(std::uint64_t{1} << 60), {"table of chunks"});
+    expect_broken(file + io_test::bytes_of(std::uint64_t{1} << 60), {"chunk table"});
   }
 }
 
@@ -102,7 +102,7 @@ TEST(Laz, WithoutATableChunksAreReadOneByOne) {
   put(interrupted, points, points);
   expect_equal_columns(read_bytes(interrupted), expected);
   const std::string cut = file.substr(0, table_at(file));
-  expect_broken(cut, {"table of chunks", "outside the file"});
+  expect_broken(cut, {"chunk table", "outside the file"});
   expect_equal_columns(read_bytes(cut, {.salvage = true}), expected);
   // Within the last chunk.
   const Table salvaged = read_bytes(cut.substr(0, cut.size() - 30), {.salvage = true});
@@ -113,7 +113,7 @@ TEST(Laz, WithoutATableChunksAreReadOneByOne) {
 
   std::string variable = laz_file(layered());
   put(variable, points_at(variable), std::uint64_t{points_at(variable)});
-  expect_broken(variable, {"no table of chunks", "not fixed"});
+  expect_broken(variable, {"no chunk table", "variable size"});
 }
 
 TEST(Laz, BrokenTablesAreErrors) {
@@ -121,7 +121,7 @@ TEST(Laz, BrokenTablesAreErrors) {
   const std::size_t table = table_at(file);
   std::string broken = file;
   put(broken, table, std::uint32_t{1});
-  expect_broken(broken, {"version 1 of the table of chunks"});
+  expect_broken(broken, {"version 1 of the chunk table"});
   broken = file;
   put(broken, table + 4, std::uint32_t{0xffffffff});
   expect_broken(broken, {"4294967295 chunks"});
@@ -148,8 +148,8 @@ TEST(Laz, UnknownPackingsAreErrors) {
   expect_broken(with(0, std::uint16_t{0}), {"compressor 0"});
   expect_broken(with(0, std::uint16_t{3}), {"compressor 3 for point format 5"});
   expect_broken(with(2, std::uint16_t{1}), {"coder 1"});
-  expect_broken(with(32, std::uint16_t{2}), {"'laszip encoded' is broken", "65 bytes"});
-  expect_broken(with(34, std::uint16_t{10}), {"'laszip encoded' is broken"});
+  expect_broken(with(32, std::uint16_t{2}), {"'laszip encoded' is damaged", "65 bytes"});
+  expect_broken(with(34, std::uint16_t{10}), {"'laszip encoded' is damaged"});
   expect_broken(with(38, std::uint16_t{3}), {"version 3 of item 6"});
 }
 

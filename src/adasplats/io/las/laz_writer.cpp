@@ -13,7 +13,7 @@ namespace adasplats {
 namespace {
 
 constexpr std::size_t kPackedFormat = 6;
-constexpr std::uint32_t kChunkPoints = 50000;  // as LASzip has it
+constexpr std::uint32_t kChunkPoints = 50000;  // as LASzip does
 constexpr unsigned kItemVersion = 3;
 
 template <class T>
@@ -31,14 +31,14 @@ std::string laszip_record(std::size_t record_bytes) {
   std::string record;
   append(record, LazCompressor::layered);
   append(record, std::uint16_t{0});  // coder
-  // The version of LASzip whose format it is.
+  // The version of LASzip with this format.
   append(record, std::uint8_t{3});
   append(record, std::uint8_t{4});
   append(record, std::uint16_t{3});
   append(record, std::uint32_t{0});  // options
   append(record, kChunkPoints);
-  append(record, std::int64_t{-1});  // special extended records: none...
-  append(record, std::int64_t{-1});  // ...anywhere
+  append(record, std::int64_t{-1});  // number of special extended records: none
+  append(record, std::int64_t{-1});  // their offset: none
   append(record, static_cast<std::uint16_t>(items.size()));
   for (const LazItem& item : items) {
     append(record, item.type);

@@ -14,15 +14,15 @@ namespace adasplats {
 
 inline constexpr std::string_view kLaszipUser = "laszip encoded";
 inline constexpr std::uint16_t kLaszipRecordId = 22204;
-/// Of the point format's byte in a LAZ file's header.
+/// Flag in the point format byte of a LAZ header.
 inline constexpr std::uint8_t kLaszipFormatBit = 1U << 7;
 
-/// The content of LASzip's record in a file of point format 6 with extra bytes up to
-/// `record_bytes`, as LazWriter packs it.
+/// The content of LASzip's record for a file of point format 6 with extra bytes up to
+/// `record_bytes`, written by LazWriter.
 std::string laszip_record(std::size_t record_bytes);
 
-/// Takes records of point format 6, in any pieces, and packs them in chunks of 50000. What is
-/// packed is kept in memory, since a table's place stands before it.
+/// Compresses records of point format 6, passed in parts of any size, in chunks of 50000. Keeps the
+/// compressed chunks in memory, since the offset of the chunk table comes before them.
 class LazWriter final : public ByteSink {
  public:
   explicit LazWriter(std::size_t record_bytes) : record_bytes_(record_bytes) {}
@@ -37,7 +37,7 @@ class LazWriter final : public ByteSink {
   void pack();
 
   std::size_t record_bytes_;
-  std::string records_;  ///< of the chunk that is not full yet
+  std::string records_;  ///< of the incomplete chunk
   std::vector<std::string> chunks_;
 };
 

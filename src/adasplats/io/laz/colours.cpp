@@ -26,7 +26,7 @@ std::uint16_t RgbModels::byte(RangeDecoder& decoder, std::size_t model, int expe
 Rgb RgbModels::decode(RangeDecoder& decoder, const Rgb& last) {
   const std::uint32_t changed = changed_.decode(decoder);
   std::array<std::array<std::uint16_t, 2>, 3> halves{};  // [channel][half]
-  // Bits and models of a channel's halves follow each other: 2 * channel + half.
+  // Bit and model of a channel's half: 2 * channel + half.
   const auto decode_half = [&](std::size_t channel, std::size_t half, int change) {
     const int before = half_of(last[channel], half);
     const std::size_t model = 2 * channel + half;
@@ -66,7 +66,7 @@ std::uint16_t InfraredModels::decode(RangeDecoder& decoder, std::uint16_t last) 
 
 namespace {
 
-/// As LASzip packs since version 2.0.
+/// The method of LASzip since 2.0.
 class Rgb12V2 final : public PointwiseItem {
  public:
   void start(const std::byte* first) override { last_ = load_value<Rgb>(first); }
@@ -80,7 +80,7 @@ class Rgb12V2 final : public PointwiseItem {
   RgbModels models_;
 };
 
-/// As LASzip packed before version 2.0: each byte by itself.
+/// The method of LASzip before 2.0: each byte separately.
 class Rgb12V1 final : public PointwiseItem {
  public:
   void start(const std::byte* first) override { last_ = load_value<Rgb>(first); }

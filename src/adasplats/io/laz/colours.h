@@ -11,14 +11,14 @@ namespace adasplats {
 
 using Rgb = std::array<std::uint16_t, 3>;
 
-/// Unpacks colours by the differences of their bytes from the last colour; green and blue are
-/// expected to change as red does.
+/// Decodes colours from the differences of their bytes to the last colour; green and blue are
+/// predicted to change like red.
 class RgbModels {
  public:
   Rgb decode(RangeDecoder& decoder, const Rgb& last);
 
  private:
-  /// Of a byte that changed: its new value, `expected` plus what was packed.
+  /// The new value of a changed byte: `expected` plus the decoded difference.
   std::uint16_t byte(RangeDecoder& decoder, std::size_t model, int expected);
 
   SymbolModel changed_{128};
@@ -26,7 +26,7 @@ class RgbModels {
                                              SymbolModel(256), SymbolModel(256), SymbolModel(256)};
 };
 
-/// Unpacks the near infrared by the differences of its bytes from the last.
+/// Decodes the near infrared from the differences of its bytes to the last value.
 class InfraredModels {
  public:
   std::uint16_t decode(RangeDecoder& decoder, std::uint16_t last);

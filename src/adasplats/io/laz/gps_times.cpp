@@ -15,8 +15,8 @@ namespace {
 
 // Symbols 0 to 500 are multiples of the step, the next ten -1 to -10.
 constexpr std::uint32_t kMaxMultiple = 500;
-constexpr std::uint32_t kFewestMultiple = 10;
-constexpr std::uint32_t kMultiples = kMaxMultiple + kFewestMultiple + 1;
+constexpr std::uint32_t kMaxNegative = 10;
+constexpr std::uint32_t kMultiples = kMaxMultiple + kMaxNegative + 1;
 constexpr int kExtremesForNewStep = 3;
 
 std::int32_t times(std::int32_t step, std::int32_t multiple) {
@@ -24,12 +24,12 @@ std::int32_t times(std::int32_t step, std::int32_t multiple) {
                                    static_cast<std::uint32_t>(multiple));
 }
 
-/// The sum of the bits of a time and a difference with its sign.
+/// The bits of a time plus a signed difference.
 std::uint64_t later(std::uint64_t time, std::int32_t difference) {
   return time + static_cast<std::uint64_t>(std::int64_t{difference});
 }
 
-/// The difference of the bits of two times where it fits 32 bits.
+/// The difference of the bits of two times if it fits 32 bits.
 std::optional<std::int32_t> near_difference(std::uint64_t from, std::uint64_t to) {
   const std::uint64_t difference = to - from;
   const auto low = static_cast<std::int32_t>(static_cast<std::uint32_t>(difference));
@@ -37,7 +37,7 @@ std::optional<std::int32_t> near_difference(std::uint64_t from, std::uint64_t to
   return low;
 }
 
-/// How often `step` goes into `difference`, as LASzip rounds; beyond what has symbols: further.
+/// `difference` / `step`, rounded as in LASzip and clamped beyond the range of symbols.
 std::int32_t nearest_multiple(std::int32_t difference, std::int32_t step) {
   constexpr float kFar = 1e6F;
   const float share = static_cast<float>(difference) / static_cast<float>(step);
@@ -54,7 +54,7 @@ GpsTimes::GpsTimes(Symbols symbols, std::uint64_t first)
 }
 
 std::uint64_t GpsTimes::decode(RangeDecoder& decoder) {
-  // Encoders switch the sequence once at most; broken data could switch for ever.
+  // Encoders switch the sequence at most once; damaged data could switch forever.
   for (int k = 0; k < 4; ++k)
     if (decode_in_sequence(decoder)) break;
   return sequences_[current_].time;
@@ -124,7 +124,7 @@ void GpsTimes::decode_multiple(RangeDecoder& decoder, std::uint32_t symbol) {
   } else if (symbol < kMultiples - 1) {
     found = difference(static_cast<std::int32_t>(kMaxMultiple) - multiple, 5);
   } else {
-    found = take_extreme(difference(-static_cast<std::int32_t>(kFewestMultiple), 6));
+    found = take_extreme(difference(-static_cast<std::int32_t>(kMaxNegative), 6));
   }
   sequence.time = later(sequence.time, found);
 }
@@ -159,21 +159,19 @@ void GpsTimes::encode_near(RangeEncoder& encoder, std::int32_t difference) {
 }
 
 void GpsTimes::encode_multiple(RangeEncoder& encoder, std::int32_t difference) {
-  constexpr auto kMost = static_cast<std::int32_t>(kMaxMultiple);
-  constexpr auto kFewest = -static_cast<std::int32_t>(kFewestMultiple);
+  constexpr auto kMax = static_cast<std::int32_t>(kMaxMultiple);
+  constexpr auto kMin = -static_cast<std::int32_t>(kMaxNegative);
   Sequence& sequence = sequences_[current_];
-  const std::int32_t multiple =
-      std::clamp(nearest_multiple(difference, sequence.step), kFewest, kMost);
-  multiples_.encode(encoder,
-                    static_cast<std::uint32_t>(multiple < 0 ? kMost - multiple : multiple));
-  const bool is_extreme = multiple == 0 || multiple == kMost || multiple == kFewest;
-  const unsigned context = multiple == 0         ? 7
-                           : multiple == 1       ? 1
-                           : multiple == kMost   ? 4
-                           : multiple == kFewest ? 6
-                           : multiple < 0        ? 5
-                           : multiple < 10       ? 2
-                                                 : 3;
+  const std::int32_t multiple = std::clamp(nearest_multiple(difference, sequence.step), kMin, kMax);
+  multiples_.encode(encoder, static_cast<std::uint32_t>(multiple < 0 ? kMax - multiple : multiple));
+  const bool is_extreme = multiple == 0 || multiple == kMax || multiple == kMin;
+  const unsigned context = multiple == 0      ? 7
+                           : multiple == 1    ? 1
+                           : multiple == kMax ? 4
+                           : multiple == kMin ? 6
+                           : multiple < 0     ? 5
+                           : multiple < 10    ? 2
+                                              : 3;
   integers_.encode_signed(encoder, times(sequence.step, multiple), difference, context);
   if (multiple == 1) sequence.extremes = 0;
   if (!is_extreme || ++sequence.extremes <= kExtremesForNewStep) return;
@@ -184,7 +182,7 @@ void GpsTimes::encode_multiple(RangeEncoder& encoder, std::int32_t difference) {
 void GpsTimes::encode_far(RangeEncoder& encoder, std::uint64_t time) {
   const bool has_step = sequences_[current_].step != 0;
   SymbolModel& symbols = has_step ? multiples_ : without_step_;
-  // Symbols: a new sequence, then the next ones that are there.
+  // Symbols: a new sequence, then the next existing ones.
   const std::uint32_t first = unchanged_ + (has_step ? kMultiples : 1);
   for (std::uint32_t ahead = 1; ahead < 4; ++ahead) {
     const auto difference = near_difference(sequences_[(current_ + ahead) % 4].time, time);
@@ -204,7 +202,7 @@ void GpsTimes::encode_far(RangeEncoder& encoder, std::uint64_t time) {
 
 namespace {
 
-/// As LASzip packs since version 2.0.
+/// The method of LASzip since 2.0.
 class GpsTime11V2 final : public PointwiseItem {
  public:
   void start(const std::byte* first) override {
@@ -218,7 +216,7 @@ class GpsTime11V2 final : public PointwiseItem {
   GpsTimes times_{GpsTimes::Symbols::with_unchanged, 0};
 };
 
-/// As LASzip packed before version 2.0: one sequence.
+/// The method of LASzip before 2.0: one sequence.
 class GpsTime11V1 final : public PointwiseItem {
  public:
   void start(const std::byte* first) override { time_ = load_value<std::uint64_t>(first); }
@@ -232,7 +230,7 @@ class GpsTime11V1 final : public PointwiseItem {
   }
 
  private:
-  static constexpr std::uint32_t kSymbols = 512;  // the last two: a whole time, the same time
+  static constexpr std::uint32_t kSymbols = 512;  // the last two: a complete time, an equal time
 
   void decode_without_step(RangeDecoder& decoder) {
     const std::uint32_t symbol = without_step_.decode(decoder);

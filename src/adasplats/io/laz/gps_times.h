@@ -10,44 +10,45 @@
 
 namespace adasplats {
 
-/// Packs and unpacks GPS times: the bits of each as a whole number, by its difference from one of
-/// four times that were seen, in multiples of the last difference there. Pulses of several
-/// scanners, or flight lines that are mixed, are four sequences so.
+/// Encodes and decodes GPS times: their bits as integers, by the difference to one of four previous
+/// times, in multiples of the last difference there. So mixed pulses of up to four scanners or
+/// flight lines form separate sequences.
 class GpsTimes {
  public:
-  /// What the symbols of two versions of the same method stand for.
+  /// The symbols of the two versions of the method.
   enum class Symbols : std::uint8_t {
-    with_unchanged,  ///< a symbol of its own for the same time (GPSTIME11, version 2)
-    changed_alone,   ///< times that did not change are not packed (POINT14)
+    with_unchanged,  ///< has a symbol for an equal time (GPSTIME11, version 2)
+    changed_alone,   ///< equal times are not encoded (POINT14)
   };
 
   GpsTimes(Symbols symbols, std::uint64_t first);
 
   /// The next time, as the bits of a double.
   std::uint64_t decode(RangeDecoder& decoder);
-  /// Packs the next time, the bits of a double, which is not the last one (`changed_alone`).
+  /// Encodes the next time, the bits of a double, which differs from the last one
+  /// (`changed_alone`).
   void encode(RangeEncoder& encoder, std::uint64_t time);
 
  private:
   struct Sequence {
     std::uint64_t time = 0;
-    std::int32_t step = 0;  ///< the last difference that fits 32 bits, 0: none yet
-    int extremes = 0;       ///< how many differences in a row were no multiple of it
+    std::int32_t step = 0;  ///< the last difference of 32 bits; 0: none yet
+    int extremes = 0;       ///< consecutive differences that were no multiple of it
   };
 
-  /// Whether the time was packed whole: `false` where another sequence goes on.
+  /// Whether the time is complete; false if another sequence continues.
   bool decode_in_sequence(RangeDecoder& decoder);
   bool decode_without_step(RangeDecoder& decoder);
   bool decode_with_step(RangeDecoder& decoder);
   void decode_multiple(RangeDecoder& decoder, std::uint32_t symbol);
   void begin_sequence(RangeDecoder& decoder);
-  /// Packs a time whose difference from the current sequence's last one is `difference`.
+  /// Encodes the time at `difference` from the last one of the current sequence.
   void encode_near(RangeEncoder& encoder, std::int32_t difference);
   void encode_multiple(RangeEncoder& encoder, std::int32_t difference);
   void encode_far(RangeEncoder& encoder, std::uint64_t time);
   void switch_sequence(std::uint32_t ahead) { current_ = (current_ + ahead) % 4; }
 
-  std::uint32_t unchanged_;  // how many symbols stand for the same time: 0 or 1
+  std::uint32_t unchanged_;  // number of symbols for an equal time: 0 or 1
   std::array<Sequence, 4> sequences_;
   std::uint32_t current_ = 0;
   std::uint32_t newest_ = 0;

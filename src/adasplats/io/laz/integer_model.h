@@ -9,8 +9,8 @@
 
 namespace adasplats {
 
-/// Packs and unpacks whole numbers as differences from a prediction (as LASzip does): first how
-/// many bits the difference takes, by a model a context, then the difference within that interval.
+/// Encodes and decodes integers as differences from a prediction (as LASzip does): first the number
+/// of bits of the difference, with a model for each context, then the difference within that range.
 class IntegerModel {
  public:
   /// Numbers of `bits` (8, 16 or 32) bits; contexts are below `contexts`.
@@ -20,12 +20,12 @@ class IntegerModel {
   std::uint32_t decode(RangeDecoder& decoder, std::uint32_t prediction, unsigned context = 0) {
     return (prediction + corrector(decoder, context)) & mask_;
   }
-  /// Of 32 bits: with its sign.
+  /// Signed numbers of 32 bits.
   std::int32_t decode_signed(RangeDecoder& decoder, std::int32_t prediction, unsigned context = 0) {
     return static_cast<std::int32_t>(
         decode(decoder, static_cast<std::uint32_t>(prediction), context));
   }
-  /// Packs `number`, of which the `bits` lowest count.
+  /// Encodes the lowest `bits` of `number`.
   void encode(RangeEncoder& encoder, std::uint32_t prediction, std::uint32_t number,
               unsigned context = 0);
   void encode_signed(RangeEncoder& encoder, std::int32_t prediction, std::int32_t number,
@@ -33,7 +33,7 @@ class IntegerModel {
     encode(encoder, static_cast<std::uint32_t>(prediction), static_cast<std::uint32_t>(number),
            context);
   }
-  /// How many bits the last difference took, 0 to `bits`.
+  /// Number of bits of the last difference, 0 to `bits`.
   unsigned last_bits() const { return last_bits_; }
 
  private:
@@ -41,9 +41,9 @@ class IntegerModel {
 
   std::uint32_t mask_;
   unsigned last_bits_ = 0;
-  std::vector<SymbolModel> lengths_;  // a context
+  std::vector<SymbolModel> lengths_;  // by context
   BitModel zero_or_one_;
-  std::vector<SymbolModel> highest_bits_;  // [k - 1]: of differences of k bits, at most 8
+  std::vector<SymbolModel> highest_bits_;  // [k - 1]: for differences of k bits; at most 8 bits
 };
 
 }  // namespace adasplats

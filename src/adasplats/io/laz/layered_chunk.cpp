@@ -12,7 +12,7 @@
 namespace adasplats {
 namespace {
 
-/// The first record as it is, the number of points, how long the layers are, then the layers.
+/// The first record uncompressed, the number of points, the sizes of the layers, then the layers.
 class LayeredChunk final : public PackedChunk {
  public:
   LayeredChunk(const LazPacking& packing, std::span<const std::byte> bytes)
@@ -31,7 +31,7 @@ class LayeredChunk final : public PackedChunk {
       begin(records);
       row = 1;
     }
-    // Whatever else is the same for all points, x and y are always there.
+    // Any other attribute may be constant, but x and y are always stored.
     if (row < count && !is_broken_) is_broken_ = layers_[0].empty();
     for (; row < count && !is_broken_; ++row) {
       std::byte* const record = records + row * record_bytes_;

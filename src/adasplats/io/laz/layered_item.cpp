@@ -91,7 +91,7 @@ class WavePacket14 final : public LayeredItem {
   ScannerChannels<WavePacketModels, WavePacket> channels_;
 };
 
-/// Each byte is a layer of its own.
+/// Each byte is a separate layer.
 class ExtraBytes14 final : public LayeredItem {
  public:
   ExtraBytes14(unsigned version, std::size_t bytes) : layers_(bytes), channels_(version) {}

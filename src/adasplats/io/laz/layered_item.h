@@ -15,7 +15,7 @@
 
 namespace adasplats {
 
-/// The bytes of one attribute of a chunk; empty where all its points have that of the first.
+/// The bytes of one attribute of a chunk; empty if it is the same for all points.
 struct PackedLayer {
   PackedLayer() = default;
   PackedLayer(std::span<const std::byte> bytes, bool& is_broken)
@@ -26,7 +26,7 @@ struct PackedLayer {
   bool is_packed = false;
 };
 
-/// Unpacks one part, but the point itself, of the records of a layered chunk (formats 6-10).
+/// Decodes one part, other than the point itself, of the records of a layered chunk (formats 6-10).
 class LayeredItem {
  public:
   LayeredItem() = default;
@@ -34,16 +34,16 @@ class LayeredItem {
   LayeredItem(const LayeredItem&) = delete;
   LayeredItem& operator=(const LayeredItem&) = delete;
 
-  /// How many layers it has, in the order of the file.
+  /// Number of layers, in file order.
   virtual std::size_t layers() const = 0;
-  /// Takes the item of a chunk's first record, which is stored as it is, and its layers.
+  /// Starts with the item of the first record, which is stored uncompressed, and the layers.
   virtual void start(const std::byte* first, std::size_t channel,
                      std::span<const std::span<const std::byte>> layers, bool& is_broken) = 0;
   /// Writes the item of the next record.
   virtual void decode(std::byte* item, std::size_t channel) = 0;
 };
 
-/// The unpacker of an item of formats 6 to 10 other than the point.
+/// The decoder of an item of formats 6 to 10 other than the point.
 std::unique_ptr<LayeredItem> make_layered_item(const LazItem& item);
 
 /// Models and last items of the four scanner channels.
@@ -59,9 +59,9 @@ class ScannerChannels {
     lasts_[channel] = std::move(first);
   }
 
-  /// The models to unpack a point of `channel` with, and the last item to start from and to
-  /// replace. Version 3 goes on with the last item of the channel before where it comes back to a
-  /// channel; that was a mistake which files depend on, and version 4 is without it.
+  /// The models for a point of `channel`, and the last item, to be used and replaced. On return to
+  /// a channel version 3 continues with the last item of the previous channel; this mistake, which
+  /// files depend on, is fixed in version 4.
   std::pair<Models&, Last&> select(std::size_t channel) {
     std::size_t last = current_;
     if (channel != current_) {

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kPointBytes = 30;
 constexpr unsigned kItemsVersion = 3;
 
-/// Each byte is a layer of its own, of differences from the last point's.
+/// Each byte is a separate layer of differences to the last point.
 class ExtraBytesEncoder {
  public:
   ExtraBytesEncoder(std::span<const std::byte> first, std::size_t channel)

@@ -9,14 +9,12 @@
 
 namespace adasplats {
 
-/// Packs `count` records (at least one) of point format 6 with extra bytes behind its 30, each of
-/// `record_bytes`, as one layered chunk of items of version 3: what make_layered_chunk() unpacks,
-/// with the bytes that LASzip gives them.
+/// Compresses `count` records (at least one) of `record_bytes`, point format 6 (30 bytes) with
+/// extra bytes, as one layered chunk of items of version 3, with the same bytes as LASzip.
 std::string pack_layered_chunk(const std::byte* records, std::size_t count,
                                std::size_t record_bytes);
 
-/// Packs the table of chunks that have a fixed number of points, as ChunkTable unpacks it: how many
-/// bytes each takes.
+/// Compresses the table of chunks with a fixed number of points: the bytes of each chunk.
 std::string pack_chunk_table(std::span<const std::uint32_t> chunk_bytes);
 
 }  // namespace adasplats

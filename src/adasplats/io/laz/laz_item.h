@@ -8,7 +8,7 @@
 
 namespace adasplats {
 
-/// One part of a point record as LASzip packs it; the numbers are the file's (LASzip, LASitem).
+/// Parts of a point record; the numbers are those in the file (LASzip, LASitem).
 enum class LazItemType : std::uint16_t {
   extra_bytes = 0,
   point10 = 6,
@@ -25,21 +25,21 @@ enum class LazItemType : std::uint16_t {
 struct LazItem {
   LazItemType type = LazItemType::extra_bytes;
   std::size_t bytes = 0;
-  unsigned version = 0;  ///< of how it is packed
+  unsigned version = 0;  ///< of the compression method
 };
 
-/// How the chunks of a file are packed; the numbers are the file's.
+/// How the chunks of a file are compressed; the numbers are those in the file.
 enum class LazCompressor : std::uint16_t {
   one_stream = 1,  ///< point by point, without chunks
   chunked = 2,     ///< point by point
   layered = 3,     ///< attribute by attribute, formats 6-10
 };
 
-/// What LASzip's record in a file says.
+/// Content of LASzip's record.
 struct LazPacking {
   LazCompressor compressor = LazCompressor::chunked;
-  std::uint32_t chunk_points = 0;  ///< of every chunk but the last; kVariableChunks: a table tells
-  std::size_t record_bytes = 0;    ///< the sum of the items'
+  std::uint32_t chunk_points = 0;  ///< of all chunks but the last, or kVariableChunks
+  std::size_t record_bytes = 0;    ///< the sum of the items
   std::vector<LazItem> items;
 };
 

@@ -11,13 +11,13 @@
 
 namespace adasplats {
 
-/// The most points that a byte of a chunk can stand for, rounded up: each point costs at least
-/// the symbol of what changed and the lengths of x, y and z or of x and y, whose models never
-/// give a symbol more than all but 63, 32, 32 and 32 (127, 32 and 32) parts of 2^15.
+/// Maximum points in a byte of a chunk, rounded up: each point costs at least the symbol of its
+/// changes and the lengths of x, y and z or of x and y, where the models give a symbol at most all
+/// but 63, 32, 32 and 32 (127, 32 and 32) parts of 2^15.
 inline constexpr std::uint64_t kMaxPointsPerByte = 2048;
 
-/// Unpacks the records of one chunk as a LAS file has them, a part at a time. Whatever the bytes
-/// are, it ends and stays in them.
+/// Decompresses the records of one chunk to those of LAS, a part at a time. It ends and stays
+/// within the bytes for any input.
 class PackedChunk {
  public:
   PackedChunk() = default;
@@ -25,15 +25,14 @@ class PackedChunk {
   PackedChunk(const PackedChunk&) = delete;
   PackedChunk& operator=(const PackedChunk&) = delete;
 
-  /// Writes the next `count` records; gives how many of them were whole. No more follow once it
-  /// were fewer.
+  /// Writes the next `count` records; returns how many of them are complete. If fewer, there are no
+  /// more.
   virtual std::size_t decode(std::byte* records, std::size_t count) = 0;
-  /// How many bytes the chunk takes: of one whose points come one by one what the records so far
-  /// took.
+  /// Bytes of the chunk; of a pointwise chunk those of the records so far.
   virtual std::size_t bytes() const = 0;
 };
 
-/// `bytes` begin with the chunk, and have to outlive it.
+/// `bytes` begin with the chunk, and must outlive it.
 std::unique_ptr<PackedChunk> make_packed_chunk(const LazPacking& packing,
                                                std::span<const std::byte> bytes);
 

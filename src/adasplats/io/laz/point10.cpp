@@ -18,7 +18,7 @@ constexpr std::size_t kYAt = 4, kZAt = 8, kIntensityAt = 12, kReturnsAt = 14, kC
 
 using Point10Bytes = std::array<std::byte, kPoint10Bytes>;
 
-/// Bytes that depend on the byte before: a model for each value of that.
+/// Bytes that depend on the previous one: a model for each of its values.
 class ByteAfterByte {
  public:
   void decode(RangeDecoder& decoder, std::byte& value) {
@@ -34,14 +34,14 @@ void decode_u16(IntegerModel& integers, RangeDecoder& decoder, std::byte* value)
                          integers.decode(decoder, load_value<std::uint16_t>(value))));
 }
 
-/// Adds without overflow: broken files have any numbers.
+/// Adds modulo 2^32: damaged files contain any numbers.
 std::int32_t wrapped_sum(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
 }
 
 unsigned even(unsigned number) { return number & ~1U; }
 
-/// As LASzip packs since version 2.0.
+/// The method of LASzip since 2.0.
 class Point10V2 final : public PointwiseItem {
  public:
   void start(const std::byte* first) override {
@@ -109,7 +109,7 @@ class Point10V2 final : public PointwiseItem {
   std::array<std::int32_t, 8> heights_{};
 };
 
-/// As LASzip packed before version 2.0.
+/// The method of LASzip before 2.0.
 class Point10V1 final : public PointwiseItem {
  public:
   void start(const std::byte* first) override { std::copy_n(first, kPoint10Bytes, last_.begin()); }

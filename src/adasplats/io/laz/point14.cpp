@@ -82,7 +82,7 @@ std::size_t Point14Decoder::decode(std::byte* item) {
   decode_attributes(*channel, changed);
   store_point14(item, channel->last);
   channel->had_new_time = (changed & kTimeChanged) != 0;
-  // Version 3 tells the other items of a channel only where it changes, else they take channel 0.
+  // In version 3 the other items follow the channel only where it changes, else channel 0.
   return version_ >= 4 || is_other_channel ? current_ : 0;
 }
 
@@ -125,7 +125,7 @@ void Point14Decoder::decode_position(Channel& channel, bool has_new_time) {
   const std::int32_t dx = channel.dx.decode_signed(returns_xy_.decoder, x_steps.get(), is_single);
   x_steps.add(dx);
   point.x = moved(point.x, dx);
-  // As many bits as x took, with those of one more taken together, foretell those of y.
+  // The number of bits of x, in pairs, predicts that of y.
   const unsigned x_bits = channel.dx.last_bits();
   RunningMedian& y_steps = channel.y_steps[group];
   const std::int32_t dy = channel.dy.decode_signed(returns_xy_.decoder, y_steps.get(),

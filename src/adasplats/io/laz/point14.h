@@ -17,7 +17,7 @@
 
 namespace adasplats {
 
-/// What formats 6 to 10 share ("LAS specification 1.4 - R15", table 13), 30 bytes.
+/// The common part of formats 6 to 10 ("LAS specification 1.4 - R15", table 13), 30 bytes.
 struct Point14 {
   std::int32_t x = 0, y = 0, z = 0;
   std::uint16_t intensity = 0;
@@ -36,17 +36,17 @@ void store_point14(std::byte* item, const Point14& point);
 
 struct Point14Channel;
 
-/// Unpacks the points of a layered chunk. Each scanner channel has models and a last point of its
-/// own; a layer that is empty says that its attribute is that of the last point.
+/// Decodes the points of a layered chunk. Each scanner channel has separate models and a last
+/// point; an empty layer means that its attribute equals that of the last point.
 class Point14Decoder {
  public:
   static constexpr std::size_t kLayers = 9;
 
-  /// `item` is the first record's; `version` of the item, 3 or 4.
+  /// `item` is that of the first record; `version` of the item is 3 or 4.
   Point14Decoder(unsigned version, const std::byte* item,
                  std::span<const std::span<const std::byte>> layers, bool& is_broken);
 
-  /// Writes the next record's item. Gives the channel that the record's other items follow.
+  /// Writes the item of the next record. Returns the channel of the record's other items.
   std::size_t decode(std::byte* item);
   std::size_t channel() const { return current_; }
 

@@ -15,15 +15,15 @@
 
 namespace adasplats {
 
-// What changed since the last point of the channel.
-inline constexpr unsigned kReturnNumber = 3;  // 0: nothing, 1: one more, 2: one less, 3: otherwise
+// Changes since the last point of the channel.
+inline constexpr unsigned kReturnNumber = 3;  // 0: equal, 1: one more, 2: one less, 3: other
 inline constexpr unsigned kReturnsChanged = 4;
 inline constexpr unsigned kAngleChanged = 8;
 inline constexpr unsigned kTimeChanged = 16;
 inline constexpr unsigned kSourceChanged = 32;
 inline constexpr unsigned kChannelChanged = 64;
 
-/// What is known of one scanner channel, when a point is packed or unpacked.
+/// State of one scanner channel during encoding or decoding.
 struct Point14Channel {
   explicit Point14Channel(const Point14& point)
       : last(point), gps_times(GpsTimes::Symbols::changed_alone, point.gps_time) {
@@ -34,9 +34,9 @@ struct Point14Channel {
   bool is_first() const { return last.return_number == 1; }
   bool is_last() const { return last.return_number >= last.number_of_returns; }
   bool is_single() const { return last.number_of_returns == 1; }
-  /// The first of several (2), the last (1), the only one (3), another (0).
+  /// 2: the first of several, 1: the last, 3: the only one, 0: another.
   unsigned kind() const { return (is_first() ? 2 : 0) + (is_last() ? 1 : 0); }
-  /// Which model foretells what changes next.
+  /// The model that predicts the next changes.
   std::size_t context_of_change() const {
     return (is_first() ? 1U : 0U) + (is_last() ? 2U : 0U) + (had_new_time ? 4U : 0U);
   }

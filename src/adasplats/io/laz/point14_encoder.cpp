@@ -37,7 +37,7 @@ std::size_t Point14Encoder::encode(const std::byte* item) {
   Point14Channel* channel = channels_[current_].get();
   SymbolModel& change = channel->changed[channel->context_of_change()];
   const bool is_other_channel = point.scanner_channel != current_;
-  // A channel begins with the last point of the one before.
+  // A channel begins with the last point of the previous one.
   const Point14Channel* const next = channels_[point.scanner_channel].get();
   const unsigned changed = changes_of(next == nullptr ? channel->last : next->last, point) |
                            (is_other_channel ? kChannelChanged : 0);
@@ -48,7 +48,7 @@ std::size_t Point14Encoder::encode(const std::byte* item) {
   encode_attributes(*channel, point, changed);
   channel->last = point;
   channel->had_new_time = (changed & kTimeChanged) != 0;
-  // As Point14Decoder has it.
+  // As in Point14Decoder.
   return is_other_channel ? current_ : 0;
 }
 

@@ -15,31 +15,31 @@ namespace adasplats {
 
 struct Point14Channel;
 
-/// One attribute of a chunk while it is packed.
+/// Encoder of one attribute of a chunk.
 struct LayerEncoder {
   RangeEncoder encoder;
-  bool is_needed = false;  ///< else all points have the first one's, and nothing is written
+  bool is_needed = false;  ///< false: constant, and nothing is written
 
   std::string finish() { return is_needed ? encoder.finish() : std::string(); }
 };
 
-/// Packs the points of a layered chunk as Point14Decoder, version 3, unpacks them.
+/// Encodes the points of a layered chunk for Point14Decoder, version 3.
 class Point14Encoder {
  public:
-  /// `item` is the first record's, which is stored as it is.
+  /// `item` is that of the first record, which is stored uncompressed.
   explicit Point14Encoder(const std::byte* item);
   ~Point14Encoder();
   Point14Encoder(const Point14Encoder&) = delete;
   Point14Encoder& operator=(const Point14Encoder&) = delete;
 
-  /// Packs the next record's item. Gives the channel that the record's other items follow.
+  /// Encodes the item of the next record. Returns the channel of the record's other items.
   std::size_t encode(const std::byte* item);
   std::size_t channel() const { return current_; }
-  /// The layers, in the order of the file. Call once, last.
+  /// The layers, in file order. Call once, last.
   std::array<std::string, Point14Decoder::kLayers> finish();
 
  private:
-  /// What of `point` is not as in the last one of its channel, as bits.
+  /// Differences of `point` from the last one of its channel, as bits.
   static unsigned changes_of(const Point14& last, const Point14& point);
   Point14Channel& switch_channel(Point14Channel& from, std::size_t to);
   void encode_returns(Point14Channel& channel, const Point14& point, unsigned changed);

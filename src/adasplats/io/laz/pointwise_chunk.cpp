@@ -9,7 +9,7 @@
 namespace adasplats {
 namespace {
 
-/// The first record as it is, then the others from one stream, item by item.
+/// The first record uncompressed, then the others in one stream, item by item.
 class PointwiseChunk final : public PackedChunk {
  public:
   PointwiseChunk(const LazPacking& packing, std::span<const std::byte> bytes)
@@ -27,7 +27,7 @@ class PointwiseChunk final : public PackedChunk {
     for (; row < count && !is_broken_; ++row) {
       std::byte* const record = records + row * record_bytes_;
       for (const Item& item : items_) item.decoder->decode(decoder_, record + item.at);
-      // What was just unpacked may be beyond the end.
+      // The record just decoded may be beyond the end.
       if (is_broken_) return row;
     }
     return row;

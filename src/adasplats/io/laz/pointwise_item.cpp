@@ -10,7 +10,7 @@
 namespace adasplats {
 namespace {
 
-/// As LASzip packs since version 2.0.
+/// The method of LASzip since 2.0.
 class ExtraBytesV2 final : public PointwiseItem {
  public:
   explicit ExtraBytesV2(std::size_t bytes) : last_(bytes), differences_(bytes, SymbolModel(256)) {}
@@ -30,7 +30,7 @@ class ExtraBytesV2 final : public PointwiseItem {
   std::vector<SymbolModel> differences_;
 };
 
-/// As LASzip packed before version 2.0.
+/// The method of LASzip before 2.0.
 class ExtraBytesV1 final : public PointwiseItem {
  public:
   explicit ExtraBytesV1(std::size_t bytes)

@@ -13,7 +13,7 @@
 
 namespace adasplats {
 
-/// Unpacks one part of the records of a chunk whose points are packed one by one (formats 0-5).
+/// Decodes one part of the records of a pointwise chunk (formats 0-5).
 class PointwiseItem {
  public:
   PointwiseItem() = default;
@@ -21,13 +21,13 @@ class PointwiseItem {
   PointwiseItem(const PointwiseItem&) = delete;
   PointwiseItem& operator=(const PointwiseItem&) = delete;
 
-  /// Takes the item of a chunk's first record, which is stored as it is.
+  /// Starts with the item of the first record, which is stored uncompressed.
   virtual void start(const std::byte* first) = 0;
   /// Writes the item of the next record.
   virtual void decode(RangeDecoder& decoder, std::byte* item) = 0;
 };
 
-/// The unpacker of an item whose type and version is_pointwise() has accepted.
+/// The decoder of an item of formats 0 to 5.
 std::unique_ptr<PointwiseItem> make_pointwise_item(const LazItem& item);
 
 // The parts, by their versions; make_pointwise_item() picks.

@@ -10,9 +10,8 @@
 
 namespace adasplats {
 
-/// About the median of the last five numbers (as LASzip predicts): of five
-/// sorted ones the largest makes room for a new one as long as new ones lie below the middle, else
-/// the smallest.
+/// An approximate median of the last numbers, the prediction of LASzip: of five sorted numbers the
+/// largest is replaced as long as new ones are below the middle, else the smallest.
 class RunningMedian {
  public:
   std::int32_t get() const { return values_[2]; }
@@ -37,11 +36,11 @@ class RunningMedian {
   bool drops_largest_ = true;
 };
 
-// Returns of a beam that behave alike share their models and predictions. What number a return has
-// and how many its beam had decide which (LASzip, laszip_common_v2.hpp and _v3.hpp, have the
-// tables as facts of the format; files exist in which either count is 0 or both are swapped).
+// Similar returns of a beam share models and predictions, chosen by the number of the return and
+// the number of returns of the beam (tables of LASzip, laszip_common_v2.hpp and _v3.hpp; files
+// exist in which either number is 0 or both are swapped).
 
-/// Of counts below 8: one of 16 groups.
+/// For counts below 8: one of 16 groups.
 inline std::size_t group_of_return(unsigned returns, unsigned number) {
   constexpr std::array<std::string_view, 8> kGroups = {"fedcba98", "e0136aa9", "d1247bba",
                                                        "c3458ccb", "b6789ddc", "aabcdeed",
@@ -50,7 +49,7 @@ inline std::size_t group_of_return(unsigned returns, unsigned number) {
   return static_cast<std::size_t>(digit <= '9' ? digit - '0' : digit - 'a' + 10);
 }
 
-/// Of counts below 16: one of 6 groups.
+/// For counts below 16: one of 6 groups.
 inline std::size_t coarse_group_of_return(unsigned returns, unsigned number) {
   constexpr std::array<std::string_view, 16> kGroups = {
       "0123453445555555", "1013333333333333", "2124444444433333", "3345444444444444",
@@ -60,7 +59,7 @@ inline std::size_t coarse_group_of_return(unsigned returns, unsigned number) {
   return static_cast<std::size_t>(kGroups[returns][number] - '0');
 }
 
-/// How many returns follow, 0 to 7: points as deep as one another lie about as high.
+/// Number of returns that follow, 0 to 7: points of equal depth have similar heights.
 inline std::size_t depth_of_return(unsigned returns, unsigned number) {
   const unsigned depth = returns > number ? returns - number : number - returns;
   return depth < 7 ? depth : 7;

@@ -9,7 +9,7 @@ namespace adasplats {
 RangeDecoder::RangeDecoder(std::span<const std::byte> bytes, bool& is_broken)
     : next_(bytes.data()), end_(bytes.data() + bytes.size()), is_broken_(&is_broken) {
   for (int k = 0; k < 4; ++k) value_ = (value_ << 8) | next_byte();
-  // No encoder ends there, and value_ has to be below length_.
+  // No encoder gives this value, and value_ must be below length_.
   if (value_ != length_) return;
   fail();
   value_ = 0;
@@ -48,7 +48,7 @@ void BitModel::update() {
 }
 
 void SymbolModel::start() {
-  // Two parts a symbol leave a step or two of searching; what they take in a cache costs less.
+  // With two parts for each symbol the search takes one or two steps and the table stays small.
   std::uint32_t bits = 2;
   while (2 * symbols_ > (1U << bits)) ++bits;
   table_size_ = 1U << bits;

@@ -12,7 +12,7 @@ namespace adasplats {
 class RangeDecoder;
 class RangeEncoder;
 
-/// How probable 0 is as the value of a bit, learned from the bits so far.
+/// Adaptive probability of the bit 0.
 class BitModel {
  public:
   unsigned decode(RangeDecoder& decoder);
@@ -29,14 +29,14 @@ class BitModel {
   std::uint32_t until_update_ = 4;
 };
 
-/// How probable each symbol of an alphabet is, learned from the symbols so far. Takes memory when
-/// it is first used: most models of a chunk never are.
+/// Adaptive probabilities of the symbols of an alphabet. Allocates memory on first use: most models
+/// of a chunk are never used.
 class SymbolModel {
  public:
   /// `symbols`: 2 to 1024.
   explicit SymbolModel(std::uint32_t symbols) : symbols_(symbols) {}
 
-  /// The next symbol, below the model's number of symbols, whatever the data are.
+  /// The next symbol, below the model's number of symbols for any data.
   std::uint32_t decode(RangeDecoder& decoder);
   /// `symbol`: below the model's number of symbols.
   void encode(RangeEncoder& encoder, std::uint32_t symbol);
@@ -44,8 +44,8 @@ class SymbolModel {
  private:
   void start();
   void update();
-  /// The last symbol whose share begins at or before `place`.
-  std::uint32_t find(std::uint32_t place) const;
+  /// The last symbol whose share begins at or before `position`.
+  std::uint32_t find(std::uint32_t position) const;
   std::uint16_t* begins() { return values_.data(); }
   std::uint16_t* counts() { return values_.data() + symbols_; }
   std::uint16_t* table() { return values_.data() + std::size_t{2} * symbols_; }
@@ -58,29 +58,28 @@ class SymbolModel {
   std::uint32_t total_ = 0;
   std::uint32_t cycle_ = 0;
   std::uint32_t until_update_ = 0;
-  // Where the share of each symbol begins (of 2^15), how often each came, and for parts of the
-  // range the first symbol that can lie there.
+  // Begin of each symbol's share (of 2^15), the count of each symbol, and for parts of the range
+  // the first symbol in them.
   std::vector<std::uint16_t> values_;
 };
 
-/// Unpacks numbers from the bytes of an arithmetic coder (A. Said, "Introduction to Arithmetic
-/// Coding - Theory and Practice", HP Labs report HPL-2004-76, 2004, as LASzip
-/// uses it). Whatever the bytes are, it ends: data that go on after the last byte are
-/// zeros, and set `is_broken`.
+/// Arithmetic decoder (A. Said, "Introduction to Arithmetic Coding - Theory and Practice", HP Labs
+/// report HPL-2004-76, 2004, as in LASzip). It ends for any input: reading beyond the last byte
+/// gives zeros and sets `is_broken`.
 class RangeDecoder {
  public:
   /// Reads nothing.
   RangeDecoder() = default;
-  /// `bytes` and `is_broken` have to outlive this.
+  /// `bytes` and `is_broken` must outlive this object.
   RangeDecoder(std::span<const std::byte> bytes, bool& is_broken);
 
-  /// A number of `count` bits (1 to 32) that were packed as they are.
+  /// A number of `count` raw bits (1 to 32).
   std::uint32_t bits(unsigned count);
   std::uint64_t bits64() {
     const std::uint64_t low = bits(32);
     return low | (std::uint64_t{bits(32)} << 32);
   }
-  /// The next byte that will be read.
+  /// The next byte to read.
   const std::byte* place() const { return next_; }
 
  private:
@@ -128,13 +127,13 @@ inline unsigned BitModel::decode(RangeDecoder& decoder) {
   return bit;
 }
 
-inline std::uint32_t SymbolModel::find(std::uint32_t place) const {
-  const std::uint16_t* const part = table() + (place >> table_shift_);
+inline std::uint32_t SymbolModel::find(std::uint32_t position) const {
+  const std::uint16_t* const part = table() + (position >> table_shift_);
   std::uint32_t symbol = part[0];
   std::uint32_t end = part[1] + 1U;
   while (end > symbol + 1) {
     const std::uint32_t middle = (symbol + end) >> 1;
-    (begins()[middle] > place ? end : symbol) = middle;
+    (begins()[middle] > position ? end : symbol) = middle;
   }
   return symbol;
 }
@@ -143,10 +142,10 @@ inline std::uint32_t SymbolModel::decode(RangeDecoder& decoder) {
   if (values_.empty()) start();
   const std::uint32_t whole = decoder.length_;
   const std::uint32_t unit = whole >> 15;
-  // What 2^15 units leave of the length belongs to the last symbol.
-  constexpr std::uint32_t kLastPlace = (1U << 15) - 1;
+  // The rest of the length beyond 2^15 units belongs to the last symbol.
+  constexpr std::uint32_t kLastPosition = (1U << 15) - 1;
   const std::uint32_t quotient = decoder.value_ / unit;
-  const std::uint32_t symbol = find(quotient < kLastPlace ? quotient : kLastPlace);
+  const std::uint32_t symbol = find(quotient < kLastPosition ? quotient : kLastPosition);
   const std::uint32_t begin = begins()[symbol] * unit;
   const std::uint32_t end = symbol + 1 == symbols_ ? whole : begins()[symbol + 1] * unit;
   decoder.value_ -= begin;

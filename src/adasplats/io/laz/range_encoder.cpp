@@ -9,7 +9,7 @@
 namespace adasplats {
 
 void RangeEncoder::carry() {
-  // The first byte has not wrapped: all that is packed is a number below 1.
+  // The first byte never wraps: the encoded number is below 1.
   std::size_t place = bytes_.size();
   do {
     --place;
@@ -28,8 +28,7 @@ void RangeEncoder::put_bits(std::uint32_t number, unsigned count) {
 }
 
 std::string RangeEncoder::finish() {
-  // A number within the interval that takes as few bytes as can be, then zeros: a decoder reads
-  // four bytes ahead.
+  // The shortest number within the interval, then zeros: a decoder reads four bytes ahead.
   const bool is_wide = length_ > 2 * kMinLength;
   narrow(is_wide ? kMinLength : kMinLength >> 1, kMinLength >> (is_wide ? 1 : 9));
   bytes_.append(is_wide ? 3 : 2, '\0');

@@ -7,13 +7,13 @@
 
 namespace adasplats {
 
-/// Packs numbers as RangeDecoder unpacks them (A. Said, HPL-2004-76, section 2), with the bytes
-/// that LASzip gives the same numbers.
+/// Arithmetic encoder for RangeDecoder (A. Said, HPL-2004-76, section 2), with the same bytes as
+/// LASzip.
 class RangeEncoder {
  public:
-  /// A number of `count` bits (1 to 32), as it is.
+  /// Encodes a number of `count` raw bits (1 to 32).
   void put_bits(std::uint32_t number, unsigned count);
-  /// The bytes of all that was put, with those that a decoder reads ahead. Call once, last.
+  /// All bytes, including those that a decoder reads ahead. Call once, last.
   std::string finish();
 
  private:
@@ -22,7 +22,7 @@ class RangeEncoder {
 
   static constexpr std::uint32_t kMinLength = 1U << 24;
 
-  /// Goes on with `length` of the interval from `begin` of it on.
+  /// Narrows the interval to `length` from `begin` on.
   void narrow(std::uint32_t begin, std::uint32_t length) {
     const std::uint32_t before = base_;
     base_ += begin;

@@ -18,7 +18,7 @@ WavePacket WavePacketModels::decode(RangeDecoder& decoder, const WavePacket& las
   packet[0] = static_cast<std::byte>(index_.decode(decoder));
   store_value(&packet[kOffsetAt],
               offset(decoder, load_value<std::uint64_t>(&last[kOffsetAt]), number(kSizeAt)));
-  // Of floating-point numbers the bits are packed.
+  // Floating-point numbers are encoded by their bits.
   store_value(&packet[kSizeAt], sizes_.decode(decoder, number(kSizeAt)));
   store_value(&packet[kReturnPointAt], return_points_.decode(decoder, number(kReturnPointAt)));
   for (unsigned axis = 0; axis < 3; ++axis) {

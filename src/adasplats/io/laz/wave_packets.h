@@ -13,10 +13,10 @@ namespace adasplats {
 
 inline constexpr std::size_t kWavePacketBytes = 29;
 
-/// Where a point's waveform is, as its record has it ("LAS specification 1.4 - R15", table 11).
+/// Position of a point's waveform in its record ("LAS specification 1.4 - R15", table 11).
 using WavePacket = std::array<std::byte, kWavePacketBytes>;
 
-/// Unpacks wave packets: packets of one size mostly follow each other.
+/// Decodes wave packets: consecutive packets mostly have the same size.
 class WavePacketModels {
  public:
   WavePacket decode(RangeDecoder& decoder, const WavePacket& last);

@@ -33,7 +33,7 @@ enum class Opcode : std::uint8_t {
   data_end = 0x0f,
 };
 
-/// The fields of a record, one behind the other.
+/// The consecutive fields of a record.
 class Fields {
  public:
   template <class T>

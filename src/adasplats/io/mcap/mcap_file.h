@@ -13,7 +13,7 @@
 
 namespace adasplats {
 
-/// What the messages of one topic are.
+/// A topic and the type of its messages.
 struct McapChannel {
   std::string topic;
   std::string message_encoding;  ///< of the registry: "cdr", "json", ...
@@ -22,12 +22,12 @@ struct McapChannel {
   std::string schema;
 };
 
-/// A message with its checksum, which is most of the work and can be done before its turn.
+/// A message with its checksum, most of the work, which can be computed in advance.
 struct McapMessage {
   std::uint16_t channel = 0;
   std::uint64_t time_ns = 0;  ///< nanoseconds since an epoch of the user's choice
   std::string bytes;
-  std::uint32_t crc = 0;  ///< of `bytes`, as zlib has it
+  std::uint32_t crc = 0;  ///< of `bytes`, as of zlib
 };
 
 /// Several threads may call it at once.
@@ -42,14 +42,14 @@ class McapFile {
   /// `profile` is a word of the registry, e.g. "ros2". Errors: cannot_create, io.
   McapFile(const std::filesystem::path& path, std::string_view profile);
 
-  /// The number by which add_message() knows the channel; 65535 at most.
+  /// Returns the number of the channel for add_message(); at most 65535 channels.
   std::uint16_t add_channel(const McapChannel& channel);
   /// A message of mcap_message(). Errors: io.
   void add_message(const McapMessage& message);
   void add_message(std::uint16_t channel, std::uint64_t time_ns, std::string_view message) {
     add_message(mcap_message(channel, time_ns, std::string(message)));
   }
-  /// Makes the file whole and visible. Call once, last. Errors: io, cannot_create.
+  /// Completes the file and makes it visible. Call once, last. Errors: io, cannot_create.
   void finish();
 
  private:
@@ -59,7 +59,7 @@ class McapFile {
     void add(std::uint64_t time_ns);
     std::uint64_t begin() const { return first <= last ? first : 0; }
   };
-  /// Time and place in the chunk of each message of one channel.
+  /// Time and offset in the chunk of each message of one channel.
   using MessageIndex = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
   struct ChannelState {
     std::string schema_record, channel_record;
@@ -69,14 +69,14 @@ class McapFile {
 
   void put(std::string_view bytes);
   void put_chunk();
-  /// Gives the content of the chunk's index record.
+  /// Returns the content of the chunk's index record.
   std::string put_message_indexes(std::uint64_t chunk_start, std::uint64_t chunk_length);
   std::string statistics() const;
   void put_summary();
 
   AtomicFile file_;
   std::uint64_t offset_ = 0;  ///< bytes written
-  unsigned long crc_ = 0;     ///< of the bytes of this section, as zlib has it
+  unsigned long crc_ = 0;     ///< of the bytes of this section, as of zlib
   std::string chunk_;         ///< the records of the open chunk
   unsigned long chunk_crc_ = 0;
   Times chunk_times_, times_;

@@ -14,7 +14,8 @@
 namespace adasplats {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "byte orders are told apart by it");
+static_assert(std::endian::native == std::endian::little,
+              "detection of the byte order relies on it");
 
 constexpr std::uint32_t kMicrosecondMagic = 0xA1B2C3D4, kNanosecondMagic = 0xA1B23C4D;
 constexpr std::uint32_t kSectionBlock = 0x0A0D0D0A, kByteOrderMagic = 0x1A2B3C4D;
@@ -37,7 +38,7 @@ std::uint64_t time_ns_of(std::uint64_t ticks, const CaptureLink& link) {
   return (seconds + static_cast<std::uint64_t>(link.offset_s)) * kBillion + part_ns;
 }
 
-/// Of the option if_tsresol: a negative power of 10, or of 2; 0: none that is understood.
+/// Ticks a second of the option if_tsresol, a negative power of 10 or of 2; 0: unsupported.
 std::uint64_t ticks_of_resolution(std::uint8_t option) {
   const unsigned power = option & 0x7FU;
   if ((option & 0x80U) != 0) return power < 63 ? std::uint64_t{1} << power : 0;
@@ -59,7 +60,7 @@ std::string_view CaptureReader::take(std::uint64_t bytes, const char* what) {
   if (file_.remaining() < bytes)
     throw file_.error_here(std::string(what) + " ends early: " + std::to_string(bytes) +
                            " bytes expected, " + std::to_string(file_.remaining()) +
-                           " found; the capture was cut off (editcap mends such files)");
+                           " found; the capture was cut off (repair it with editcap)");
   const auto view = file_.peek(static_cast<std::size_t>(bytes));
   return {reinterpret_cast<const char*>(view.data()), static_cast<std::size_t>(bytes)};
 }
@@ -68,7 +69,7 @@ template <class T>
 T CaptureReader::number_at(std::string_view bytes, std::size_t place) const {
   if (place + sizeof(T) > bytes.size())
     throw file_.error_here("a block of " + std::to_string(bytes.size()) +
-                           " bytes is too short for what it says to be");
+                           " bytes is too short for its type");
   char raw[sizeof(T)];
   std::memcpy(raw, bytes.data() + place, sizeof(T));
   if (place_.is_swapped) std::reverse(raw, raw + sizeof(T));
@@ -86,7 +87,7 @@ void CaptureReader::read_head() {
   place_.is_swapped = swapped(magic) == kMicrosecondMagic || swapped(magic) == kNanosecondMagic;
   const std::uint32_t in_order = place_.is_swapped ? swapped(magic) : magic;
   if (in_order != kMicrosecondMagic && in_order != kNanosecondMagic)
-    throw file_.error_here("neither PCAP nor PCAPNG: it begins with " + std::to_string(magic));
+    throw file_.error_here("neither PCAP nor PCAPNG (first number " + std::to_string(magic) + ")");
   const std::string_view head = take(kClassicHeadBytes, "the head of the capture");
   constexpr std::uint32_t kTypeBits = 0xFFFF;
   const std::uint32_t type = number_at<std::uint32_t>(head, 20) & kTypeBits;
@@ -151,7 +152,7 @@ std::optional<CapturedFrame> CaptureReader::next_block() {
   return frame;
 }
 
-/// Its byte order, and no interfaces yet.
+/// Sets the byte order and clears the interfaces.
 void CaptureReader::begin_section() {
   place_.is_swapped = false;
   const auto order = number_at<std::uint32_t>(take(12, "the head of a section"), 8);
@@ -175,7 +176,7 @@ void CaptureReader::add_link(std::string_view body) {
     place += 4 + (bytes + 3U) / 4U * 4U;
   }
   if (link.ticks_per_s == 0)
-    throw file_.error_here("an interface whose times are in steps that are not understood");
+    throw file_.error_here("an interface with an unsupported resolution of times");
   if (place_.links->size() >= kMaxLinks)
     throw file_.error_here("more than " + std::to_string(kMaxLinks) + " interfaces");
   std::vector<CaptureLink> links = *place_.links;

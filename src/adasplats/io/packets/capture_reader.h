@@ -13,14 +13,14 @@
 
 namespace adasplats {
 
-/// What a capture says of the network that frames came by.
+/// A network interface of a capture.
 struct CaptureLink {
   std::uint32_t type = 0;         ///< LINKTYPE_ of tcpdump.org
   std::uint64_t ticks_per_s = 0;  ///< of times
-  std::int64_t offset_s = 0;      ///< to be added to them
+  std::int64_t offset_s = 0;      ///< added to times
 };
 
-/// What is needed to go on reading a capture from a place in it.
+/// A position in a capture, with all that is needed to continue reading there.
 struct CapturePlace {
   std::uint64_t offset = 0;
   bool is_swapped = false, is_next_generation = false;
@@ -29,9 +29,9 @@ struct CapturePlace {
 
 /// A frame as it was captured.
 struct CapturedFrame {
-  std::optional<std::uint64_t> time_ns;  ///< since 1970; nothing where the capture does not say
+  std::optional<std::uint64_t> time_ns;  ///< since 1970; nothing if the capture has no time
   std::uint32_t link_type = 0;
-  std::string_view bytes;  ///< until the next one is read
+  std::string_view bytes;  ///< valid until the next frame
   bool is_cut = false;     ///< only the beginning was captured
   CapturePlace place;      ///< where its record begins
 };
@@ -43,10 +43,10 @@ class CaptureReader {
  public:
   /// Errors: no_input, data (neither of these formats).
   explicit CaptureReader(const std::filesystem::path& path);
-  /// From a frame on that another reader of the file gave.
+  /// Starts at a frame found by another reader of the file.
   CaptureReader(const std::filesystem::path& path, const CapturePlace& place);
 
-  /// The next frame; nothing at the end. Errors: data (damaged, cut off, packed), io.
+  /// The next frame; nothing at the end. Errors: data (damaged, truncated, compressed), io.
   std::optional<CapturedFrame> next();
   const std::filesystem::path& path() const { return file_.path(); }
   std::uint64_t size_bytes() const { return file_.size_bytes(); }
@@ -64,7 +64,7 @@ class CaptureReader {
   T number_at(std::string_view bytes, std::size_t place) const;
 
   InputFile file_;
-  CapturePlace place_;  ///< of the next record; its offset is that of the file
+  CapturePlace place_;  ///< of the next record
 };
 
 /// Whether a path is a capture by its name: .pcap, .pcapng.

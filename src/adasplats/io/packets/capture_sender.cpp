@@ -27,7 +27,7 @@ sockaddr_in address_of_host(const std::string& host) {
   addrinfo* found = nullptr;
   const int problem = getaddrinfo(host.c_str(), nullptr, &hints, &found);
   if (problem != 0 || found == nullptr)
-    throw Error(ErrorKind::no_input, "host '" + host + "' is not known: " + gai_strerror(problem));
+    throw Error(ErrorKind::no_input, "unknown host '" + host + "': " + gai_strerror(problem));
   sockaddr_in address{};
   std::copy_n(reinterpret_cast<const char*>(found->ai_addr), sizeof address,
               reinterpret_cast<char*>(&address));
@@ -79,11 +79,12 @@ void set_destination(const std::string& text, SendOptions& options) {
     const auto port = parse_number<std::uint16_t>(std::string_view(text).substr(colon + 1));
     if (!port || *port == 0)
       throw Error(ErrorKind::usage, "'" + text +
-                                        "' is no HOST or HOST:PORT, with a port from 1 to "
+                                        "' is not HOST or HOST:PORT, with a port from 1 to "
                                         "65535");
     options.port = *port;
   }
-  if (options.host.empty()) throw Error(ErrorKind::usage, "'" + text + "' is no HOST or HOST:PORT");
+  if (options.host.empty())
+    throw Error(ErrorKind::usage, "'" + text + "' is not HOST or HOST:PORT");
 }
 
 SendResult send_capture(const std::filesystem::path& path, const SendOptions& options,
@@ -122,7 +123,7 @@ SendResult send_capture(const std::filesystem::path& path, const SendOptions& op
   if (result.datagrams == 0)
     throw Error(
         ErrorKind::data,
-        path.string() + ": holds no UDP datagram" +
+        path.string() + ": contains no UDP datagram" +
             (options.only_port != 0 ? " to port " + std::to_string(options.only_port) : ""));
   return result;
 }

@@ -11,28 +11,27 @@
 
 namespace adasplats {
 
-/// Where the datagrams of a capture are sent, and how fast.
+/// Destination and speed of sending.
 struct SendOptions {
   std::string host = "127.0.0.1";  ///< a name or an IPv4 address
-  std::uint16_t port = 0;          ///< 0: that of each datagram
-  std::uint16_t only_port = 0;     ///< of all, those that went to that port; 0: all
-  double speed = 1;                ///< captured seconds a second; 0: as fast as they can be read
+  std::uint16_t port = 0;          ///< 0: the port of each datagram
+  std::uint16_t only_port = 0;     ///< only datagrams to this port; 0: all
+  double speed = 1;                ///< captured seconds per second; 0: as fast as possible
 };
 
 struct SendResult {
   std::uint64_t datagrams = 0, bytes = 0;
   double seconds = 0;
-  double latest_s = 0;  ///< most that a datagram was sent after its time
+  double latest_s = 0;  ///< maximum delay of a datagram
   DatagramCounts counts;
 };
 
-/// "HOST[:PORT]" put into the options. Errors: usage.
+/// Parses "HOST[:PORT]" into the options. Errors: usage.
 void set_destination(const std::string& text, SendOptions& options);
 
-/// Sends the UDP datagrams of a capture again, as far apart as they were captured. `waited` is
-/// called between them at least ten times a second, with how many were sent, and may throw to end
-/// it. Errors: those of DatagramReader; no_input (a host that is not known); io (sending); data (no
-/// datagram).
+/// Sends the UDP datagrams of a capture at their captured intervals. Calls `waited` between them,
+/// at least ten times a second, with the number sent so far; it may throw to stop. Errors: those of
+/// DatagramReader; no_input (unknown host); io (sending); data (no datagram).
 SendResult send_capture(const std::filesystem::path& path, const SendOptions& options,
                         FunctionRef<void(std::uint64_t)> waited);
 

@@ -34,7 +34,7 @@ std::string udp_datagram(const UdpEnd& from, const UdpEnd& to, std::string_view 
   append_big_endian(head, length);
   const std::uint16_t sum =
       inverted(add_to_checksum(payload, add_to_checksum(head, add_to_checksum(pseudo, 0))));
-  append_big_endian(head, sum == 0 ? std::uint16_t{0xFFFF} : sum);  // 0: there is none
+  append_big_endian(head, sum == 0 ? std::uint16_t{0xFFFF} : sum);  // 0 means no checksum
   return head.append(payload);
 }
 
@@ -76,7 +76,7 @@ void CaptureWriter::add(std::uint64_t time_us, const UdpEnd& from, const UdpEnd&
   if (time_us / kMicrosecondsInSecond > UINT32_MAX)
     throw Error(ErrorKind::data, path_.string() + ": a time of " +
                                      std::to_string(time_us / kMicrosecondsInSecond) +
-                                     " s since 1970 is beyond what PCAP can say (2106)");
+                                     " s since 1970 is beyond the range of PCAP (2106)");
   const std::string datagram = udp_datagram(from, to, payload);
   ++datagram_;
   for (std::size_t offset = 0; offset < datagram.size(); offset += kMaxIpPayload) {

@@ -12,7 +12,7 @@
 
 namespace adasplats {
 
-/// One end of a way through a network.
+/// Sender or receiver of a datagram.
 struct UdpEnd {
   std::array<std::uint8_t, 6> mac{};
   std::array<std::uint8_t, 4> address{};
@@ -20,17 +20,17 @@ struct UdpEnd {
 };
 
 /// Writes UDP datagrams as a capture that libpcap reads: classic PCAP (version 2.4, microseconds,
-/// little-endian), Ethernet and IPv4 with checksums; a datagram of more than 1472 bytes is sent as
-/// fragments, as a network with frames of 1500 bytes has it. Atomic (AtomicFile).
+/// little-endian), Ethernet and IPv4 with checksums; a datagram of more than 1472 bytes is split
+/// into fragments, as in a network with frames of 1500 bytes. Atomic (AtomicFile).
 class CaptureWriter {
  public:
   /// Errors: cannot_create, io.
   explicit CaptureWriter(const std::filesystem::path& path);
 
-  /// A datagram that was captured `time_us` after 1970. Errors: io; data (a time beyond 2106, more
-  /// than 65507 bytes).
+  /// Adds a datagram at `time_us` since 1970. Errors: io; data (a time beyond 2106, more than 65507
+  /// bytes).
   void add(std::uint64_t time_us, const UdpEnd& from, const UdpEnd& to, std::string_view payload);
-  /// Makes the file whole. Call once, last.
+  /// Completes the file. Call once, last.
   void finish() { file_.commit(); }
 
  private:
@@ -39,7 +39,7 @@ class CaptureWriter {
 
   std::filesystem::path path_;
   AtomicFile file_;
-  std::uint16_t datagram_ = 0;  ///< names those whose fragments belong together
+  std::uint16_t datagram_ = 0;  ///< identifies the fragments of a datagram
 };
 
 }  // namespace adasplats

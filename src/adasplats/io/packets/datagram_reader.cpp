@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMaxOpenDatagrams = 32;
 constexpr std::size_t kMaxDatagramBytes = 65535;
 
-/// What of a frame is IPv4; nothing where it is another protocol.
+/// The IPv4 packet of a frame; nothing for other protocols.
 std::optional<std::string_view> ipv4_of(std::uint32_t link_type, std::string_view frame) {
   constexpr std::uint32_t kNull = 0, kEthernet = 1, kRaw = 101, kLoop = 108, kCooked = 113,
                           kIpv4 = 228, kCooked2 = 276;
@@ -80,9 +80,9 @@ std::optional<Datagram> DatagramReader::datagram_of(const CapturedFrame& frame) 
     ++counts_.timeless;
     return std::nullopt;
   }
-  // A sender that leaves segments to its network card says 0.
-  const std::size_t told = big_endian_at<std::uint16_t>(*ip, 2);
-  const std::size_t length = told == 0 ? ip->size() : told;
+  // 0 if segmentation is left to the network card of the sender.
+  const std::size_t stated = big_endian_at<std::uint16_t>(*ip, 2);
+  const std::size_t length = stated == 0 ? ip->size() : stated;
   if (frame.is_cut || length < head || ip->size() < length) {
     ++counts_.cut;
     return std::nullopt;

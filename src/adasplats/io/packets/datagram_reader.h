@@ -17,27 +17,26 @@ namespace adasplats {
 
 /// A UDP datagram over IPv4.
 struct Datagram {
-  std::uint64_t time_ns = 0;       ///< when the (last part of it) was captured, since 1970
+  std::uint64_t time_ns = 0;       ///< capture time of its last fragment, since 1970
   std::uint32_t from = 0, to = 0;  ///< addresses, the first number in the highest byte
   std::uint16_t from_port = 0, to_port = 0;
-  std::string_view payload;  ///< until the next one is read
-  CapturePlace place;        ///< where its first part begins
+  std::string_view payload;  ///< valid until the next datagram
+  CapturePlace place;        ///< of its first fragment
 };
 
-/// What a capture holds besides.
+/// Counts of frames and datagrams.
 struct DatagramCounts {
   std::uint64_t frames = 0, datagrams = 0;
-  std::uint64_t others = 0;  ///< frames of other protocols
-  std::uint64_t cut = 0;     ///< frames of which only the beginning was captured, or that say more
-                             ///< than they hold
+  std::uint64_t others = 0;    ///< frames of other protocols
+  std::uint64_t cut = 0;       ///< frames captured in part, or with wrong lengths
   std::uint64_t timeless = 0;  ///< frames without a time
-  std::uint64_t torn = 0;      ///< datagrams of which parts are missing
+  std::uint64_t torn = 0;      ///< datagrams with missing fragments
 };
 
 /// Reads the UDP datagrams of a capture: Ethernet (also with VLAN tags), Linux' cooked captures,
-/// loopback and bare IP; fragments are put together, in any order. Checksums are not looked at:
-/// those of frames that were captured where they were sent are often not yet made. Memory: that of
-/// CaptureReader, and of 32 datagrams whose parts are not all there yet.
+/// loopback and raw IP; joins fragments in any order. Checksums are not checked: they are often not
+/// yet computed in frames captured at the sender. Memory: that of CaptureReader, and of 32
+/// incomplete datagrams.
 class DatagramReader {
  public:
   explicit DatagramReader(const std::filesystem::path& path) : capture_(path) {}
@@ -46,19 +45,19 @@ class DatagramReader {
 
   /// The next datagram; nothing at the end. Errors: those of CaptureReader.
   std::optional<Datagram> next();
-  /// So far; torn ones at the end.
+  /// Counts so far; `torn` is complete at the end.
   const DatagramCounts& counts() const { return counts_; }
   const std::filesystem::path& path() const { return capture_.path(); }
 
  private:
-  /// From, to, and the name that the sender gave.
+  /// Source, destination and the sender's identification.
   using PartsKey = std::tuple<std::uint32_t, std::uint32_t, std::uint16_t>;
   struct Parts {
     std::string bytes;
     std::vector<bool> is_there;  ///< of each 8 bytes
     std::size_t missing = 0;     ///< of is_there
     bool has_end = false;
-    std::uint64_t began = 0;  ///< counts frames
+    std::uint64_t began = 0;  ///< number of its first frame
     CapturePlace place;
   };
   struct Packet;  ///< of IPv4
@@ -70,7 +69,7 @@ class DatagramReader {
   CaptureReader capture_;
   DatagramCounts counts_;
   std::map<PartsKey, Parts> parts_;
-  std::string whole_;  ///< the last datagram that was put together
+  std::string whole_;  ///< the last joined datagram
 };
 
 /// "192.168.1.201".

@@ -12,7 +12,7 @@
 
 namespace adasplats {
 
-/// Private to io/packets: numbers in the order of networks, and sizes of headers.
+/// Private to io/packets: numbers in network byte order, and sizes of headers.
 
 inline constexpr std::size_t kEthernetBytes = 14, kIpv4Bytes = 20, kUdpBytes = 8;
 inline constexpr std::uint16_t kEtherIpv4 = 0x0800;
@@ -39,8 +39,8 @@ void append_little_endian(std::string& bytes, T value) {
   for (std::size_t k = 0; k < sizeof(T); ++k) bytes += static_cast<char>(value >> (8 * k) & 0xFFU);
 }
 
-/// The sum of a checksum of the Internet (RFC 1071), not yet inverted; `sum` goes on. Only the last
-/// part may have an odd number of bytes.
+/// Continues `sum` of an Internet checksum (RFC 1071), not yet inverted. Only the last part may
+/// have an odd number of bytes.
 inline std::uint32_t add_to_checksum(std::string_view bytes, std::uint32_t sum) {
   for (std::size_t k = 0; k < bytes.size(); k += 2) {
     const std::uint32_t low = k + 1 < bytes.size() ? static_cast<std::uint8_t>(bytes[k + 1]) : 0U;

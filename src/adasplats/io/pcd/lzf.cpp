@@ -29,7 +29,7 @@ std::optional<std::vector<std::byte>> unpack_lzf(std::span<const std::byte> pack
     const std::size_t distance =
         ((control & 31) << 8) + std::to_integer<std::size_t>(packed[in++]) + 1;
     if (distance > out || length > unpacked_bytes - out) return std::nullopt;
-    // The source may overlap the target: byte by byte repeats what was just written.
+    // The source may overlap the target: copying byte by byte repeats the bytes just written.
     for (std::size_t k = 0; k < length; ++k, ++out) unpacked[out] = unpacked[out - distance];
   }
   if (out != unpacked_bytes) return std::nullopt;

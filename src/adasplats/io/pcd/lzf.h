@@ -10,13 +10,13 @@
 
 namespace adasplats {
 
-/// The most that LZF can unpack from one byte: 3 bytes stand for 264 at best.
+/// Maximum expansion of LZF: 3 bytes give at most 264.
 inline constexpr std::uint64_t kLzfLargestRatio = 88;
 
-/// Unpacks an LZF stream that holds exactly `unpacked_bytes`; nothing where the stream is broken
-/// or holds another amount. The format: a control byte below 32 begins a run of control + 1
-/// literal bytes; else its upper 3 bits (7: plus the next byte) are a length - 2 and its lower 5
-/// bits with the following byte a distance back - 1.
+/// Decompresses an LZF stream of exactly `unpacked_bytes`; nothing if the stream is damaged or has
+/// another size. The format: a control byte below 32 begins a run of control + 1 literal bytes;
+/// else its upper 3 bits (7: plus the next byte) are a length - 2 and its lower 5 bits with the
+/// following byte a distance back - 1.
 std::optional<std::vector<std::byte>> unpack_lzf(std::span<const std::byte> packed,
                                                  std::size_t unpacked_bytes);
 

@@ -52,13 +52,13 @@ std::vector<std::byte> unpack_body(InputFile& file, const PcdHeader& header) {
   std::optional<std::vector<std::byte>> body =
       unpack_lzf(file.peek(packed_bytes).first(packed_bytes), unpacked_bytes);
   if (!body) {
-    throw file.error_here("the compressed data are broken or do not hold " +
+    throw file.error_here("the compressed data are damaged or do not give " +
                           std::to_string(unpacked_bytes) + " bytes");
   }
   return std::move(*body);
 }
 
-/// Compressed files hold the fields one after the other, each for all points.
+/// Compressed files contain the fields one after the other, each for all points.
 std::vector<Column> read_compressed(InputFile& file, const PcdHeader& header) {
   const std::vector<std::byte> body =
       header.points == 0 ? std::vector<std::byte>() : unpack_body(file, header);
@@ -68,7 +68,7 @@ std::vector<Column> read_compressed(InputFile& file, const PcdHeader& header) {
   for (const PcdField& field : header.fields) {
     for (std::size_t k = 0; k < field.count && !field.is_padding(); ++k) {
       columns.push_back(make_column(field.value_name(k), field.type, rows));
-      if (rows == 0) continue;  // there is nothing to point into
+      if (rows == 0) continue;  // the body is empty
       gather_values(body.data() + block + k * field.value_bytes, field.bytes(), field.value_bytes,
                     false, rows, column_bytes(columns.back()));
     }
@@ -110,7 +110,7 @@ std::vector<Column> read_text(InputFile& file, LineReader& lines, const PcdHeade
   const std::uint64_t room = (file.remaining() + 1) / (2 * std::max<std::size_t>(value_count, 1));
   if (header.points > room) {
     throw lines.error_here("found room for at most " + std::to_string(room) +
-                           " points after this line, the header says " +
+                           " points after this line, the header states " +
                            std::to_string(header.points));
   }
   const auto rows = static_cast<std::size_t>(header.points);
@@ -128,7 +128,7 @@ std::vector<Column> read_text(InputFile& file, LineReader& lines, const PcdHeade
     const std::optional<std::string_view> line = lines.next_filled();
     if (!line) {
       throw lines.error_here("the file ends after " + std::to_string(row) +
-                             " points, the header says " + std::to_string(header.points));
+                             " points, the header states " + std::to_string(header.points));
     }
     read_text_record(lines, row, *line, values);
   }

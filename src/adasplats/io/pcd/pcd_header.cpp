@@ -11,7 +11,7 @@
 namespace adasplats {
 namespace {
 
-// Descriptors of the largest kind have some thousand values a point.
+// The largest descriptors have some thousand values for a point.
 constexpr std::uint64_t kMaxValues = 65536;
 
 ColumnType pcd_type(const LineReader& lines, char type, std::size_t bytes) {
@@ -80,20 +80,20 @@ class PcdHeaderParser {
     }
   }
 
-  std::uint64_t to_number(std::string_view keyword, std::string_view word, std::uint64_t least,
-                          std::uint64_t largest) const {
+  std::uint64_t to_number(std::string_view keyword, std::string_view word, std::uint64_t min,
+                          std::uint64_t max) const {
     const std::optional<std::uint64_t> value = parse_number<std::uint64_t>(word);
-    if (value && *value >= least && *value <= largest) return *value;
+    if (value && *value >= min && *value <= max) return *value;
     throw lines_.error_here(std::string(keyword) + ": found " + shown(word) +
-                            ", expected a whole number from " + std::to_string(least) + " to " +
-                            std::to_string(largest));
+                            ", expected a whole number from " + std::to_string(min) + " to " +
+                            std::to_string(max));
   }
 
   std::vector<std::uint64_t> take_numbers(std::string_view keyword, BlankTokens tokens,
-                                          std::uint64_t least, std::uint64_t largest) const {
+                                          std::uint64_t min, std::uint64_t max) const {
     std::vector<std::uint64_t> numbers;
     for (const std::string_view word : split_blanks(tokens.rest()))
-      numbers.push_back(to_number(keyword, word, least, largest));
+      numbers.push_back(to_number(keyword, word, min, max));
     return numbers;
   }
 

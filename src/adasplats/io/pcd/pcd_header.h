@@ -35,8 +35,8 @@ struct PcdHeader {
   std::size_t record_bytes() const;
 };
 
-/// Reads a PCD header up to and with its DATA line; WIDTH x HEIGHT, POINTS, SIZE, TYPE and COUNT
-/// agree with each other, the file's size is not looked at. Errors: data with the line.
+/// Reads a PCD header including its DATA line. Checks that WIDTH x HEIGHT, POINTS, SIZE, TYPE and
+/// COUNT are consistent, but not the size of the file. Errors: data with the line.
 PcdHeader read_pcd_header(LineReader& lines);
 
 }  // namespace adasplats

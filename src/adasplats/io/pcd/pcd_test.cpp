@@ -138,8 +138,8 @@ TEST(Pcd, CompressedSizes) {
   EXPECT_EQ(values_of(read(header + compressed_body(body, 8)), "x"), (Doubles{1, 2}));
   expect_data_error(header + compressed_body(body, 9), {"found 9", "2 points"});
   expect_data_error(header + bytes_of(0xffffffffU) + bytes_of(8U) + body, {"4294967295"});
-  expect_data_error(header + compressed_body(body.substr(0, 5), 8), {"broken"});
-  expect_data_error(header + compressed_body(body + std::string(1, '\0') + "x", 8), {"broken"});
+  expect_data_error(header + compressed_body(body.substr(0, 5), 8), {"damaged"});
+  expect_data_error(header + compressed_body(body + std::string(1, '\0') + "x", 8), {"damaged"});
   expect_data_error(header + "1234", {"ends here"});
   const std::string many = "FIELDS x\nSIZE 4\nTYPE U\nPOINTS 1000000000\nDATA binary_compressed\n";
   expect_data_error(many + compressed_body(body, 4000000000U), {"cannot hold 4000000000"});

@@ -12,17 +12,17 @@
 
 namespace adasplats {
 
-/// Where points were taken from: x, y, z in m and a unit quaternion w, x, y, z.
+/// The pose of the sensor: x, y, z in m and a unit quaternion w, x, y, z.
 using PcdViewpoint = std::array<double, 7>;
 
-/// Writes PCD 0.7, `binary`, one field a column, `rows` points (not organised). Atomic. Throws
-/// std::logic_error for a field name that is empty or has blanks. `viewpoint`: PCL shows points as
-/// seen from there, so they are in the frame that it brings to the world.
+/// Writes PCD 0.7, `binary`, with a field for each column, `rows` points (unorganized). Atomic.
+/// Throws std::logic_error for a field name that is empty or has blanks. `viewpoint`: PCL
+/// transforms the points by it, so they are in the sensor's frame.
 void write_pcd(const std::filesystem::path& path, std::size_t rows,
                std::span<const ColumnView> columns,
                const PcdViewpoint& viewpoint = {0, 0, 0, 1, 0, 0, 0});
 
-/// The bytes of that file.
+/// Writes the bytes of that file.
 void put_pcd(ByteSink& file, std::size_t rows, std::span<const ColumnView> columns,
              const PcdViewpoint& viewpoint = {0, 0, 0, 1, 0, 0, 0});
 

@@ -20,10 +20,10 @@ constexpr std::size_t kMaxUnpacked = std::size_t{1} << 30;
 constexpr std::size_t kMaxParts = 4096;
 constexpr std::string_view kGzipStart = "\x1f\x8b";
 
-/// Makes a table of what a pickle says.
-class FrameReaderOfPickle {
+/// Builds a table from a pickle.
+class DataFrameReader {
  public:
-  explicit FrameReaderOfPickle(const PickledValues& pickle) : pickle_(pickle) {}
+  explicit DataFrameReader(const PickledValues& pickle) : pickle_(pickle) {}
 
   Table read() {
     const PickleValue& frame = pickle_.root();
@@ -50,7 +50,7 @@ class FrameReaderOfPickle {
     return {ErrorKind::data, pickle_.file().string() + ": " + what};
   }
 
-  /// Values may be named many times in a pickle, which then is more work than its size tells.
+  /// A pickle may refer to values many times, which would be more work than its size suggests.
   void require_few(std::size_t count, const std::string& what) const {
     if (count > kMaxParts)
       throw fault(std::to_string(count) + " " + what + ", expected at most " +
@@ -77,7 +77,7 @@ class FrameReaderOfPickle {
     for (std::size_t k = 0; k + 1 < columns.items.size(); k += 2) {
       const PickleValue& name = pickle_[columns.items[k]];
       const PickleValue& values = pickle_[columns.items[k + 1]];
-      if (name.kind != PickleKind::text) throw fault("a column whose name is no text");
+      if (name.kind != PickleKind::text) throw fault("a column whose name is not a text");
       PickledArray array;
       if (values.kind == PickleKind::sequence) {
         array.is_objects = true;
@@ -90,7 +90,7 @@ class FrameReaderOfPickle {
     }
   }
 
-  /// The columns' names, of an index made by _new_Index(class, {"data": array, ...}).
+  /// The names of the columns, from an index made by _new_Index(class, {"data": array, ...}).
   std::vector<std::string_view> names_of(const PickleValue* axes) const {
     if (axes == nullptr || axes->kind != PickleKind::sequence || axes->items.size() != 2)
       throw fault("a data frame without names of columns");
@@ -100,16 +100,16 @@ class FrameReaderOfPickle {
     const PickledArray array = pickled_array(pickle_, *data);
     std::vector<std::string_view> names;
     if (array.objects == nullptr || array.lines != 1)
-      throw fault("names of columns that are no texts");
+      throw fault("names of columns that are not texts");
     require_few(array.length, "columns");
     for (const PickleRef ref : *array.objects) {
-      if (pickle_[ref].kind != PickleKind::text) throw fault("a column whose name is no text");
+      if (pickle_[ref].kind != PickleKind::text) throw fault("a column whose name is not a text");
       names.push_back(pickle_[ref].text);
     }
     return names;
   }
 
-  /// Which columns the lines of a block are: a slice, or an array of numbers.
+  /// The columns of a block's lines: a slice, or an array of numbers.
   std::vector<std::int64_t> places_of(const PickleValue& placement, std::size_t lines) const {
     std::vector<std::int64_t> places;
     if (made_by(pickle_, placement).ends_with(".slice")) {
@@ -118,10 +118,10 @@ class FrameReaderOfPickle {
       if (start == nullptr || step == nullptr || start->kind != PickleKind::integer)
         throw fault("a block without columns");
       const std::int64_t apart = step->kind == PickleKind::integer ? step->integer : 1;
-      constexpr std::int64_t kMost = 1 << 20;  // so that sums do not wrap
-      if (start->integer < 0 || start->integer > kMost || apart < -kMost || apart > kMost ||
-          lines > static_cast<std::size_t>(kMost))
-        throw fault("a block of columns that cannot be");
+      constexpr std::int64_t kMaxColumn = 1 << 20;  // so that sums do not wrap
+      if (start->integer < 0 || start->integer > kMaxColumn || apart < -kMaxColumn ||
+          apart > kMaxColumn || lines > static_cast<std::size_t>(kMaxColumn))
+        throw fault("a block with impossible columns");
       for (std::size_t k = 0; k < lines; ++k)
         places.push_back(start->integer + apart * static_cast<std::int64_t>(k));
       return places;
@@ -129,7 +129,7 @@ class FrameReaderOfPickle {
     const PickledArray array = pickled_array(pickle_, placement);
     if (array.is_objects || array.lines != 1 || array.length != lines ||
         array.type != ColumnType::i64)
-      throw fault("a block of " + std::to_string(lines) + " columns is placed otherwise");
+      throw fault("a block of " + std::to_string(lines) + " columns has an invalid placement");
     return std::get<std::vector<std::int64_t>>(array.column("", 0).values);
   }
 
@@ -189,7 +189,7 @@ class FrameReaderOfPickle {
 
 Table data_frame_of(const std::filesystem::path& path, std::string pickle) {
   const PickledValues values(path, std::move(pickle));
-  return FrameReaderOfPickle(values).read();
+  return DataFrameReader(values).read();
 }
 
 Table read_data_frame(const std::filesystem::path& path) {

@@ -14,16 +14,17 @@
 
 namespace adasplats {
 
-/// The numbers of a data frame of pandas in a pickle, gzipped (.pkl.gz) or not, as PandaSet has its
-/// scans: what pandas 0.23 to 2 writes, and what we do. Nothing in the file is executed. Columns of
-/// texts and other objects are left out, so is the index. Memory: 2x what the file unpacks to,
-/// which is at most 1 GiB, and that of PickledValues. Errors: no_input, io, data.
+/// The numbers of a pandas data frame in a pickle, gzipped (.pkl.gz) or not, the format of
+/// PandaSet's scans: as written by pandas 0.23 to 2, and by pickled_data_frame(). Nothing in the
+/// file is executed. Columns of texts and other objects are left out, and so is the index. Memory:
+/// 2x the decompressed size, which is at most 1 GiB, and that of PickledValues. Errors: no_input,
+/// io, data.
 Table read_data_frame(const std::filesystem::path& path);
 
-/// The same of a pickle's bytes; `path` is for messages.
+/// The same for the bytes of a pickle; `path` is for messages.
 Table data_frame_of(const std::filesystem::path& path, std::string pickle);
 
-/// A column of a data frame: float64, int64, bool (0 or 1) or text. All have a value a row.
+/// A column of a data frame: float64, int64, bool (0 or 1) or text, with a value for each row.
 struct FrameColumn {
   std::string name;
   std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<bool>,
@@ -32,8 +33,8 @@ struct FrameColumn {
 };
 
 /// A pickle, protocol 3, of a pandas.DataFrame with these columns and the rows 0, 1, ... It calls
-/// pandas.DataFrame and numpy.frombuffer by their public names, and knows nothing of how a version
-/// of either is made inside: any pandas of Python 3 reads it. Opcodes: "pickletools.py" of Python.
+/// pandas.DataFrame and numpy.frombuffer by their public names and does not depend on their
+/// internals: any pandas of Python 3 reads it. Opcodes: "pickletools.py" of Python.
 /// Throws std::logic_error for columns of unequal length.
 std::string pickled_data_frame(std::span<const FrameColumn> columns);
 

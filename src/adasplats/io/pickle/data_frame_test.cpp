@@ -87,7 +87,7 @@ TEST(DataFrame, RunsNothing) {
         std::string("\x80\x03") + (call[1] == 'p'
                                        ? std::string("cposix\nsystem\nX\x04\0\0\0true\x85R.", 26)
                                        : std::string(call));
-    expect_error(ErrorKind::data, {"f: byte 2: names '", "system'", "nothing is run"},
+    expect_error(ErrorKind::data, {"f: byte 2: names '", "system'", "nothing was executed"},
                  [&] { data_frame_of("f", pickle); });
   }
   expect_error(ErrorKind::data, {"names 'builtins.eval'"}, [&] {
@@ -106,7 +106,7 @@ TEST(DataFrame, SaysWhatIsWrong) {
   fails("\x80\x07N.", "protocol 7, expected 2 to 5");
   fails("\x80\x03P", "opcode 0x50");
   fails("\x80\x03R.", "nothing on the stack");
-  fails("\x80\x03h\x05.", "nothing is remembered as 5");
+  fails("\x80\x03h\x05.", "nothing in the memo at 5");
   fails("\x80\x03" + std::string(1'000'001, 'N'), "more than a million opcodes");
   const std::string good = our_frame();
   for (std::size_t size = 0; size < good.size(); ++size)

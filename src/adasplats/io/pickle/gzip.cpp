@@ -14,16 +14,16 @@ namespace adasplats {
 namespace {
 
 constexpr int kGzipWindow = 15 + 16;  // of 32 KiB, with gzip's header
-// Coordinates hardly shrink more at higher levels, which take three times as long.
+// Higher levels hardly shrink coordinates further, and take three times as long.
 constexpr int kGzipLevel = 3;
 constexpr std::size_t kMaxAtOnce = std::numeric_limits<uInt>::max();
 
 Bytef* bytes_for_zlib(std::string_view bytes) {
-  // zlib's interface is older than const, but reads alone.
+  // zlib only reads these bytes, although its interface lacks const.
   return reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // NOLINT
 }
 
-/// An inflater that is ended whatever happens.
+/// Owns a stream of zlib.
 class Inflater {
  public:
   Inflater() {
@@ -75,8 +75,8 @@ std::string gunzipped(const std::filesystem::path& file, std::string_view bytes,
     const int result = inflate(&stream, Z_NO_FLUSH);
     const std::size_t used = given - stream.avail_in, made = part.size() - stream.avail_out;
     if (content.size() + made > max_bytes)
-      throw Error(ErrorKind::data,
-                  file.string() + ": unpacks to more than " + std::to_string(max_bytes) + " bytes");
+      throw Error(ErrorKind::data, file.string() + ": decompresses to more than " +
+                                       std::to_string(max_bytes) + " bytes");
     content.append(part, 0, made);
     left.remove_prefix(used);
     is_whole = result == Z_STREAM_END && left.empty();
@@ -84,7 +84,7 @@ std::string gunzipped(const std::filesystem::path& file, std::string_view bytes,
     if (result == Z_MEM_ERROR) throw std::bad_alloc();
     if (result == Z_STREAM_END || (result == Z_OK && (used > 0 || made > 0))) continue;
     throw data_error({file, bytes.size() - left.size(), {}},
-                     left.empty() ? "the gzip data end early" : "not gzip, or damaged");
+                     left.empty() ? "the gzip data end early" : "not gzip data, or damaged");
   }
   return content;
 }

@@ -9,11 +9,12 @@
 
 namespace adasplats {
 
-/// A gzip member (RFC 1952) of `bytes`, without name and time: the same for the same bytes.
+/// A gzip member (RFC 1952) of `bytes`, without name and time, so that it is reproducible.
 std::string gzipped(std::string_view bytes);
 
-/// What the members of a gzip file hold. `file` is for messages. Memory: twice what they hold, at
-/// most `max_bytes`. Errors: data (no gzip, damaged or cut, more than `max_bytes`).
+/// The content of the members of a gzip file. `file` is for messages. Memory: twice the content,
+/// which is at most `max_bytes`. Errors: data (not gzip, damaged, truncated, more than
+/// `max_bytes`).
 std::string gunzipped(const std::filesystem::path& file, std::string_view bytes,
                       std::size_t max_bytes);
 

@@ -39,14 +39,14 @@ TEST(Gzip, ReadsWhatGzipWrites) {
 
 TEST(Gzip, BrokenFiles) {
   const std::string packed = gzipped(std::string(5'000'000, 'x'));
-  expect_error(ErrorKind::data, {"f: unpacks to more than 4999999 bytes"},
+  expect_error(ErrorKind::data, {"f: decompresses to more than 4999999 bytes"},
                [&] { gunzipped("f", packed, 4'999'999); });
   expect_error(ErrorKind::data, {"f: byte", "end early"},
                [&] { gunzipped("f", packed.substr(0, packed.size() - 1), 5'000'000); });
   std::string broken = packed;
   broken[packed.size() - 6] ^= 1;  // of the checksum
   expect_error(ErrorKind::data, {"damaged"}, [&] { gunzipped("f", broken, 5'000'000); });
-  expect_error(ErrorKind::data, {"not gzip"}, [&] { gunzipped("f", packed + "x y z", 5'000'000); });
+  expect_error(ErrorKind::data, {"not gzip data"}, [&] { gunzipped("f", packed + "x y z", 5'000'000); });
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMaxOpcodes = 1'000'000;
 
-/// What pickles of data frames name, by any version of pandas and NumPy so far.
+/// Globals in pickles of data frames by any version of pandas and NumPy so far.
 constexpr std::array<std::string_view, 21> kKnownGlobals = {
     "pandas.DataFrame",
     "pandas.core.frame.DataFrame",
@@ -44,19 +44,20 @@ constexpr std::array<std::string_view, 21> kKnownGlobals = {
 
 }  // namespace
 
-/// Reads the opcodes. Python's machine, but for its calls.
+/// Interprets the opcodes as Python does, except for calls.
 class PickleMachine {
  public:
   explicit PickleMachine(PickledValues& made) : made_(made), bytes_(made.bytes_) {}
 
   void run() {
     for (std::size_t count = 0; !is_done_; ++count) {
-      if (count == kMaxOpcodes) throw fault("more than a million opcodes: no table of numbers");
+      if (count == kMaxOpcodes)
+        throw fault("more than a million opcodes: not a data frame of numbers");
       begin_ = at_;
       const char code = take(1)[0];
       if (!push_constant(code) && !use_stack(code) && !use_memo(code)) {
         std::array<char, 64> text{};
-        std::snprintf(text.data(), text.size(), "opcode 0x%02x, which no data frame needs",
+        std::snprintf(text.data(), text.size(), "opcode 0x%02x, which no data frame uses",
                       static_cast<unsigned>(static_cast<unsigned char>(code)));
         throw fault(text.data());
       }
@@ -100,12 +101,13 @@ class PickleMachine {
   }
   void push_global(std::string name) {
     if (std::ranges::find(kKnownGlobals, name) == kKnownGlobals.end())
-      throw fault("names " + shown(name) + ", which no table of numbers needs; nothing is run");
+      throw fault("contains " + shown(name) +
+                  ", which no data frame of numbers uses; nothing was executed");
     push({.kind = PickleKind::global, .name = std::move(name)});
   }
 
   PickleRef pop() {
-    // What is below a mark is out of reach.
+    // Values below a mark are out of reach.
     if (stack_.size() <= (marks_.empty() ? 0 : marks_.back())) throw fault("nothing on the stack");
     const PickleRef top = stack_.back();
     stack_.pop_back();
@@ -166,7 +168,7 @@ class PickleMachine {
   }
 
   void push_boolean(bool value) { push({.kind = PickleKind::boolean, .integer = value ? 1 : 0}); }
-  /// A number in two's complement, as short as it can be.
+  /// A number in two's complement, with as few bytes as possible.
   void push_long() {
     const std::uint64_t size = number(1);
     if (size > 8) throw fault("an integer of more than 64 bits");
@@ -174,7 +176,7 @@ class PickleMachine {
     const auto unused = static_cast<int>(64 - 8 * size);
     push_integer(size == 0 ? 0 : static_cast<std::int64_t>(value << unused) >> unused);
   }
-  /// Alone of all numbers big-endian.
+  /// The only big-endian numbers.
   void push_real() {
     std::uint64_t bits = 0;
     for (const char byte : take(8)) bits = bits << 8 | static_cast<unsigned char>(byte);
@@ -184,7 +186,7 @@ class PickleMachine {
   bool use_stack(char code) {
     switch (code) {
       case '\x80': require_protocol(number(1)); return true;
-      case '\x95': take(8); return true;  // how long the next part is, for readers of streams
+      case '\x95': take(8); return true;  // length of the next frame, for readers of streams
       case '(': marks_.push_back(stack_.size()); return true;
       case '0': pop(); return true;
       case '1': pop_to_mark(); return true;
@@ -252,7 +254,7 @@ class PickleMachine {
   }
   void recall(std::uint64_t place) {
     const auto found = memo_.find(place);
-    if (found == memo_.end()) throw fault("nothing is remembered as " + std::to_string(place));
+    if (found == memo_.end()) throw fault("nothing in the memo at " + std::to_string(place));
     stack_.push_back(found->second);
   }
 

@@ -49,7 +49,7 @@ void take_type(const PickledValues& pickle, std::string_view word, PickledArray&
                                 ", expected little-endian integers, floats or bool");
 }
 
-/// A dtype: a call with its word, and a state whose second value is the order of bytes.
+/// A dtype: a call with its word, and a state with the byte order as its second value.
 void take_dtype(const PickledValues& pickle, const PickleValue& dtype, PickledArray& array) {
   const PickleValue* const word = argument_of(pickle, dtype, 0);
   if (made_by(pickle, dtype) != "numpy.dtype" || word == nullptr || word->kind != PickleKind::text)
@@ -79,11 +79,12 @@ void take_shape(const PickledValues& pickle, const PickleValue& shape, PickledAr
 
 /// Numbers as bytes, or a list of objects.
 void take_content(const PickledValues& pickle, const PickleValue& content, PickledArray& array) {
-  // Both are below 2^31, as take_shape() has it.
+  // Both are below 2^31, see take_shape().
   const std::uint64_t count = std::uint64_t{array.lines} * array.length;
   if (array.is_objects) {
     if (content.kind != PickleKind::sequence || content.items.size() != count)
-      throw array_fault(pickle, "an array of " + std::to_string(count) + " objects has others");
+      throw array_fault(pickle,
+                        "an array of " + std::to_string(count) + " objects has other content");
     array.objects = &content.items;
     return;
   }
@@ -96,7 +97,7 @@ void take_content(const PickledValues& pickle, const PickleValue& content, Pickl
   array.bytes = content.text;
 }
 
-/// A state: version, shape, type, whether by columns, content.
+/// A state: version, shape, type, Fortran order, content.
 PickledArray array_of_state(const PickledValues& pickle, const PickleValue& state) {
   if (state.kind != PickleKind::sequence || state.items.size() != 5)
     throw array_fault(pickle, "an array without shape, type and values");
@@ -145,9 +146,9 @@ PickledArray pickled_array(const PickledValues& pickle, const PickleValue& value
     take_content(pickle, argument(0), array);
     return array;
   }
-  if (maker != "numpy.frombuffer") throw array_fault(pickle, "expected an array of NumPy");
+  if (maker != "numpy.frombuffer") throw array_fault(pickle, "expected a NumPy array");
   take_type(pickle, argument(1).text, array);
-  if (array.is_objects) throw array_fault(pickle, "objects cannot be in a buffer");
+  if (array.is_objects) throw array_fault(pickle, "a buffer cannot contain objects");
   array.length = argument(0).text.size() / type_bytes(array.type);
   take_content(pickle, argument(0), array);
   return array;

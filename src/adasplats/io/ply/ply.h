@@ -16,27 +16,26 @@
 namespace adasplats {
 
 /// Reads the `vertex` element of a PLY file: ASCII or binary, either byte order, any scalar
-/// properties, other elements before and after skipped by their layout.
-/// The coordinate system is that of crs_comments() among the comments.
-/// The counts are checked against the file's size before anything is allocated. Memory: binary 1x
-/// the file's size; ASCII at most 4x (doubles of one digit), usually below 1x.
-/// Errors: no_input, io, data (with line or byte offset).
-/// With `records` only these of a file that has them at random (else std::logic_error).
+/// properties; other elements are skipped by their layout. The coordinate system comes from
+/// crs_comments() among the comments. Counts are checked against the size of the file before
+/// allocation. Memory: binary 1x the file's size; ASCII at most 4x (doubles of one digit), usually
+/// below 1x. Errors: no_input, io, data (with line or byte offset).
+/// `records`: only these, of a file with random access (else std::logic_error).
 Table read_ply(const std::filesystem::path& path, const std::optional<RecordSpan>& records = {});
 
-/// How many vertices a binary file has, if they take the same bytes each and no element before them
-/// has lists; else nothing. Errors: as read_ply().
+/// The number of vertices of a binary file with random access: no lists in vertices or the elements
+/// before them; else nothing. Errors: as read_ply().
 std::optional<std::uint64_t> ply_records_at_random(const std::filesystem::path& path);
 
-/// Reads `vertex` and `face` (`vertex_indices` or `vertex_index` lists) of a PLY file. The file's
-/// comments are those of the vertices. Errors: as read_ply(); data where a face has fewer than 3
-/// vertices or one that is not there.
+/// Reads `vertex` and `face` (`vertex_indices` or `vertex_index` lists) of a PLY file. The comments
+/// of the file are those of the vertices. Errors: as read_ply(); data (a face with fewer than 3
+/// vertices or an invalid index).
 MeshTable read_ply_mesh(const std::filesystem::path& path);
 
-/// True where the file's header declares a `face` element with records.
+/// Whether the header declares a `face` element with records.
 bool ply_has_faces(const std::filesystem::path& path);
 
-/// The system among the comments of a header. Errors: as read_ply().
+/// The coordinate system in the comments. Errors: as read_ply().
 Crs read_ply_crs(const std::filesystem::path& path);
 
 /// Writes one `vertex` element, binary little-endian, `rows` records. Atomic (see AtomicFile).
@@ -44,12 +43,12 @@ Crs read_ply_crs(const std::filesystem::path& path);
 void write_ply(const std::filesystem::path& path, std::size_t rows,
                std::span<const ColumnView> columns, std::span<const std::string> comments = {});
 
-/// The bytes of that file.
+/// Writes the bytes of that file.
 void put_ply(ByteSink& file, std::size_t rows, std::span<const ColumnView> columns,
              std::span<const std::string> comments = {});
 
-/// Writes `vertex` and `face` elements; `triangle_vertices` has three indices a face, each below
-/// `vertices` (else std::logic_error); `face_columns` have a row a triangle.
+/// Writes `vertex` and `face` elements; `triangle_vertices` has three indices for each face, below
+/// `vertices` (else std::logic_error); `face_columns` have a row for each triangle.
 void write_ply_mesh(const std::filesystem::path& path, std::size_t vertices,
                     std::span<const ColumnView> vertex_columns,
                     std::span<const std::uint32_t> triangle_vertices,

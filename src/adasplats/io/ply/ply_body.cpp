@@ -28,7 +28,7 @@ ScalarColumns make_scalar_columns(const PlyElement& element) {
     if (property.is_list) continue;
     Column column =
         make_column(property.name, property.type, static_cast<std::size_t>(element.count));
-    // The values stay where they are when the column is moved.
+    // Moving the column does not move its values.
     made.text_stores.emplace_back(column, property.type);
     made.columns.push_back(std::move(column));
   }
@@ -149,7 +149,7 @@ PlyElementData PlyBody::read_text(const PlyElement& element, const PlyProperty* 
   const std::uint64_t room = (file_.remaining() + 1) / (2 * element.properties.size());
   if (element.count > room) {
     throw lines_.error_here("found room for at most " + std::to_string(room) + " " + element.name +
-                            " records after this line, the header says " +
+                            " records after this line, the header states " +
                             std::to_string(element.count));
   }
   ScalarColumns scalars = make_scalar_columns(element);
@@ -259,7 +259,7 @@ std::int64_t PlyBody::take_integer(ColumnType type) {
 
 Error PlyBody::missing_records(const PlyElement& element, std::uint64_t found) const {
   return lines_.error_here("the file ends after " + std::to_string(found) + " " + element.name +
-                           " records, the header says " + std::to_string(element.count));
+                           " records, the header states " + std::to_string(element.count));
 }
 
 Error PlyBody::list_error(const PlyElement& element, const PlyProperty& property,

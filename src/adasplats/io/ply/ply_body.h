@@ -12,8 +12,8 @@
 
 namespace adasplats {
 
-/// What the records of one element hold: its scalar properties as columns, and of one list
-/// property the lengths (one a record) and the values, record after record.
+/// The records of one element: its scalar properties as columns, and of one list property the
+/// lengths (one for each record) and the values, record after record.
 struct PlyElementData {
   Table scalars;
   std::vector<std::uint32_t> list_lengths;
@@ -30,7 +30,7 @@ class PlyBody {
   /// The count is checked against the file's size first. Errors: data with line or byte offset.
   PlyElementData read(const PlyElement& element, const PlyProperty* kept_list = nullptr);
 
-  /// Some of them, of a binary element without lists. Errors: likewise.
+  /// Reads some records of a binary element without lists. Errors: as above.
   Table read(const PlyElement& element, RecordSpan records);
 
   /// Steps over the records of `element` by their layout.

@@ -38,7 +38,7 @@ constexpr std::array<TypeWord, 18> kTypeWords = {{{"char", ColumnType::i8},
                                                   {"double", ColumnType::f64},
                                                   {"float64", ColumnType::f64}}};
 
-/// Builds the header line by line; every method takes what follows the line's first word.
+/// Builds the header line by line; the methods parse the rest of a line after its first word.
 class PlyHeaderParser {
  public:
   explicit PlyHeaderParser(LineReader& lines) : lines_(lines) {}
@@ -110,7 +110,8 @@ class PlyHeaderParser {
   }
 
   void take_property(BlankTokens tokens) {
-    if (header_.elements.empty()) throw lines_.error_here("a property before the first element");
+    if (header_.elements.empty())
+      throw lines_.error_here("found a property before the first element");
     PlyProperty property;
     std::string_view word = tokens.next();
     if (word == "list") {
@@ -122,7 +123,7 @@ class PlyHeaderParser {
     }
     property.type = take_type(word);
     property.name = tokens.next();
-    if (property.name.empty()) throw lines_.error_here("a property without a name");
+    if (property.name.empty()) throw lines_.error_here("found a property without a name");
     std::vector<PlyProperty>& properties = header_.elements.back().properties;
     if (std::any_of(properties.begin(), properties.end(),
                     [&](const PlyProperty& other) { return other.name == property.name; }))

@@ -40,8 +40,8 @@ struct PlyHeader {
   const PlyElement* find(std::string_view element) const;
 };
 
-/// Reads the header (Turk, "The PLY polygon file format", 1994) up to and with end_header; the
-/// counts are not believed yet. Errors: data with the line.
+/// Reads the header (Turk, "The PLY polygon file format", 1994) including end_header. Counts are
+/// not yet checked. Errors: data with the line.
 PlyHeader read_ply_header(LineReader& lines);
 
 }  // namespace adasplats

@@ -22,7 +22,7 @@ const PlyProperty* find_corner_list(const PlyElement& faces) {
   return nullptr;
 }
 
-/// The polygons' triangles and, for each, the face that it comes from.
+/// The triangles of polygons, and the face of each.
 struct Fans {
   std::vector<std::uint32_t> triangle_vertices;
   std::vector<std::size_t> face_of_triangle;
@@ -72,8 +72,8 @@ Table repeat_rows(const Table& faces, const std::vector<std::size_t>& face_of_tr
   return repeated;
 }
 
-/// One polygon of many corners with many properties would multiply them: a short file could ask
-/// for any amount of memory.
+/// A polygon with many corners and properties would multiply them, so that a short file could take
+/// any amount of memory.
 void check_repeated_size(const InputFile& file, const PlyElement& element, std::size_t triangles) {
   constexpr std::uint64_t kLargestGrowth = 16;
   const std::uint64_t bytes = static_cast<std::uint64_t>(triangles) * element.min_record_bytes();
@@ -83,7 +83,7 @@ void check_repeated_size(const InputFile& file, const PlyElement& element, std::
                        " triangles, would take more than 16 times the file's size");
 }
 
-bool are_at_random(const PlyHeader& header) {
+bool has_random_access(const PlyHeader& header) {
   if (header.encoding == PlyEncoding::ascii) return false;
   for (const PlyElement& element : header.elements) {
     if (element.has_lists()) return false;
@@ -98,8 +98,8 @@ Table read_ply(const std::filesystem::path& path, const std::optional<RecordSpan
   InputFile file(path);
   LineReader lines(file);
   PlyHeader header = read_ply_header(lines);
-  if (records && !are_at_random(header))
-    throw std::logic_error("read_ply: records of a file that has them not at random");
+  if (records && !has_random_access(header))
+    throw std::logic_error("read_ply: records of a file without random access");
   PlyBody body(file, lines, header.encoding);
   for (const PlyElement& element : header.elements) {
     if (element.name != "vertex") {
@@ -118,7 +118,7 @@ std::optional<std::uint64_t> ply_records_at_random(const std::filesystem::path& 
   InputFile file(path);
   LineReader lines(file);
   const PlyHeader header = read_ply_header(lines);
-  if (!are_at_random(header)) return std::nullopt;
+  if (!has_random_access(header)) return std::nullopt;
   return header.find("vertex")->count;
 }
 
@@ -128,7 +128,7 @@ MeshTable read_ply_mesh(const std::filesystem::path& path) {
   PlyHeader header = read_ply_header(lines);
   const PlyElement* const face_element = header.find("face");
   if (header.find("vertex") == nullptr || face_element == nullptr)
-    throw lines.error_here("a mesh has the elements 'vertex' and 'face', the header lacks one");
+    throw lines.error_here("the header lacks the element 'vertex' or 'face' of a mesh");
   const PlyProperty* const corners = find_corner_list(*face_element);
   if (corners == nullptr) {
     throw lines.error_here(

@@ -136,9 +136,9 @@ TEST(Ply, ZeroRecords) {
 TEST(Ply, FewerRecordsThanTheHeaderSays) {
   const std::string header = "element vertex 2\n" + kXyzFloat + "end_header\n";
   expect_data_error(kBinary + header + std::string(23, '\1'),
-                    {"file.ply", "byte", "room for 1", "says 2"});
-  expect_data_error(kAscii + header + "1 2 3\n", {"file.ply", "says 2"});
-  expect_data_error(kAscii + header + "1 2 3            \n", {"file.ply:", "after 1", "says 2"});
+                    {"file.ply", "byte", "room for 1", "states 2"});
+  expect_data_error(kAscii + header + "1 2 3\n", {"file.ply", "states 2"});
+  expect_data_error(kAscii + header + "1 2 3            \n", {"file.ply:", "after 1", "states 2"});
   expect_data_error(kAscii + header + "1 2 3\n4 5\n6\n", {"file.ply:9", "'z'", "end of the line"});
 }
 

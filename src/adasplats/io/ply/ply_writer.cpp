@@ -43,7 +43,7 @@ std::string header_start(std::span<const std::string> comments) {
   std::string text = "ply\nformat binary_little_endian 1.0\n";
   for (const std::string& comment : comments) {
     std::string line = comment;
-    // A line break would end the comment and begin something else.
+    // A line break would end the comment.
     std::replace_if(
         line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
     text += "comment " + line + "\n";
@@ -73,14 +73,14 @@ void write_ply_mesh(const std::filesystem::path& path, std::size_t vertices,
                     std::span<const std::uint32_t> triangle_vertices,
                     std::span<const ColumnView> face_columns,
                     std::span<const std::string> comments) {
-  // `int` is the index type that every reader knows.
+  // `int` is the index type that every reader supports.
   if (vertices > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
     throw std::logic_error("write_ply_mesh: more than 2^31 - 1 vertices");
   if (triangle_vertices.size() % 3 != 0)
     throw std::logic_error("write_ply_mesh: triangle_vertices.size() is not a multiple of 3");
   if (std::any_of(triangle_vertices.begin(), triangle_vertices.end(),
                   [vertices](std::uint32_t index) { return index >= vertices; }))
-    throw std::logic_error("write_ply_mesh: a triangle has a vertex that is not there");
+    throw std::logic_error("write_ply_mesh: a triangle has an invalid vertex index");
   const std::size_t faces = triangle_vertices.size() / 3;
   const std::string header = header_start(comments) + "element vertex " + std::to_string(vertices) +
                              "\n" + property_lines(vertex_columns) + "element face " +

@@ -41,7 +41,7 @@ class ObjReader {
  private:
   std::size_t vertices() const { return coordinates_[0].size(); }
 
-  /// The next line, with those that a backslash joins to it.
+  /// The next line, including lines joined by a backslash.
   std::optional<std::string_view> next_statement() {
     std::optional<std::string_view> line = lines_.next_filled();
     if (!line || !ends_with_backslash(*line)) return line;
@@ -98,11 +98,11 @@ class ObjReader {
     }
     const auto known = static_cast<std::int64_t>(vertices());
     if (*number < -known || *number > std::numeric_limits<std::uint32_t>::max()) {
-      throw lines_.error_here("corner " + shown(corner) + ": there are " + std::to_string(known) +
+      throw lines_.error_here("corner " + shown(corner) + ": only " + std::to_string(known) +
                               " vertices so far");
     }
     const std::int64_t index = *number < 0 ? known + *number : *number - 1;
-    // A vertex may stand behind the faces that use it: looked at when all are known.
+    // A vertex may come after the faces that use it: checked at the end.
     if (index >= largest_corner_) {
       largest_corner_ = index;
       largest_corner_line_ = lines_.line();

@@ -9,14 +9,14 @@
 namespace adasplats {
 
 /// Reads the geometry of a Wavefront OBJ file: `v` (columns x, y, z as doubles; weights and colours
-/// behind them are skipped) and `f` (of "a", "a/b", "a//c" or "a/b/c" the vertex a; below 0 it
-/// counts back from the last vertex so far; more than three corners become a fan). A backslash
+/// after them are skipped) and `f` (the vertex a of "a", "a/b", "a//c" or "a/b/c"; negative numbers
+/// count back from the last vertex so far; more than three corners become a fan). A backslash
 /// joins lines. All other statements are skipped. Memory: at most 8x the file's size.
 /// Errors: no_input, io, data (with line: a vertex that is not finite, a face with fewer than three
-/// corners or with a vertex that is not there).
+/// corners or with a missing vertex).
 MeshTable read_obj_mesh(const std::filesystem::path& path);
 
-/// Whether the content begins as an OBJ does: a text whose first statement is one of OBJ's.
+/// Whether the content is OBJ: a text whose first statement is one of OBJ.
 bool is_obj(const std::filesystem::path& path);
 
 }  // namespace adasplats

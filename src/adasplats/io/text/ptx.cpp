@@ -15,7 +15,7 @@
 namespace adasplats {
 namespace {
 
-/// Where a scan stood. PTX writes row vectors: p_world = p_scanner * matrix, so the matrix' rows
+/// The header of a scan. PTX uses row vectors: p_world = p_scanner * matrix, so the matrix' rows
 /// are the columns of the linear part and its last row is the scanner's position.
 struct ScanHeader {
   std::uint64_t points = 0;
@@ -51,7 +51,7 @@ class PtxReader {
     const std::uint64_t room = (file_.remaining() + 1) / kMinBytes;
     if (scan.points > room) {
       throw lines_.error_here("found room for at most " + std::to_string(room) +
-                              " points after this line, the scan's header says " +
+                              " points after this line, the scan's header states " +
                               std::to_string(scan.points));
     }
     if (values_.empty()) values_.resize(7);
@@ -64,7 +64,7 @@ class PtxReader {
     ScanHeader scan;
     if (__builtin_mul_overflow(columns, rows, &scan.points))
       throw lines_.error_here("columns x rows is above 2^64");
-    // The scanner's position and axes; the matrix says the same with its scale.
+    // The scanner's position and axes; the matrix repeats them with its scale.
     for (int k = 0; k < 4; ++k) parse_numbers<3>(next_line());
     Mat3d linear;
     for (int k = 0; k < 3; ++k) {

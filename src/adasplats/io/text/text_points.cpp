@@ -18,7 +18,7 @@ namespace {
 // A file of empty comments would otherwise take 16 times its size.
 constexpr std::size_t kMaxComments = 1000;
 
-/// Splits a line into cells at a separator; at runs of blanks and tabs where that is ' '.
+/// Splits a line into cells at a separator; at runs of blanks and tabs if it is ' '.
 class Cells {
  public:
   Cells(std::string_view line, char separator)
@@ -56,9 +56,8 @@ char separator_of(std::string_view line) {
   return line.find(',') != std::string_view::npos ? ',' : ' ';
 }
 
-/// A column's name without the unit behind it, `x [m]` and `time (s)`, where that is the one of
-/// columns without a unit. Another unit stays a part of the name, so that what expects metres or
-/// seconds finds none.
+/// A column's name without its unit, `x [m]` and `time (s)`, if it is the default unit. Other units
+/// stay part of the name, so that code that expects metres or seconds does not find the column.
 std::string_view without_unit(std::string_view name) {
   for (const std::string_view unit : {"[m]", "(m)", "[s]", "(s)", "[]", "()", "[-]", "(-)"}) {
     if (!name.ends_with(unit) || name.size() == unit.size()) continue;
@@ -73,7 +72,7 @@ std::vector<std::string> split_names(std::string_view line, char separator) {
   Cells cells(line, separator);
   while (const std::optional<std::string_view> cell = cells.next())
     names.emplace_back(without_unit(lower_case(*cell)));
-  // A separator at the line's end begins no column.
+  // A separator at the end of the line begins no column.
   if (!names.empty() && names.back().empty()) names.pop_back();
   return names;
 }
@@ -85,7 +84,7 @@ bool has_coordinates(const std::vector<std::string>& names) {
   });
 }
 
-/// What columns without names hold: see read_text_points().
+/// Names of columns without names: see read_text_points().
 std::vector<std::string> usual_names(std::size_t columns, bool is_pts) {
   if (columns == 7) return {"x", "y", "z", "intensity", "red", "green", "blue"};
   if (columns == 6 && is_pts) return {"x", "y", "z", "red", "green", "blue"};
@@ -135,8 +134,8 @@ class TextReader {
     if (table_.comments.size() < kMaxComments) table_.comments.emplace_back(text);
   }
 
-  /// A whole number alone on its line says how many points follow (PTS); a PTS file may hold
-  /// several scans. In a file of more than one column it can mean nothing else.
+  /// An integer alone on its line is the number of points that follow (PTS); a PTS file may contain
+  /// several scans. In a file with several columns it cannot mean anything else.
   bool take_count(std::string_view line) {
     BlankTokens tokens(line);
     const std::optional<std::uint64_t> count = parse_number<std::uint64_t>(tokens.next());
@@ -162,7 +161,7 @@ class TextReader {
       if (names.size() == filled && has_coordinates(names)) names_ = std::move(names);
     }
     begin_columns(names_.empty() ? filled : names_.size());
-    // Rows of about the first one's length fill the rest; a row of n values has 2 n bytes or more.
+    // Assumes rows about as long as the first; a row of n values has at least 2 n bytes.
     const std::uint64_t rows = file_.remaining() / (first_row.size() + 1) + 1;
     for (std::vector<double>& column : values_) column.reserve(static_cast<std::size_t>(rows));
   }
@@ -204,9 +203,9 @@ class TextReader {
     table_.rows = values_.front().size();
     if (expected_rows_ && table_.rows < *expected_rows_) {
       throw lines_.error_here("the file ends after " + std::to_string(table_.rows) +
-                              " points, its count says " + std::to_string(*expected_rows_));
+                              " points, its count is " + std::to_string(*expected_rows_));
     }
-    // Scanners' software is known to write counts that are too small; the points are there.
+    // The software of some scanners writes counts that are too small.
     if (expected_rows_ && table_.rows > *expected_rows_) {
       table_.notes.push_back(
           {NoteKind::wrong_count, "the file states " + std::to_string(*expected_rows_) +

@@ -93,7 +93,7 @@ TEST(TextPoints, EmptyCellsAreMissingValues) {
 TEST(TextPoints, PtsCounts) {
   EXPECT_EQ(read("2\n1 2 3\n4 5 6\n", "f.pts").rows, 2U);
   EXPECT_EQ(read("2\n1 2 3\n4 5 6\n1\n7 8 9\n", "f.pts").rows, 3U) << "two scans";
-  expect_data_error("3\n1 2 3\n4 5 6\n", {"after 2", "says 3"});
+  expect_data_error("3\n1 2 3\n4 5 6\n", {"after 2", "is 3"});
   expect_data_error("18446744073709551615\n1 2 3\n", {"18446744073709551615"});
   expect_data_error("18446744073709551615\n1 2 3\n1\n", {"2^64"});
   const Table more = read("1\n1 2 3\n4 5 6\n");
