@@ -167,7 +167,7 @@ TEST(KittiBin, FiveFloatsAPointAreReadByName) {
   EXPECT_EQ(table.columns[0].as_double(0), 9.5);
   expect_error(ErrorKind::data, {"a.pcd.bin", "20 bytes a point", "found 16 bytes"},
                [&] { read_points(folder.file("a.pcd.bin", circle(51, 4))); });
-  expect_error(ErrorKind::data, {"a.pcd.bin", "rings"},
+  expect_error(ErrorKind::data, {"a.pcd.bin", "not a ring"},
                [&] { read_points(folder.file("a.pcd.bin", circle(50, 4))); });
 }
 

@@ -90,7 +90,7 @@ TEST(McapRecording, DamageIsAnError) {
     const auto path = folder.file("a.mcap", content);
     return [path] { contents_of(path); };
   };
-  expect_error(ErrorKind::data, {"a.mcap", "begin"}, read("no recording at all"));
+  expect_error(ErrorKind::data, {"a.mcap", "first bytes"}, read("no recording at all"));
   // Wherever a recording is cut off.
   for (std::size_t size = 8; size < whole.size(); size += 37)
     expect_error(ErrorKind::data, {"a.mcap"}, read(whole.substr(0, size)));
@@ -102,7 +102,7 @@ TEST(McapRecording, DamageIsAnError) {
                read(mcap_file(mcap_chunk("", records, records.size() + 1))));
   expect_error(ErrorKind::data, {"'snappy'", "zstd"},
                read(mcap_file(mcap_chunk("snappy", records, records.size()))));
-  expect_error(ErrorKind::data, {"more than"},
+  expect_error(ErrorKind::data, {"expected at most"},
                read(mcap_file(mcap_chunk("zstd", records, std::uint64_t{1} << 40))));
   const std::string orphan = bags_test::mcap_record(5, std::string(22, '\3'));
   expect_error(ErrorKind::data, {"channel 771"}, read(mcap_file(orphan)));

@@ -56,8 +56,9 @@ TEST(E57Errors, EveryPageIsChecked) {
     for (const std::size_t within : {60U, 1019U, 1020U, 1023U}) {
       std::string damaged = file;
       damaged[page * io_test::kE57PageBytes + within] ^= 1;
-      expect_rejected(damaged, {"byte " + std::to_string(page * io_test::kE57PageBytes) + ": page " +
-                               std::to_string(page) + " (from 0) is damaged: its checksum is 0x"});
+      expect_rejected(damaged,
+                      {"byte " + std::to_string(page * io_test::kE57PageBytes) + ": page " +
+                       std::to_string(page) + " (from 0) is damaged: its checksum is 0x"});
     }
 }
 
@@ -98,7 +99,7 @@ TEST(E57Errors, ContentOfTheXml) {
   expect_rejected(empty.file(), {"the file has no scans"});
   expect_rejected(empty.file_of_xml("<a/>"), {"the root of its XML is 'a', expected 'e57Root'"});
   expect_rejected(empty.file_of_xml("<e57Root><data3D><vectorChild/></data3D></e57Root>"),
-                 {"scan 0: has no points"});
+                  {"scan 0: has no points"});
   expect_rejected(
       empty.file_of_xml("<e57Root><data3D><vectorChild><name>hall</name>"
                         "<points recordCount=\"1\" fileOffset=\"48\"/></vectorChild></data3D>"
@@ -108,16 +109,16 @@ TEST(E57Errors, ContentOfTheXml) {
   expect_rejected(one_point(xy + float_field("z")).file(), {"scan 0", "cartesianX, Y and Z"});
   expect_rejected(one_point(xy + "<cartesianZ type=\"String\"/>").file(), {"cartesianX, Y and Z"});
   expect_rejected(one_point(xy + "<cartesianZ type=\"Blob\"/>").file(),
-                 {"cartesianZ is of type 'Blob'"});
+                  {"cartesianZ is of type 'Blob'"});
   expect_rejected(one_point(xy + "<cartesianZ/>").file(), {"cartesianZ is of type ''"});
   expect_rejected(one_point(xy + "<cartesianZ type=\"Float\" precision=\"half\"/>").file(),
-                 {"'half'"});
+                  {"'half'"});
   expect_rejected(one_point(xy + integer_field("cartesianZ", 5, 4)).file(),
-                 {"minimum above its maximum"});
+                  {"minimum above its maximum"});
   expect_rejected(one_point(xy + integer_field("cartesianZ", 0, 4, "scale=\"0\"")).file(),
-                 {"scale 0"});
+                  {"scale 0"});
   expect_rejected(one_point(xy + integer_field("cartesianZ", 0, 4, "scale=\"nan\"")).file(),
-                 {"scale of cartesianZ is 'nan'"});
+                  {"scale of cartesianZ is 'nan'"});
   expect_rejected(
       one_point(xy + "<cartesianZ type=\"Integer\" maximum=\"9223372036854775808\"/>").file(),
       {"maximum of cartesianZ"});
@@ -144,13 +145,13 @@ TEST(E57Errors, Poses) {
   rejected({"0", "0", "0", "0", "0", "0", "0"}, "quaternion is 0, expected 1");
   rejected({"1", "0.1", "0", "0", "0", "0", "0"}, "expected 1");
   rejected({"nan", "0", "0", "0", "0", "0", "0"},
-          "w of its pose's rotation is 'nan', expected a number");
+           "w of its pose's rotation is 'nan', expected a number");
   rejected({"1", "0", "0", "0", "inf", "0", "0"},
-          "x of its pose's translation is 'inf', expected a number");
+           "x of its pose's translation is 'inf', expected a number");
   rejected({"1", "0", "0", "0", "0", "a", "0"},
-          "y of its pose's translation is 'a', expected a number");
+           "y of its pose's translation is 'a', expected a number");
   expect_rejected(one_point(xyz_fields(), "<pose><rotation><w>1</w></rotation></pose>").file(),
-                 {"has no x"});
+                  {"has no x"});
 }
 
 TEST(E57Errors, CountsAndOffsets) {
@@ -185,7 +186,7 @@ TEST(E57Errors, Packets) {
   rejected(data_packet({stream, stream}) + other_packet('\2', 64), {"2 fields, the points have 3"});
   rejected(other_packet('\3', 64), {"byte 80", "packet of kind 3"});
   rejected(data_packet({stream, stream, ""}) + other_packet('\2', 64),
-          {"0 values of cartesianZ, recordCount is 2"});
+           {"0 values of cartesianZ, recordCount is 2"});
   rejected(other_packet('\2', 61) + "abc", {"no room for another packet"});
   std::string longer = packet;
   put(longer, 2, std::uint16_t{1000});

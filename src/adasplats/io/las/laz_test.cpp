@@ -127,14 +127,14 @@ TEST(Laz, BrokenTablesAreErrors) {
   expect_broken(broken, {"4294967295 chunks"});
   broken = file;
   put(broken, table + 4, std::uint32_t{2});
-  expect_broken(broken, {"chunks of 32 points", "says 40"});
+  expect_broken(broken, {"chunk table has 32 points", "states 40"});
   broken = file;
   put(broken, points_at(file), std::uint64_t{10});
   expect_broken(broken, {"byte 10", "before the points"});
   // 2^32 points in some hundred bytes: said before anything is allocated.
   broken = laz_file(layered());
   put(broken, 247, std::uint64_t{1} << 40);
-  expect_broken(broken, {"chunks of 40 points", "1099511627776"});
+  expect_broken(broken, {"chunk table has 40 points", "1099511627776"});
 }
 
 TEST(Laz, UnknownPackingsAreErrors) {

@@ -87,10 +87,10 @@ TEST(DataFrame, RunsNothing) {
         std::string("\x80\x03") + (call[1] == 'p'
                                        ? std::string("cposix\nsystem\nX\x04\0\0\0true\x85R.", 26)
                                        : std::string(call));
-    expect_error(ErrorKind::data, {"f: byte 2: names '", "system'", "nothing was executed"},
+    expect_error(ErrorKind::data, {"f: byte 2: contains '", "system'", "nothing was executed"},
                  [&] { data_frame_of("f", pickle); });
   }
-  expect_error(ErrorKind::data, {"names 'builtins.eval'"}, [&] {
+  expect_error(ErrorKind::data, {"contains 'builtins.eval'"}, [&] {
     data_frame_of("f", std::string("\x80\x04\x8c\x08"
                                    "builtins\x8c\x04"
                                    "eval\x93."));

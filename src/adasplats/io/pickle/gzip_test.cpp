@@ -46,7 +46,8 @@ TEST(Gzip, BrokenFiles) {
   std::string broken = packed;
   broken[packed.size() - 6] ^= 1;  // of the checksum
   expect_error(ErrorKind::data, {"damaged"}, [&] { gunzipped("f", broken, 5'000'000); });
-  expect_error(ErrorKind::data, {"not gzip data"}, [&] { gunzipped("f", packed + "x y z", 5'000'000); });
+  expect_error(ErrorKind::data, {"not gzip data"},
+               [&] { gunzipped("f", packed + "x y z", 5'000'000); });
 }
 
 }  // namespace
