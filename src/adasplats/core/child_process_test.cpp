@@ -30,7 +30,7 @@ class ChildProcess : public testing::Test {
   fs::path folder_ = fs::path(testing::TempDir()) / "adasplats child ä";
 };
 
-TEST_F(ChildProcess, TellsHowItEnded) {
+TEST_F(ChildProcess, ReportsHowItEnded) {
   const ChildResult good = shell("test $WORD = ours && test -n $PATH");
   EXPECT_EQ(good.end, ChildEnd::done);
   EXPECT_EQ(good.message, "");
@@ -48,7 +48,7 @@ TEST_F(ChildProcess, TellsHowItEnded) {
   EXPECT_THROW(run_child({{"/bin/sh"}, {}, folder_ / "no such" / "log"}, progress), Error);
 }
 
-TEST_F(ChildProcess, LimitsAreThoseOfAllItStarts) {
+TEST_F(ChildProcess, LimitsIncludeAllProcessesItStarts) {
   const fs::path number = folder_ / "number";
   const std::string script = "sleep 600 & echo $! > '" + number.string() + "'; wait";
   const ChildResult slow = shell(script, ChildLimits{.seconds = 0.3});

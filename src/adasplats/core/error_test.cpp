@@ -32,13 +32,13 @@ TEST(Error, PlacesInFiles) {
   EXPECT_STREQ(data_error({"a.bin", {}, {}}, "cut").what(), "a.bin: cut");
 }
 
-TEST(Error, SystemErrorsSayWhy) {
+TEST(Error, SystemErrorsNameTheReason) {
   const Error error = system_error(ErrorKind::no_input, "a", "cannot be opened", ENOENT);
   EXPECT_STREQ(error.what(), "a: cannot be opened: No such file or directory");
   EXPECT_EQ(exit_code(error.kind()), EX_NOINPUT);
 }
 
-TEST(NearestWord, FindsSlips) {
+TEST(NearestWord, FindsTypos) {
   const std::vector<std::string> words = {"radius", "voxel", "rings"};
   EXPECT_EQ(nearest_word("radus", words), "radius");    // left out
   EXPECT_EQ(nearest_word("radiuus", words), "radius");  // doubled
@@ -46,7 +46,7 @@ TEST(NearestWord, FindsSlips) {
   EXPECT_EQ(nearest_word("rings", words), "rings");
 }
 
-TEST(NearestWord, SaysNothingOfOtherWords) {
+TEST(NearestWord, IgnoresOtherWords) {
   EXPECT_EQ(nearest_word("temperature", {"radius", "voxel"}), std::nullopt);
   EXPECT_EQ(nearest_word("radius", {}), std::nullopt);
 }

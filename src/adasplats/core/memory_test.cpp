@@ -21,7 +21,7 @@ std::size_t resident_bytes() {
   return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-TEST(SparseArray, IsAsLargeAsWhatWasWritten) {
+TEST(SparseArray, TakesMemoryOnlyForWrittenElements) {
   constexpr std::size_t kMiB = 1 << 20;
   SparseArray<std::uint64_t> array(std::size_t{1} << 35U);  // 256 GiB
   const std::size_t before = resident_bytes();

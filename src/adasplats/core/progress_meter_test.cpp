@@ -76,7 +76,7 @@ TEST(ProgressMeter, APassWithinAPassIsPartOfIt) {
     executor.check_interruption();
     EXPECT_EQ(sink.steps.front().done.back(), kPassUnits / 10);
   }
-  // More than was said, and a step that advances by itself.
+  // More elements than announced, and a step that advances by itself.
   {
     const ProgressPass pass(executor, 1);
     executor.for_chunks(10, 1, [](std::size_t, std::size_t) {});
@@ -87,7 +87,7 @@ TEST(ProgressMeter, APassWithinAPassIsPartOfIt) {
   EXPECT_EQ(sink.steps.front().done.back(), 7U);
 }
 
-TEST(ProgressMeter, WhatTheSinkThrowsEndsTheLoop) {
+TEST(ProgressMeter, ExceptionsOfTheSinkEndTheLoop) {
   class Cancelling final : public ProgressSink {
     void advance(std::uint64_t done) override {
       if (done > 0) throw std::runtime_error("enough");

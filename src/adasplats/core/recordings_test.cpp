@@ -46,7 +46,7 @@ TEST_F(Recordings, AnEmptyVariableIsNoFolder) {
   EXPECT_EQ(recording("formats"), std::nullopt);
 }
 
-TEST_F(Recordings, WithoutTheVariableTheConfiguredFolderIsTaken) {
+TEST_F(Recordings, WithoutTheVariableTheConfiguredFolderIsUsed) {
   unsetenv(kName);
   const std::filesystem::path configured = ADASPLATS_TEST_DATA;
   EXPECT_EQ(recording(".").has_value(), !configured.empty());

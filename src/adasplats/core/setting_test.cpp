@@ -75,7 +75,7 @@ TEST(Setting, MessagesNameSettingsAsTheirUsersDo) {
   EXPECT_EQ(with_settings_as_options("none"), "none");
 }
 
-TEST(Setting, HasAnOptionAKeyAndAPlaceInItsTable) {
+TEST(Setting, HasAnOptionAKeyAndAnEntryInItsTable) {
   const std::vector<Setting> settings = settings_of<Oven>();
   ASSERT_EQ(settings.size(), 5U);
   EXPECT_EQ(option_of(settings[1]), "--top-heat");

@@ -80,7 +80,7 @@ void expect_pieces(const std::filesystem::path& file, std::uint64_t piece) {
     EXPECT_EQ(all.columns[k].values, whole.columns[k].values) << all.columns[k].name;
 }
 
-TEST(RecordsAtRandom, SpansThatCoverAFileGiveEachPointOnce) {
+TEST(RandomAccess, SpansThatCoverAFileGiveEachPointOnce) {
   const TemporaryFolder folder;
   const Line line(kRows);
   write_las(folder.path() / "a.las", kRows, line.columns(), {});
@@ -99,7 +99,7 @@ TEST(RecordsAtRandom, SpansThatCoverAFileGiveEachPointOnce) {
   EXPECT_EQ(read(folder.path() / "a.laz", {1, 5}).rows, 5U);
 }
 
-TEST(RecordsAtRandom, AnExtentTakesThoseOfASpanThatLieInIt) {
+TEST(RandomAccess, AnExtentSelectsWithinASpan) {
   const TemporaryFolder folder;
   const Line line(kRows);
   LasReadOptions options;
@@ -117,7 +117,7 @@ TEST(RecordsAtRandom, AnExtentTakesThoseOfASpanThatLieInIt) {
   }
 }
 
-TEST(RecordsAtRandom, SomeFilesAreReadAtOnce) {
+TEST(RandomAccess, SomeFilesAreReadAtOnce) {
   const TemporaryFolder folder;
   const std::string head = "element vertex 2\nproperty float x\nproperty float y\n";
   const std::vector<std::filesystem::path> files = {
@@ -132,7 +132,7 @@ TEST(RecordsAtRandom, SomeFilesAreReadAtOnce) {
   }
 }
 
-TEST(RecordsAtRandom, FilesThatEndEarlyAreErrorsInEveryPiece) {
+TEST(RandomAccess, FilesThatEndEarlyAreErrorsInEveryPiece) {
   const TemporaryFolder folder;
   const Line line(1000);
   for (const char* name : {"a.las", "a.ply"}) {

@@ -33,7 +33,7 @@ TEST(ReadPoints, ByExtensionInAnyCase) {
     EXPECT_EQ(read_points(folder.file(name, "1 2 3\n")).rows, 1U);
 }
 
-TEST(ReadPoints, ByFirstBytesWhereTheExtensionSaysNothing) {
+TEST(ReadPoints, ByFirstBytesWithoutAKnownExtension) {
   const TemporaryFolder folder;
   EXPECT_EQ(read_points(folder.file("a.model", kPly)).rows, 1U);
   EXPECT_EQ(read_points(folder.file("cloud", kPcd)).rows, 1U);
@@ -53,7 +53,7 @@ TEST(ReadPoints, ExtensionAndFirstBytesMustAgree) {
                [&] { read_points(folder.file("a.ply", "ASTM-E57")); });
 }
 
-TEST(ReadPoints, WhatIsNoFileOrEmpty) {
+TEST(ReadPoints, MissingAndEmptyFiles) {
   const TemporaryFolder folder;
   for (const std::string name :
        {"a.ply", "a.pcd", "a.las", "a.laz", "a.e57", "a.bin", "a.xyz", "a.ptx", "a"}) {

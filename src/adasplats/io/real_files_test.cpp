@@ -181,7 +181,7 @@ TEST_F(RealFiles, CompressedPcdUnpacksToAnImage) {
   EXPECT_LT(edges, 20000U);
 }
 
-// LAS headers hold the box of their points: every coordinate lies in it, and touches it.
+// LAS headers hold the box of their points: every coordinate is in it, and touches it.
 TEST_F(RealFiles, LasPointsTouchTheHeadersBox) {
   // The box of wontcompress3.las holds points that are withheld.
   for (const char* name : {"PDAL+PDAL__test__data__las__simple.las",

@@ -44,7 +44,7 @@ TEST(Elementary, AgreesWithTheLibrary) {
 }
 
 // Oracle: the complementary error function of the C library.
-TEST(Elementary, ShareOfNormalNumbers) {
+TEST(Elementary, CumulativeNormalDistribution) {
   for (double x = -6; x <= 6; x += 0.01)
     ASSERT_NEAR(normal_share(x), 0.5 * std::erfc(-x / std::numbers::sqrt2), 1e-7) << x;
   EXPECT_EQ(normal_share(-40), 0);
@@ -81,7 +81,7 @@ TEST(Elementary, Borders) {
 
 namespace {
 
-TEST(Exponential, IsThatOfTheLibraryToTwoUnits) {
+TEST(Exponential, AgreesWithTheLibraryToTwoUnits) {
   for (int i = 0; i <= 870'000; ++i) {
     const float x = -1e-4F * static_cast<float>(i);
     const double expected = std::exp(static_cast<double>(x));
@@ -91,7 +91,7 @@ TEST(Exponential, IsThatOfTheLibraryToTwoUnits) {
   EXPECT_EQ(exp_of_negative(-0.0F), 1);
 }
 
-TEST(Exponential, TakesWhatIsNoNormalNumber) {
+TEST(Exponential, AcceptsSubnormalNumbersAndNaN) {
   EXPECT_EQ(exp_of_negative(-88), 0);
   EXPECT_EQ(exp_of_negative(-std::numeric_limits<float>::infinity()), 0);
   EXPECT_TRUE(std::isnan(exp_of_negative(std::numeric_limits<float>::quiet_NaN())));

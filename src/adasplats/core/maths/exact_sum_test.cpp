@@ -57,7 +57,7 @@ TEST(ExactAddends, SumsAreTheSameInEveryOrder) {
 }
 
 // Oracle: long double's sum.
-TEST(ExactAddends, SumsAreOffByTheUnitAtMost) {
+TEST(ExactAddends, SumsAreWithinTheUnit) {
   for (const std::size_t count : {1, 40, 1000}) {
     const std::vector<double> numbers = some_numbers(0, count);
     const double largest = largest_of(numbers);

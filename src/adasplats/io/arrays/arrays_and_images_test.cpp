@@ -183,7 +183,7 @@ TEST(KittiBin, FiveFloatsAreNotTakenForFour) {
 }
 
 // The name is no way out among the scans of a sequence.
-TEST(KittiBin, FiveFloatsInASequenceAreToBeConverted) {
+TEST(KittiBin, FiveFloatsInASequenceMustBeConverted) {
   const TemporaryFolder folder;
   for (const char* name : {"b.bin", "b.pcd.bin"})
     for (const int points : {20, 51})
@@ -191,7 +191,7 @@ TEST(KittiBin, FiveFloatsInASequenceAreToBeConverted) {
                    [&] { read_kitti_bin(folder.file(name, circle(points, 5))); });
 }
 
-TEST(KittiBin, IntensitiesThatAreNotFiniteAreNotKnown) {
+TEST(KittiBin, IntensitiesThatAreNotFiniteAreUnknown) {
   const TemporaryFolder folder;
   for (const float value : {std::nanf(""), HUGE_VALF, -HUGE_VALF}) {
     std::string content = circle(3, 4);

@@ -47,7 +47,7 @@ std::vector<std::pair<std::string, std::string>> unzipped(const std::string& zip
     const std::uint32_t local = number_at(zip, entry + 42, 4);
     const std::string name = zip.substr(entry + 46, name_bytes);
     EXPECT_EQ(number_at(zip, local, 4), 0x04034b50U);
-    // What both headers say is the same.
+    // Both headers agree.
     EXPECT_EQ(zip.substr(local + 4, 26), zip.substr(entry + 6, 26));
     EXPECT_EQ(zip.substr(local + 30, name_bytes), name);
     files.emplace_back(name, zip.substr(local + 30 + name_bytes, bytes));

@@ -26,7 +26,7 @@ const std::vector<Said> kSaid = {{"/a", "pkg/msg/One", 5, "first"},
                                  {"/b", "pkg/msg/Two", 7, std::string(3000, 'x')},
                                  {"/a", "pkg/msg/One", 9, ""}};
 
-/// What a recording gives, read again by place, with types as they were said.
+/// The messages of a recording, read again by position, with their types.
 std::vector<Said> contents_of(const std::filesystem::path& path) {
   const Recording recording(path);
   std::vector<Said> said;
@@ -41,7 +41,7 @@ std::vector<Said> contents_of(const std::filesystem::path& path) {
   return said;
 }
 
-void expect_said(const std::filesystem::path& path, const std::vector<Said>& expected = kSaid) {
+void expect_messages(const std::filesystem::path& path, const std::vector<Said>& expected = kSaid) {
   const std::vector<Said> found = contents_of(path);
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -55,14 +55,14 @@ void expect_said(const std::filesystem::path& path, const std::vector<Said>& exp
 // Oracle: files put together by the letter of the specification.
 TEST(McapRecording, ChunksAndLooseRecordsGiveTheirMessages) {
   const TemporaryFolder folder;
-  expect_said(folder.file("chunk.mcap", mcap_of(kSaid)));
+  expect_messages(folder.file("chunk.mcap", mcap_of(kSaid)));
   std::vector<std::string> topics;
-  expect_said(folder.file("loose.mcap", mcap_file(mcap_records(kSaid, topics))));
+  expect_messages(folder.file("loose.mcap", mcap_file(mcap_records(kSaid, topics))));
   topics.clear();
   const std::string first = mcap_records({kSaid[0]}, topics);
   const std::string rest = mcap_records({kSaid[1], kSaid[2]}, topics);
-  expect_said(folder.file("two.mcap", mcap_file(mcap_chunk("", first, first.size()) +
-                                                mcap_chunk("", rest, rest.size()))));
+  expect_messages(folder.file("two.mcap", mcap_file(mcap_chunk("", first, first.size()) +
+                                                    mcap_chunk("", rest, rest.size()))));
   EXPECT_TRUE(contents_of(folder.file("none.mcap", mcap_file(""))).empty());
 }
 
@@ -80,7 +80,7 @@ TEST(McapRecording, ReadsWhatIsWritten) {
     }
     file.finish();
   }
-  expect_said(path, said);
+  expect_messages(path, said);
 }
 
 TEST(McapRecording, DamageIsAnError) {
@@ -111,9 +111,10 @@ TEST(McapRecording, DamageIsAnError) {
 // Oracle: bags put together by the letter of the specification.
 TEST(RosbagRecording, ChunksAndLooseRecordsGiveTheirMessages) {
   const TemporaryFolder folder;
-  expect_said(folder.file("chunk.bag", bags_test::bag_of(kSaid)));
+  expect_messages(folder.file("chunk.bag", bags_test::bag_of(kSaid)));
   std::vector<std::string> topics;
-  expect_said(folder.file("loose.bag", bags_test::bag_file(bags_test::bag_records(kSaid, topics))));
+  expect_messages(
+      folder.file("loose.bag", bags_test::bag_file(bags_test::bag_records(kSaid, topics))));
   EXPECT_TRUE(contents_of(folder.file("none.bag", bags_test::bag_file(""))).empty());
 }
 
@@ -144,7 +145,7 @@ TEST(RosbagRecording, DamageIsAnError) {
   expect_error(ErrorKind::data, {"'op'"}, read(bags_test::bag_file(bags_test::bag_record({}, ""))));
 }
 
-/// Runs what needs SQLite; where the program was built without, expects that to be said.
+/// Runs code that needs SQLite; without it, expects the error for that.
 template <class F>
 void with_sqlite(F&& action) {
   try {
@@ -155,14 +156,15 @@ void with_sqlite(F&& action) {
   }
 }
 
-const std::vector<Said> kSaidInDb3 = {{"/a", "pkg/msg/One", 5, "first"},
-                                      {"/b", "pkg/msg/Two", 7, std::string(30, 'x')},
-                                      {"/a", "pkg/msg/One", 9, ""}};
+const std::vector<Said> kMessagesInDb3 = {{"/a", "pkg/msg/One", 5, "first"},
+                                          {"/b", "pkg/msg/Two", 7, std::string(30, 'x')},
+                                          {"/a", "pkg/msg/One", 9, ""}};
 
 // Oracle: what was put into the database with SQLite's own program.
 TEST(SqliteRecording, GivesItsMessages) {
   const TemporaryFolder folder;
-  with_sqlite([&] { expect_said(folder.file("a.db3", bags_test::small_db3()), kSaidInDb3); });
+  with_sqlite(
+      [&] { expect_messages(folder.file("a.db3", bags_test::small_db3()), kMessagesInDb3); });
   const std::filesystem::path text = folder.file("b.db3", "this is no database, but some text");
   const Error error = io_test::error_of([&] { contents_of(text); });
   EXPECT_TRUE(error.kind() == ErrorKind::data || error.kind() == ErrorKind::unavailable);
@@ -184,9 +186,9 @@ TEST(Ros2Bag, AFolderIsItsFilesInTheirOrder) {
   EXPECT_FALSE(is_recording(bag));
   describe("    - drive_0.mcap\n    - \"drive_1.mcap\"\n", "  compression_mode: \"\"\n");
   EXPECT_TRUE(is_recording(bag));
-  expect_said(bag);
+  expect_messages(bag);
   describe("    - drive/drive_0.mcap\n    - drive/drive_1.mcap\n");  // version 3
-  expect_said(bag);
+  expect_messages(bag);
   describe("  - drive_1.mcap\n");
   EXPECT_EQ(contents_of(bag).size(), 2U);
   const auto read = [&] { contents_of(bag); };
@@ -202,7 +204,7 @@ TEST(Ros2Bag, AFolderIsItsFilesInTheirOrder) {
   expect_error(ErrorKind::data, {"CHUNK", "ros2 bag convert"}, read);
 }
 
-/// A frame of zstd (RFC 8878) of at most 128 KiB: one segment that says its size, one raw block.
+/// A frame of zstd (RFC 8878) of at most 128 KiB: one segment with its size, one raw block.
 std::string zstd_frame(const std::string& bytes) {
   const auto size = static_cast<std::uint32_t>(bytes.size());
   std::string frame("\x28\xb5\x2f\xfd\xa0", 5);
@@ -212,7 +214,7 @@ std::string zstd_frame(const std::string& bytes) {
   return frame + bytes;
 }
 
-/// Runs what needs zstd; where the program was built without, expects that to be said.
+/// Runs code that needs zstd; without it, expects the error for that.
 template <class F>
 void with_zstd(F&& action) {
   try {
@@ -224,22 +226,22 @@ void with_zstd(F&& action) {
 }
 
 // Oracle: the same bag as it is.
-TEST(Ros2Bag, FilesThatArePackedAsAWholeLeaveNothingBehind) {
+TEST(Ros2Bag, CompressedFilesLeaveNothingBehind) {
   const TemporaryFolder folder, unpacked;
   ASSERT_EQ(setenv("TMPDIR", unpacked.path().c_str(), 1), 0);
   const std::string plain = mcap_of(kSaid);
   with_zstd([&] {
     const auto path = folder.file("drive.mcap.zstd", zstd_frame(plain));
     EXPECT_TRUE(is_recording(path));
-    expect_said(path);
-    // Frames stand one behind the other.
-    expect_said(folder.file("parts.MCAP.zst",
-                            zstd_frame(plain.substr(0, 100)) + zstd_frame(plain.substr(100))));
+    expect_messages(path);
+    // Consecutive frames.
+    expect_messages(folder.file("parts.MCAP.zst",
+                                zstd_frame(plain.substr(0, 100)) + zstd_frame(plain.substr(100))));
     io_test::write_bytes(folder.path() / "metadata.yaml",
                          "rosbag2_bagfile_information:\n  version: 4\n  relative_file_paths:\n"
                          "    - drive.mcap.zstd\n  compression_format: zstd\n"
                          "  compression_mode: FILE\n");
-    expect_said(folder.path());
+    expect_messages(folder.path());
     const auto refused = [&](const std::string& bytes, std::vector<std::string> words) {
       const auto broken = folder.file("broken.mcap.zstd", bytes);
       words.push_back(broken.string());
@@ -250,7 +252,7 @@ TEST(Ros2Bag, FilesThatArePackedAsAWholeLeaveNothingBehind) {
     refused(whole.substr(0, 3), {"end early"});
     refused("this is not zstd but some text", {"damaged zstd data"});
     refused(whole + "more", {"damaged"});
-    // What is wrong within is said of the file that the user has.
+    // Errors inside name the file of the user.
     refused(zstd_frame(plain.substr(0, plain.size() / 2)), {"(decompressed)"});
   });
   EXPECT_TRUE(std::filesystem::is_empty(unpacked.path()));
@@ -260,7 +262,7 @@ TEST(Ros2Bag, FilesThatArePackedAsAWholeLeaveNothingBehind) {
 }
 
 // Oracle: the same messages as they are.
-TEST(Ros2Bag, MessagesThatArePackedOneByOne) {
+TEST(Ros2Bag, MessagesCompressedOneByOne) {
   const TemporaryFolder folder;
   std::vector<Said> packed = kSaid;
   for (Said& said : packed) said.bytes = zstd_frame(said.bytes);
@@ -273,7 +275,7 @@ TEST(Ros2Bag, MessagesThatArePackedOneByOne) {
   describe("zstd");
   with_zstd([&] {
     folder.file("drive.mcap", mcap_of(packed));
-    expect_said(folder.path());
+    expect_messages(folder.path());
     packed[1].bytes.pop_back();
     folder.file("drive.mcap", mcap_of(packed));
     expect_error(ErrorKind::data, {"drive.mcap", "/b", "end early"},
@@ -319,7 +321,7 @@ TEST(Recording, BrokenFilesAreErrors) {
   EXPECT_GT(refused, 1000U);
 }
 
-TEST(Unpack, GivesWhatOthersPacked) {
+TEST(Unpack, ReadsDataOfOtherPrograms) {
   for (const PackedZeros& packed : kPackedZeros) {
     std::string found;
     try {

@@ -70,7 +70,7 @@ TEST(RosPoints, EveryTypeAndByteOrder) {
   }
 }
 
-TEST(RosPoints, LayoutsThatLieAreErrors) {
+TEST(RosPoints, InconsistentLayoutsAreErrors) {
   const auto refuse = [](const std::vector<std::string>& parts, auto&& change) {
     CloudWords words = words_of_all_types(false);
     change(words);

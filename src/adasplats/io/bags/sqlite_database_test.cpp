@@ -113,7 +113,7 @@ void expect_refused(const TemporaryFolder& folder, const std::string& bytes, std
 }
 
 // For such a record SQLite makes a list of 72 MB of the pages that it would have.
-TEST(SqliteDatabase, RecordsBeyondTheFileAreRefusedBeforeTheyTakeMemory) {
+TEST(SqliteDatabase, RecordsBeyondTheFileAreRejectedBeforeTheyTakeMemory) {
   const TemporaryFolder folder;
   const std::string small = bags_test::small_db3();
   constexpr std::size_t kPage = 512, kFileHeader = 100;
@@ -132,7 +132,7 @@ TEST(SqliteDatabase, RecordsBeyondTheFileAreRefusedBeforeTheyTakeMemory) {
 }
 
 // SQLite takes the pointer to a cell modulo the size of the page, and reads on behind the page.
-TEST(SqliteDatabase, RecordsAtTheEndOfAPageAreRefused) {
+TEST(SqliteDatabase, RecordsAtTheEndOfAPageAreRejected) {
   const TemporaryFolder folder;
   std::string bytes = bags_test::small_db3();
   constexpr std::size_t kTopics = 512, kPage = 512, kFirstPointer = 8;
@@ -146,7 +146,7 @@ TEST(SqliteDatabase, RecordsAtTheEndOfAPageAreRefused) {
 }
 
 // What a fuzzer found: the record is of a size of 43 bits, of which SQLite takes 32.
-TEST(SqliteDatabase, SizesOfMoreThan32BitsAreRefused) {
+TEST(SqliteDatabase, SizesOfMoreThan32BitsAreRejected) {
   const TemporaryFolder folder;
   std::string bytes = bags_test::small_db3();
   constexpr std::size_t kTopics = 512, kCell = 0x1d2;

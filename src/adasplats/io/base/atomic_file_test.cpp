@@ -84,7 +84,7 @@ TEST(AtomicFile, FollowsALinkAndKeepsIt) {
   EXPECT_EQ(read_file(target), "new");
 }
 
-TEST(AtomicFile, RefusesWhatCannotBeCreated) {
+TEST(AtomicFile, RejectsFilesThatCannotBeCreated) {
   const TemporaryFolder folder;
   expect_error(ErrorKind::cannot_create, {"no-folder"},
                [&] { write_file(folder.path() / "no-folder" / "file", "x"); });

@@ -11,7 +11,7 @@ namespace adasplats {
 namespace {
 
 // Oracle: the examples of RFC 4648, section 10.
-TEST(Base64, IsThatOfRfc4648) {
+TEST(Base64, ExamplesOfRfc4648) {
   const std::array<std::string, 7> plain = {"", "f", "fo", "foo", "foob", "fooba", "foobar"};
   const std::array<std::string, 7> coded = {"",         "Zg==",     "Zm8=",    "Zm9v",
                                             "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"};

@@ -72,7 +72,7 @@ TEST(CoordinateSystem, NamesAreTheFilesOwn) {
             "EPSG:2903+5703 (NAVD 88)");
 }
 
-TEST(CoordinateSystem, NothingIsSaidByBlanksOrByUnitsAlone) {
+TEST(CoordinateSystem, BlanksAndUnitsAloneStateNoSystem) {
   EXPECT_TRUE(wkt("").empty());
   EXPECT_TRUE(wkt(std::string(" \n\0\0", 4)).empty());
   EXPECT_TRUE(keys({}).empty());
@@ -98,7 +98,7 @@ TEST(CoordinateSystem, CodesDecideWhereBothHaveSome) {
 }
 
 // ESRI's names and texts have no codes.
-TEST(CoordinateSystem, UtmZonesAreKnownByTheirNames) {
+TEST(CoordinateSystem, UtmZonesAreRecognizedByTheirNames) {
   expect_match(wkt(mercator("WGS_1984_UTM_Zone_32N", "9.0")), kZone32, CrsMatch::same);
   expect_match(wkt(mercator("WGS_1984_UTM_Zone_32N", "9.0")), kZone33, CrsMatch::different);
   expect_match(wkt(mercator("ETRS_1989_UTM_Zone_32N", "9")), wkt("EPSG:25832"), CrsMatch::same);
@@ -130,7 +130,7 @@ TEST(CoordinateSystem, WithoutCodesNamesAndNumbersDecide) {
   expect_match(wkt("+proj=tmerc +lat_0=5"), wkt("+proj=tmerc +lat_0=-5"), CrsMatch::different);
 }
 
-TEST(CoordinateSystem, WhatIsNotSaidIsUnclear) {
+TEST(CoordinateSystem, MissingPartsAreUnclear) {
   expect_match(Crs(), Crs(), CrsMatch::same);
   expect_match(Crs(), kZone32, CrsMatch::unclear);
   const Crs egm96 = wkt(with_heights(kZone32, kEgm96)),
@@ -141,7 +141,7 @@ TEST(CoordinateSystem, WhatIsNotSaidIsUnclear) {
   expect_match(egm96, wkt(with_heights(kZone33, kEgm96)), CrsMatch::different);
 }
 
-TEST(CoordinateSystem, CommentsBringItBack) {
+TEST(CoordinateSystem, SurvivesComments) {
   EXPECT_TRUE(crs_comments({}).empty());
   for (const Crs& crs :
        {kZone32, wkt(with_heights(kZone32, kEgm96)), kKeys32,

@@ -23,7 +23,7 @@ TEST(EpsgUnits, OfSystemsByTheirCodes) {
   EXPECT_EQ(unit_of_projected_system(10480), std::nullopt);
 }
 
-TEST(EpsgUnits, LengthsThatAreNoMetre) {
+TEST(EpsgUnits, LengthsOtherThanTheMetre) {
   EXPECT_EQ(foreign_length_of(9001), std::nullopt);
   EXPECT_EQ(foreign_length_of(9102), std::nullopt);  // degrees
   EXPECT_EQ(foreign_length_of(9002), "feet (0.3048 m)");

@@ -41,7 +41,7 @@ TEST(JsonRows, OfNoneAndOfOne) {
   EXPECT_EQ(rows_of(R"({"rows": [{}], "z": {"q": {}}})").size(), 1U);
 }
 
-TEST(JsonRows, WhatIsNoRowIsTakenToo) {
+TEST(JsonRows, ValuesThatAreNotRowsArePassedOn) {
   const std::vector<Json> rows = rows_of(R"({"rows": [{"x": 1}, 7, [{"x": 2}], null]})");
   ASSERT_EQ(rows.size(), 4U);
   EXPECT_EQ(rows[1], 7);
@@ -54,7 +54,7 @@ TEST(JsonRows, OtherTextIsAnError) {
     EXPECT_THROW(rows_of(text), Json::exception) << text;
 }
 
-TEST(JsonRows, ErrorsOfTheTakerPass) {
+TEST(JsonRows, ErrorsOfTheCallbackPass) {
   const auto taken = [](const Json& row) { row.at("y"); };
   EXPECT_THROW(parse_json_rows(R"({"rows": [{"x": 1}]})", "rows", taken), Json::out_of_range);
 }

@@ -79,7 +79,7 @@ TEST(WktUnits, OfWkt2) {
             "x and y in US survey foot (0.304800609601219 m), by the WKT");
 }
 
-TEST(WktUnits, BrokenTextsSayNothing) {
+TEST(WktUnits, BrokenTextsHaveNoUnits) {
   for (const char* text : {"", "]", "][", "UNIT[\"foot\",0.3048]", "PROJCS[", "PROJCS[UNIT[]]",
                            "PROJCS[UNIT[\"foot\"]]", "PROJCS[UNIT[\"foot\",x]]", "PROJCS[\""})
     EXPECT_EQ(foreign_units_of_wkt(text), std::nullopt) << text;

@@ -89,7 +89,7 @@ TEST(E57Errors, TheHeader) {
 }
 
 // Bytes beyond the size in the header are ignored.
-TEST(E57Errors, MoreBytesThanTheHeaderSays) {
+TEST(E57Errors, MoreBytesThanTheHeaderStates) {
   const TemporaryFolder folder;
   EXPECT_EQ(read_points(folder.file("a.e57", many_points().file() + "more")).rows, 200U);
 }

@@ -28,7 +28,7 @@ inline std::uint32_t plain_crc32c(std::string_view bytes) {
   return ~rest;
 }
 
-/// Makes a file of any bytes whole pages with right checksums, and its header say its length.
+/// Pads any bytes to pages with valid checksums, and sets the length in the header.
 inline std::string sealed_e57(std::string file) {
   file.resize((file.size() + kE57PageBytes - 1) / kE57PageBytes * kE57PageBytes);
   if (!file.empty()) put(file, 16, static_cast<std::uint64_t>(file.size()));

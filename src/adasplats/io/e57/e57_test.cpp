@@ -286,7 +286,7 @@ TEST(E57, ColumnsThatOnlySomeScansHave) {
 }
 
 // dateTimeValue counts seconds of GPS time, timeStamp from there.
-TEST(E57, TimesOfScansThatSayWhenTheyBegan) {
+TEST(E57, TimesOfScansWithAStart) {
   const std::string start =
       "<acquisitionStart type=\"Structure\"><dateTimeValue type=\"Float\">1e9</dateTimeValue>"
       "</acquisitionStart>";
@@ -301,7 +301,7 @@ TEST(E57, TimesOfScansThatSayWhenTheyBegan) {
   EXPECT_EQ(values_of(read_composed(one.file()), "timestamp"), (Doubles{0, 0.5, 1, 0, 0.5, 1}));
 }
 
-TEST(E57, WhatTheFileSaysBesideItsPoints) {
+TEST(E57, NotesOfAFile) {
   E57Composer composer;
   composer.add_scan(3, xyz_fields(), three_points());
   const auto notes = [&](const std::string& more) {

@@ -14,7 +14,7 @@
 
 namespace adasplats::laz_test {
 
-/// A node's entry: level, x, y, z, what is there, its bytes and points (-1: a page).
+/// A node's entry: level, x, y, z, offset, bytes and points (-1: a page).
 inline std::string entry(std::array<std::int32_t, 4> key, std::uint64_t offset, std::size_t bytes,
                          std::int64_t points) {
   std::string text;

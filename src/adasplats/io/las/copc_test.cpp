@@ -37,7 +37,7 @@ Table read(const std::string& bytes, const PointSelection& selection = {},
   return read_points(folder.file("a.copc.laz", bytes), options);
 }
 
-/// The rows of `all` that lie in both a list of ranges of rows and an extent, by brute force.
+/// The rows of `all` that are in both a list of ranges of rows and an extent, by brute force.
 Table expected(const Table& all, const std::vector<std::pair<std::size_t, std::size_t>>& ranges,
                const Extent& extent = {}) {
   std::vector<bool> kept(all.rows);
@@ -93,7 +93,7 @@ TEST(Copc, ExtentsAreThoseOfPointsAndOfCubes) {
   Extent nowhere;
   nowhere.low.z = 5000;
   EXPECT_EQ(read(file.bytes(), {.extent = nowhere}).rows, 0U);
-  // An extent that all points lie in, and the root's cube does not meet.
+  // An extent that contains all points, but does not overlap the root's cube.
   put(file.bytes(), CopcFile::kInfoAt, -2000.0);
   Extent right;
   right.low.x = -350;
@@ -149,12 +149,12 @@ TEST(Copc, OctreesThatContradictThemselvesAreErrors) {
   cycle = sound.bytes();
   cycle.replace(inner + 32 + 16, 16, cycle.substr(root + 64 + 16, 16));
   expect_error(ErrorKind::data, {"page of node 2-3-0-0 occurs twice"}, [&] { read(cycle, all); });
-  // None of it matters to whoever reads all points.
+  // None of it matters when all points are read.
   EXPECT_EQ(read(cycle).rows, 40U);
 }
 
 // Nothing but an error of ours may escape, and no point may come twice.
-TEST(Copc, WhateverIsBrokenEnds) {
+TEST(Copc, DamagedFilesEndInErrors) {
   const CopcFile sound;
   const TemporaryFolder folder;
   const std::string& file = sound.bytes();

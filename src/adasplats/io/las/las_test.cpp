@@ -113,7 +113,7 @@ TEST(Las, FieldsOfEveryPointFormat) {
   }
 }
 
-TEST(Las, ClassificationFlagsAreNoClass) {
+TEST(Las, ClassificationFlagsAreNotPartOfTheClass) {
   std::string record = las_record(20, 0, 0, 0);
   put(record, 15, std::uint8_t{0x62});
   EXPECT_EQ(values_of(read(las_header(2, 0, 20, 1) + record), "classification"), Doubles{2});
@@ -184,14 +184,14 @@ TEST(Las, AttributesInExtraBytes) {
 }
 
 // ASPRS LAS 1.4 R15, table 4.
-TEST(Las, TheClockOfItsTimesIsSaid) {
+TEST(Las, TheClockOfTimesIsNoted) {
   std::string file = las_with(las_vlr("other", 1, "x"), 1, 0);
   EXPECT_TRUE(read(file).notes.empty());
   put(file, 6, std::uint16_t{17});
   EXPECT_EQ(read(file).notes, (Notes{{NoteKind::adjusted_gps, ""}}));
 }
 
-TEST(Las, LongitudesAndLatitudesAreSaid) {
+TEST(Las, LongitudesAndLatitudesAreNoted) {
   const auto notes = [](const std::string& record) { return read(las_with(record, 1, 0)).notes; };
   const auto keys = [](std::uint16_t model) {
     std::string directory;
@@ -211,7 +211,7 @@ TEST(Las, LongitudesAndLatitudesAreSaid) {
 }
 
 // Oracle: the units' numbers in GeoTIFF 1.0, section 6.3.1.3.
-TEST(Las, UnitsThatAreNoMetresAreSaid) {
+TEST(Las, UnitsOtherThanTheMetreAreNoted) {
   const auto notes = [](int key, int unit) {
     std::string directory;
     for (const int value : {1, 1, 0, 2, 1024, 0, 1, 1, key, 0, 1, unit})
@@ -225,7 +225,7 @@ TEST(Las, UnitsThatAreNoMetresAreSaid) {
     return read(las_with(las_vlr("LASF_Projection", 34735, directory), 1, 0)).notes;
   };
   const auto not_metres = [](const char* what) { return Notes{{NoteKind::not_metres, what}}; };
-  EXPECT_TRUE(both(2263, 9001).empty());  // what is stated comes before what is looked up
+  EXPECT_TRUE(both(2263, 9001).empty());  // a stated unit has precedence
   EXPECT_EQ(both(2263, 9003).size(), 1U);
   for (const int key : {3076, 4099})
     for (const int unit : {9001, 0, 32767}) EXPECT_TRUE(notes(key, unit).empty());
@@ -309,7 +309,7 @@ TEST(Las, ExtendedRecordsAreRead) {
   expect_data_error(large, {"2112", "LASF_Projection", "bytes"});
 }
 
-TEST(Las, WhatTheHeaderSays) {
+TEST(Las, FactsOfTheHeader) {
   const TemporaryFolder folder;
   std::string content = las_with_extended("LASF_Projection", 2112, kZone33);
   for (std::size_t k = 0; k < 7; ++k) content[58 + k] = "so\x01 ft\x00"[k];
@@ -357,7 +357,7 @@ TEST(Las, GarbageInTheHeader) {
 }
 
 // Fault 16.
-TEST(Las, FewerRecordsThanTheHeaderSays) {
+TEST(Las, FewerRecordsThanTheHeaderStates) {
   for (const std::uint32_t points : {3U, 0xffffffffU}) {
     const std::string content =
         las_header(2, 0, 20, points) + las_record(20, 1, 0, 0) + las_record(20, 2, 0, 0) + "short";
@@ -376,7 +376,7 @@ TEST(Las, SalvageOfAWholeFileChangesNothing) {
 }
 
 // Fault 20.
-TEST(Las, ScaleAndOffsetThatMakeNoCoordinates) {
+TEST(Las, InvalidScaleAndOffset) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInf = std::numeric_limits<double>::infinity();
   const auto with = [](std::size_t offset, double value) {

@@ -169,7 +169,7 @@ TEST(LasWriter, NoPointsAndNoExtraBytes) {
   EXPECT_EQ(read_las(folder.path() / "a.las").rows, 0U);
 }
 
-TEST(LasWriter, WhatLasCannotHold) {
+TEST(LasWriter, DataThatLasCannotStore) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.las";
   Points points;

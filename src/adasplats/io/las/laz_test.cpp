@@ -56,7 +56,7 @@ const LazSample& chunked() { return kLazSamples[1]; }
 const LazSample& layered() { return kLazSamples[2]; }
 
 // Oracle: the records that LASzip was given, read as LAS.
-TEST(Laz, HasTheColumnsOfTheRecordsThatWerePacked) {
+TEST(Laz, HasTheColumnsOfTheCompressedRecords) {
   const Executor executor(2);
   for (const LazSample& sample : kLazSamples) {
     SCOPED_TRACE(sample.name);
@@ -83,7 +83,7 @@ TEST(Laz, PointsOutsideTheBoxAreAFault) {
   EXPECT_GT(salvaged.rows, 0U);
 }
 
-TEST(Laz, TheTableOfChunksMayBeNamedAtTheEnd) {
+TEST(Laz, TheOffsetOfTheChunkTableMayBeAtTheEnd) {
   for (const LazSample& sample : {chunked(), layered()}) {
     std::string file = laz_file(sample);
     const std::uint64_t table = table_at(file);
@@ -131,13 +131,13 @@ TEST(Laz, BrokenTablesAreErrors) {
   broken = file;
   put(broken, points_at(file), std::uint64_t{10});
   expect_broken(broken, {"byte 10", "before the points"});
-  // 2^32 points in some hundred bytes: said before anything is allocated.
+  // 2^32 points in some hundred bytes: reported before anything is allocated.
   broken = laz_file(layered());
   put(broken, 247, std::uint64_t{1} << 40);
   expect_broken(broken, {"chunk table has 40 points", "1099511627776"});
 }
 
-TEST(Laz, UnknownPackingsAreErrors) {
+TEST(Laz, UnknownCompressionIsAnError) {
   const std::string file = laz_file(chunked());
   const std::size_t record = file.find("laszip encoded") - 2 + 54;
   const auto with = [&](std::size_t at, auto value) {

@@ -47,7 +47,7 @@ std::vector<std::string> layers_of(const std::string& bytes, std::size_t record_
   return layers;
 }
 
-/// The records of a sample without what lies between the point and the extra bytes.
+/// The records of a sample without the bytes between the point and the extra bytes.
 std::string format_6_of(const LazSample& sample) {
   const std::string records = sample_records(sample);
   const std::size_t bytes = records.size() / sample.rows;
@@ -204,7 +204,7 @@ TEST(LazWriter, IsReadAsTheLas) {
 }
 
 // Attributes that do not change take no bytes: a million equal points are small.
-TEST(LazWriter, EqualPointsTakeNextToNothing) {
+TEST(LazWriter, EqualPointsTakeHardlyAnyBytes) {
   const std::vector<double> zeros(1000000, 0.0);
   ByteBuffer file;
   const ColumnView columns[] = {{"x", ColumnType::f64, zeros.data(), 8},

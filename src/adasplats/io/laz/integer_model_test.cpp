@@ -31,7 +31,7 @@ void put_difference(PlainEncoder& encoder, PlainModel& lengths, std::vector<Plai
     encoder.put_bits(static_cast<std::uint32_t>(place & ((std::int64_t{1} << low) - 1)), low);
 }
 
-TEST(IntegerModel, GivesTheNumbersThatWerePacked) {
+TEST(IntegerModel, DecodesTheEncodedNumbers) {
   const std::vector<std::int64_t> differences = {2,     -1,    3,      4,          5,     -7,
                                                  100,   -255,  256,    257,        -256,  1000,
                                                  -1023, 65536, -70000, 2147483647, 100000};
@@ -41,7 +41,7 @@ TEST(IntegerModel, GivesTheNumbersThatWerePacked) {
   for (unsigned k = 0; k <= 32; ++k) places.emplace_back(1U << std::clamp(k, 1U, 8U));
   for (const std::int64_t difference : differences)
     put_difference(encoder, lengths, places, difference);
-  encoder.put(lengths, 32);  // stands for the least number alone
+  encoder.put(lengths, 32);  // means the minimum
   const std::vector<std::byte> bytes = encoder.finish();
   bool is_broken = false;
   RangeDecoder decoder(bytes, is_broken);
@@ -57,7 +57,7 @@ TEST(IntegerModel, GivesTheNumbersThatWerePacked) {
   EXPECT_FALSE(is_broken);
 }
 
-// 16 bits: 65535 lies one below 0.
+// 16 bits: 65535 is one below 0.
 TEST(IntegerModel, NumbersOfFewerBitsWrap) {
   PlainEncoder encoder;
   PlainModel lengths(17);

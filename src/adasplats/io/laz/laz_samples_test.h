@@ -178,7 +178,7 @@ inline std::string laszip_record(const LazSample& sample) {
   return record_start("laszip encoded", 22204, record.size()) + record;
 }
 
-/// What stands before the points, packed or not.
+/// All bytes before the points, compressed or not.
 inline std::string sample_start(const LazSample& sample, bool is_packed) {
   const bool is_extended = sample.format >= 6;
   const std::size_t bytes = is_extended ? 375 : sample.format > 3 ? 235 : 227;

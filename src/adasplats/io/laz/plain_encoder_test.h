@@ -48,7 +48,7 @@ class PlainModel {
   std::uint32_t cycle_ = 0, until_update_ = 0;
 };
 
-/// The coder whose decoder RangeDecoder is (A. Said, HPL-2004-76, section 2).
+/// The encoder for RangeDecoder (A. Said, HPL-2004-76, section 2).
 class PlainEncoder {
  public:
   void put(PlainModel& model, std::uint32_t symbol) {

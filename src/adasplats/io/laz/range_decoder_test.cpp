@@ -19,7 +19,7 @@ using laz_test::PlainEncoder;
 using laz_test::PlainModel;
 
 // Oracle: what an encoder was given that is written down apart.
-TEST(RangeDecoder, GivesTheSymbolsThatWerePacked) {
+TEST(RangeDecoder, DecodesTheEncodedSymbols) {
   std::mt19937 random(1);
   for (const std::uint32_t symbols : {2U, 3U, 16U, 17U, 33U, 64U, 128U, 256U, 515U, 516U}) {
     SCOPED_TRACE(symbols);
@@ -44,7 +44,7 @@ TEST(RangeDecoder, GivesTheSymbolsThatWerePacked) {
   }
 }
 
-TEST(RangeDecoder, GivesTheBitsThatWerePacked) {
+TEST(RangeDecoder, DecodesTheEncodedBits) {
   std::mt19937 random(2);
   PlainEncoder encoder;
   std::vector<std::uint32_t> sent;
@@ -96,7 +96,7 @@ TEST(RangeDecoder, EvenTheMostProbableSymbolCosts) {
 }
 
 // Five numbers of which every new one is among the sorted, by sorting.
-TEST(RunningMedian, IsThatOfASortedList) {
+TEST(RunningMedian, AgreesWithASortedList) {
   std::mt19937 random(4);
   for (const std::int32_t range : {2, 10, 1000000}) {
     RunningMedian median;

@@ -197,7 +197,7 @@ inline void read_summary(std::string_view file, std::string_view summary, File& 
   }
 }
 
-/// Every group of the summary is where a summary offset says, and none is missing.
+/// Every group of the summary has a summary offset, and none is missing.
 inline void check_summary_offsets(std::string_view file, std::string_view offsets,
                                   std::uint64_t summary_start) {
   std::uint64_t next = summary_start;

@@ -21,7 +21,7 @@ std::string number_text_of(T value, bool big_endian) {
 }
 
 /// A frame of Ethernet with a datagram from 10.0.0.1:5000 to 10.0.0.2:`port`, or a fragment of one;
-/// `tags` of VLANs stand before. Checksums are left out.
+/// `tags` of VLANs come first. Without checksums.
 inline std::string ip_frame(std::string_view ip_payload, std::uint16_t name, std::uint16_t fragment,
                             int tags = 0) {
   const auto big = [](auto value) { return number_text_of(value, true); };

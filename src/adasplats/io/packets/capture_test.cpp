@@ -112,7 +112,7 @@ TEST(Capture, OtherLinks) {
   }
 }
 
-TEST(Capture, WhatIsMissingIsCounted) {
+TEST(Capture, MissingDataAreCounted) {
   const TemporaryFolder folder;
   std::vector<FrameSample> frames = sample_frames();
   frames.erase(frames.begin() + 3);  // a part
@@ -132,7 +132,7 @@ TEST(Capture, WhatIsMissingIsCounted) {
   EXPECT_EQ(many.counts().torn, 1000U);
 }
 
-TEST(Capture, WhatIsWrittenIsRead) {
+TEST(Capture, RoundTrip) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "w.pcap";
   std::string large(20000, '\0');
@@ -178,7 +178,7 @@ TEST(Capture, EveryTruncationIsAnError) {
                [&] { DatagramReader(folder.write("no.pcap", std::string(100, 'x'))); });
 }
 
-TEST(Capture, BrokenOnesEndInErrors) {
+TEST(Capture, DamagedCapturesAreErrors) {
   const TemporaryFolder folder;
   io_test::Mutator mutator(5);
   const std::string seeds[] = {pcap_of(sample_frames(), false, false),

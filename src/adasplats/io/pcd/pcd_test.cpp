@@ -146,7 +146,7 @@ TEST(Pcd, CompressedSizes) {
 }
 
 // Faults 13, 14: counts that the file cannot hold, checked before any allocation.
-TEST(Pcd, FewerPointsThanTheHeaderSays) {
+TEST(Pcd, FewerPointsThanTheHeaderStates) {
   for (const char* points : {"3", "2147483648", "4294967297", "18446744073709551615"}) {
     const std::string header = kFields + "WIDTH " + points + "\nHEIGHT 1\nPOINTS " + points + "\n";
     expect_data_error(header + "DATA binary\n" + binary_body(), {"room for 2", points});

@@ -81,7 +81,7 @@ TEST(DataFrame, ReadsWhatWeWrite) {
 }
 
 // Oracle: the classic pickle that runs a command; nothing of it may happen but the error.
-TEST(DataFrame, RunsNothing) {
+TEST(DataFrame, ExecutesNothing) {
   for (const char* const call : {"cposix\nsystem\nX\x04\0\0\0true\x85R.", "cos\nsystem\n."}) {
     const std::string pickle =
         std::string("\x80\x03") + (call[1] == 'p'
@@ -97,7 +97,7 @@ TEST(DataFrame, RunsNothing) {
   });
 }
 
-TEST(DataFrame, SaysWhatIsWrong) {
+TEST(DataFrame, NamesTheFault) {
   const auto fails = [](const std::string& pickle, const std::string& part) {
     expect_error(ErrorKind::data, {"f: ", part}, [&] { data_frame_of("f", pickle); });
   };
@@ -120,7 +120,7 @@ TEST(DataFrame, SaysWhatIsWrong) {
 }
 
 // A value may be remembered and used again and again: that must not make much of little.
-TEST(DataFrame, SharedValuesAreRefused) {
+TEST(DataFrame, SharedValuesAreRejected) {
   const std::string values(8000, '\0');
   std::string pickle =
       "\x80\x03"

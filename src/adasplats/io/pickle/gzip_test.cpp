@@ -19,7 +19,7 @@ std::string noise(std::size_t bytes) {
   return text;
 }
 
-// Oracle: round trip, also of what is larger than a step of the reader and hardly shrinks.
+// Oracle: round trip, also of data larger than a step of the reader that hardly shrink.
 TEST(Gzip, RoundTrip) {
   for (const std::string& text :
        {std::string(), std::string("a"), std::string(5'000'000, 'x'), noise(3'000'001)}) {

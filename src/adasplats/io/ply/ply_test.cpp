@@ -133,7 +133,7 @@ TEST(Ply, ZeroRecords) {
 }
 
 // Fault 1.
-TEST(Ply, FewerRecordsThanTheHeaderSays) {
+TEST(Ply, FewerRecordsThanTheHeaderStates) {
   const std::string header = "element vertex 2\n" + kXyzFloat + "end_header\n";
   expect_data_error(kBinary + header + std::string(23, '\1'),
                     {"file.ply", "byte", "room for 1", "states 2"});
@@ -160,7 +160,7 @@ TEST(Ply, BrokenHeaders) {
   expect_data_error("", {"empty"});
 }
 
-// Fault 3: the counts are refused before they are allocated; the sizes' products would wrap.
+// Fault 3: counts are rejected before allocation; products of sizes would wrap.
 TEST(Ply, HugeCounts) {
   for (const char* count : {"4294967295", "9223372036854775808", "18446744073709551615",
                             "1537228672809129302" /* x 12 wraps to 8 */}) {
@@ -223,7 +223,7 @@ TEST(Ply, BadTokens) {
 }
 
 // Fault 9.
-TEST(Ply, FilesThatAreNone) {
+TEST(Ply, FilesThatAreNotPly) {
   const TemporaryFolder folder;
   expect_error(ErrorKind::no_input, {"missing.ply"},
                [&] { read_ply(folder.path() / "missing.ply"); });

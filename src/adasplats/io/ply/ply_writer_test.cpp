@@ -93,7 +93,7 @@ TEST(PlyWriter, MeshRoundTrip) {
   EXPECT_EQ(typed<std::uint8_t>(mesh.faces, "class"), classes);
 }
 
-TEST(PlyWriter, RefusesWhatPlyCannotSay) {
+TEST(PlyWriter, RejectsWhatPlyCannotStore) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "file.ply";
   const std::uint64_t value = 1;

@@ -51,7 +51,7 @@ TEST(Obj, NegativeIndicesCountFromTheLastVertexSoFar) {
   EXPECT_EQ(mesh.triangle_vertices, (Indices{0, 1, 2, 4, 0, 1}));
 }
 
-TEST(Obj, VerticesMayFollowAndLinesMayGoOn) {
+TEST(Obj, VerticesMayFollowAndLinesMayContinue) {
   const MeshTable mesh = read("f 1 2 \\\n  3\nv 0 0 0\nv 1 0 0\nv 0 \\\r\n 1 0\n\n");
   EXPECT_EQ(mesh.triangle_vertices, (Indices{0, 1, 2}));
   EXPECT_EQ(values_of(mesh.vertices, "y"), (Doubles{0, 0, 1}));
@@ -86,7 +86,7 @@ TEST(Obj, BrokenFilesAreErrorsWithLines) {
   expect_error(ErrorKind::no_input, {"none.obj"}, [] { read_obj_mesh("none.obj"); });
 }
 
-TEST(Obj, ToldByTheContent) {
+TEST(Obj, RecognizedByTheContent) {
   EXPECT_TRUE(recognised("v 1 2 3\n"));
   EXPECT_TRUE(recognised("# Blender\n\n  mtllib a.mtl\n"));
   EXPECT_TRUE(recognised("# caf\xc3\xa9\ro name\r"));

@@ -119,12 +119,12 @@ TEST(TextPoints, BadLinesAreErrorsWithTheirNumber) {
   expect_data_error(std::string("\0\1\2\3\n1 2 3 4", 12), {"file.txt"});
 }
 
-TEST(TextPoints, ALineWithoutEndIsNoText) {
+TEST(TextPoints, ALineWithoutEndIsNotAText) {
   expect_data_error(std::string(40 << 20, 'x'), {"file.txt:1", "16 MiB"});
 }
 
 // The oracle: the transform by hand, row vectors as PTX writes them.
-TEST(Ptx, ScansAreBroughtIntoTheWorld) {
+TEST(Ptx, ScansAreTransformedToTheWorld) {
   const std::string first =
       "1\n3\n10 20 30\n0 1 0\n-1 0 0\n0 0 1\n"
       "0 1 0 0\n-1 0 0 0\n0 0 1 0\n10 20 30 1\n"
