@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "adasplats/cloud/load/file_kind.h"
-#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
@@ -205,6 +205,13 @@ void require_points(const fs::path& file) {
     case FileKind::points:
     case FileKind::other: return;
   }
+}
+
+void require_one_crs(std::initializer_list<std::pair<std::filesystem::path, Crs>> inputs,
+                     ProgressSink& progress) {
+  SharedCrs shared;
+  for (const auto& [file, crs] : inputs) shared.add(file, crs);
+  if (const std::string warning = shared.warning(); !warning.empty()) progress.warn(warning);
 }
 
 }  // namespace adasplats

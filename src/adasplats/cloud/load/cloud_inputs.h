@@ -4,8 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <span>
+#include <utility>
 #include <vector>
+
+#include "adasplats/core/progress.h"
+#include "adasplats/io/base/crs.h"
 
 namespace adasplats {
 
@@ -48,5 +53,10 @@ void require_one_world(std::span<const CloudInput> sequences);
 /// PLY that declares faces), a splat model (a PLY with a radius and a normal), a trajectory (text
 /// with columns qw, qx, qy, qz, or whose lines are poses).
 void require_points(const std::filesystem::path& file);
+
+/// Throws data where two of the inputs say different coordinate systems, and warns where one says
+/// less than another (SharedCrs).
+void require_one_crs(std::initializer_list<std::pair<std::filesystem::path, Crs>> inputs,
+                     ProgressSink& progress);
 
 }  // namespace adasplats

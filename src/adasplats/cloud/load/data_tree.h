@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adasplats/cloud/labels/label_scheme.h"
-#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -67,5 +69,26 @@ struct PointTimes {
 /// covers them.
 PointTimes meaning_of_times(TimeSpan first, TimeSpan last, const TimeSpan* track_s,
                             double time_offset_s);
+
+/// Whether intensities of a drive are bytes, which become shares of 1 as those of KITTI are: all
+/// are whole numbers from 0 to 255, and one is above 1. Else they stay as they are.
+class IntensityScale {
+ public:
+  /// Told by some of its scans.
+  explicit IntensityScale(std::span<const std::vector<float>> sample);
+
+  /// Errors: data where the intensities of one more scan contradict those that told the scale.
+  std::vector<float> scaled(std::vector<float> intensities,
+                            const std::filesystem::path& file) const;
+  std::string description() const;
+
+ private:
+  bool is_bytes_ = false;
+  bool are_shares_ = false;  ///< none of the sample is above 1
+};
+
+/// Told by the first scan, the one in the middle and the last.
+IntensityScale scale_of_scans(const ScanSource& source,
+                              const std::vector<std::filesystem::path>& files);
 
 }  // namespace adasplats

@@ -8,7 +8,7 @@
 #include <cstdio>
 
 #include "adasplats/cloud/load/cloud_part.h"
-#include "adasplats/cloud/origins/station_check.h"
+#include "adasplats/cloud/origins/origin_check.h"
 #include "adasplats/cloud/sequence/pose_check.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/maths/median.h"

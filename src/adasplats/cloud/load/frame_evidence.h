@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "adasplats/cloud/load/sensor_frames.h"
+#include "adasplats/cloud/load/sensor_drive.h"
 
 namespace adasplats {
 

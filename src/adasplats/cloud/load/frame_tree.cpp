@@ -34,8 +34,7 @@ class EdgeAtTimes {
     if (edge_.is_static) return poses.front().world_from_sensor;
     if (time_s < poses.front().time_s || time_s > poses.back().time_s) return std::nullopt;
     // The poses at either end of a gap are known, as is what is at most one distance within it.
-    const auto behind = std::ranges::lower_bound(gaps_, time_s, {}, &TimeSpan::first);
-    if (behind != gaps_.begin() && time_s < std::prev(behind)->last) return std::nullopt;
+    if (is_in_gap(gaps_, {time_s, time_s})) return std::nullopt;
     return interpolate(poses, time_s);
   }
 

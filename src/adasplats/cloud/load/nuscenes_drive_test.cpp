@@ -10,9 +10,7 @@
 
 #include "adasplats/cloud/load/court_test.h"
 #include "adasplats/cloud/load/load_cloud.h"
-#include "adasplats/cloud/load/nuscenes_scene.h"
 #include "adasplats/cloud/poses/rotation.h"
-#include "adasplats/cloud/poses/sensor_axes.h"
 #include "adasplats/core/temporary_folder_test.h"
 
 namespace adasplats {

@@ -9,13 +9,13 @@
 #include <string_view>
 #include <utility>
 
-#include "adasplats/cloud/load/intensity_scale.h"
+#include "adasplats/cloud/load/file_scan.h"
 #include "adasplats/cloud/load/json_rows.h"
 #include "adasplats/cloud/load/sensor_drive.h"
 #include "adasplats/cloud/load/world_drive.h"
-#include "adasplats/cloud/poses/continued_motion.h"
 #include "adasplats/cloud/poses/quaternion_order.h"
-#include "adasplats/cloud/sequence/files_by_name.h"
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/base/number_text.h"
 #include "adasplats/io/pickle/data_frame.h"
@@ -216,9 +216,9 @@ KittiSequence open_pandaset_drive(const FrameDrive& drive, const Executor& execu
   constexpr double kSweep_s = 0.1;
   frames.vehicle = with_motion_continued(std::move(frames.vehicle), kSweep_s);
   for (TimedPose& pose : frames.vehicle) pose.time_s -= drive.time_offset_s.value_or(0);
-  frames.is_stated = drive.mount.has_value();
+  frames.is_stated = drive.given_mount().has_value();
   frames.others = "points of the PandarGT (d = 1)";
-  frames.own_mount = drive.mount.value_or(MountSettings{}).transform();
+  frames.own_mount = drive.given_mount().value_or(MountSettings{}).transform();
 
   std::map<fs::path, fs::path> classes = class_files_of(drive, frames.files);
   const bool has_classes = !classes.empty();

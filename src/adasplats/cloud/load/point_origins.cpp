@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/origins/path_check.h"
-#include "adasplats/cloud/origins/station_check.h"
+#include "adasplats/cloud/origins/origin_check.h"
 #include "adasplats/core/error.h"
 
 namespace adasplats {

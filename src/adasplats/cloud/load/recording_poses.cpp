@@ -6,10 +6,12 @@
 #include <set>
 #include <utility>
 
+#include "adasplats/cloud/origins/track.h"
 #include "adasplats/core/error.h"
 #include "adasplats/io/bags/ros_values.h"
 
 namespace adasplats {
+
 namespace {
 
 std::string count_and_type(const TopicSurvey& topic) {
@@ -70,8 +72,8 @@ RecordedPoses poses_of_topic(const FrameDrive& drive, const FrameTree& tree,
   const FrameEdge& edge = edge_of_topic(topic);
   RecordedPoses found;
   found.by = words_of_edge(edge, name);
-  if (drive.mount) {
-    found.poses = mounted(edge.parent_from_child, drive.mount->transform());
+  if (const auto mount = drive.given_mount()) {
+    found.poses = mounted(edge.parent_from_child, mount->transform());
   } else if (edge.child.empty()) {
     found.poses = edge.parent_from_child;
   } else {
@@ -91,7 +93,7 @@ RecordedPoses poses_of_topic(const FrameDrive& drive, const FrameTree& tree,
 
 RecordedPoses poses_of_tree(const FrameDrive& drive, const FrameTree& tree,
                             const std::string& frame) {
-  if (drive.mount)
+  if (drive.given_mount())
     throw Error(ErrorKind::usage,
                 "`mount` is for poses of a trajectory or of a topic of them; the transforms of the "
                 "recording say where '" +
@@ -259,7 +261,8 @@ RecordedPoses poses_of_trajectory(const FrameDrive& drive, const std::vector<dou
     for (std::size_t k = 0; k < stamps_s.size(); ++k) found.poses[k].time_s = stamps_s[k];
     found.by = "one each, " + when;
   }
-  if (drive.mount) found.poses = mounted(std::move(found.poses), drive.mount->transform());
+  if (const auto mount = drive.given_mount())
+    found.poses = mounted(std::move(found.poses), mount->transform());
   return found;
 }
 
@@ -276,6 +279,55 @@ RecordedPoses poses_of_carrier(const RecordingSurvey& survey, const TopicSurvey*
     return clouds == nullptr ? poses_without_clouds(survey, poses_topic)
                              : poses_of_clouds_or_vehicle(survey, *clouds, poses_topic);
   });
+}
+
+namespace {
+
+/// The poses at the times of clouds, as far as there are some.
+Trajectory poses_at_clouds(const Trajectory& poses, const TopicSurvey& clouds,
+                           const std::string& path, ProgressSink& progress) {
+  const Track track = track_of(poses);
+  Trajectory at;
+  std::size_t left_out = 0;
+  for (const CloudMessage& cloud : clouds.clouds) {
+    const double time_s = cloud.stamp_s;
+    const bool is_new = at.empty() || time_s > at.back().time_s;
+    if (track.covers(time_s) && is_new)
+      at.push_back({time_s, interpolate(track.poses, time_s)});
+    else
+      ++left_out;
+  }
+  const std::string figures = std::to_string(left_out) + " of " +
+                              std::to_string(clouds.clouds.size()) + " clouds of " +
+                              clouds.topic.name + " have no pose at a time of their own";
+  if (at.size() < left_out)
+    throw Error(ErrorKind::data, path + ": " + figures + ": the clocks of clouds and poses differ");
+  if (left_out > 0) progress.warn(path + ": " + figures + ", so they are left out");
+  return at;
+}
+
+}  // namespace
+
+RecordedTrajectory trajectory_of_recording(const std::filesystem::path& recording,
+                                           const std::string& topic, const std::string& poses_topic,
+                                           ProgressSink& progress) {
+  const RecordingSurvey survey = survey_recording(recording, progress);
+  const std::string path = recording.string();
+  const bool has_clouds = std::ranges::any_of(
+      survey.topics, [](const auto& named) { return named.second.holds_clouds(); });
+  const TopicSurvey* const clouds =
+      has_clouds || !topic.empty() ? &topic_of_clouds(survey, topic) : nullptr;
+  RecordedPoses found = poses_of_carrier(survey, clouds, poses_topic);
+  RecordedTrajectory result;
+  result.by = found.by;
+  if (clouds != nullptr) {
+    result.poses = poses_at_clouds(found.poses, *clouds, path, progress);
+    result.by += ", at the times of the clouds of " + clouds->topic.name;
+  } else {
+    result.poses = found.poses;
+  }
+  result.motion = std::move(found.poses);
+  return result;
 }
 
 }  // namespace adasplats

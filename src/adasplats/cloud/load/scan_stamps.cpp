@@ -11,7 +11,7 @@
 #include "adasplats/cloud/load/cloud_inputs.h"
 #include "adasplats/cloud/load/file_kind.h"
 #include "adasplats/cloud/origins/track.h"
-#include "adasplats/cloud/sequence/files_by_name.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/median.h"
 #include "adasplats/io/base/line_reader.h"
@@ -82,10 +82,6 @@ std::string seconds_text(double first_s, double last_s) {
 PosesOfFiles poses_at(const std::vector<double>& times_s, const Track& track,
                       const std::string& from, const fs::path& trajectory) {
   const TimeSpan covered = track.covered_s();
-  const auto in_gap = [&](double time_s) {
-    return std::ranges::any_of(
-        track.gaps, [time_s](TimeSpan gap) { return time_s > gap.first && time_s < gap.last; });
-  };
   PosesOfFiles poses{{}, track.poses, "interpolated at " + from, true};
   for (const double time_s : times_s) {
     if (time_s < covered.first || time_s > covered.last)
@@ -96,7 +92,7 @@ PosesOfFiles poses_at(const std::vector<double>& times_s, const Track& track,
                       seconds_text(times_s.front(), times_s.back()) +
                       ": the clocks differ (`time_offset` states by how much), or the trajectory "
                       "is of another drive; nothing is extrapolated");
-    if (in_gap(time_s))
+    if (is_in_gap(track.gaps, {time_s, time_s}))
       throw Error(ErrorKind::data, trajectory.string() + ": has no poses around " +
                                        seconds_text(time_s, time_s) + ", when a scan was made (" +
                                        from + "): nothing is guessed there");

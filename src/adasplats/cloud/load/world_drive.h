@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "adasplats/cloud/load/file_scan.h"
-#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/core/executor.h"
 #include "adasplats/core/progress.h"
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "adasplats/cloud/origins/station_check.h"
+#include "adasplats/cloud/origins/origin_check.h"
 #include "adasplats/core/maths/median.h"
 
 namespace adasplats {

@@ -66,4 +66,14 @@ Trajectory resampled_by_time(const Trajectory& trajectory, double rate_hz);
 /// Errors: usage (a distance that is not positive, more than 10 million poses).
 Trajectory resampled_by_distance(const Trajectory& trajectory, double spacing_m);
 
+/// One more pose `by_s` before the first and one behind the last, as the motion within that time
+/// there goes on: sensors sweep a little longer than there are poses. Of a single pose: that pose.
+Trajectory with_motion_continued(Trajectory poses, double by_s);
+
+/// Writes KITTI's rows for a sequence folder: poses of the camera, camera_from_velodyne * pose *
+/// its inverse by the folder's calib.txt, as read_trajectory brings them back beside that file.
+/// Errors: data (no calib.txt, or none with a line `Tr:`).
+void write_kitti_poses(const std::filesystem::path& path, const Trajectory& world_from_velodyne,
+                       const std::filesystem::path& sequence_folder);
+
 }  // namespace adasplats

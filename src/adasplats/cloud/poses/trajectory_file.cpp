@@ -10,7 +10,6 @@
 #include <optional>
 #include <string>
 
-#include "adasplats/cloud/poses/kitti_poses.h"
 #include "adasplats/cloud/poses/pose_columns.h"
 #include "adasplats/cloud/poses/quaternion_order.h"
 #include "adasplats/cloud/poses/rotation.h"

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/sequence/kitti_raw.h"
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -13,9 +11,9 @@
 #include <string>
 #include <string_view>
 
-#include "adasplats/cloud/poses/continued_motion.h"
 #include "adasplats/cloud/poses/rotation.h"
-#include "adasplats/cloud/sequence/files_by_name.h"
+#include "adasplats/cloud/poses/trajectory.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/median.h"

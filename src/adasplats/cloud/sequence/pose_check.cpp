@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "adasplats/cloud/sequence/files_by_name.h"
+#include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/maths/median.h"
 

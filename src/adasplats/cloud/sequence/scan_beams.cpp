@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "adasplats/cloud/poses/continued_motion.h"
+#include "adasplats/cloud/poses/trajectory.h"
 #include "adasplats/cloud/sequence/kitti_sequence.h"
 #include "adasplats/cloud/sequence/sweep_check.h"
 #include "adasplats/core/error.h"

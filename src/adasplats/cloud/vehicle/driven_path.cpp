@@ -59,15 +59,15 @@ bool is_within(Vec3d offset, double radius_m) {
 }
 
 /// Where the sensor was in a scan, relative to the cloud's origin.
-struct ScanScene {
+struct ScanPosition {
   Vec3d at;
   bool is_own = true;  ///< the scan is in the cloud
 };
 
 /// The places of a cloud's scans, between those beyond.
-std::vector<ScanScene> places_of_path(const std::vector<Vec3d>& own, const PathBeyond& beyond,
-                                      Vec3d origin) {
-  std::vector<ScanScene> places;
+std::vector<ScanPosition> places_of_path(const std::vector<Vec3d>& own, const PathBeyond& beyond,
+                                         Vec3d origin) {
+  std::vector<ScanPosition> places;
   for (const Vec3d world : beyond.before) places.push_back({world - origin, false});
   for (const Vec3d at : own) places.push_back({at, true});
   for (const Vec3d world : beyond.after) places.push_back({world - origin, false});
@@ -78,7 +78,7 @@ std::vector<ScanScene> places_of_path(const std::vector<Vec3d>& own, const PathB
 /// points.
 class Path {
  public:
-  Path(const std::vector<ScanScene>& scans, const PointCloud& cloud,
+  Path(const std::vector<ScanPosition>& scans, const PointCloud& cloud,
        const DrivenPathOptions& options) {
     for (const Vec3f point : cloud.positions) {
       low_ = min(low_, point);

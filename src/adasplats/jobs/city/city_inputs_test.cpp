@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "adasplats/cloud/load/file_pieces.h"
+#include "adasplats/cloud/load/open_inputs.h"
 #include "adasplats/core/error.h"
 #include "adasplats/core/recorded_progress_test.h"
 #include "adasplats/core/temporary_folder_test.h"

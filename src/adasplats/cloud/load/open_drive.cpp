@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/load/frame_drive.h"
+#include "adasplats/cloud/load/open_drive.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,6 @@
 #include "adasplats/cloud/load/recording_drive.h"
 #include "adasplats/cloud/load/scan_stamps.h"
 #include "adasplats/cloud/load/sensor_drive.h"
-#include "adasplats/cloud/load/sensor_frames.h"
 #include "adasplats/cloud/load/world_drive.h"
 #include "adasplats/cloud/origins/track.h"
 #include "adasplats/core/error.h"
@@ -28,19 +27,16 @@ namespace {
 /// Throws data where a file was measured when there are no poses.
 void require_track_of(const SensorFrames& frames, const Track& track,
                       const std::filesystem::path& trajectory) {
-  const TimeSpan covered = track.covered_s();
   for (std::size_t k = 0; k < frames.files.size(); ++k) {
     const TimeSpan span = frames.spans_s[k];
-    const bool in_gap = std::ranges::any_of(
-        track.gaps, [&](TimeSpan gap) { return span.last > gap.first && span.first < gap.last; });
-    if (!in_gap && span.first >= covered.first && span.last <= covered.last) continue;
+    if (track.covers(span)) continue;
     std::array<char, 256> text{};
     std::snprintf(text.data(), text.size(),
                   ": points of %.3f to %.3f s, but the trajectory is of %.3f to %.3f s%s: the "
                   "clocks differ (`time_offset` states by how much), or the trajectory is of "
                   "another drive",
                   span.first, span.last, track.measured_s.first, track.measured_s.last,
-                  in_gap ? " and has a gap then" : "");
+                  is_in_gap(track.gaps, span) ? " and has a gap then" : "");
     throw Error(ErrorKind::data,
                 frames.files[k].string() + text.data() + " (" + trajectory.string() + ")");
   }
@@ -74,7 +70,7 @@ std::optional<SensorFrames> sensor_frames_of(const FrameDrive& drive,
   if (!poses && !(is_absolute && track)) return std::nullopt;
   frames.files = std::move(files);
   if (poses) frames.poses = std::move(*poses);
-  const RigidTransform mount = drive.mount.value_or(MountSettings{}).transform();
+  const RigidTransform mount = drive.given_mount().value_or(MountSettings{}).transform();
   if (is_absolute && track) {
     frames.spans_s = spans_of_scans(frames, executor, progress);
     require_track_of(frames, *track, drive.trajectory);
@@ -93,22 +89,6 @@ std::optional<SensorFrames> sensor_frames_of(const FrameDrive& drive,
 }
 
 }  // namespace
-
-FrameDrive drive_of(const std::filesystem::path& folder, const DriveSettings& settings) {
-  return {.folder = folder,
-          .trajectory = settings.trajectory,
-          .boxes = settings.boxes,
-          .time_offset_s = settings.time_offset_s,
-          .mount = settings.given_mount(),
-          .points_in = settings.points_in,
-          .sweep_points = settings.sweep_points,
-          .scan_times = settings.scan_times,
-          .topic = settings.topic,
-          .poses_topic = settings.poses_topic,
-          .scene = settings.scene,
-          .packets_of = settings.packets_of,
-          .beams_from_poses = settings.beams_from_poses};
-}
 
 bool is_drive_by_itself(const std::filesystem::path& path) {
   return is_recording(path) || is_capture(path) || data_tree_of(path) != nullptr;
@@ -140,7 +120,7 @@ std::optional<KittiSequence> open_files(const FrameDrive& drive, const Executor&
   const std::vector<std::filesystem::path> files = scan_files(drive.folder);
   const auto open_as_world = [&]() -> std::optional<KittiSequence> {
     // Where the mount is stated nothing is to be recognised.
-    if (drive.mount || !has_timed_frames(drive.folder)) return std::nullopt;
+    if (drive.given_mount() || !has_timed_frames(drive.folder)) return std::nullopt;
     WorldFrames frames;
     frames.files = files;
     frames.vehicle = read_trajectory(drive.trajectory);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/load/sensor_frames.h"
+#include "adasplats/cloud/load/sensor_drive.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 
 #include "adasplats/cloud/beams/empty_beams.h"
 #include "adasplats/cloud/load/court_test.h"
-#include "adasplats/cloud/load/frame_drive.h"
 #include "adasplats/cloud/load/load_cloud.h"
+#include "adasplats/cloud/load/open_drive.h"
 #include "adasplats/core/constants.h"
 #include "adasplats/core/temporary_folder_test.h"
 #include "adasplats/io/ply/ply.h"

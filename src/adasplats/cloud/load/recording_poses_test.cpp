@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adasplats authors
 // SPDX-License-Identifier: Apache-2.0
-#include "adasplats/cloud/load/recorded_trajectory.h"
+#include "adasplats/cloud/load/recording_poses.h"
 
 #include <gtest/gtest.h>
 

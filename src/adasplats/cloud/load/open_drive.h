@@ -16,26 +16,16 @@
 namespace adasplats {
 
 /// A drive whose scans are files of points, and the trajectory of the vehicle or of the sensor.
-struct FrameDrive {
-  /// Of the files, one a scan (scan_files()), a recording (is_recording()), a capture
-  /// (is_capture()), or the tree of a data set (data_tree_of()).
+struct FrameDrive : DriveSettings {
+  /// A folder of files, one per scan (scan_files()), a recording (is_recording()), a capture
+  /// (is_capture()), or the root of a data set (data_tree_of()).
   std::filesystem::path folder;
-  std::filesystem::path trajectory;     ///< as read_trajectory takes it
-  std::filesystem::path boxes;          ///< of moving objects (MovingBoxes); empty: none
-  bool with_classes = true;             ///< as the files have them
-  std::optional<double> time_offset_s;  ///< what the points' times lack to those of the trajectory
-  std::optional<MountSettings> mount;   ///< of the sensor; none: the poses are its own, or found
-  PointsIn points_in = PointsIn::found;
-  SweepPoints sweep_points = SweepPoints::found;
-  std::filesystem::path scan_times;  ///< read_scan_times(); empty: none
-  std::string topic, poses_topic;    ///< of a recording (open_recording_drive()); empty: found
-  std::string scene;                 ///< of a root of nuScenes; empty: the only one
-  std::string packets_of;            ///< of a capture (open_packet_drive())
-  bool beams_from_poses = false;     ///< of points in the sensor's frame: recognise nothing
+  bool with_classes = true;  ///< read the classes that the files have
 };
 
-/// A folder and what is said of it.
-FrameDrive drive_of(const std::filesystem::path& folder, const DriveSettings& settings);
+inline FrameDrive drive_of(const std::filesystem::path& folder, const DriveSettings& settings) {
+  return {settings, folder};
+}
 
 /// Whether a path is a drive and no folder of files: a recording, a capture of packets, or a tree
 /// of a data set. Recordings and trees have the poses of their scans in them.
