@@ -18,13 +18,13 @@
 namespace adasplats {
 
 /// Beyond it doubles do not resolve 0.1 mm, and nothing on Earth has such coordinates.
-inline constexpr double kLargestCoordinateM = 1e12;
+inline constexpr double kMaxCoordinate_m = 1e12;
 
 /// Whether coordinates are usable: finite and within that limit.
-inline bool is_place(Vec3d p) {
+inline bool is_valid_position(Vec3d p) {
   // False for NaN as well.
-  return std::fabs(p.x) <= kLargestCoordinateM && std::fabs(p.y) <= kLargestCoordinateM &&
-         std::fabs(p.z) <= kLargestCoordinateM;
+  return std::fabs(p.x) <= kMaxCoordinate_m && std::fabs(p.y) <= kMaxCoordinate_m &&
+         std::fabs(p.z) <= kMaxCoordinate_m;
 }
 
 /// Consecutive points of a part that came from one file.
@@ -42,10 +42,10 @@ struct CloudPart {
   /// (the scans' own floats, so nothing is lost) and empty for files. `sensor_positions` are not
   /// set yet: empty, or memory for later.
   PointCloud cloud;
-  std::vector<Vec3d> world_positions;         ///< of files
-  std::vector<Vec3d> world_sensors;           ///< of files that have them
-  std::vector<double> times_s;                ///< of files that have them, in the file's clock
-  SaidClock said_clock = SaidClock::nothing;  ///< which is this, if the file declares it
+  std::vector<Vec3d> world_positions;  ///< of files
+  std::vector<Vec3d> world_sensors;    ///< of files that have them
+  std::vector<double> times_s;         ///< of files that have them, in the file's clock
+  DeclaredClock declared_clock = DeclaredClock::none;  ///< which is this, if the file declares it
   std::vector<Vec3f> scan_origins;     ///< of sequences with an origin per point, sensor frames
   std::vector<std::uint8_t> in_boxes;  ///< KittiScan::in_boxes; empty: none
   std::vector<PartRun> runs;
@@ -74,7 +74,7 @@ CloudPart read_sequence_part(const KittiSequence& sequence, const LoadOptions& o
                              std::uint32_t first_scan_index, const Executor& executor,
                              ProgressSink& progress);
 /// Opens a sequence folder and recognises its beams (unless beams_from_poses). Errors: those of
-/// open_kitti_sequence and check_poses.
+/// open_kitti_sequence and verify_poses.
 KittiSequence open_sequence(const std::filesystem::path& folder, const LoadOptions& options,
                             const Executor& executor);
 

@@ -17,7 +17,7 @@ namespace adasplats {
 namespace {
 
 constexpr std::array kTimeUnits_s = {1.0, 1e-3, 1e-6, 1e-9};
-// Sensors turn 5 to 100 times a second; frames without a turn are cut to a second at most.
+// Sensors turn 5 to 100 times a second; frames of sensors that do not turn last at most a second.
 constexpr double kShortestSweep_s = 0.005, kLongestSweep_s = 1;
 
 }  // namespace
@@ -25,7 +25,7 @@ constexpr double kShortestSweep_s = 0.005, kLongestSweep_s = 1;
 TimeSpan FileScan::time_span() const {
   TimeSpan span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i < times.size(); ++i)
-    if (is_place(positions[i]) && std::isfinite(times[i]))
+    if (is_valid_position(positions[i]) && std::isfinite(times[i]))
       span = {std::min(span.first, times[i]), std::max(span.last, times[i])};
   return span.first <= span.last ? span : TimeSpan{};
 }
@@ -92,7 +92,7 @@ namespace {
 
 constexpr float kMaxOfByte = 255;
 
-/// One that is not finite is not known, and says nothing.
+/// A value that is not finite is unknown and fits any scale.
 bool can_be_byte(float value) {
   return !std::isfinite(value) || (value >= 0 && value <= kMaxOfByte && value == std::trunc(value));
 }
@@ -102,7 +102,8 @@ bool is_above_share(float value) { return std::isfinite(value) && value > 1; }
 Error other_scale(const std::filesystem::path& file, float value, const char* others) {
   return {ErrorKind::data, file.string() + ": has an intensity of " +
                                exact_text(static_cast<double>(value)) +
-                               ", but those of other scans are " + others};
+                               ", but the intensities of other scans are " + others +
+                               "; bring the files to one scale"};
 }
 
 }  // namespace

@@ -251,14 +251,15 @@ Extents drop_far(Gathered& gathered, double max_distance_m, const Executor& exec
   const Extents& all = gathered.finite;
   if (!(all.low.x <= all.high.x)) return all;  // no points
   // If the box is smaller than the distance, no point is that far from another.
-  if (is_place(all.low) && is_place(all.high) && length(all.high - all.low) <= max_distance_m)
+  if (is_valid_position(all.low) && is_valid_position(all.high) &&
+      length(all.high - all.low) <= max_distance_m)
     return all;
   const Vec3d median = median_of(gathered);
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
     const CloudPart& part = gathered.parts[p];
     executor.for_chunks(part.size(), kCoarseGrain, [&](std::size_t begin, std::size_t end) {
       part.for_each(begin, end, [&](std::size_t i, Vec3d world, const PartRun&) {
-        if (!is_place(world) || !(length(world - median) <= max_distance_m))
+        if (!is_valid_position(world) || !(length(world - median) <= max_distance_m))
           gathered.kept[p][i] = 0;
       });
     });
@@ -307,7 +308,8 @@ void keep_only(PointCloud& cloud, const Kept& kept, const Executor& executor) {
 /// Throws data for a sensor position out of range: as a float it would be infinite.
 void require_sensor_places(const CloudPart& part, const Kept& kept) {
   for (std::size_t i = 0; i < part.world_sensors.size(); ++i) {
-    if (kept[i] == 0 || !is_finite(part.world_sensors[i]) || is_place(part.world_sensors[i]))
+    if (kept[i] == 0 || !is_finite(part.world_sensors[i]) ||
+        is_valid_position(part.world_sensors[i]))
       continue;
     throw Error(ErrorKind::data,
                 part.runs.front().file.string() + ": the sensor position of point " +
@@ -381,8 +383,8 @@ struct PieceContext {
 
 /// Removes the points with a flag in `moving`, those on the vehicle and those in its driven path,
 /// in one pass over the cloud.
-void leave_out(PointCloud& cloud, Kept moving, const LoadOptions& options, const PathBeyond& beyond,
-               LoadReport& report, const Executor& executor) {
+void remove_points(PointCloud& cloud, Kept moving, const LoadOptions& options,
+                   const PathBeyond& beyond, LoadReport& report, const Executor& executor) {
   Kept left_out;
   report.in_boxes = add_flags(moving, left_out);
   moving = {};
@@ -411,7 +413,7 @@ Kept in_boxes(const Gathered& gathered) {
 }
 
 /// Finds and counts the finite points of the parts.
-void look_at_parts(std::span<const OpenInput> sources, const LoadOptions& options,
+void inspect_parts(std::span<const OpenInput> sources, const LoadOptions& options,
                    Gathered& gathered, LoadReport& report, const Executor& executor) {
   for (std::size_t p = 0; p < gathered.parts.size(); ++p) {
     CloudPart& part = gathered.parts[p];
@@ -451,11 +453,11 @@ std::pair<PointCloud, LoadReport> load_open(std::span<const OpenInput> sources,
   const std::optional<PlacedByTimes> placed =
       place_by_times(gathered.parts, options, executor, progress);
   const bool any_drive = std::ranges::any_of(sources, &OpenInput::is_frame_drive);
-  require_used(options, placed.has_value() || any_drive, placed.has_value() || any_drive);
+  require_options_used(options, placed.has_value() || any_drive, placed.has_value() || any_drive);
   Trajectory scan_poses = scan_poses_of(gathered.parts, placed);
 
   clock.end("read");
-  look_at_parts(sources, options, gathered, report, executor);
+  inspect_parts(sources, options, gathered, report, executor);
   if (placed) {
     report.timed = placed->origins;
     report.drives.push_back({sources.front().input.path, {}, placed->origins.scans});
@@ -484,7 +486,7 @@ std::pair<PointCloud, LoadReport> load_open(std::span<const OpenInput> sources,
   if (options.empty_beams && context.has_whole_scans)
     cloud.empty_beams = find_empty_beams(cloud, {}, executor);
   clock.end("find empty beams");
-  leave_out(cloud, std::move(moving), options, context.beyond, report, executor);
+  remove_points(cloud, std::move(moving), options, context.beyond, report, executor);
   report_own_body(name, report, options, progress);
   clock.end("leave the vehicle out");
   report.origins = count_origins(cloud);

@@ -60,7 +60,7 @@ std::string list_of_scenes(const std::vector<SceneRow>& scenes) {
 
 SceneRow scene_by_name(const fs::path& root, const std::string& name) {
   const std::vector<SceneRow> scenes = scenes_of(root);
-  if (scenes.empty()) throw Error(ErrorKind::data, root.string() + ": its tables have no scene");
+  if (scenes.empty()) throw Error(ErrorKind::data, root.string() + ": its tables contain no scene");
   const auto found = std::ranges::find(scenes, name, &SceneRow::name);
   if (found != scenes.end()) return *found;
   const bool is_one = std::ranges::all_of(
@@ -68,12 +68,12 @@ SceneRow scene_by_name(const fs::path& root, const std::string& name) {
   if (name.empty() && is_one) return scenes.front();
   throw Error(ErrorKind::usage,
               root.string() +
-                  (name.empty() ? ": has several scenes; `scene` names one of them: "
+                  (name.empty() ? ": has several scenes; choose one with `scene`: "
                                 : ": has no scene '" + name + "'; it has ") +
                   list_of_scenes(scenes));
 }
 
-/// What the tables have of one scene, in the order that they have to be read in.
+/// Reads the tables of one scene, in the order of their references.
 class SceneReader {
  public:
   SceneReader(fs::path root, SceneRow scene) : root_(std::move(root)), row_(std::move(scene)) {}
@@ -93,7 +93,7 @@ class SceneReader {
  private:
   fs::path table(const char* name) const { return row_.tables / name; }
 
-  /// Where LIDAR_TOP sits, by the tokens of its calibrations.
+  /// Mount of LIDAR_TOP by the tokens of its calibrations.
   void read_sensor() {
     std::set<std::string> lidars;
     for_each_json_row(table("sensor.json"), [&](const JsonRow& row) {
@@ -120,11 +120,11 @@ class SceneReader {
       scan.file = file_in_root(row);
       scan.is_key = row.boolean("is_key_frame");
       scan.pose.time_s = kMicrosecond_s * static_cast<double>(row.integer("timestamp"));
-      scan.pose.world_from_sensor = sensor->second;  // the ego pose comes before it
+      scan.pose.world_from_sensor = sensor->second;  // read_ego_poses() multiplies the ego pose
       scans_of_ego_pose_[row.text("ego_pose_token")].push_back(scene_.scans.size());
       const std::string token = row.text("token");
       if (!scan_of_token_.emplace(token, scene_.scans.size()).second)
-        throw row.fault("its token " + token + " is another row's");
+        throw row.fault("its token " + token + " is also that of another row");
       scene_.scans.push_back(std::move(scan));
     });
   }
@@ -142,8 +142,8 @@ class SceneReader {
     });
     if (scans_of_ego_pose_.empty()) return;
     const std::size_t lost = scans_of_ego_pose_.begin()->second.front();
-    throw Error(ErrorKind::data, table("ego_pose.json").string() + ": has no pose " +
-                                     scans_of_ego_pose_.begin()->first + ", that of " +
+    throw Error(ErrorKind::data, table("ego_pose.json").string() + ": has no pose with the token " +
+                                     scans_of_ego_pose_.begin()->first + ", referenced by " +
                                      scene_.scans[lost].file.string());
   }
 
@@ -161,7 +161,7 @@ class SceneReader {
     const fs::path name = row.text("filename");
     const bool leads_out = std::ranges::any_of(name, [](const fs::path& p) { return p == ".."; });
     if (name.empty() || name.is_absolute() || leads_out)
-      throw row.fault("'filename' is no path in the data root");
+      throw row.fault("'filename' is not a path within the data root");
     return root_ / name;
   }
 
@@ -169,7 +169,7 @@ class SceneReader {
     const std::vector<NuscenesScan>& scans = scene_.scans;
     if (scans.empty())
       throw Error(ErrorKind::data, table("sample_data.json").string() + ": has no scan of " +
-                                       kLidarChannel + " of " + scene_.name);
+                                       kLidarChannel + " in " + scene_.name);
     std::vector<PlacedQuaternion> placed;
     for (std::size_t k = 0; k < scans.size(); ++k) {
       const RigidTransform& pose = scans[k].pose.world_from_sensor;
@@ -177,9 +177,9 @@ class SceneReader {
       if (k > 0 && !(scans[k].pose.time_s > scans[k - 1].pose.time_s))
         throw Error(ErrorKind::data, table("sample_data.json").string() + ": " +
                                          scans[k - 1].file.string() + " and " +
-                                         scans[k].file.string() + " are of the same time");
+                                         scans[k].file.string() + " have the same time");
     }
-    const std::string objection = objection_to_quaternion_order(placed);
+    const std::string objection = quaternion_order_problem(placed);
     if (!objection.empty())
       throw Error(ErrorKind::data, table("ego_pose.json").string() + ": " + objection);
   }
@@ -241,7 +241,7 @@ class NuscenesFrames final : public ScanSource {
     const std::string bytes = read_file(labels->second);
     if (bytes.size() != points)
       throw Error(ErrorKind::data, labels->second.string() + ": " + std::to_string(bytes.size()) +
-                                       " labels (a byte each), " + std::to_string(points) +
+                                       " labels (one byte each) for " + std::to_string(points) +
                                        " points");
     std::vector<std::uint16_t> classes;
     for (const char byte : bytes) classes.push_back(static_cast<std::uint8_t>(byte));
@@ -253,8 +253,8 @@ class NuscenesFrames final : public ScanSource {
   std::optional<IntensityScale> scale_;
 };
 
-/// Takes the scans whose files are there: all, or the keyframes where no sweep is, as who has
-/// fetched those alone. Errors: data that names a file that is missing.
+/// The scans whose files exist: all, or only the keyframes if no sweep exists (a partial download).
+/// Errors: data with a missing file.
 std::vector<NuscenesScan> scans_on_disk(const NuscenesScene& scene, const fs::path& root,
                                         ProgressSink& progress) {
   const auto is_there = [](const NuscenesScan& scan) {
@@ -266,15 +266,15 @@ std::vector<NuscenesScan> scans_on_disk(const NuscenesScene& scene, const fs::pa
   std::ranges::copy_if(scene.scans, std::back_inserter(keys), is_key);
   const bool has_sweeps = std::ranges::any_of(
       scene.scans, [&](const NuscenesScan& scan) { return !scan.is_key && is_there(scan); });
-  const bool takes_keys = !has_sweeps && !keys.empty() && keys.size() < scene.scans.size();
-  const std::vector<NuscenesScan>& taken = takes_keys ? keys : scene.scans;
+  const bool uses_keys = !has_sweeps && !keys.empty() && keys.size() < scene.scans.size();
+  const std::vector<NuscenesScan>& taken = uses_keys ? keys : scene.scans;
   const auto lost = std::ranges::find_if_not(taken, is_there);
   if (lost != taken.end())
-    throw Error(ErrorKind::data, lost->file.string() + ": this frame of " + scene.name +
-                                     " is missing, or is no file");
-  if (takes_keys)
+    throw Error(ErrorKind::data,
+                lost->file.string() + ": this frame of " + scene.name + " is missing");
+  if (uses_keys)
     progress.warn(root.string() + ": the sweeps of " + scene.name +
-                  " are not there, so its scans are the keyframes alone");
+                  " are missing; only the keyframes are used");
   return taken;
 }
 
@@ -296,9 +296,9 @@ ClassNames nuscenes_class_names(const fs::path& folder) {
     std::error_code ignored;
     if (!fs::exists(tables / "lidarseg.json", ignored)) continue;
     for_each_json_row(tables / "category.json", [&](const JsonRow& row) {
-      if (!row.has("index")) return;  // of the release without lidarseg
+      if (!row.has("index")) return;  // the release without lidarseg
       const std::int64_t id = row.integer("index");
-      if (id < 0 || id > 0xff) throw row.fault("'index' is no number of a class (a byte)");
+      if (id < 0 || id > 0xff) throw row.fault("'index' is not a class number from 0 to 255");
       names.emplace_back(static_cast<std::uint16_t>(id), row.text("name"));
     });
     break;
@@ -310,9 +310,8 @@ KittiSequence open_nuscenes_drive(const FrameDrive& drive, const Executor& execu
                                   ProgressSink& progress) {
   if (drive.given_mount() || drive.time_offset_s)
     throw Error(ErrorKind::usage, drive.folder.string() +
-                                      ": is a data root of nuScenes, whose tables say where the "
-                                      "LiDAR sits and when; `mount` and `time_offset` are for "
-                                      "other drives");
+                                      ": is a nuScenes data root, whose tables define mount and "
+                                      "times; `mount` and `time_offset` do not apply");
   const NuscenesScene scene = read_nuscenes_scene(drive.folder, drive.scene);
   const std::vector<NuscenesScan> scans = scans_on_disk(scene, drive.folder, progress);
   SensorFrames frames;

@@ -15,7 +15,7 @@
 
 namespace adasplats {
 
-/// A drive whose scans are files of points, and the trajectory of the vehicle or of the sensor.
+/// A drive to open: where its scans are, and how to read them.
 struct FrameDrive : DriveSettings {
   /// A folder of files, one per scan (scan_files()), a recording (is_recording()), a capture
   /// (is_capture()), or the root of a data set (data_tree_of()).
@@ -27,27 +27,27 @@ inline FrameDrive drive_of(const std::filesystem::path& folder, const DriveSetti
   return {settings, folder};
 }
 
-/// Whether a path is a drive and no folder of files: a recording, a capture of packets, or a tree
-/// of a data set. Recordings and trees have the poses of their scans in them.
+/// Whether a path is a drive without a trajectory file or a folder of scan files: a recording, a
+/// packet capture, or the root of a data set. Recordings and data sets contain the poses of their
+/// scans.
 bool is_drive_by_itself(const std::filesystem::path& path);
 
-/// Whether a folder holds files of points of one extension, the first of which has times of at most
+/// Whether a folder contains point files of one extension, and the times of the first span at most
 /// a second: scans, not tiles of a recording.
 bool has_timed_frames(const std::filesystem::path& folder);
 
-/// Opens a drive whose points are in the frame of the sensor, or in the world with times; which of
-/// both is found (find_frame()) where it is not stated.
-/// - In the sensor's frame, each file has a pose (poses_of_files()); points with times of their own
-///   (a clock's, or offsets from the scan's, in s, ms, us or ns) are brought to its time where they
-///   are as measured (look_at_sweeps()). The poses must fit the scans (require_poses_that_fit()).
-/// - In the world, it is found which sensor of the library measured the points and how it is
-///   mounted (recognize_sensor); every beam then begins where the sensor was at the point's own
-///   time. A scan's pose is that of the middle of its times.
-/// What was understood is KittiSequence::facts, and a warning. Nothing where the folder is none of
-/// scans with poses, and for points in world coordinates without times, with a stated mount or,
-/// with a warning, of a sensor that is not recognised. Errors: data where the trajectory does not
-/// cover the times by more than the distance of its poses (nothing is extrapolated), where the
-/// poses contradict the points, and where nothing tells the frame.
+/// Opens a drive with points in the sensor frame, or in world coordinates with times. Unless
+/// points_in states the frame, find_frame() infers it.
+/// - Sensor frame: each file has a pose (poses_of_files()). Points with times (of a clock, or
+///   offsets from the scan's time, in s, ms, us or ns) are brought to the time of the scan if they
+///   are as measured (analyze_sweeps()). The poses must fit the scans (verify_poses()).
+/// - World coordinates: recognize_sensor() finds the sensor in the library and its mount. Every
+///   beam starts where the sensor was at the time of the point. The pose of a scan is that of the
+///   middle of its times. The result is described in KittiSequence::facts and in a warning. Nothing
+///   if the folder has no scans with poses, or if its points are in world coordinates and have no
+///   times, a stated mount, or (with a warning) a sensor that is not recognised. Errors: data if
+///   the trajectory does not cover the times (up to one step of its poses), if the poses contradict
+///   the points, and if the frame is undetermined.
 std::optional<KittiSequence> open_frame_drive(const FrameDrive& drive, const Executor& executor,
                                               ProgressSink& progress);
 

@@ -209,23 +209,23 @@ TEST(FrameDrive, WithoutARecognisedSensorNothingIsMeasuredAndThatIsSaid) {
   } listener;
   LoadOptions options;
   options.trajectory = folder.path() / "poses.csv";
-  // Nothing in them tells, and that is no reason to guess.
+  // The frame is undetermined, and it is not guessed.
   ProgressSink silent;
-  expect_error(ErrorKind::data, {"is not clear", "points_in"},
+  expect_error(ErrorKind::data, {"cannot determine", "points_in"},
                [&] { load_cloud(std::span(&frames, 1), options, Executor(2), silent); });
   options.points_in = PointsIn::world;
   const PointCloud cloud = load_cloud(std::span(&frames, 1), options, Executor(2), listener).first;
   EXPECT_EQ(cloud.size(), 1400U);
   EXPECT_EQ(cloud.origin_kind(0), OriginKind::guessed);
   EXPECT_TRUE(cloud.scan_poses.empty());
-  EXPECT_NE(listener.text.find("no sensor of the library is recognised"), std::string::npos);
+  EXPECT_NE(listener.text.find("its sensor is not recognised"), std::string::npos);
   // What is for scans alone must not be dropped in silence.
   ProgressSink quiet;
   options.scan_stride = 2;
-  expect_error(ErrorKind::usage, {"scans are chosen"},
+  expect_error(ErrorKind::usage, {"a choice of scans"},
                [&] { load_cloud(std::span(&frames, 1), options, Executor(2), quiet); });
   options.scan_stride = 0;
-  expect_error(ErrorKind::usage, {"stride of 0"},
+  expect_error(ErrorKind::usage, {"stride is 0"},
                [&] { load_cloud(std::span(&frames, 1), options, Executor(2), quiet); });
 }
 

@@ -21,10 +21,10 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kHour_ns = 3600 * kSecond_ns;
-constexpr std::int64_t kOwnClock_ns = 60 * kSecond_ns;  // what PTP and UTC differ by is less
+constexpr std::int64_t kOwnClock_ns = 60 * kSecond_ns;  // PTP and UTC differ by less
 constexpr std::size_t kMaxSources = 256;
 
-/// The multiple of an hour that is nearest.
+/// The nearest multiple of an hour.
 std::int64_t whole_hours_ns(std::int64_t time_ns) {
   const std::int64_t half = time_ns >= 0 ? kHour_ns / 2 : -kHour_ns / 2;
   return (time_ns + half) / kHour_ns * kHour_ns;
@@ -73,11 +73,11 @@ class RevolutionFinder {
     return static_cast<std::int64_t>(static_cast<double>(kSecond_ns) /
                                      decoder_.sensor().model.rotation_hz);
   }
-  /// The step that revolutions begin at, when a column is the first of several.
+  /// The step at which revolutions begin, if this column is the first.
   std::uint32_t cut_before(const MeasuredColumn& column) const {
     const LidarModel& model = decoder_.sensor().model;
     if (is_ouster(decoder_.sensor().format) || model.first_azimuth_rad != 0) return 0;
-    // A quarter of a column before it: azimuths are rounded.
+    // A quarter of a column earlier: azimuths are rounded.
     const std::uint32_t turn = decoder_.steps_per_turn();
     return (column.step + turn - turn / (4 * model.columns)) % turn;
   }
@@ -85,7 +85,7 @@ class RevolutionFinder {
     const std::uint32_t turn = decoder_.steps_per_turn();
     return (column.step + turn - cut_step_) % turn;
   }
-  /// The head went on past the end of a turn, or went back (it was elsewhere meanwhile).
+  /// The head passed the end of a turn, or went back (packets are missing).
   bool begins_revolution(const MeasuredColumn& column) const {
     if (is_ouster(decoder_.sensor().format) && column.frame != last_.frame) return true;
     const std::uint32_t back = decoder_.steps_per_turn() / 720;  // half a degree
@@ -117,7 +117,7 @@ std::int64_t SensorClock::time_ns(std::int64_t sensor_ns, std::uint64_t captured
                                   const std::string& what) {
   constexpr std::uint64_t kLatest_ns = std::uint64_t{1} << 62U;  // in the year 2116
   if (captured_ns > kLatest_ns)
-    throw Error(ErrorKind::data, what + ": was captured after the year 2116");
+    throw Error(ErrorKind::data, what + ": its capture time is after the year 2116");
   const auto captured = static_cast<std::int64_t>(captured_ns);
   if (!has_begun_) {
     const std::int64_t ahead_ns = captured - sensor_ns;
@@ -137,7 +137,7 @@ std::int64_t SensorClock::time_ns(std::int64_t sensor_ns, std::uint64_t captured
                   what + ": the sensor's clock jumps by " +
                       std::to_string(static_cast<double>(time_ns - expected_ns) /
                                      static_cast<double>(kSecond_ns)) +
-                      " s against that of the capture, as when it is set; cut the capture there");
+                      " s relative to the capture (was it set?); split the capture there");
   }
   has_begun_ = true;
   last_ns_ = time_ns;
@@ -158,7 +158,7 @@ PacketSurvey survey_packets(const std::filesystem::path& path,
     if (survey.sources.size() > kMaxSources)
       throw Error(ErrorKind::data, path.string() + ": datagrams from more than " +
                                        std::to_string(kMaxSources) +
-                                       " sources, which is no capture of a sensor's");
+                                       " sources; this is not the capture of a sensor");
     ++source.datagrams;
     if (!survey.decoder || !survey.decoder->has_size(datagram->payload)) continue;
     if (const auto objection = survey.decoder->objection(datagram->payload)) {
@@ -191,8 +191,8 @@ std::string sensor_of_capture(const std::filesystem::path& capture, const std::s
   }
   std::ranges::sort(found);
   if (found.size() > 1)
-    throw Error(ErrorKind::usage, capture.string() + ": beside it are " + found[0] + " and " +
-                                      found[1] + "; `packets_of` states which sensor sent it");
+    throw Error(ErrorKind::usage, capture.string() + ": its folder contains " + found[0] + " and " +
+                                      found[1] + "; choose one with `packets_of`");
   return found.empty() ? "" : found.front();
 }
 
@@ -210,7 +210,7 @@ double middle_of(const Revolution& turn) {
   return as_seconds(turn.begin_ns) + 0.5 * as_seconds(turn.end_ns - turn.begin_ns);
 }
 
-/// Reads revolutions by names that are made up for them.
+/// Reads revolutions by generated names.
 class PacketScans final : public ScanSource {
  public:
   PacketScans(fs::path capture, std::shared_ptr<const PacketDecoder> decoder, std::string source,
@@ -237,7 +237,7 @@ class PacketScans final : public ScanSource {
         if (!columns[k].is_valid) continue;
         std::int64_t time_ns = columns[k].time_ns;
         if (std::exchange(is_first, false)) shift_ns = turn.begin_ns - time_ns;
-        // A revolution may last beyond the full hour.
+        // A revolution may pass the full hour.
         if (time_ns + shift_ns < last_ns - kFullHour_ns / 2) shift_ns += kFullHour_ns;
         last_ns = time_ns += shift_ns;
         add_column(*datagram, k, columns[k], as_seconds(time_ns), scan);
@@ -281,7 +281,7 @@ std::string list_of_sources(const PacketSurvey& survey) {
   return list.empty() ? "none" : list;
 }
 
-/// The stated source, else the only one.
+/// The given source, else the only one.
 const std::pair<const std::string, PacketSource>& source_of(const PacketSurvey& survey,
                                                             const std::string& stated) {
   const std::pair<const std::string, PacketSource>* chosen = nullptr;
@@ -299,45 +299,44 @@ const std::pair<const std::string, PacketSource>& source_of(const PacketSurvey& 
                     std::to_string(survey.decoder->sensor().payload_bytes()) + " bytes)" +
                     (stated.empty() ? "" : " from " + stated) + sources);
   if (count > 1)
-    throw Error(ErrorKind::usage, survey.path.string() +
-                                      ": several sensors sent packets; `topic` " + "states which" +
-                                      sources);
+    throw Error(ErrorKind::usage,
+                survey.path.string() +
+                    ": contains packets of several sensors; choose one with `topic`" + sources);
   return *chosen;
 }
 
-/// What is left out and what is missing.
-void tell_of_packets(const PacketSurvey& survey, const std::string& name,
+/// Warns of missing and skipped packets.
+void warn_of_packets(const PacketSurvey& survey, const std::string& name,
                      const PacketSource& source, ProgressSink& progress) {
-  const auto tell = [&](std::uint64_t count, const std::string& what) {
+  const auto warn = [&](std::uint64_t count, const std::string& what) {
     if (count > 0) progress.warn(survey.path.string() + ": " + std::to_string(count) + " " + what);
   };
-  tell(source.lost_columns,
+  warn(source.lost_columns,
        "columns of " + name + " are missing, in " + std::to_string(source.gaps) + " gaps");
-  tell(survey.counts.torn, "datagrams lack some of their parts, left out");
-  tell(survey.counts.cut, "frames hold less than was sent, left out");
-  tell(survey.counts.timeless, "frames have no time, left out");
+  warn(survey.counts.torn, "datagrams lack fragments and are skipped");
+  warn(survey.counts.cut, "frames are truncated and are skipped");
+  warn(survey.counts.timeless, "frames have no time and are skipped");
   if (!source.objection.empty())
     progress.warn(survey.path.string() + ": some packets of " + name + " " + source.objection +
-                  ", left out");
+                  " and are skipped");
 }
 
-/// Of revolutions that a capture begins or ends within.
-void tell_of_parts(const PacketSurvey& survey, const std::string& name, const PacketSource& source,
-                   ProgressSink& progress) {
+/// Warns of revolutions cut by the start or end of the capture.
+void warn_of_partial_turns(const PacketSurvey& survey, const std::string& name,
+                           const PacketSource& source, ProgressSink& progress) {
   constexpr double kWhole = 0.95;
   const std::vector<Revolution>& turns = source.revolutions;
-  // Sensors that are set to a part of the view have no more of any.
+  // Sensors set to part of the view never have full turns.
   double usual = turns.size() < 3 ? 1 : 0;
   for (const Revolution& turn : turns) usual = std::max(usual, turn.share);
-  const auto tell = [&](const Revolution& turn, const std::string& what) {
+  const auto warn = [&](const Revolution& turn, const std::string& what) {
     if (!turn.has_points || turn.share >= kWhole * usual) return;
     progress.warn(survey.path.string() + ": " + what + " revolution of " + name + " is " +
                   std::to_string(std::lround(100 * turn.share)) +
-                  " % of a turn, since the capture does not hold all of it; it is a scan all the "
-                  "same");
+                  " % of a turn, cut by the capture; it is still used as a scan");
   };
-  tell(turns.front(), "the first");
-  if (turns.size() > 1) tell(turns.back(), "the last");
+  warn(turns.front(), "the first");
+  if (turns.size() > 1) warn(turns.back(), "the last");
 }
 
 struct PacketDrive {
@@ -345,7 +344,7 @@ struct PacketDrive {
   std::vector<double> middles_s;
 };
 
-/// Scans of the revolutions with points.
+/// The revolutions with points as scans.
 PacketDrive scans_of_packets(const PacketSurvey& survey, const std::string& name,
                              const PacketSource& source, double offset_s, ProgressSink& progress) {
   PacketDrive drive;
@@ -363,12 +362,12 @@ PacketDrive scans_of_packets(const PacketSurvey& survey, const std::string& name
         {as_seconds(turn.begin_ns) + offset_s, as_seconds(turn.end_ns) + offset_s});
   }
   if (turns.empty())
-    throw Error(ErrorKind::data, survey.path.string() + ": in the packets of " + name +
-                                     " nothing came back: no points");
+    throw Error(ErrorKind::data,
+                survey.path.string() + ": the packets of " + name + " contain no returns");
   const std::size_t empty = source.revolutions.size() - turns.size();
   if (empty > 0)
     progress.warn(survey.path.string() + ": " + std::to_string(empty) + " revolutions of " + name +
-                  " have no points, left out");
+                  " have no points and are skipped");
   drive.frames.source =
       std::make_shared<PacketScans>(survey.path, survey.decoder, name, std::move(turns));
   drive.frames.times = {PointTimes::Kind::absolute, 1, offset_s, true};
@@ -378,18 +377,16 @@ PacketDrive scans_of_packets(const PacketSurvey& survey, const std::string& name
 void require_options_of_captures(const FrameDrive& drive) {
   const std::string path = drive.folder.string();
   if (!drive.poses_topic.empty() || !drive.scan_times.empty())
-    throw Error(ErrorKind::usage,
-                path +
-                    ": packets have times of their own and no poses; `poses_topic` and "
-                    "`scan_times` are for recordings and folders");
+    throw Error(ErrorKind::usage, path +
+                                      ": packets have times and no poses; `poses_topic` and "
+                                      "`scan_times` apply to recordings and folders");
   if (drive.points_in == PointsIn::world)
-    throw Error(ErrorKind::usage,
-                path +
-                    ": packets are in the frame of their sensor; `points_in` world is for "
-                    "folders of files");
+    throw Error(
+        ErrorKind::usage,
+        path + ": packets are in the sensor frame; `points_in` world applies to folders of files");
   if (drive.trajectory.empty())
     throw Error(ErrorKind::usage,
-                path + ": packets do not say where the sensor was; `trajectory` gives its poses");
+                path + ": packets contain no poses; give the poses of the sensor as `trajectory`");
 }
 
 }  // namespace
@@ -407,12 +404,12 @@ KittiSequence open_packet_drive(const FrameDrive& given, const PacketSurvey& sur
   if (!survey.decoder)
     throw Error(ErrorKind::usage,
                 survey.path.string() +
-                    ": which sensor sent its packets is not said: `packets_of` names one of the "
-                    "library or the maker's file (none is beside it)");
+                    ": the sensor of its packets is unknown; give `packets_of`, a sensor of the "
+                    "library or the maker's file (its folder contains none)");
   require_options_of_captures(drive);
   const auto& [name, source] = source_of(survey, drive.topic);
-  tell_of_packets(survey, name, source, progress);
-  tell_of_parts(survey, name, source, progress);
+  warn_of_packets(survey, name, source, progress);
+  warn_of_partial_turns(survey, name, source, progress);
   PacketDrive scans =
       scans_of_packets(survey, name, source, drive.time_offset_s.value_or(0), progress);
   SensorFrames& frames = scans.frames;
@@ -436,7 +433,7 @@ KittiSequence open_packet_drive(const FrameDrive& given, const PacketSurvey& sur
   if (drive.sweep_points == SweepPoints::found) drive.sweep_points = SweepPoints::measured;
   return open_sensor_frames(drive, frames,
                             "packets of " + survey.decoder->sensor().model.name + " from " + name +
-                                (source.dual_packets > 0 ? ", two returns a firing" : ""),
+                                (source.dual_packets > 0 ? ", two returns per firing" : ""),
                             executor, progress);
 }
 

@@ -19,40 +19,41 @@ namespace adasplats {
 /// One turn of a sensor's head in a capture.
 struct Revolution {
   CapturePlace place;         ///< of the packet that it begins in
-  std::size_t skipped = 0;    ///< columns of that packet that are of the one before
-  std::size_t columns = 0;    ///< that were captured
-  double share = 0;           ///< of a turn, from its first column to its last one
+  std::size_t skipped = 0;    ///< columns of that packet that belong to the previous revolution
+  std::size_t columns = 0;    ///< captured ones
+  double share = 0;           ///< fraction of a full turn, from its first to its last column
   std::int64_t begin_ns = 0;  ///< when its first column was measured, since 1970
   std::int64_t end_ns = 0;    ///< when its last one ended
   bool has_points = false;
 };
 
-/// The datagrams that came from one address to one port.
+/// The datagrams from one address to one port.
 struct PacketSource {
   std::uint64_t datagrams = 0;
   std::uint64_t packets = 0;                 ///< of the sensor
-  std::uint64_t dual_packets = 0;            ///< of them, with two returns a firing
-  std::uint64_t gaps = 0, lost_columns = 0;  ///< where packets are missing
-  std::string objection;                     ///< why datagrams of their size are none; empty: none
+  std::uint64_t dual_packets = 0;            ///< those with two returns per firing
+  std::uint64_t gaps = 0, lost_columns = 0;  ///< from missing packets
+  std::string objection;  ///< why some datagrams of the right size are rejected; empty: none are
   std::int64_t ahead_ns = 0;  ///< the clock of the capture less the sensor's, before ahead_ns
   std::vector<Revolution> revolutions;
 };
 
-/// A capture that was read once.
+/// The index of a capture.
 struct PacketSurvey {
   std::filesystem::path path;
-  std::shared_ptr<const PacketDecoder> decoder;  ///< null: the sensor is not known
+  std::shared_ptr<const PacketDecoder> decoder;  ///< null: unknown sensor
   std::map<std::string, PacketSource> sources;   ///< by "192.168.1.201:2368"
   DatagramCounts counts;
 };
 
-/// Times of a sensor as nanoseconds since 1970: what its packets leave out (Velodyne: the hour) is
-/// that of the capture when the first one was captured, and so is all of it where the sensor's
-/// clock is more than a minute off, as one that counts since it was switched on.
+/// Converts times of a sensor to nanoseconds since 1970. The part that packets omit (Velodyne: the
+/// hour) comes from the capture time of the first packet. So does the whole time if the sensor's
+/// clock is more than a minute off, such as one that counts from power-on.
 class SensorClock {
  public:
   explicit SensorClock(bool is_hourly) : is_hourly_(is_hourly) {}
-  /// Of a packet's first column. Errors: data (jumps of more than a second, with `what`).
+  /// Time of a packet's first column. Errors: data (jumps of more than a second; `what` names the
+  /// packet).
   std::int64_t time_ns(std::int64_t sensor_ns, std::uint64_t captured_ns, const std::string& what);
   std::int64_t shift_ns() const { return shift_ns_; }
 
@@ -62,30 +63,29 @@ class SensorClock {
   std::uint64_t last_captured_ns_ = 0;
 };
 
-/// Reads a capture from front to back and finds the revolutions of a sensor in it: Ouster's by
-/// their numbers; Velodyne's end where the head passes the first azimuth of the sensor file, or
-/// where that is 0, and so nobody said where, the azimuth that the capture begins at, so that all
-/// but the last are whole. After a gap of half a turn or more that is the azimuth behind it.
-/// Without `decoder` it counts datagrams alone. Memory: 90 bytes a revolution. Errors: those of
-/// DatagramReader; data (more than 256 sources; a sensor's clock that jumps).
+/// Reads a capture from front to back and finds the revolutions of a sensor: Ouster's by their
+/// numbers. Velodyne's end at the first azimuth of the sensor file; if that is 0 (unset), at the
+/// azimuth at which the capture starts, so all but the last are complete. After a gap of at least
+/// half a turn, the next azimuth replaces it. Without `decoder` it only counts datagrams. Memory:
+/// 90 bytes per revolution. Errors: those of DatagramReader; data (more than 256 sources; a jump of
+/// the sensor's clock).
 PacketSurvey survey_packets(const std::filesystem::path& path,
                             std::shared_ptr<const PacketDecoder> decoder, ProgressSink& progress);
 
-/// The sensor of a capture: `stated`, else the one file of a maker beside it: STEM.json,
-/// metadata.json, calibration*.yaml. Empty: there is none. Errors: usage (several).
+/// The sensor of a capture: `stated`, else the only maker's file in its folder: STEM.json,
+/// metadata.json, calibration*.yaml. Empty: none. Errors: usage (several).
 std::string sensor_of_capture(const std::filesystem::path& capture, const std::string& stated);
 
-/// The sensor that sent the packets of a capture: as `stated` or found (sensor_of_capture()); null
-/// where nothing tells. Errors: those of load_lidar_model() and packet_sensor().
+/// The decoder for the sensor of a capture (sensor_of_capture()); null if it is unknown. Errors:
+/// those of load_lidar_model() and packet_sensor().
 std::shared_ptr<const PacketDecoder> decoder_of_capture(const std::filesystem::path& capture,
                                                         const std::string& stated);
 
-/// Opens the revolutions that a sensor sent as the scans of a drive, in the frame of the sensor, as
-/// measured. Poses are those of the stated trajectory in the middles of the revolutions (or one a
-/// revolution, where it has no times); what they do not cover is left out as of recordings.
-/// Revolutions without points are left out, too. Errors: usage (no trajectory, an unknown sensor,
-/// several sources that `topic` does not choose of), data (no packets of the sensor), those of
-/// survey_packets() and open_sensor_frames().
+/// Opens the revolutions of a capture as the scans of a drive, in the sensor frame, as measured.
+/// Poses are those of the given trajectory at the middles of the revolutions (or one per
+/// revolution, without times). Revolutions without poses or points are skipped. Errors: usage (no
+/// trajectory, an unknown sensor, several sources and no `topic`), data (no packets of the sensor),
+/// those of survey_packets() and open_sensor_frames().
 KittiSequence open_packet_drive(const FrameDrive& drive, const PacketSurvey& survey,
                                 const Executor& executor, ProgressSink& progress);
 

@@ -39,8 +39,8 @@ void add_cloud(const RecordedMessage& message, const std::string& what, TopicSur
   const RosCloudHead head = ros_cloud_head(message.bytes, message.topic.encoding, what);
   if (topic.clouds.empty()) topic.frame = head.header.frame;
   if (head.header.frame != topic.frame && topic.fault.empty())
-    topic.fault = what + " is in frame '" + head.header.frame + "', those before it in '" +
-                  topic.frame + "'; the clouds of a topic are expected in one";
+    topic.fault = what + " is in frame '" + head.header.frame + "', earlier ones in '" +
+                  topic.frame + "'; expected one frame per topic";
   topic.clouds.push_back({seconds_of(head.header.stamp_ns), head.points, message.place});
 }
 
@@ -52,19 +52,19 @@ void add_pose(const RosPose& pose, bool is_static, const std::string& what, Topi
       std::sqrt(pose.qw * pose.qw + pose.qx * pose.qx + pose.qy * pose.qy + pose.qz * pose.qz);
   if (!(std::fabs(norm - 1) <= kUnitTolerance) || !is_finite(pose.position)) {
     if (edge.fault.empty())
-      edge.fault = what + ": where '" + pose.child_frame + "' is in '" + pose.header.frame +
-                   "' is no pose: its quaternion's norm is " + std::to_string(norm) +
-                   ", expected 1, and its position finite";
+      edge.fault = what + ": the pose of '" + pose.child_frame + "' in '" + pose.header.frame +
+                   "' is invalid: its quaternion has norm " + std::to_string(norm) +
+                   ", expected 1 and a finite position";
     return;
   }
-  if (is_static) edge.parent_from_child.clear();  // the last one holds
+  if (is_static) edge.parent_from_child.clear();  // the last one counts
   edge.parent_from_child.push_back(
       {seconds_of(pose.header.stamp_ns),
        {rotation_from_quaternion(pose.qw / norm, pose.qx / norm, pose.qy / norm, pose.qz / norm),
         pose.position}});
 }
 
-/// By time, each time once: publishers repeat what did not change.
+/// Sorts by time and removes repeated times: publishers repeat unchanged poses.
 void put_in_order(FrameEdge& edge) {
   std::ranges::stable_sort(edge.parent_from_child, {}, &TimedPose::time_s);
   const auto same_time = [](const TimedPose& a, const TimedPose& b) {
@@ -92,7 +92,7 @@ RecordingSurvey survey_recording(const std::filesystem::path& path, ProgressSink
     if (topic.messages == 0) topic.topic = message.topic;
     if (topic.topic.type != message.topic.type || topic.topic.encoding != message.topic.encoding)
       throw Error(ErrorKind::data, path.string() + ": topic " + message.topic.name +
-                                       " has messages of types " + topic.topic.type + " and " +
+                                       " has messages of two types, " + topic.topic.type + " and " +
                                        message.topic.type);
     topic.first_ns =
         topic.messages == 0 ? message.time_ns : std::min(topic.first_ns, message.time_ns);
@@ -119,7 +119,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Reads scans that are messages by names that are made up for them.
+/// Reads scans that are messages, by generated names.
 class RecordedScans final : public ScanSource {
  public:
   RecordedScans(std::shared_ptr<const Recording> recording, MessageEncoding encoding,
@@ -143,23 +143,23 @@ fs::path scan_name(const fs::path& recording, std::size_t number) {
   return recording / text.data();
 }
 
-/// A scan with times of its points, which tell what those of all mean.
+/// A sample scan to determine the meaning of point times.
 struct TimedScan {
   TimeSpan times;
   double stamp_s = 0;
 };
 
-constexpr double kMaxFromStamp_s = 1;  // a sweep is at most that long
+constexpr double kMaxFromStamp_s = 1;  // maximum length of a sweep
 
-/// What the times of points are, by two scans: offsets from the stamp, or near it in its clock, in
-/// the one unit in which a sweep takes 5 ms to a second. Errors: data where they are neither.
+/// The meaning of point times, from two scans: offsets from the stamp, or times near it in its
+/// clock, in the unit in which a sweep takes 5 ms to a second. Errors: data if they are neither.
 PointTimes meaning_by_stamps(const TimedScan& first, const TimedScan& last, double offset_s,
                              const fs::path& recording) {
   constexpr double kShortest_s = 0.005, kLongest_s = 1;
   const double length =
       std::max(first.times.last - first.times.first, last.times.last - last.times.first);
   PointTimes times;
-  if (!(length > 0)) return times;  // none, or one a scan, which says nothing more than the stamp
+  if (!(length > 0)) return times;  // no times, or one per scan, which adds nothing to the stamp
   for (const double unit_s : {1.0, 1e-3, 1e-6, 1e-9}) {
     if (unit_s * length < kShortest_s || unit_s * length > kLongest_s) continue;
     times.unit_s = unit_s;
@@ -180,14 +180,15 @@ PointTimes meaning_by_stamps(const TimedScan& first, const TimedScan& last, doub
     }
   }
   std::array<char, 256> text{};
-  std::snprintf(text.data(), text.size(),
-                ": the times of its points, %.9g to %.9g in the cloud of %.3f s, are neither "
-                "offsets within a sweep (5 ms to 1 s) nor near that time, in s, ms, us or ns",
-                first.times.first, first.times.last, first.stamp_s);
+  std::snprintf(
+      text.data(), text.size(),
+      ": the times of its points (%.9g to %.9g in the cloud at %.3f s) are neither offsets within "
+      "a sweep (5 ms to 1 s) nor near the time of the cloud, in s, ms, us or ns",
+      first.times.first, first.times.last, first.stamp_s);
   throw Error(ErrorKind::data, recording.string() + text.data());
 }
 
-/// Scans with points, and what of them is known.
+/// The scans with points.
 struct RecordedDrive {
   SensorFrames frames;
   std::vector<double> stamps_s;  ///< in the recording's clock
@@ -205,7 +206,7 @@ RecordedDrive scans_of(const RecordingSurvey& survey, const TopicSurvey& topic,
       throw Error(ErrorKind::data, path.string() + ": two clouds of " + topic.topic.name +
                                        " have the same time in their headers, " +
                                        std::to_string(cloud.stamp_s) +
-                                       " s; expected one of its own each");
+                                       " s; expected distinct times");
     const fs::path name = scan_name(path, k);
     places.emplace(name, cloud.place);
     scans.frames.files.push_back(name);
@@ -217,16 +218,16 @@ RecordedDrive scans_of(const RecordingSurvey& survey, const TopicSurvey& topic,
                 path.string() + ": the clouds of " + topic.topic.name + " have no points");
   if (empty > 0)
     progress.warn(path.string() + ": " + std::to_string(empty) + " clouds of " + topic.topic.name +
-                  " have no points, left out");
+                  " have no points and are skipped");
   scans.frames.source =
       std::make_shared<RecordedScans>(survey.recording, topic.topic.encoding, std::move(places));
   return scans;
 }
 
-/// Leaves out the scans of which not all times have poses. `within_s`: when points of a scan were
-/// measured, from its stamp.
-void leave_out_uncovered(RecordedDrive& scans, const Track& track, TimeSpan within_s,
-                         const fs::path& path, ProgressSink& progress) {
+/// Drops the scans that the track does not cover. `within_s`: time span of a scan's points,
+/// relative to its stamp.
+void drop_uncovered_scans(RecordedDrive& scans, const Track& track, TimeSpan within_s,
+                          const fs::path& path, ProgressSink& progress) {
   std::vector<TimeSpan> spans_s;
   for (const double stamp_s : scans.stamps_s)
     spans_s.push_back({stamp_s + within_s.first, stamp_s + within_s.last});
@@ -239,7 +240,7 @@ void leave_out_uncovered(RecordedDrive& scans, const Track& track, TimeSpan with
   scans.frames.files.resize(kept);
 }
 
-/// Sets what the times of the points mean; gives when points of a scan were measured, from its
+/// Sets the meaning of point times; returns the time span of a scan's points, relative to its
 /// stamp.
 TimeSpan understand_times(RecordedDrive& scans, double offset_s, const fs::path& path) {
   const auto look_at = [&](std::size_t k) {
@@ -260,18 +261,17 @@ TimeSpan understand_times(RecordedDrive& scans, double offset_s, const fs::path&
 
 void require_options_of_recordings(const FrameDrive& drive) {
   if (!drive.scan_times.empty())
-    throw Error(ErrorKind::usage,
-                drive.folder.string() +
-                    ": the clouds of a recording have times in their headers; `scan_times` is for "
-                    "folders of files");
+    throw Error(ErrorKind::usage, drive.folder.string() +
+                                      ": the clouds of a recording have times in their headers; "
+                                      "`scan_times` applies to folders of files");
   if (drive.points_in == PointsIn::world)
-    throw Error(ErrorKind::usage,
-                drive.folder.string() +
-                    ": clouds of a recording are taken in the frame of their sensor; `points_in` "
-                    "world is for folders of files");
+    throw Error(ErrorKind::usage, drive.folder.string() +
+                                      ": clouds of a recording are read in the sensor frame; "
+                                      "`points_in` world applies to folders of files");
   if (!drive.trajectory.empty() && !drive.poses_topic.empty())
     throw Error(ErrorKind::usage,
-                drive.folder.string() + ": `trajectory` and `poses_topic` both give the poses");
+                drive.folder.string() +
+                    ": `trajectory` and `poses_topic` both give the poses; give only one of them");
 }
 
 }  // namespace
@@ -287,7 +287,7 @@ KittiSequence open_recording_drive(const FrameDrive& given, const RecordingSurve
   const TimeSpan within_s = understand_times(scans, offset_s, drive.folder);
   for (double& stamp_s : scans.stamps_s) stamp_s += offset_s;
   const Track track = track_of(found.poses);
-  leave_out_uncovered(scans, track, within_s, drive.folder, progress);
+  drop_uncovered_scans(scans, track, within_s, drive.folder, progress);
   SensorFrames& frames = scans.frames;
   frames.poses = {{}, track.poses, found.by, true};
   for (const double stamp_s : scans.stamps_s)
@@ -302,11 +302,12 @@ KittiSequence open_recording_drive(const FrameDrive& given, const RecordingSurve
     progress.end_step();
     because = verdict.because;
     if (verdict.points_in != PointsIn::sensor)
-      throw Error(ErrorKind::data,
-                  drive.folder.string() + ": that the points of " + topic.topic.name + " (frame '" +
-                      topic.frame + "') are in the frame of the sensor " +
-                      (verdict.points_in == PointsIn::world ? "is wrong" : "is not clear") + " (" +
-                      because + "); `points_in` states it");
+      throw Error(ErrorKind::data, drive.folder.string() + ": the points of " + topic.topic.name +
+                                       " (frame '" + topic.frame +
+                                       (verdict.points_in == PointsIn::world
+                                            ? "') are not in the sensor frame"
+                                            : "') cannot be shown to be in the sensor frame") +
+                                       " (" + because + "); give `points_in` if they are");
   }
   if (drive.trajectory.empty()) drive.trajectory = drive.folder;  // for messages about clocks
   KittiSequence sequence = open_sensor_frames(drive, frames, because, executor, progress);

@@ -23,10 +23,11 @@ namespace adasplats {
 
 namespace {
 
-constexpr std::size_t kLookedAt = 5, kEveryOf = 7;  // scans and points that tell the sensor
-constexpr double kClearly = 1.1;  // of the angles to the cones, where one way is to be right
+constexpr std::size_t kSampleScans = 5,
+                      kEveryPointOf = 7;  // scans, and points of each, to recognise the sensor
+constexpr double kClearly = 1.1;          // ratio of the angles to the cones that is conclusive
 constexpr double kNoMotion_m = 0.02;
-constexpr double kSeenAt_m = 10;  // a turn counts as what it moves there
+constexpr double kSeenAt_m = 10;  // a rotation counts as the motion at this range
 
 std::string formatted(const char* format, double a, double b) {
   std::array<char, 300> text{};
@@ -36,7 +37,7 @@ std::string formatted(const char* format, double a, double b) {
 
 bool is_nothing(Vec3d p) { return p.x == 0 && p.y == 0 && p.z == 0; }
 
-/// What does not depend on the frame. A point in the sensor itself stands for none.
+/// The attributes that do not depend on the frame. A point at the sensor is a missing return.
 KittiScan scan_of(FileScan&& file) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   KittiScan scan;
@@ -82,7 +83,10 @@ class SweepReader final : public ScanReader {
     if (!with_classes_) scan.classes = {}, scan.instances = {};
     const bool moves = finding_.way != SweepPoints::found;
     if (moves && times.size() != given.size())
-      throw Error(ErrorKind::data, file.string() + ": its points have no times, other files' have");
+      throw Error(
+          ErrorKind::data,
+          file.string() +
+              ": its points have no times, unlike other files; remove the file, or add the column");
     const TimedPose& pose = poses_.at(file.string());
     if (moves || finding_.sensor) add_beams(file, given, times, pose, scan);
     if (!boxes_.empty()) mark_boxes(times, pose, scan);
@@ -118,7 +122,7 @@ class SweepReader final : public ScanReader {
       const bool own = timed && std::isfinite(times[i]);
       const double time_s = own ? times_.time_s(times[i], pose.time_s) : pose.time_s;
       const Vec3d world = pose.world_from_sensor * vec_cast<double>(scan.positions[i]);
-      scan.in_boxes.push_back(boxes_.hold(time_s, world) ? 1 : 0);
+      scan.in_boxes.push_back(boxes_.contains(time_s, world) ? 1 : 0);
     }
   }
 
@@ -130,7 +134,7 @@ class SweepReader final : public ScanReader {
     const Vec3d then = is_raw ? given : scan_from_then.inverse() * given;
     if (is_raw && is_finite(scan.positions[i]))
       scan.positions[i] = vec_cast<float>(scan_from_then * given);
-    Vec3d origin;  // in the sensor's frame
+    Vec3d origin;  // in the sensor frame
     std::uint16_t laser = kNoLaser;
     if (finding_.sensor && is_finite(scan.positions[i])) {
       const SensorCones& cones = finding_.sensor->cones;
@@ -151,14 +155,14 @@ class SweepReader final : public ScanReader {
   MovingBoxes boxes_;
 };
 
-/// One way to understand the points of scans.
+/// One hypothesis for the state of the points.
 struct Way {
   SweepPoints points;
   Trajectory scan_poses;
   const char* frame;  ///< in words
 };
 
-/// Poses of the track at one part of each file's times.
+/// Poses of the track at a fraction of each file's time span.
 Trajectory poses_within(const SensorFrames& frames, double part) {
   Trajectory poses;
   for (const TimeSpan span : frames.spans_s) {
@@ -185,11 +189,11 @@ std::vector<Way> possible_ways(const SensorFrames& frames, SweepPoints stated) {
   return ways;
 }
 
-/// Some scans of a drive in memory.
+/// Some scans of a drive, in memory.
 class Sample {
  public:
   explicit Sample(const SensorFrames& frames) : frames_(frames) {
-    const std::size_t count = std::min(kLookedAt, frames.files.size());
+    const std::size_t count = std::min(kSampleScans, frames.files.size());
     for (std::size_t k = 0; k < count; ++k) {
       indices_.push_back((2 * k + 1) * frames.files.size() / (2 * count));
       scans_.push_back(frames.source->read(frames.files[indices_.back()]));
@@ -201,9 +205,9 @@ class Sample {
     std::vector<Vec3d> points;
     for (std::size_t k = 0; k < scans_.size(); ++k) {
       const TimedPose& pose = way.scan_poses[indices_[k]];
-      for (std::size_t i = 0; i < scans_[k].size(); i += kEveryOf) {
+      for (std::size_t i = 0; i < scans_[k].size(); i += kEveryPointOf) {
         const Vec3d p = scans_[k].positions[i];
-        if (!is_place(p)) continue;
+        if (!is_valid_position(p)) continue;
         const auto time_s = time_of(k, i, pose.time_s);
         const bool undo = way.points == SweepPoints::compensated && time_s;
         points.push_back(undo ? interpolate(frames_.poses.track, *time_s).inverse() *
@@ -214,7 +218,7 @@ class Sample {
     return points;
   }
 
-  /// How far the frame moves within one of the scans, at most.
+  /// Maximum motion of the frame within a scan.
   double moved_m() const {
     double max_m = 0;
     for (std::size_t k = 0; k < scans_.size(); ++k) {
@@ -243,12 +247,12 @@ class Sample {
   std::vector<FileScan> scans_;
 };
 
-/// How near each way brings the points to the cones of one sensor.
+/// How close each hypothesis brings the points to the cones of one sensor.
 struct Residuals {
   std::optional<Recognition> best;
   std::size_t way = 0;
   double best_rad = std::numeric_limits<double>::infinity();
-  double other_rad = std::numeric_limits<double>::infinity();  ///< of ways of the other kind
+  double other_rad = std::numeric_limits<double>::infinity();  ///< of hypotheses of the other kind
 };
 
 Residuals residuals_of(const Sample& sample, const std::vector<Way>& ways,
@@ -262,7 +266,7 @@ Residuals residuals_of(const Sample& sample, const std::vector<Way>& ways,
   }
   Residuals residuals;
   if (first == ways.size()) return residuals;
-  // The others with this sensor alone: those of other makes are not nearer by a motion.
+  // Only this sensor for the others: motion does not bring points closer to other sensors' cones.
   tables = {found[first]->cones};
   for (std::size_t w = 0; w < ways.size(); ++w)
     if (w > first) found[w] = recognize_sensor(sample.as_cast(ways[w]), tables, executor);
@@ -281,8 +285,8 @@ Residuals residuals_of(const Sample& sample, const std::vector<Way>& ways,
 std::string motion_text(const Way& way, double moved_m) {
   const std::string moved = formatted("; the sensor moves up to %.2f m within a sweep", moved_m, 0);
   if (way.points == SweepPoints::measured)
-    return "as measured, each point brought to its scan's frame by the motion since" + moved;
-  return std::string("taken out of the points (frame of ") + way.frame + ")" + moved;
+    return "points as measured, each brought to the frame of its scan by the poses" + moved;
+  return std::string("already compensated in the points (frame of ") + way.frame + ")" + moved;
 }
 
 }  // namespace
@@ -296,7 +300,7 @@ std::shared_ptr<const ScanReader> sweep_reader(const SensorFrames& frames, Sweep
   return std::make_shared<SweepReader>(frames, std::move(finding), std::move(boxes), with_classes);
 }
 
-SweepFinding look_at_sweeps(const SensorFrames& frames, SweepPoints stated,
+SweepFinding analyze_sweeps(const SensorFrames& frames, SweepPoints stated,
                             const Executor& executor) {
   const std::vector<Way> ways = possible_ways(frames, stated);
   const Sample sample(frames);
@@ -308,8 +312,10 @@ SweepFinding look_at_sweeps(const SensorFrames& frames, SweepPoints stated,
     if (stated != SweepPoints::found)
       throw Error(ErrorKind::usage,
                   frames.files.front().parent_path().string() +
-                      ": `sweep_points` is for scans whose points and poses have times");
-    finding.motion = "not known without times of the points: scans as if standing still";
+                      ": `sweep_points` needs scans with times for points and poses");
+    finding.motion =
+        "unknown, since the points have no times; the sensor is assumed to be at rest during a "
+        "scan";
     return finding;
   }
   finding.moved_m = sample.moved_m();
@@ -323,21 +329,20 @@ SweepFinding look_at_sweeps(const SensorFrames& frames, SweepPoints stated,
       finding.motion += ", as stated";
     else if (!is_clear)
       finding.motion =
-          "next to none within a sweep" + finding.motion.substr(finding.motion.find(';'));
+          "negligible within a sweep" + finding.motion.substr(finding.motion.find(';'));
     else
-      finding.motion += formatted(" (%.3f deg from the cones of its beams, else %.3f or more)",
-                                  residuals.best_rad / kDegree,
-                                  std::min(residuals.other_rad, 0.5 * kDegree) / kDegree);
+      finding.motion += formatted(
+          " (%.3f deg from the cones of its beams, otherwise at least %.3f)",
+          residuals.best_rad / kDegree, std::min(residuals.other_rad, 0.5 * kDegree) / kDegree);
     return finding;
   }
-  finding.motion = formatted(
-      residuals.best ? "not clear: points are %.3f deg from the cones of the beams in the one way, "
-                       "%.3f in the other"
-                     : "not known, since no sensor is recognised",
-      residuals.best_rad / kDegree, residuals.other_rad / kDegree);
+  finding.motion = formatted(residuals.best ? "undetermined: points are %.3f deg from the cones of "
+                                              "the beams by one hypothesis, %.3f by the other"
+                                            : "unknown, since no sensor is recognised",
+                             residuals.best_rad / kDegree, residuals.other_rad / kDegree);
   finding.motion += formatted(
-      ", so scans are taken as if standing still, though the sensor moves up to %.2f m within a "
-      "sweep; `sweep_points` states it",
+      "; the sensor is assumed to be at rest, although it moves up to %.2f m within a sweep (give "
+      "`sweep_points`)",
       finding.moved_m, 0);
   return finding;
 }
@@ -348,12 +353,12 @@ std::string beams_text(const SweepFinding& finding) {
   const Vec3d at = finding.sensor->vehicle_from_sensor.translation;
   constexpr double kDegrees = 57.29577951308232;
   std::array<char, 256> text{};
-  std::snprintf(text.data(), text.size(),
-                "%s found at (%.3f, %.3f, %.3f) m of the points' frame, beams %.3f deg from its "
-                "cones%s",
-                finding.sensor->cones.sensor.c_str(), at.x, at.y, at.z,
-                finding.sensor->residual_rad * kDegrees,
-                finding.way == SweepPoints::found ? "" : ", each point at its own time");
+  std::snprintf(
+      text.data(), text.size(),
+      "%s found at (%.3f, %.3f, %.3f) m of the points' frame, beams %.3f deg from its cones%s",
+      finding.sensor->cones.sensor.c_str(), at.x, at.y, at.z,
+      finding.sensor->residual_rad * kDegrees,
+      finding.way == SweepPoints::found ? "" : ", each point at its own time");
   return text.data();
 }
 
@@ -377,7 +382,7 @@ std::vector<TimeSpan> spans_of_scans(const SensorFrames& frames, const Executor&
   return spans_s;
 }
 
-void tell_of_drive(const KittiSequence& sequence, ProgressSink& progress) {
+void report_drive(const KittiSequence& sequence, ProgressSink& progress) {
   const DriveFacts& facts = sequence.facts;
   progress.warn(sequence.folder.string() + ": points in the " + facts.points_in + "; poses " +
                 facts.poses + "; beams from " + sequence.beams.description() +
@@ -385,15 +390,15 @@ void tell_of_drive(const KittiSequence& sequence, ProgressSink& progress) {
                 (facts.clock.empty() ? "" : "; " + facts.clock) +
                 (facts.intensities.empty() ? "" : "; intensities " + facts.intensities) +
                 (facts.labels.empty() ? "" : "; labels " + facts.labels) +
-                (facts.left_out.empty() ? "" : "; left out: " + facts.left_out));
+                (facts.left_out.empty() ? "" : "; skipped: " + facts.left_out));
 }
 
 std::string motion_text(const ScanBeams& beams) {
-  if (!beams.sweeps_m.empty()) return "taken out of the points, by the cones of its beams";
-  return beams.raw_motions.empty() ? "in the points, as measured; scans as if standing still"
-                                   : "in the points, as measured, and taken out by the poses, "
-                                     "which points of other scans "
-                                     "confirm";
+  if (!beams.sweeps_m.empty())
+    return "already compensated in the points, by the cones of the beams";
+  return beams.raw_motions.empty()
+             ? "points as measured; the sensor is assumed to be at rest during a scan"
+             : "points as measured, compensated by the poses, which other scans confirm";
 }
 
 KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& frames,
@@ -406,29 +411,29 @@ KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& fr
   sequence.reader = raw_reader(frames.source);
   sequence.facts.points_in = "sensor's frame (" + because + ")";
   sequence.facts.poses =
-      frames.poses.by +
-      (drive.given_mount() ? ", with the stated mount" : ", taken as those of the points' frame");
+      frames.poses.by + (drive.given_mount() ? ", with the stated mount"
+                                             : ", assumed to be those of the points' frame");
   sequence.facts.unchecked = require_poses_that_fit(sequence, executor);
   MovingBoxes boxes;
   if (!drive.boxes.empty()) boxes = MovingBoxes(drive.boxes);
   const bool has_point_times = frames.times.kind != PointTimes::Kind::none;
   if (has_point_times && !frames.times.fits)
-    throw Error(ErrorKind::data,
-                drive.folder.string() +
-                    ": the times of its points are neither offsets within a sweep (5 ms to 1 s) "
-                    "in s, ms, us or ns nor of the clock of " +
-                    drive.trajectory.string() + "; `time_offset` states what they lack to it");
+    throw Error(ErrorKind::data, drive.folder.string() +
+                                     ": the times of its points are neither offsets within a sweep "
+                                     "(5 ms to 1 s, in s, ms, us or ns) nor in the clock of " +
+                                     drive.trajectory.string() +
+                                     "; give `time_offset` if the clocks differ");
   SweepFinding finding;
   finding.scan_poses = frames.poses.of_scans;
   progress.begin_step("recognise the sensor", 0);
   if (!drive.beams_from_poses && !has_point_times && drive.sweep_points == SweepPoints::found)
     sequence.beams = recognize_beams(sequence, executor);
   if (drive.beams_from_poses) {
-    sequence.facts.motion = "not looked for: beams from the poses";
+    sequence.facts.motion = "not analysed: beams start at the poses";
   } else if (sequence.beams.from_hdl64) {
     sequence.facts.motion = motion_text(sequence.beams);
   } else {
-    finding = look_at_sweeps(frames, drive.sweep_points, executor);
+    finding = analyze_sweeps(frames, drive.sweep_points, executor);
     sequence.facts.motion = finding.motion;
     sequence.trajectory = finding.scan_poses;
     if (finding.sensor) {
@@ -440,7 +445,7 @@ KittiSequence open_sensor_frames(const FrameDrive& drive, const SensorFrames& fr
   sequence.facts.intensities = frames.intensities;
   sequence.facts.labels = frames.labels;
   sequence.reader = sweep_reader(frames, std::move(finding), std::move(boxes), drive.with_classes);
-  tell_of_drive(sequence, progress);
+  report_drive(sequence, progress);
   return sequence;
 }
 
@@ -453,16 +458,17 @@ std::vector<std::size_t> covered_scans(std::span<const TimeSpan> spans_s, const 
   const std::size_t all = spans_s.size();
   if (kept.size() == all) return kept;
   std::array<char, 320> text{};
-  std::snprintf(text.data(), text.size(),
-                ": %zu of %zu %s (%.3f to %.3f s) were made when there are no poses (these are of "
-                "%.3f to %.3f s, with %zu gaps); nothing is extrapolated",
-                all - kept.size(), all, scans, spans_s.front().first, spans_s.back().last,
-                track.measured_s.first, track.measured_s.last, track.gaps.size());
+  std::snprintf(
+      text.data(), text.size(),
+      ": %zu of %zu %s (%.3f to %.3f s) have no pose (poses cover %.3f to %.3f s, with %zu gaps)",
+      all - kept.size(), all, scans, spans_s.front().first, spans_s.back().last,
+      track.measured_s.first, track.measured_s.last, track.gaps.size());
   if (2 * kept.size() < all)
-    throw Error(ErrorKind::data, path.string() + text.data() +
-                                     ": the clocks differ (`time_offset` states by how much), or "
-                                     "the poses are of another drive");
-  progress.warn(path.string() + text.data() + ", so they are left out");
+    throw Error(
+        ErrorKind::data,
+        path.string() + text.data() +
+            "; the clocks differ (give `time_offset`), or the poses belong to another drive");
+  progress.warn(path.string() + text.data() + " and are skipped");
   return kept;
 }
 

@@ -211,8 +211,7 @@ TEST(SensorFrames, ShiftedClocksOfPointsInTheWorldAreRefused) {
   write_trajectory_csv(court.folder().path() / "poses.csv", late);
   EXPECT_GT(court.load(options).first.size(), 1000U);
   options.time_offset_s.reset();
-  expect_error(ErrorKind::data,
-               {"the clocks of the points and of the trajectory differ", "+0.10 s"},
+  expect_error(ErrorKind::data, {"the clocks of the points and the trajectory differ", "+0.10 s"},
                [&] { court.load(options); });
 }
 

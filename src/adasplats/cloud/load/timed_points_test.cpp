@@ -135,7 +135,7 @@ class TimedPoints : public testing::Test {
 
      private:
       std::string& text_;
-    } listener(said_);
+    } listener(declared_);
     return load_cloud(std::span(&file, 1), options, Executor(2), listener);
   }
   /// Oracle: where the sensor was when each point was made.
@@ -153,7 +153,7 @@ class TimedPoints : public testing::Test {
 
   TemporaryFolder folder_;
   Recording recording_;
-  std::string said_;
+  std::string declared_;
 };
 
 TEST_F(TimedPoints, LasOfAdjustedTimeAndPosesOfTheWeek) {
@@ -162,7 +162,8 @@ TEST_F(TimedPoints, LasOfAdjustedTimeAndPosesOfTheWeek) {
   ASSERT_TRUE(report.timed.has_value());
   EXPECT_NE(report.timed->clock.find("adjusted GPS time; trajectory: GPS seconds of the week"),
             std::string::npos);
-  EXPECT_NE(said_.find("the sensor at (0.800, -0.300, 1.900) m"), std::string::npos) << said_;
+  EXPECT_NE(declared_.find("the sensor at (0.800, -0.300, 1.900) m"), std::string::npos)
+      << declared_;
   EXPECT_EQ(report.timed->scans, 40U);
   ASSERT_EQ(cloud.scan_poses.size(), 40U);
   ASSERT_EQ(cloud.scan_indices.size(), cloud.size());
@@ -244,8 +245,8 @@ TEST_F(TimedPoints, WithoutAMountThePosesAreTheSensorsAndThatIsSaid) {
   LoadOptions options = with(poses(0, 0, 4, {0, 0, 1.9}));
   options.mount.reset();
   EXPECT_EQ(load(points, options).second.origins[3], recording_.time_s.size());
-  EXPECT_NE(said_.find("as the sensor's own since no `mount` is given"), std::string::npos)
-      << said_;
+  EXPECT_NE(declared_.find("as the sensor's own since no `mount` is given"), std::string::npos)
+      << declared_;
 }
 
 TEST_F(TimedPoints, APointWithoutATimeIsAnError) {

@@ -207,7 +207,7 @@ TEST(FilePieces, ScansThatAreNotInOrderAreSaid) {
   EXPECT_EQ(pieces[1].first, 1500U);
   EXPECT_FALSE(pieces[1].has_whole_scans);
   ASSERT_EQ(progress.warnings.size(), 1U);
-  EXPECT_NE(progress.warnings[0].find("not one behind another"), std::string::npos);
+  EXPECT_NE(progress.warnings[0].find("not ordered by scan"), std::string::npos);
 }
 
 /// A track of poses of a sensor 2 m above the ground, from `begin_s` on.
