@@ -41,7 +41,7 @@ void thin(std::vector<TimedPoint>& sweep) {
 }  // namespace
 
 void TimedRecording::add(const std::string& file, std::span<const Vec3d> positions,
-                         std::span<const double> times, SaidClock said) {
+                         std::span<const double> times, DeclaredClock declared) {
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (std::isfinite(times[i])) {
       span_ = {std::min(span_.first, times[i]), std::max(span_.last, times[i])};
@@ -50,7 +50,7 @@ void TimedRecording::add(const std::string& file, std::span<const Vec3d> positio
                   file + ": the time of point " + std::to_string(i) + " (from 0) is not finite");
     }
   }
-  said_ = files_.empty() || said == said_ ? said : SaidClock::nothing;
+  declared_ = files_.empty() || declared == declared_ ? declared : DeclaredClock::none;
   if (files_.empty()) first_name_ = file;
   files_.push_back({positions, times});
   size_ += times.size();
@@ -95,8 +95,8 @@ SweepSample TimedRecording::sample(double unit_s) const {
 namespace {
 
 constexpr double kMaxFar = 0.5;  // of the points
-constexpr const char* kStateIt = "state it with `time_offset`, seconds to add to the points' times";
-constexpr const char* kTrust = "; `trust_origins` takes it nevertheless";
+constexpr const char* kGiveOffset = "give `time_offset`, the seconds to add to the points' times";
+constexpr const char* kTrustOrigins = "; `trust_origins` skips this check";
 
 std::string fixed(double value, int digits) {
   std::array<char, 400> text{};  // the largest double has 309 digits before the point
@@ -143,7 +143,8 @@ ClockPair ClockFinder::find() {
     require_cover({stated});
     return stated;
   }
-  const std::vector<ClockPair> possible = possible_clocks(points_.span(), points_.said(), padded_);
+  const std::vector<ClockPair> possible =
+      possible_clocks(points_.span(), points_.declared(), padded_);
   std::vector<ClockPair> covering;
   for (const ClockPair& clock : possible)
     if (covers(clock)) covering.push_back(clock);
@@ -197,21 +198,20 @@ void ClockFinder::require_cover(const std::vector<ClockPair>& possible) const {
                     (stated_offset_s_ ? " by the stated `time_offset`" : " by any known clock") +
                     ": points of " + span_text(points_.span()) + ", poses of " +
                     span_text({sensor_.front().time_s, sensor_.back().time_s}) +
-                    "; it is of another recording, or of another clock: " + kStateIt);
+                    "; it belongs to another recording, or to another clock: " + kGiveOffset);
   }
   const TimeSpan times = best->in_trajectory(points_.span());
   const TimeSpan poses = {sensor_.front().time_s * best->trajectory_unit_s,
                           sensor_.back().time_s * best->trajectory_unit_s};
-  throw Error(
-      ErrorKind::data,
-      named + std::to_string(points_.size() - most) + " of " + std::to_string(points_.size()) +
-          " points (" + best->description() + "): they are of " + span_text(times) +
-          " s, its poses of " + span_text(poses) + " s, so up to " +
-          fixed(std::max(0.0, poses.first - times.first), 3) + " s before and " +
-          fixed(std::max(0.0, times.last - poses.last), 3) +
-          " s behind; nothing is extrapolated. Leave these points out, or bring the rest of the "
-          "trajectory; where the clock is another one, " +
-          kStateIt);
+  throw Error(ErrorKind::data,
+              named + std::to_string(points_.size() - most) + " of " +
+                  std::to_string(points_.size()) + " points (" + best->description() +
+                  "): they are of " + span_text(times) + " s, its poses of " + span_text(poses) +
+                  " s: up to " + fixed(std::max(0.0, poses.first - times.first), 3) +
+                  " s before and " + fixed(std::max(0.0, times.last - poses.last), 3) +
+                  " s after its poses. Remove these points, or give the complete trajectory; if "
+                  "the clocks differ, " +
+                  kGiveOffset);
 }
 
 /// Of several clocks the one that the sweeps fit. One clock for both is taken where nothing speaks
@@ -234,12 +234,11 @@ ClockPair ClockFinder::clearest(const std::vector<ClockPair>& covering) {
   for (const auto& entry : by_cost)
     list += "\n  " + entry.second->description() +
             (has_evidence ? ", misfit " + fixed(entry.first, 2) : "");
-  throw Error(ErrorKind::data,
-              points_.name() + ": the trajectory " + file_.string() +
-                  " covers all times by several clocks, and " +
-                  (has_evidence ? "the points fit none of them clearly best"
-                                : "there are too few points to tell which is right") +
-                  "; " + kStateIt + ":" + list);
+  throw Error(ErrorKind::data, points_.name() + ": the trajectory " + file_.string() +
+                                   " covers all times by several clocks, and " +
+                                   (has_evidence ? "the points fit none of them clearly best"
+                                                 : "there are too few points to decide") +
+                                   "; " + kGiveOffset + ":" + list);
 }
 
 /// A shift of the times by which the points would fit clearly better; 0: none.
@@ -281,46 +280,45 @@ void ClockFinder::check(const ClockPair& clock, const SweepView& seen, ProgressS
                             " does not fit the points (" + clock.description() + "): ";
   const std::string median = "the median range is " + fixed(seen.median_range_m, 1) + " m";
   if (seen.share_far > kMaxFar || seen.median_range_m > kFarthestOriginM)
-    throw Error(ErrorKind::data, named + median + ", and " + percent(seen.share_far) +
-                                     " of the points are farther than " +
-                                     fixed(kFarInStreets_m, 0) +
-                                     " m and not below the sensor; it is of another place, another "
-                                     "frame or another clock" +
-                                     kTrust);
-  if (is_aside(clock, seen))
     throw Error(ErrorKind::data,
-                named + median + ", and half of the points are " + fixed(seen.median_way_m.x, 0) +
-                    " m or more in x and " + fixed(seen.median_way_m.y, 0) +
-                    " m in y from the sensor; moved by that, it would clearly fit better: it is of "
-                    "another place or frame" +
-                    kTrust);
+                named + median + ", and " + percent(seen.share_far) +
+                    " of the points are farther than " + fixed(kFarInStreets_m, 0) +
+                    " m and not below the sensor; it belongs to another scene, frame or clock" +
+                    kTrustOrigins);
+  if (is_aside(clock, seen))
+    throw Error(ErrorKind::data, named + median + ", and half of the points are " +
+                                     fixed(seen.median_way_m.x, 0) + " m or more in x and " +
+                                     fixed(seen.median_way_m.y, 0) +
+                                     " m in y from the sensor; moved by that, it would fit clearly "
+                                     "better: it belongs to another scene or frame" +
+                                     kTrustOrigins);
   if (const double shift_s = better_shift_s(clock); shift_s != 0) {
     const std::string message =
         named + "with " + (shift_s > 0 ? "+" : "") + fixed(shift_s, 1) +
-        " s more they would clearly fit better; the clocks differ by about that: " + kStateIt;
-    if (!stated_offset_s_) throw Error(ErrorKind::data, message + kTrust);
+        " s more they would clearly fit better; the clocks differ by about that: " + kGiveOffset;
+    if (!stated_offset_s_) throw Error(ErrorKind::data, message + kTrustOrigins);
     progress.warn(message);
   }
   if (seen.share_behind > seen.max_behind())
     throw Error(ErrorKind::data,
                 named + percent(seen.share_behind) +
-                    " of what was measured within 0.1 s lies behind other points as seen from "
-                    "there, at most " +
+                    " of what was measured within 0.1 s is hidden behind other points as seen from "
+                    "there, expected at most " +
                     percent(seen.max_behind()) +
-                    " do; the sensor sits elsewhere (`mount`), or the trajectory is of another "
-                    "place or clock; " +
-                    median + kTrust);
+                    "; the mount of the sensor is wrong (`mount`), or the trajectory belongs to "
+                    "another scene or clock; " +
+                    median + kTrustOrigins);
 }
 
 void ClockFinder::require_no_gaps(const ClockPair& clock, const Track& track) const {
   for (const TimeSpan gap : track.gaps) {
     const std::size_t inside = points_.count_within(gap, clock);
     if (inside == 0) continue;
-    throw Error(ErrorKind::data, points_.name() + ": " + std::to_string(inside) +
-                                     " points were measured in a gap of the trajectory " +
-                                     file_.string() + ", which has no poses from " +
-                                     span_text(gap) +
-                                     " s; leave them out: nothing is guessed there");
+    throw Error(ErrorKind::data,
+                points_.name() + ": " + std::to_string(inside) +
+                    " points were measured in a gap of the trajectory " + file_.string() +
+                    ", which has no poses from " + span_text(gap) +
+                    " s; remove these points, or give a trajectory without the gap");
   }
 }
 

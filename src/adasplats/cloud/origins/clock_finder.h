@@ -25,12 +25,12 @@ class TimedRecording {
   /// Points of a file, whose views have to stay. Points without a place do not count. Errors: data
   /// for a point with a place and without a time.
   void add(const std::string& file, std::span<const Vec3d> positions, std::span<const double> times,
-           SaidClock said);
+           DeclaredClock declared);
 
   bool have_times() const { return span_.first < span_.last; }
   TimeSpan span() const { return span_; }
-  SaidClock said() const { return said_; }  ///< by all files
-  std::string name() const;                 ///< for messages
+  DeclaredClock declared() const { return declared_; }  ///< by all files
+  std::string name() const;                             ///< for messages
   std::size_t size() const { return size_; }
   /// How many points, once in seconds by `clock` in the trajectory's, are within a span.
   std::size_t count_within(TimeSpan span_s, const ClockPair& clock) const;
@@ -44,7 +44,7 @@ class TimedRecording {
   };
   std::vector<File> files_;
   std::string first_name_;
-  SaidClock said_ = SaidClock::nothing;
+  DeclaredClock declared_ = DeclaredClock::none;
   std::size_t size_ = 0;
   TimeSpan span_{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 };

@@ -105,22 +105,21 @@ StationView view_from_station(std::span<const Vec3f> from_station, const Executo
 std::string station_objection(const StationView& view) {
   if (view.nearest_m > kFarthestOriginM) {
     return "the nearest point is " + std::to_string(std::lround(view.nearest_m / 1000)) +
-           " km away, farther than LiDARs measure";
+           " km away, beyond the range of LiDARs";
   }
   if (view.points >= kMinView && view.share_behind > kMaxBehind) {
     return in_percent(view.share_behind) +
-           " of the points lie behind others as seen from there; of what one station measured, at "
-           "most " +
-           in_percent(kMaxBehind) + " do (but for later returns: `trust_origins`)";
+           " of the points are hidden behind others as seen from there; expected at most " +
+           in_percent(kMaxBehind) + " for one station (later returns: give `trust_origins`)";
   }
   return {};
 }
 
 namespace {
 
-constexpr std::size_t kPlaces = 16;
+constexpr std::size_t kViews = 16;
 constexpr std::size_t kMaxLookedAt = std::size_t{1} << 20;
-constexpr std::size_t kMinOfPlace = 100;
+constexpr std::size_t kMinPointsOfView = 100;
 constexpr float kNear_m = 0.5F;   // origins as good as at the place
 constexpr float kFar_m = 100;     // farther points hide nothing
 constexpr float kLeast_m = 0.5F;  // nearer ones have no direction to speak of
@@ -159,15 +158,15 @@ class DepthMap {
       std::size_t{kColumns} * kRows, {kInfinity, kInfinity, kInfinity});
 };
 
-struct PlaceView {
+struct OriginView {
   std::size_t points = 0, behind = 0;
 };
 
-PlaceView view_from_place(std::span<const Vec3f> positions, std::span<const Vec3f> origins,
-                          std::size_t stride, Vec3f place) {
+OriginView view_from_origin(std::span<const Vec3f> positions, std::span<const Vec3f> origins,
+                            std::size_t stride, Vec3f place) {
   DepthMap map;
   for (std::size_t i = 0; i < positions.size(); i += stride) map.add(positions[i] - place);
-  PlaceView view;
+  OriginView view;
   for (std::size_t i = 0; i < positions.size(); i += stride) {
     if (!(length(origins[i] - place) < kNear_m)) continue;
     ++view.points;
@@ -183,15 +182,15 @@ std::string whole_percent(double share) { return std::to_string(std::lround(100 
 PathView view_from_path(std::span<const Vec3f> positions, std::span<const Vec3f> origins,
                         const Executor& executor) {
   const std::size_t stride = positions.size() / kMaxLookedAt + 1;
-  std::array<PlaceView, kPlaces> views{};
+  std::array<OriginView, kViews> views{};
   if (!positions.empty())
-    executor.for_chunks(kPlaces, 1, [&](std::size_t k, std::size_t) {
-      const std::size_t middle = (2 * k + 1) * positions.size() / (2 * kPlaces);
-      views[k] = view_from_place(positions, origins, stride, origins[middle]);
+    executor.for_chunks(kViews, 1, [&](std::size_t k, std::size_t) {
+      const std::size_t middle = (2 * k + 1) * positions.size() / (2 * kViews);
+      views[k] = view_from_origin(positions, origins, stride, origins[middle]);
     });
   PathView path;
-  for (const PlaceView& view : views) {
-    if (view.points < kMinOfPlace) continue;
+  for (const OriginView& view : views) {
+    if (view.points < kMinPointsOfView) continue;
     ++path.places;
     path.points += view.points;
     // A place where the sensor stood for long counts as much as any other.
@@ -204,9 +203,10 @@ PathView view_from_path(std::span<const Vec3f> positions, std::span<const Vec3f>
 std::string path_objection(const PathView& view) {
   if (view.points < kMinView || !(view.share_behind > kMaxBehindOfPath)) return {};
   return whole_percent(view.share_behind) +
-         " of the points lie behind others as seen from where they are said to have been measured; "
-         "of what a moving sensor measured, at most " +
-         whole_percent(kMaxBehindOfPath) + " do (but for later returns: `trust_origins`)";
+         " of the points are hidden behind others as seen from their sensor positions; expected at "
+         "most " +
+         whole_percent(kMaxBehindOfPath) +
+         " for a moving sensor (later returns: give `trust_origins`)";
 }
 
 }  // namespace adasplats

@@ -99,7 +99,7 @@ Trajectory resampled_by_distance(const Trajectory& trajectory, double spacing_m)
   });
 }
 
-Trajectory with_motion_continued(Trajectory poses, double by_s) {
+Trajectory with_extrapolated_ends(Trajectory poses, double by_s) {
   if (poses.size() < 2) return poses;
   const double begin_s = poses.front().time_s, end_s = poses.back().time_s;
   const auto mirrored = [&](double at_s, double inside_s) {

@@ -326,7 +326,7 @@ TEST(ContinuedMotion, GoesOnAlongACircle) {
     return RigidTransform{rotation_from_yaw_pitch_roll(s, 0, 0), {std::sin(s), -std::cos(s), 0}};
   };
   const Trajectory longer =
-      with_motion_continued({{0, pose_at(0)}, {0.1, pose_at(0.1)}, {0.2, pose_at(0.2)}}, 0.1);
+      with_extrapolated_ends({{0, pose_at(0)}, {0.1, pose_at(0.1)}, {0.2, pose_at(0.2)}}, 0.1);
   ASSERT_EQ(longer.size(), 5U);
   for (const TimedPose& pose : longer) {
     const RigidTransform expected = pose_at(pose.time_s);
@@ -338,8 +338,8 @@ TEST(ContinuedMotion, GoesOnAlongACircle) {
 }
 
 TEST(ContinuedMotion, ASinglePoseStays) {
-  EXPECT_EQ(with_motion_continued({{7, {}}}, 0.1).size(), 1U);
-  EXPECT_TRUE(with_motion_continued({}, 0.1).empty());
+  EXPECT_EQ(with_extrapolated_ends({{7, {}}}, 0.1).size(), 1U);
+  EXPECT_TRUE(with_extrapolated_ends({}, 0.1).empty());
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace adasplats {
 
 namespace {
 
-constexpr double kCap_rad = 0.5 * kDegree;  // of one point's residual: an outlier tells no more
+constexpr double kCap_rad = 0.5 * kDegree;  // of one point's residual, against outliers
 
 /// Mean of min(|x|, cap) for x uniform within half a gap.
 double chance_of(double gap_rad) {

@@ -250,7 +250,7 @@ KittiSequence open_kitti_raw_drive(const fs::path& folder) {
   const fs::path stamps = folder / "velodyne_points" / "timestamps.txt";
   const std::vector<double> times_s = read_stamps(stamps);
   const RigidTransform imu_from_velodyne = read_imu_to_velodyne(folder).inverse();
-  const Trajectory records = with_motion_continued(read_records(folder), kRecord_s);
+  const Trajectory records = with_extrapolated_ends(read_records(folder), kRecord_s);
   for (const fs::path& scan : sequence.scans) {
     const double time_s = stamp_of(scan, times_s, stamps);
     require_record_near(records, time_s, scan);

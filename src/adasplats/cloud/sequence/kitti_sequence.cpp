@@ -106,7 +106,7 @@ void keep_outside(const std::vector<std::uint8_t>& in_boxes, std::vector<T>& val
 }
 
 /// Takes what is in boxes out of a scan.
-void leave_boxes_out(KittiScan& scan) {
+void remove_points_in_boxes(KittiScan& scan) {
   if (scan.in_boxes.empty()) return;
   keep_outside(scan.in_boxes, scan.positions);
   keep_outside(scan.in_boxes, scan.intensities);
@@ -151,7 +151,7 @@ MeasuredBeam beam_of(const KittiSequence& sequence, std::size_t index, const Kit
 
 KittiScan read_kitti_points(const KittiSequence& sequence, std::size_t index) {
   KittiScan scan = read_all_returns(sequence, index);
-  leave_boxes_out(scan);
+  remove_points_in_boxes(scan);
   return scan;
 }
 

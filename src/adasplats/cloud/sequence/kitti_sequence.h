@@ -26,12 +26,12 @@ std::optional<std::size_t> number_in_name(const std::filesystem::path& file);
 
 struct KittiScan;
 
-/// What was understood of a drive, in words; empty: nothing to tell.
+/// What was inferred about a drive, in words; empty: nothing to report.
 struct DriveFacts {
   std::string points_in;  ///< the frame of the points in the files, and by what
   std::string poses;      ///< how scans got theirs
   std::string motion;     ///< of the sensor within a sweep
-  std::string clock;      ///< whether the clocks of points and poses are one, and what tells it
+  std::string clock;      ///< whether points and poses share a clock, with the evidence
   std::string unchecked;  ///< of the poses (require_poses_that_fit())
   /// Of the tree of a data set: how intensities were scaled, which scans have labels, and which
   /// points of the files are of none of the scans.
