@@ -230,7 +230,7 @@ TEST_F(TimedPoints, AnotherClockOrPlaceIsAnError) {
   expect_error(ErrorKind::data, {"does not fit", "in y from the sensor", "another place"}, [&] {
     load(points, with(poses(0, 0, 4, {10, -100, 0})));
   });
-  expect_error(ErrorKind::data, {"does not fit", "lies behind other points", "`mount`"}, [&] {
+  expect_error(ErrorKind::data, {"does not fit", "is hidden behind other points", "`mount`"}, [&] {
     LoadOptions options = with(poses(0, 0, 4));
     options.mount = Vec3d{0, 0, 0.05};  // on the ground
     load(points, options);
@@ -307,7 +307,7 @@ TEST_F(TimedPoints, PausesOfTheRecordingEndScans) {
 TEST_F(TimedPoints, WhatNothingTakesIsAnError) {
   const auto points = folder_.write("a.xyz", std::string("x y z\n1 2 3\n4 5 6\n"));
   LoadOptions options = with(poses(0, 0, 4));
-  expect_error(ErrorKind::usage, {"`mount`", "there are none"}, [&] { load(points, options); });
+  expect_error(ErrorKind::usage, {"`mount`", "no input has both"}, [&] { load(points, options); });
   options.mount.reset();
   EXPECT_EQ(load(points, options).first.origin_kind(0), OriginKind::guessed);
   options.time_offset_s = 1;

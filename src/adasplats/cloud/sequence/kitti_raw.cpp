@@ -210,7 +210,7 @@ void require_record_near(const Trajectory& records, double time_s, const fs::pat
   if (is_between && behind->time_s - std::prev(behind)->time_s <= max_s) return;
   throw fault(scan, "no record of oxts is near its time, " +
                         exact_text(std::round(1e3 * (time_s - records[1].time_s)) / 1e3) +
-                        " s after the first record; leave it out: nothing is guessed there");
+                        " s after the first record; remove the scan");
 }
 
 /// Scans as text, x y z reflectance a line: those of drives that are not synced.

@@ -115,7 +115,7 @@ bool is_kitti_raw_drive(const std::filesystem::path& folder);
 /// east, y north, z up (Mercator, scaled by the latitude of the first record, as the devkit has
 /// it). Times are seconds since 1970 of the clock in the files. Errors: no_input (nothing is
 /// there), data (calibration, stamps or records that are missing or no numbers; scans whose time is
-/// farther than 0.1 s before or behind all records, or in a gap of them: nothing is guessed there).
+/// farther than 0.1 s before or behind all records, or in a gap of them).
 KittiSequence open_kitti_raw_drive(const std::filesystem::path& folder);
 
 }  // namespace adasplats

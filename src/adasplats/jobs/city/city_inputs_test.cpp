@@ -118,7 +118,7 @@ TEST(CityInputs, FilesOutsideOfTheExtentHaveNoPoints) {
   const Taken some = taken(inputs, 1000, load);
   EXPECT_EQ(some.world().size(), 1000U);
   load.selection.extent = Extent{{50, -1, -1}, {60, 9, 9}};
-  EXPECT_NE(error_of(inputs, load).find("lies in the extent"), std::string::npos);
+  EXPECT_NE(error_of(inputs, load).find("is in the extent"), std::string::npos);
 }
 
 // Oracle: at once such points are dropped as far, which is an error where they are many.
