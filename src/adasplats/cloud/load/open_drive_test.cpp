@@ -146,7 +146,9 @@ TEST(FrameDrive, AnotherClockIsAnError) {
       "late.csv",
       std::string("time,x,y,z,qw,qx,qy,qz\n1e9,0,0,0,1,0,0,0\n1000000001,1,0,0,1,0,0,0\n"));
   expect_error(ErrorKind::data, {"0.ply", "the clocks differ", "late.csv"}, [&] {
-    open_frame_drive({.folder = drive.frames(), .trajectory = late}, Executor(1), quiet);
+    DriveSettings settings;
+    settings.trajectory = late;
+    open_frame_drive(drive_of(drive.frames(), settings), Executor(1), quiet);
   });
 }
 
@@ -236,8 +238,10 @@ TEST(FrameDrive, BoxesOfAnotherClockAreAnError) {
       "boxes.csv", std::string("time,id,stationary,x,y,z,size_x,size_y,size_z,yaw\n"
                                "1e9,1,0,0,0,0,1,1,1,0\n"));
   expect_error(ErrorKind::data, {"boxes.csv", "the clocks differ"}, [&] {
-    open_frame_drive({.folder = drive.frames(), .trajectory = drive.poses(), .boxes = boxes},
-                     Executor(1), quiet);
+    DriveSettings settings;
+    settings.trajectory = drive.poses();
+    settings.boxes = boxes;
+    open_frame_drive(drive_of(drive.frames(), settings), Executor(1), quiet);
   });
 }
 
