@@ -38,7 +38,7 @@ TEST(MovingBoxes, CoverTheTimesOfAllBoxes) {
   EXPECT_TRUE(boxes.overlaps(-1.9, -1.8));
   EXPECT_FALSE(boxes.overlaps(-1.4, 5));
   EXPECT_FALSE(boxes.overlaps(-9, -2.1));
-  EXPECT_FALSE(MovingBoxes().cover(-1e9, 1e9));
+  EXPECT_FALSE(MovingBoxes().overlaps(-1e9, 1e9));
 }
 
 TEST(MovingBoxes, TurnByTheirYawTheShortWay) {
